@@ -1,0 +1,65 @@
+"""A system may use any name that the library uses for itself: Maxima's variables have dynamic scope."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from harness.crosscheck import check_record
+from harness.maxima import LIBRARY, run_scene
+from harness.record import read_record
+
+BOUND = re.compile(r"\bblock\(\s*\[([^\]]*)\]|^\w+\(([\w, \[\]]*)\)\s*:=|lambda\(\[([^\]]*)\]", re.MULTILINE)
+NAME = re.compile(r"[A-Za-z]\w*")
+MAXIMAS = {"t", "fpprec", "linel", "ratprint", "algexact", "scalarmatrixp", "lambda"}
+ENTRIES = {"coordinates", "parameters", "parameter_values", "initial_state", "title", "effects", "settings"}
+AT_ONCE = 12  # names in one system
+
+SCENE = """
+load("holonom.mac")$
+{first} : holonomic_system(coordinates = [{second}, {third}], controls = [{fourth}], parameters = [{parameters}],
+  kinetic_energy = (dot({second})^2 + (1 + {product}*t)*dot({third})^2)/2,
+  potential_energy = {sum}*{second},
+  constraints = [{third} - {fourth}*{second}])$
+scene : holonomic_scene({first}, control_law = [{fourth} = 1 + t*({sum})], parameter_values = [{values}],
+  initial_state = [{second} = 1, dot({second}) = 2])$
+"""
+
+
+def local_names() -> list[str]:
+    """Every name that a function of the derivation binds."""
+    files = [*LIBRARY.glob("*.mac"), *LIBRARY.glob("derivation/*.mac"), *LIBRARY.glob("record/*.mac")]
+    text = "\n".join(path.read_text() for path in files)
+    bound = {
+        match[0]
+        for groups in BOUND.findall(text)
+        for part in re.split(r",", ",".join(groups))
+        if (match := NAME.match(part.strip(" []\n")))
+    }
+    return sorted(bound - MAXIMAS - ENTRIES)
+
+
+def groups(names: list[str]) -> list[list[str]]:
+    """All names, `AT_ONCE` at a time; the last ones fill up the last group."""
+    return [names[max(0, min(start, len(names) - AT_ONCE)) :][:AT_ONCE] for start in range(0, len(names), AT_ONCE)]
+
+
+@pytest.mark.parametrize("names", groups(local_names()), ids=" ".join)
+def test_names_of_the_library_are_the_users_too(names: list[str], tmp_path: Path):
+    first, second, third, fourth, *parameters = names
+    file = tmp_path / "scene.mac"
+    file.write_text(
+        SCENE.format(
+            first=first,
+            second=second,
+            third=third,
+            fourth=fourth,
+            parameters=", ".join(parameters),
+            product="*".join(parameters),
+            sum=" + ".join(parameters),
+            values=", ".join(f"{name} = {place}/7" for place, name in enumerate(parameters, 1)),
+        )
+    )
+    report = check_record(read_record(run_scene(file)))
+    assert report.verdicts
+    assert report.disagreements == 0
