@@ -1,0 +1,60 @@
+# Holonom: set-up, the main job, the tests. `make help` lists the targets.
+
+BIN     := .venv/bin
+STAMP   := .venv/installed
+SCENES  := $(filter-out %/printed.mac,$(shell find examples -name '*.mac' | sort))
+RECORDS := $(SCENES:%.mac=build/%.json)
+SOURCES := $(shell find maxima harness -name '*.mac' -o -name '*.lisp' -o -name '*.py')
+
+.DEFAULT_GOAL := paper
+.DELETE_ON_ERROR:
+.PHONY: paper check setup clean help have-maxima have-python
+
+paper: setup $(RECORDS) ## Derive and check every scene, compare the paper as printed (the default)
+	$(BIN)/holonom check $(SCENES) --json build/check.json
+	$(BIN)/holonom errata --json build/errata.json
+	@echo "The derivations are in build/examples/, the verdicts in build/check.json, the misprints in build/errata.json."
+
+check: setup ## Lint, then run all tests, Maxima's own rtest files among them
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/pytest -q
+
+setup: have-maxima $(STAMP) ## Install what is missing: Maxima, and the Python packages in .venv
+
+clean: ## Remove all that make made
+	rm -rf build .venv .pytest_cache .ruff_cache .hypothesis *.egg-info
+	find harness tests -name __pycache__ -prune -exec rm -rf {} +
+
+help: ## List the targets
+	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 10
+
+# The derivation of one scene: the record as JSON, and beside it its equations as text.
+build/%.json: %.mac $(SOURCES) | setup
+	@mkdir -p $(@D)
+	$(BIN)/holonom derive $< --json $@ > $(@:.json=.txt)
+
+# A Debian package, installed as root, or one sentence why not.
+define install
+{ as_root=sudo; if [ "$$(id -u)" = 0 ]; then as_root=env; fi; \
+  command -v apt-get >/dev/null && command -v $$as_root >/dev/null || { \
+    echo "Holonom needs $(1), and it takes apt-get and root rights to install it: please install it yourself." >&2; exit 2; }; \
+  $$as_root apt-get update -qq && $$as_root DEBIAN_FRONTEND=noninteractive apt-get install -qq $(1); }
+endef
+
+have-maxima:
+	@command -v maxima >/dev/null || $(call install,maxima)
+
+# The first Python that is new enough; python3 is the last resort because it may be anything.
+PYTHON = $(shell for python in python3.11 python3.12 python3.13 python3; do \
+  $$python -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$python && break; done)
+
+have-python:
+	@command -v python3 >/dev/null || $(call install,python3-venv)
+
+$(STAMP): pyproject.toml constraints.txt | have-python
+	@test -n "$(PYTHON)" || { echo "Holonom needs Python 3.11 or later: please install it." >&2; exit 2; }
+	@$(PYTHON) -c 'import ensurepip' 2>/dev/null || $(call install,$(notdir $(PYTHON))-venv)
+	$(PYTHON) -m venv --clear .venv
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
+	@touch $@

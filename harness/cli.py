@@ -1,0 +1,193 @@
+"""The command line: derive, check, errata.
+
+Exit status: 0 when all is well, 1 when an equation disagrees, 2 for bad input, 130 when interrupted. Modules are
+imported inside the commands: ``holonom --help`` waits for no SymPy.
+"""
+
+import functools
+import json
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from harness.confined import Limits
+from harness.failures import HolonomError
+
+if TYPE_CHECKING:
+    from harness.crosscheck import CheckReport
+
+DISAGREEMENT = 1
+BAD_INPUT = 2
+INTERRUPTED = 130
+STANDARD_OUTPUT = Path("-")
+
+
+class Commands(click.Group):
+    """The commands, with bad input explained in one sentence."""
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command asked for; return its exit status."""
+        try:
+            return super().invoke(ctx)
+        except HolonomError as error:
+            click.echo(f"holonom: {error}", err=True)
+            if ctx.params["verbose"]:
+                _explain(error)
+            return BAD_INPUT
+
+
+@click.group(cls=Commands)
+@click.option("-v", "--verbose", is_flag=True, help="On failure show Maxima's last lines and how to repeat the run.")
+@click.version_option(package_name="holonom")
+def holonom(verbose: bool) -> None:
+    """Controllable holonomic systems with redundant coordinates, derived by Maxima and checked by SymPy.
+
+    A SCENE is a Maxima file that describes a system and what to do with it.
+    """
+
+
+def main() -> None:
+    """Run the command line and leave with its exit status."""
+    try:
+        status = holonom(standalone_mode=False)
+    except click.ClickException as error:
+        error.show()
+        status = error.exit_code
+    except click.Abort:
+        status = INTERRUPTED
+    sys.exit(status)
+
+
+def writes_json(command: Callable[..., int]) -> Callable[..., int]:
+    """Give a command the option --json."""
+    return click.option(
+        "--json",
+        "json_file",
+        metavar="FILE|-",
+        type=click.Path(path_type=Path),
+        help="Also write the result to FILE as one JSON document; with -, write nothing but that to standard output.",
+    )(command)
+
+
+def runs_scenes(command: Callable[..., int]) -> Callable[..., int]:
+    """Give a command the options that limit its Maxima runs, passed on as `limits`."""
+    defaults = Limits()
+
+    @click.option(
+        "--time-limit",
+        metavar="SECONDS",
+        type=click.FloatRange(min=0, min_open=True),
+        default=defaults.seconds,
+        show_default=True,
+        help="Time that Maxima may take for a scene.",
+    )
+    @click.option(
+        "--memory-limit",
+        metavar="MIB",
+        type=click.IntRange(min=256),
+        default=defaults.memory_mib,
+        show_default=True,
+        help="Memory that Maxima may take for a scene.",
+    )
+    @functools.wraps(command)
+    def limited(*, time_limit: float, memory_limit: int, **options: Any) -> int:
+        return command(limits=Limits(seconds=time_limit, memory_mib=memory_limit), **options)
+
+    return limited
+
+
+@holonom.command()
+@click.argument("scene", type=click.Path(path_type=Path))
+@writes_json
+@runs_scenes
+def derive(scene: Path, json_file: Path | None, limits: Limits) -> int:
+    """Derive the equations of a SCENE, under the paper's numbers."""
+    from harness.console import make_console, show_record
+    from harness.maxima import run_scene
+    from harness.record import read_record
+
+    text = run_scene(scene, limits)
+    record = read_record(text)
+    _publish(text, json_file)
+    if json_file != STANDARD_OUTPUT:
+        show_record(make_console(), record)
+    return 0
+
+
+@holonom.command()
+@click.argument("scenes", metavar="SCENE...", nargs=-1, required=True, type=click.Path(path_type=Path))
+@writes_json
+@runs_scenes
+def check(scenes: Sequence[Path], json_file: Path | None, limits: Limits) -> int:
+    """Derive each SCENE and compare every equation with an independent SymPy evaluation."""
+    from harness.console import make_console, show_report
+    from harness.crosscheck import check_record
+    from harness.maxima import run_scene
+    from harness.record import read_record
+
+    reports = [(str(scene), check_record(read_record(run_scene(scene, limits)))) for scene in scenes]
+    documents = [_report_document(scene, report) for scene, report in reports]
+    _publish(_json_text(documents[0] if len(documents) == 1 else documents), json_file)
+    if json_file != STANDARD_OUTPUT:
+        console = make_console()
+        for scene, report in reports:
+            show_report(console, scene, report)
+    return DISAGREEMENT if any(report.disagreements for _, report in reports) else 0
+
+
+@holonom.command()
+@writes_json
+def errata(json_file: Path | None) -> int:
+    """Compare every equation that the paper prints with the derived one."""
+    from harness.console import make_console, show_errata
+    from harness.errata import errata as compare
+
+    equations = compare()
+    _publish(_json_text({"equations": [asdict(equation) for equation in equations]}), json_file)
+    if json_file != STANDARD_OUTPUT:
+        show_errata(make_console(), equations)
+    return 0
+
+
+def _report_document(scene: str, report: "CheckReport") -> dict[str, Any]:
+    return {
+        "scene": scene,
+        "equations": [
+            {
+                "number": found.number,
+                "name": found.name,
+                "scene_name": found.scene,
+                "verdict": found.verdict,
+                "digits": found.digits,
+                "points": found.points,
+                "detail": found.detail,
+            }
+            for found in report.verdicts
+        ],
+        "disagreements": report.disagreements,
+    }
+
+
+def _json_text(document: Any) -> str:
+    return json.dumps(document, ensure_ascii=False, indent=1) + "\n"
+
+
+def _publish(text: str, json_file: Path | None) -> None:
+    """Put a JSON document where --json asks for it, if it does."""
+    if json_file == STANDARD_OUTPUT:
+        click.echo(text, nl=False)
+    elif json_file is not None:
+        from harness.files import write_whole
+
+        write_whole(json_file, text)
+
+
+def _explain(error: HolonomError) -> None:
+    for line in error.last_lines:
+        click.echo(f"  | {line}", err=True)
+    if error.command:
+        click.echo(f"repeat it with: {error.command}", err=True)

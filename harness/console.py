@@ -1,0 +1,108 @@
+"""What the commands show: tables and equations, in colour on a terminal and plain elsewhere."""
+
+from collections.abc import Iterable, Sequence
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+if TYPE_CHECKING:
+    from harness.crosscheck import CheckReport
+    from harness.errata import PrintedEquation
+    from harness.record import Equation, Record
+
+PIPE_WIDTH = 160  # columns where there is no terminal to ask
+STYLES = {"proved": "green", "agrees": "green", "disagrees": "bold red", "differs": "bold red"}
+
+
+def make_console() -> Console:
+    """Console on standard output."""
+    console = Console(highlight=False)
+    if not console.is_terminal:
+        console.width = PIPE_WIDTH
+    return console
+
+
+def show_record(console: Console, record: "Record") -> None:
+    """Print a derivation, equation by equation, under the paper's numbers."""
+    console.print(record.system.title, style="bold")
+    if record.system.source:
+        console.print(record.system.source, style="dim")
+    for derivation in record.derivations:
+        console.print(f"\nDerivation with {_listed(derivation.effects)}", style="bold")
+        _show_equations(console, derivation.equations)
+    for scene in record.scenes:
+        console.print(f"\n{scene.name}: {scene.title}", style="bold")
+        _show_equations(console, scene.equations)
+
+
+def show_report(console: Console, scene: str, report: "CheckReport") -> None:
+    """Print the verdict on each equation of one scene file, and the disagreements in full."""
+    table = Table("no.", "equation", "verdict", "digits", "points", title=scene, title_justify="left")
+    for name, verdicts in groupby(report.verdicts, key=lambda verdict: verdict.scene):
+        table.add_section()
+        if name:
+            table.add_row("", Text(name, style="bold"))
+        for found in verdicts:
+            table.add_row(
+                found.number, found.name, _styled(found.verdict), _number(found.digits), _number(found.points)
+            )
+    console.print(table)
+    for found in report.verdicts:
+        if found.verdict == "disagrees":
+            console.print(f"({found.number}) {found.name}: {found.detail}", soft_wrap=True, markup=False)
+    console.print(f"{len(report.verdicts)} equations, {_counted(report.disagreements, 'disagreement')}")
+
+
+def show_errata(console: Console, equations: Sequence["PrintedEquation"]) -> None:
+    """Print each equation of the paper, whether it is right, and what is wrong with it where it is not."""
+    table = Table("no.", "equation", "as printed", title="The paper as printed", title_justify="left")
+    for equation in equations:
+        table.add_row(equation.number, equation.name, _styled("agrees" if equation.agrees else "differs"))
+    console.print(table)
+    for equation in equations:
+        _show_misprint(console, equation)
+    misprints = sum(not equation.agrees for equation in equations)
+    console.print(f"{len(equations)} equations, {_counted(misprints, 'misprint')}")
+
+
+def _show_equations(console: Console, equations: Iterable["Equation"]) -> None:
+    for equation in equations:
+        console.print(Text(f"({equation.number}) {equation.name}", style="cyan"))
+        for relation in equation.relations:
+            console.print(f"    {_formula(relation.left)} = {_formula(relation.right)}", soft_wrap=True, markup=False)
+        if not equation.relations:
+            console.print("    none", style="dim")
+
+
+def _show_misprint(console: Console, equation: "PrintedEquation") -> None:
+    said = {"difference": equation.difference, "corrected": equation.corrected, "remark": equation.remark}
+    if equation.agrees and not equation.remark:
+        return
+    console.print(Text(f"({equation.number}) {equation.name}", style="cyan"))
+    for what, text in said.items():
+        if text:
+            console.print(f"    {what}: {text}", soft_wrap=True, markup=False)
+
+
+def _formula(expression: object) -> str:
+    """One line in the notation of the scene files."""
+    return str(expression).replace("**", "^")
+
+
+def _styled(verdict: str) -> Text:
+    return Text(verdict, style=STYLES[verdict])
+
+
+def _number(count: int | None) -> str:
+    return "" if count is None else str(count)
+
+
+def _listed(effects: Sequence[str]) -> str:
+    return ", ".join(effects)
+
+
+def _counted(count: int, what: str) -> str:
+    return f"{count or 'no'} {what}{'' if count == 1 else 's'}"

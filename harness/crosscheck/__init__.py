@@ -1,0 +1,10 @@
+"""The independent cross-check: every equation of a record against T, V, Q and f alone.
+
+The record is Maxima's word. What is compared with it is made here, by SymPy, from the system's
+description only; the two meet in the comparison and nowhere before.
+"""
+
+from harness.crosscheck.check import check_record
+from harness.crosscheck.report import CheckReport, EquationVerdict, Verdict
+
+__all__ = ["CheckReport", "EquationVerdict", "Verdict", "check_record"]

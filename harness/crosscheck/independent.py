@@ -1,0 +1,101 @@
+"""The independent evaluation: Lagrange's equations straight from T, V, Q and f.
+
+T is differentiated by the total time derivative, as in
+
+    d/dt dT/d dot(q_s) - dT/dq_s = Q_s + lambda_beta df_beta/dq_s,        d^2 f_beta/dt^2 = 0,
+
+and in no other way: no split into A, B and T0, no Christoffel symbols, no matrix inverted in
+symbols. Both sets of equations are linear in accelerations and multipliers; their coefficients,
+read off, make the bordered system [A -J^T; J 0].
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import sympy as sp
+
+from harness.crosscheck.linear import LinearEquations
+from harness.crosscheck.system import MechanicalSystem
+
+
+@dataclass(frozen=True)
+class IndependentEquations:
+    """The equations of motion of one system, as residuals that vanish on every motion."""
+
+    system: MechanicalSystem
+
+    @cached_property
+    def motion(self) -> tuple[sp.Expr, ...]:
+        """The n residuals of Lagrange's equations, left side less right side."""
+        system = self.system
+        lagrangian = system.kinetic_energy - system.potential_energy
+        return tuple(
+            left - force - reaction
+            for left, force, reaction in zip(
+                self._lagrangian_derivatives(lagrangian),
+                system.forces,
+                self.constraint_forces,
+                strict=True,
+            )
+        )
+
+    @cached_property
+    def kinetic(self) -> tuple[sp.Expr, ...]:
+        """The n left sides d/dt dT/d dot(q_s) - dT/dq_s."""
+        return self._lagrangian_derivatives(self.system.kinetic_energy)
+
+    @cached_property
+    def constraint_forces(self) -> tuple[sp.Expr, ...]:
+        """The n reactions lambda_beta df_beta/dq_s."""
+        system = self.system
+        power = sp.Add(*(multiplier * f for multiplier, f in zip(system.multipliers, system.constraints, strict=True)))
+        return tuple(power.diff(q) for q in system.coordinates)
+
+    @cached_property
+    def constraint_rates(self) -> tuple[sp.Expr, ...]:
+        """The g constraints, differentiated once."""
+        return tuple(self.system.total_rate(f) for f in self.system.constraints)
+
+    @cached_property
+    def constraint_accelerations(self) -> tuple[sp.Expr, ...]:
+        """The g constraints, differentiated twice."""
+        return tuple(self.system.total_rate(rate) for rate in self.constraint_rates)
+
+    @cached_property
+    def driven(self) -> LinearEquations:
+        """Equations for the n accelerations, the multipliers given."""
+        return LinearEquations(self.system.accelerations, self.motion)
+
+    @cached_property
+    def free(self) -> LinearEquations:
+        """Equations for the n accelerations, every multiplier zero."""
+        released = dict.fromkeys(self.system.multipliers, sp.Integer(0))
+        return LinearEquations(
+            self.system.accelerations, tuple(residual.xreplace(released) for residual in self.motion)
+        )
+
+    @cached_property
+    def bordered(self) -> LinearEquations:
+        """Equations for the n accelerations and the g multipliers together."""
+        return LinearEquations(
+            (*self.system.accelerations, *self.system.multipliers),
+            (*self.motion, *self.constraint_accelerations),
+        )
+
+    @cached_property
+    def bordered_rates(self) -> LinearEquations:
+        """Equations for the n jerks and the g multiplier rates: the bordered system, differentiated."""
+        return LinearEquations(
+            (*self.system.jerks, *self.system.multiplier_rates),
+            tuple(self.system.total_rate(residual) for residual in self.bordered.residuals),
+        )
+
+    def _lagrangian_derivatives(self, function: sp.Expr) -> tuple[sp.Expr, ...]:
+        """d/dt dX/d dot(q_s) - dX/dq_s, over s, of a function X of the state."""
+        system = self.system
+        return tuple(
+            system.total_rate(function.diff(v)) - function.diff(q)
+            for q, v in zip(system.coordinates, system.velocities, strict=True)
+        )

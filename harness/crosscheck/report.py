@@ -1,0 +1,55 @@
+"""What a cross-check found: one verdict an equation, and their sum."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Verdict(StrEnum):
+    """What can be said of an equation once it has been compared with the independent evaluation."""
+
+    PROVED = "proved"
+    """The difference is identically zero."""
+    AGREES = "agrees"
+    """The difference vanishes, to the digits stated, at the random points stated."""
+    DISAGREES = "disagrees"
+    """The difference does not vanish, or the equation is not there."""
+
+
+@dataclass(frozen=True)
+class EquationVerdict:
+    """The verdict on one equation of the record.
+
+    Attributes
+    ----------
+    number, name : str
+        The paper's number of the equation and the record's name for it.
+    scene : str or None
+        Name of the scene the equation belongs to; None for an equation of a derivation.
+    verdict : Verdict
+    digits, points : int or None
+        Significant digits demanded and random points tried; None where nothing was evaluated.
+    detail : str
+        For a disagreement the relation, the difference and the point; empty otherwise.
+    """
+
+    number: str
+    name: str
+    scene: str | None
+    verdict: Verdict
+    digits: int | None
+    points: int | None
+    detail: str
+
+
+@dataclass(frozen=True)
+class CheckReport:
+    """Verdicts on all equations of a record, in the record's order."""
+
+    verdicts: tuple[EquationVerdict, ...]
+
+    @property
+    def disagreements(self) -> int:
+        """Number of equations that disagree or are missing."""
+        return sum(found.verdict is Verdict.DISAGREES for found in self.verdicts)

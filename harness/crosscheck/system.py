@@ -1,0 +1,131 @@
+"""The system as it is described: T, V, Q and f of the effects called for, and nothing derived.
+
+This is all that the independent evaluation may see of a record. Every symbol has a rate, the
+symbol that is its derivative along the motion:
+
+    q -> dot(q) -> ddot(q) -> dddot(q),   u -> dot(u) -> ddot(u) -> dddot(u),   lambda -> dot(lambda).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import sympy as sp
+
+from harness.record import Effect, System
+
+
+def dotted(dots: str, symbol: sp.Symbol) -> sp.Symbol:
+    """Name the derivative of a symbol: ``dotted("ddot", q1)`` is ``ddot(q1)``."""
+    return sp.Symbol(f"{dots}({symbol.name})", real=True)
+
+
+def initial(symbol: sp.Symbol) -> sp.Symbol:
+    """Name the initial value of a symbol: ``q1_0`` of ``q1``, ``dot(q1)_0`` of ``dot(q1)``."""
+    return sp.Symbol(f"{symbol.name}_0", real=True)
+
+
+@dataclass(frozen=True)
+class MechanicalSystem:
+    """A holonomic system with redundant coordinates and controls, as described by its scene file.
+
+    Attributes
+    ----------
+    time : Symbol
+    coordinates : tuple of n Symbols
+    controls : tuple of alpha Symbols
+    multipliers : tuple of g Symbols
+    kinetic_energy, potential_energy : Expr
+    forces : tuple of n Exprs
+    constraints : tuple of g Exprs, each zero on every motion
+    """
+
+    time: sp.Symbol
+    coordinates: tuple[sp.Symbol, ...]
+    controls: tuple[sp.Symbol, ...]
+    multipliers: tuple[sp.Symbol, ...]
+    kinetic_energy: sp.Expr
+    potential_energy: sp.Expr
+    forces: tuple[sp.Expr, ...]
+    constraints: tuple[sp.Expr, ...]
+
+    @cached_property
+    def velocities(self) -> tuple[sp.Symbol, ...]:
+        """The n velocities dot(q)."""
+        return tuple(dotted("dot", q) for q in self.coordinates)
+
+    @cached_property
+    def accelerations(self) -> tuple[sp.Symbol, ...]:
+        """The n accelerations ddot(q)."""
+        return tuple(dotted("ddot", q) for q in self.coordinates)
+
+    @cached_property
+    def jerks(self) -> tuple[sp.Symbol, ...]:
+        """The n jerks dddot(q)."""
+        return tuple(dotted("dddot", q) for q in self.coordinates)
+
+    @cached_property
+    def multiplier_rates(self) -> tuple[sp.Symbol, ...]:
+        """The g rates dot(lambda)."""
+        return tuple(dotted("dot", multiplier) for multiplier in self.multipliers)
+
+    @cached_property
+    def rates(self) -> Mapping[sp.Symbol, sp.Expr]:
+        """The rate of each symbol that changes along a motion."""
+        return {
+            self.time: sp.Integer(1),
+            **dict(zip(self.multipliers, self.multiplier_rates, strict=True)),
+            **{
+                lower: higher
+                for symbol in (*self.coordinates, *self.controls)
+                for lower, higher in pairwise(history(symbol))
+            },
+        }
+
+    def total_rate(self, expression: sp.Expr) -> sp.Expr:
+        """Total time derivative d/dt of an expression along any motion."""
+        changing = sorted(expression.free_symbols & self.rates.keys(), key=str)
+        return sp.Add(*(expression.diff(symbol) * self.rates[symbol] for symbol in changing))
+
+
+def history(symbol: sp.Symbol) -> tuple[sp.Symbol, ...]:
+    """List a coordinate or control and its first three rates."""
+    return symbol, *(dotted(dots, symbol) for dots in ("dot", "ddot", "dddot"))
+
+
+def described_system(system: System, effects: Collection[str]) -> MechanicalSystem:
+    """Take the system with the named effects alone.
+
+    Parameters
+    ----------
+    system : System
+        The description in the record.
+    effects : collection of str
+        Names of the effects called for; the others are left out.
+
+    Returns
+    -------
+    MechanicalSystem
+    """
+    forces = [effect.value for effect in system.forces if effect.effect in effects]
+    return MechanicalSystem(
+        time=sp.Symbol(system.time, real=True),
+        coordinates=_symbols(system.coordinates),
+        controls=_symbols(system.controls),
+        multipliers=_symbols(system.multipliers),
+        kinetic_energy=_sum_of(system.kinetic_energy, effects),
+        potential_energy=_sum_of(system.potential_energy, effects),
+        forces=tuple(sp.Add(*(force[s] for force in forces)) for s in range(len(system.coordinates))),
+        constraints=tuple(system.constraints),
+    )
+
+
+def _symbols(names: Iterable[str]) -> tuple[sp.Symbol, ...]:
+    return tuple(sp.Symbol(name, real=True) for name in names)
+
+
+def _sum_of(parts: Iterable[Effect], effects: Collection[str]) -> sp.Expr:
+    return sp.Add(*(part.value for part in parts if part.effect in effects))

@@ -1,0 +1,168 @@
+"""Two expressions compared: at random points first, then, where they agree, by proof.
+
+A comparison may need the solution of linear equations. At a point they are solved, by numbers.
+In a proof a certificate takes the solution's place: the record's own closed form, which is put
+back into the equations. Where all residuals vanish identically it is the solution, for the
+equations are regular at the points and so have no other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import sympy as sp
+from mpmath import mp
+
+from harness.crosscheck.linear import LinearEquations
+from harness.crosscheck.normal_form import is_identically_zero
+from harness.crosscheck.points import IrregularPoint, Valuation, random_point
+from harness.crosscheck.report import Verdict
+
+DIGITS = 50
+"""Digits to which two values must agree, relative to the larger of them and of one."""
+
+WORKING_DIGITS = DIGITS + 20
+"""Digits carried, so that cancellation and a linear solve leave the stated ones untouched."""
+
+DIGITS_OF_FLOATS = 9
+"""Digits to which values agree that come from floating-point data in the scene."""
+
+POINTS = 8
+"""Random points at which two expressions are compared."""
+
+ATTEMPTS = 25
+"""Draws for each point before the search for a regular one is given up."""
+
+
+Point = Mapping[sp.Symbol, sp.Rational]
+
+
+class Pair(NamedTuple):
+    """What the record claims of a quantity, and what the independent evaluation makes of it."""
+
+    quantity: str
+    claimed: sp.Expr
+    independent: sp.Expr
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Pairs that have to be equal identically.
+
+    Attributes
+    ----------
+    pairs : tuple of Pair
+    given : mapping of Symbol to Expr
+        Symbols with a meaning, such as u under a control law; each may use the ones before it.
+    solves : tuple of LinearEquations
+        Equations whose unknowns occur in the pairs; each may use the solutions before it.
+    certificate : mapping of Symbol to Expr, or None
+        Claimed closed forms of all these unknowns; None where there are none.
+    """
+
+    pairs: tuple[Pair, ...]
+    given: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    solves: tuple[LinearEquations, ...] = ()
+    certificate: Mapping[sp.Symbol, sp.Expr] | None = None
+
+
+class Judgement(NamedTuple):
+    """A verdict, the digits and points that support it, and the difference found."""
+
+    verdict: Verdict
+    digits: int
+    points: int
+    detail: str = ""
+
+
+def judge(comparison: Comparison, seed: str) -> Judgement:
+    """Verdict on a comparison.
+
+    Parameters
+    ----------
+    comparison : Comparison
+    seed : str
+        Makes the random points; the same points for the same seed.
+    """
+    names = _free_names(comparison)
+    points = POINTS if names else 1
+    digits = _digits(comparison)
+    candidates = (random_point(names, attempt, seed) for attempt in range(ATTEMPTS * points))
+    with mp.workdps(WORKING_DIGITS):
+        for _ in range(points):
+            detail = _difference_at_next_regular_point(comparison, candidates, digits)
+            if detail:
+                return Judgement(Verdict.DISAGREES, digits, points, detail)
+    proved = _is_proved(comparison)
+    return Judgement(Verdict.PROVED if proved else Verdict.AGREES, digits, points)
+
+
+def _difference_at_next_regular_point(comparison: Comparison, candidates: Iterator[Point], digits: int) -> str:
+    for point in candidates:
+        try:
+            return _difference(comparison, point, digits)
+        except (IrregularPoint, ZeroDivisionError):
+            continue
+    return "no regular point found"
+
+
+def _difference(comparison: Comparison, point: Point, digits: int) -> str:
+    """Tell the first difference at a point; empty where there is none."""
+    value = Valuation(point)
+    for symbol, meaning in comparison.given.items():
+        value.define(symbol, value(meaning))
+    for equations in comparison.solves:
+        for symbol, number in equations.solution(value).items():
+            value.define(symbol, number)
+    for quantity, claimed, independent in comparison.pairs:
+        left, right = value(claimed), value(independent)
+        if abs(left - right) > mp.mpf(10) ** -digits * max(1, abs(left), abs(right)):
+            return (
+                f"{quantity}: the record gives {mp.nstr(left, 12)}, "
+                f"the independent evaluation {mp.nstr(right, 12)}{_where(point)}"
+            )
+    return ""
+
+
+def _where(point: Point) -> str:
+    if not point:
+        return ""
+    return " at " + ", ".join(f"{symbol.name} = {number}" for symbol, number in point.items())
+
+
+def _free_names(comparison: Comparison) -> list[str]:
+    """Names of the symbols that need a value at a point."""
+    solved = {symbol for equations in comparison.solves for symbol in equations.unknowns}
+    free = set().union(*(e.free_symbols for e in _expressions(comparison)))
+    return sorted(symbol.name for symbol in free - solved - comparison.given.keys())
+
+
+def _digits(comparison: Comparison) -> int:
+    floating = any(expression.has(sp.Float) for expression in _expressions(comparison))
+    return DIGITS_OF_FLOATS if floating else DIGITS
+
+
+def _expressions(comparison: Comparison) -> Iterator[sp.Expr]:
+    for pair in comparison.pairs:
+        yield from (pair.claimed, pair.independent)
+    yield from comparison.given.values()
+    for equations in comparison.solves:
+        yield from equations.residuals
+
+
+def _is_proved(comparison: Comparison) -> bool:
+    if comparison.solves and comparison.certificate is None:
+        return False
+    definitions = {**comparison.given, **(comparison.certificate or {})}
+    zeros = [pair.claimed - pair.independent for pair in comparison.pairs]
+    zeros += [residual for equations in comparison.solves for residual in equations.residuals]
+    return is_identically_zero(_substituted(zero, definitions) for zero in zeros)
+
+
+def _substituted(expression: sp.Expr, definitions: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
+    """Put in every definition, the last first, as later ones use earlier."""
+    for symbol, meaning in reversed(definitions.items()):
+        expression = expression.xreplace({symbol: meaning})
+    return expression

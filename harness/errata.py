@@ -1,0 +1,60 @@
+"""The paper as printed, compared with the derivation.
+
+Maxima does all of it, from `examples/paper/printed.mac`; this module runs that and reads the answer.
+"""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+from harness.maxima import run_batch
+
+PRINTED = Path(__file__).resolve().parents[1] / "examples" / "paper" / "printed.mac"
+
+
+@dataclass(frozen=True)
+class PrintedEquation:
+    """An equation of the paper and the verdict on its print. Equations are Maxima text, on one line.
+
+    Parameters
+    ----------
+    number : str
+        The paper's number, without brackets; empty for an equation that has none.
+    name : str
+        What the equation is.
+    agrees : bool
+        Whether the printed equation is the derived one.
+    printed : str
+        The equation as printed.
+    difference : str or None
+        Left side less right side as printed, less the same as derived; None where the print agrees.
+    corrected : str or None
+        The printed equation, mended; None where the print agrees.
+    remark : str or None
+        What there is to say about the transcription.
+    """
+
+    number: str
+    name: str
+    agrees: bool
+    printed: str
+    difference: str | None
+    corrected: str | None
+    remark: str | None
+
+
+def errata() -> tuple[PrintedEquation, ...]:
+    """Compare every equation that the paper prints, from (2) on, with the derived one.
+
+    Returns
+    -------
+    tuple of PrintedEquation
+        In the paper's order.
+
+    Raises
+    ------
+    HolonomError
+        Maxima is missing or refuses.
+    """
+    document = json.loads(run_batch(PRINTED, "write_errata"))
+    return tuple(PrintedEquation(**equation) for equation in document["equations"])

@@ -1,0 +1,75 @@
+"""What can go wrong, each way with its sentence and its remedy."""
+
+from enum import Enum
+from pathlib import Path
+
+
+class Failure(Enum):
+    """A way to fail: the sentence that names it, in which {detail} stands for the case, and the remedy."""
+
+    FILE_MISSING = ("there is no such file", "give the path of a scene, for instance examples/paper/paper.mac")
+    FILE_UNREADABLE = ("the file cannot be read: {detail}", "give the path of a readable Maxima file")
+    MAXIMA_MISSING = (
+        "Maxima is not installed",
+        "run `make`, or install the package `maxima` of your distribution",
+    )
+    REFUSED = ("{detail}", "")
+    QUESTION = (
+        "Maxima asks what nobody is there to answer: {detail}",
+        "answer it in the file, for instance by assume(...)",
+    )
+    SYNTAX = ("Maxima cannot read this: {detail}", "")
+    LISP_ERROR = ("Maxima broke off with a Lisp error: {detail}", "")
+    ENDED_EARLY = ("Maxima ended before the file did", "remove what ends it, for instance quit()")
+    NOTHING_WRITTEN = (
+        "the file describes no system",
+        "load holonom.mac and assign a holonomic_system(...)",
+    )
+    TOO_LONG = ("Maxima took longer than {detail}", "ask for less, or raise --time-limit")
+    TOO_LARGE = ("Maxima took more memory than {detail}", "ask for less, or raise --memory-limit")
+    TOO_MUCH_TEXT = ("Maxima printed more than {detail}", "print less")
+    NOT_A_RECORD = ("this is not a derivation record: {detail}", "derive it anew with `holonom derive`")
+    NOT_AN_EXPRESSION = ("{detail} is not an expression that a derivation record can hold", "")
+    UNWRITABLE = ("the output cannot be written: {detail}", "give a file in a directory that can be written")
+    RTEST_UNPAIRED = ("an input has no expected result", "")
+    RTEST_FAILED = ("not all of the {detail} tests passed", "")
+
+
+class HolonomError(Exception):
+    """The one exception of the harness.
+
+    Parameters
+    ----------
+    failure : Failure
+        The way to fail.
+    place : str or Path
+        Where: a file, with the line of the statement where it is known (``scene.mac:12``).
+    detail : str
+        What the sentence of the failure says about this case.
+    last_lines : tuple of str
+        The last lines that Maxima printed.
+    command : str
+        A shell command that repeats the failure with Maxima alone.
+    """
+
+    def __init__(
+        self,
+        failure: Failure,
+        place: str | Path = "",
+        detail: str = "",
+        *,
+        last_lines: tuple[str, ...] = (),
+        command: str = "",
+    ) -> None:
+        super().__init__(failure, place, detail)
+        self.failure = failure
+        self.place = str(place)
+        self.detail = detail
+        self.last_lines = last_lines
+        self.command = command
+
+    def __str__(self) -> str:
+        sentence, remedy = self.failure.value
+        said = sentence.format(detail=self.detail)
+        located = f"{self.place}: {said}" if self.place else said
+        return located.rstrip(".") + (f"; {remedy}." if remedy else ".")

@@ -1,0 +1,158 @@
+;;; Headless Maxima: one file, one call, no prompts, one outcome
+;;;
+;;; Maxima in batch mode leaves with status 0 whatever happened, goes on after a Lisp error and repeats a
+;;; question for ever when nobody answers. A job loads this file first and then calls RUN-HEADLESS, which
+;;;
+;;;   1. reads a file statement by statement, as batchload does, remembering where each one starts;
+;;;   2. makes an error of all that would stop or prompt: a question, a syntax error, a Lisp error;
+;;;   3. evaluates one closing call, for instance write_record("record.json");
+;;;   4. leaves the outcome in a file of its own, an end mark that no printed text can imitate:
+;;;      the kind of ending, the file, the line of the statement (0 outside of them) and the message, a line each.
+;;;
+;;; The kinds are FINISHED, FAULT (Maxima or the file itself refused), QUESTION, SYNTAX and LISP.
+
+(in-package :maxima)
+
+(define-condition unanswered-question (error)
+  ((text :initarg :text :reader text)))
+
+(define-condition unreadable-statement (error)
+  ((text :initarg :text :reader text)))
+
+(defvar *statement-stream* nil "The file being run, open; while a loaded file fails to parse, that one.")
+(defvar *statement-start* nil "Its position at the start of the statement being run; NIL outside of them.")
+
+;;; What would stop or prompt
+
+(defun retrieve (message flag)
+  "Maxima's one door for questions: there is nobody to answer."
+  (declare (ignore flag))
+  (error 'unanswered-question :text (plain-text message)))
+
+;; read() and readonly() ask without it.
+(defun $readonly (&rest prompt)
+  (error 'unanswered-question :text (format nil "~{~A~^ ~}" (mapcar #'plain-text prompt))))
+
+(defun mread-synerr (control &rest arguments)
+  "Maxima's one door for syntax errors: the place is that of the file being parsed, perhaps a loaded one."
+  (when (typep *parse-stream* 'file-stream)
+    (setq *statement-stream* *parse-stream*
+          *statement-start* (file-position *parse-stream*)))
+  (flet ((spelt (item) (if (stringp item) (maybe-invert-string-case item) item)))
+    (error 'unreadable-statement :text (apply #'format nil control (mapcar #'spelt arguments)))))
+
+;;; The run
+
+(defun run-headless (file directory preparation call outcome)
+  "Run FILE between the Maxima texts PREPARATION and CALL, load() looking in DIRECTORY first."
+  (setq $file_search_maxima
+        `((mlist) ,(format nil "~A/$$$.mac" directory) ,@(cdr $file_search_maxima)))
+  (with-open-file (*statement-stream* file)
+    (let ((ending (ending-of (lambda ()
+                               (evaluate-text preparation)
+                               (run-statements file)
+                               (evaluate-text call)))))
+      (write-outcome outcome ending)
+      (leave (if (eq (first ending) 'finished) 0 1)))))
+
+(defun run-statements (file)
+  (let (($load_pathname file) (*mread-prompt* ""))
+    (loop
+      (skip-blanks *statement-stream*)
+      (setq *statement-start* (file-position *statement-stream*))
+      (let ((statement (read-statement)))
+        (unless (consp statement) (return))
+        (meval* (third statement)))))
+  (setq *statement-start* nil))
+
+(defun read-statement ()
+  (handler-case (mread *statement-stream* nil)
+    (unreadable-statement (condition) (error condition))
+    (error (condition) (error 'unreadable-statement :text (lisp-message condition)))))
+
+(defun evaluate-text (text)
+  (let ((*mread-prompt* ""))
+    (with-input-from-string (stream text)
+      (meval* (third (mread stream))))))
+
+(defun ending-of (run)
+  "Call RUN; return the kind of its ending and, for a failure, the message."
+  (let ((errcatch (cons bindlist loclist)) (*mdebug* nil) ($errormsg nil))
+    (declare (special errcatch))
+    (catch 'macsyma-quit
+      (return-from ending-of
+        (handler-case (progn (funcall run) '(finished ""))
+          (maxima-$error () (list 'fault (maxima-message)))
+          (unanswered-question (condition) (list 'question (text condition)))
+          (unreadable-statement (condition) (list 'syntax (text condition)))
+          (serious-condition (condition) (list 'lisp (lisp-message condition))))))
+    '(fault "Maxima went back to its prompt")))
+
+;;; Text for people: one line, names without the backslashes that Maxima's own reader wants
+
+(defun maxima-message ()
+  "The text of Maxima's variable error, expressions written out in full."
+  (let (($errormsg t)
+        (linel most-positive-fixnum)
+        ($error `((mlist) ,@(mapcar (lambda (item) (if (consp item) (plain-text item) item)) (cdr $error)))))
+    (one-line (with-output-to-string (*standard-output*) ($errormsg)))))
+
+(defun lisp-message (condition)
+  "What a Lisp condition says, without the function that GCL says it in."
+  (one-line (if (typep condition 'simple-condition)
+                (apply #'format nil (simple-condition-format-control condition)
+                       (simple-condition-format-arguments condition))
+                (princ-to-string condition))))
+
+(defun plain-text (message)
+  "A question of Maxima's, a string or (mtext) with strings and expressions, as one line."
+  (if (and (consp message) (eq (caar message) 'mtext))
+      (format nil "~{~A~}" (mapcar #'plain-text (cdr message)))
+      (one-line (if (stringp message) message (coerce (mstring message) 'string)))))
+
+(defun one-line (text)
+  (substitute #\Space #\Newline (remove #\\ text)))
+
+;;; Places in a file
+
+(defun skip-blanks (stream)
+  "Move STREAM past white space and comments, which Maxima nests."
+  (loop for next = (peek-char t stream nil)
+        while (and (eql next #\/) (comment-starts-p stream))
+        do (skip-comment stream)))
+
+(defun comment-starts-p (stream)
+  (let ((position (file-position stream)))
+    (or (and (read-char stream) (eql (read-char stream nil) #\*))
+        (progn (file-position stream position) nil))))
+
+(defun skip-comment (stream)
+  "Move STREAM, just past an opening mark, past the closing one."
+  (loop with depth = 1 and previous = nil
+        for next = (read-char stream nil)
+        while next
+        do (cond ((and (eql previous #\*) (eql next #\/)) (decf depth) (setq next nil))
+                 ((and (eql previous #\/) (eql next #\*)) (incf depth) (setq next nil)))
+           (setq previous next)
+        until (zerop depth)))
+
+(defun line-at (position file)
+  "The number of the line that holds POSITION in FILE, from 1."
+  (with-open-file (stream file)
+    (1+ (loop until (>= (file-position stream) position) count (eql (read-char stream nil) #\Newline)))))
+
+;;; The ending
+
+(defun write-outcome (outcome ending)
+  (destructuring-bind (kind message) ending
+    (let* ((file (namestring (truename *statement-stream*)))
+           (line (if *statement-start* (line-at *statement-start* file) 0)))
+      (with-open-file (stream outcome :direction :output)
+        (format stream "~A~%~A~%~D~%~A~%" kind file line message)))))
+
+(defun leave (status)
+  (finish-output)
+  #+gcl (si::bye status)
+  #+sbcl (sb-ext:exit :code status :abort t)
+  #+ecl (si:quit status)
+  #+ccl (ccl:quit status))

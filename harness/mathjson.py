@@ -1,0 +1,251 @@
+"""MathJSON trees to SymPy expressions and back; nothing in a tree is ever evaluated as code.
+
+A tree is what `json.loads` makes of
+
+    integer          7, or {"num": "12345678901234567890"} from 2^53 on
+    float            {"num": "1.25e0"}: a double; with more than 17 digits a number of that many digits
+    symbol           "q1", "dot(q1)", "lambda1": always a real quantity
+    constant         "Pi", "ExponentialE", "ImaginaryUnit"
+    application      ["Add", a, b, ...], ["Power", a, b], ["Sin", a], ["Rational", 1, 3], ...
+    indexed quantity ["Subscript", "A", 1, 2]
+
+and nothing else. Both directions walk with a stack of their own: the depth of an expression is bounded by memory, not
+by Python's recursion limit. (`json.loads` itself gives up at about a thousand levels.)
+"""
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from operator import neg, sub, truediv
+from typing import Any
+
+import sympy
+from sympy import Expr, Float, Indexed, IndexedBase, Integer, Rational, S, Symbol
+
+from harness.failures import Failure, HolonomError
+
+Tree = int | str | dict | list
+
+JSON_INTEGERS = 2**53  # integers below it are JSON numbers that every reader reads exactly
+DOUBLE_DIGITS = 17  # decimal digits that tell any two doubles apart
+DOUBLE_BITS = 53
+SHOWN = 60  # characters of a refused fragment that its refusal shows
+
+INTEGER = re.compile(r"-?\d{1,4300}")  # Python's own limit on decimal digits
+FLOAT = re.compile(r"-?0*(\d+)\.?(\d*)(?:[eE][+-]?\d{1,9})?")
+# A name, a time derivative of one, or the initial value of either: q1, %omega, dot(q1), ddot(u), q1_0, dot(q1)_0.
+NAME = re.compile(r"%?[^\W\d][\w%]*|d{1,3}ot\(%?[^\W\d][\w%]*\)\w*")
+
+CONSTANTS = {"Pi": S.Pi, "ExponentialE": S.Exp1, "ImaginaryUnit": S.ImaginaryUnit}
+CONSTANT_NAMES = {constant: name for name, constant in CONSTANTS.items()}
+RESERVED = CONSTANTS.keys() | {"True", "False"}
+NOT_NUMBERS = (S.ComplexInfinity, S.Infinity, S.NegativeInfinity, S.NaN)
+
+FUNCTIONS = {
+    "Exp": sympy.exp,
+    "Ln": sympy.log,
+    "Abs": sympy.Abs,
+    "Sign": sympy.sign,
+    "Sin": sympy.sin,
+    "Cos": sympy.cos,
+    "Tan": sympy.tan,
+    "Sinh": sympy.sinh,
+    "Cosh": sympy.cosh,
+    "Tanh": sympy.tanh,
+    "Arcsin": sympy.asin,
+    "Arccos": sympy.acos,
+    "Arctan": sympy.atan,
+    "Arsinh": sympy.asinh,
+    "Arcosh": sympy.acosh,
+    "Artanh": sympy.atanh,
+}
+HEADS = {function: head for head, function in FUNCTIONS.items()} | {
+    sympy.atan2: "Arctan2",
+    sympy.Add: "Add",
+    sympy.Mul: "Multiply",
+    sympy.Pow: "Power",
+}
+UNARY: dict[str, Callable[..., Expr]] = {**FUNCTIONS, "Sqrt": sympy.sqrt, "Negate": neg}
+BINARY: dict[str, Callable[..., Expr]] = {
+    "Power": sympy.Pow,
+    "Divide": truediv,
+    "Subtract": sub,
+    "Arctan2": sympy.atan2,
+}
+VARIADIC: dict[str, Callable[..., Expr]] = {"Add": sympy.Add, "Multiply": sympy.Mul}
+
+
+@dataclass(frozen=True)
+class _Application:
+    """A function that waits for its last `arity` arguments to be converted."""
+
+    build: Callable[..., object]
+    arity: int
+
+
+def to_sympy(tree: Tree) -> Expr:
+    """Convert a MathJSON tree to a SymPy expression.
+
+    Parameters
+    ----------
+    tree : int, str, dict or list
+        The tree, as `json.loads` gives it.
+
+    Returns
+    -------
+    Expr
+        The expression, automatically simplified as SymPy does; every symbol is real.
+
+    Raises
+    ------
+    HolonomError
+        The tree, or a part of it, is not of the kinds listed above, or has no finite value (1/0).
+    """
+    return _converted(tree, _read)
+
+
+def from_sympy(expression: Expr) -> Tree:
+    """Convert a SymPy expression to a MathJSON tree.
+
+    Parameters
+    ----------
+    expression : Expr
+        An expression in real symbols and the functions that MathJSON shares with SymPy.
+
+    Returns
+    -------
+    int, str, dict or list
+        The tree; `to_sympy` makes the expression of it again.
+
+    Raises
+    ------
+    HolonomError
+        The expression, or a part of it, cannot be written.
+    """
+    return _converted(expression, _write)
+
+
+def _converted(root: Any, expand: Callable[[Any], tuple[Callable[..., Any], list]]) -> Any:
+    """Convert an expression, arguments first; `expand` takes a node to a function and that function's arguments."""
+    waiting = [root]
+    converted: list[Any] = []
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, _Application):
+            arguments = converted[len(converted) - node.arity :]
+            del converted[len(converted) - node.arity :]
+            converted.append(node.build(*arguments))
+        else:
+            build, arguments = expand(node)
+            waiting.append(_Application(build, len(arguments)))
+            waiting.extend(reversed(arguments))
+    return converted.pop()
+
+
+def _read(tree: Tree) -> tuple[Callable[..., Expr], list]:
+    match tree:
+        case bool():
+            raise _refusal(tree)
+        case int() | dict() | ["Rational", *_]:
+            value = _number(tree)
+        case str():
+            value = CONSTANTS[tree] if tree in CONSTANTS else _symbol(tree)
+        case ["Subscript", str(name), _, *_]:
+            value = Indexed(IndexedBase(_symbol(name)), *map(_integer, tree[2:]))
+        case [str(head), *arguments]:
+            return _builder(head, tree), arguments
+        case _:
+            raise _refusal(tree)
+    return (lambda: value), []
+
+
+def _builder(head: str, tree: list) -> Callable[..., Expr]:
+    arity = len(tree) - 1
+    if head in VARIADIC and arity >= 1:
+        function = VARIADIC[head]
+    elif head in BINARY and arity == 2:
+        function = BINARY[head]
+    elif head in UNARY and arity == 1:
+        function = UNARY[head]
+    else:
+        raise _refusal(tree)
+
+    def build(*arguments: Expr) -> Expr:
+        value = function(*arguments)
+        if value in NOT_NUMBERS:
+            raise _refusal(tree)
+        return value
+
+    return build
+
+
+def _number(tree: Tree) -> Expr:
+    match tree:
+        case ["Rational", numerator, denominator] if (below := _integer(denominator)) != 0:
+            return Rational(_integer(numerator), below)
+        case {"num": str(digits), **rest} if not rest and (found := FLOAT.fullmatch(digits)):
+            if INTEGER.fullmatch(digits):
+                return Integer(int(digits))
+            precision = len(found[1] + found[2])
+            return Float(float(digits)) if precision <= DOUBLE_DIGITS else Float(digits, precision)
+        case int():
+            return _integer(tree)
+        case _:
+            raise _refusal(tree)
+
+
+def _integer(tree: Tree) -> Integer:
+    match tree:
+        case int() if not isinstance(tree, bool) and abs(tree) < JSON_INTEGERS:
+            return Integer(tree)
+        case {"num": str(digits), **rest} if not rest and INTEGER.fullmatch(digits):
+            return Integer(int(digits))
+        case _:
+            raise _refusal(tree)
+
+
+def _symbol(name: str) -> Symbol:
+    if name in RESERVED or not NAME.fullmatch(name):
+        raise _refusal(name)
+    return Symbol(name, real=True)
+
+
+def _write(expression: Expr) -> tuple[Callable[..., Tree], list]:
+    match expression:
+        case Integer():
+            tree = _written_integer(int(expression))
+        case Rational():
+            tree = ["Rational", _written_integer(expression.p), _written_integer(expression.q)]
+        case Float():
+            tree = {"num": _digits(expression)}
+        case Symbol() if expression == _symbol(expression.name):
+            tree = expression.name
+        case Indexed() if all(isinstance(index, Integer) for index in expression.indices):
+            indices = [_written_integer(int(index)) for index in expression.indices]
+            tree = ["Subscript", expression.base.label.name, *indices]
+        case _ if expression in CONSTANT_NAMES:
+            tree = CONSTANT_NAMES[expression]
+        case sympy.Pow(exp=S.Half):
+            return (lambda base: ["Sqrt", base]), [expression.base]
+        case _ if expression.func in HEADS:
+            head = HEADS[expression.func]
+            return (lambda *arguments: [head, *arguments]), list(expression.args)
+        case _:
+            raise _refusal(expression)
+    return (lambda: tree), []
+
+
+def _written_integer(value: int) -> Tree:
+    return value if abs(value) < JSON_INTEGERS else {"num": str(value)}
+
+
+def _digits(value: Float) -> str:
+    """Decimal digits enough to give the same number back."""
+    if value._prec <= DOUBLE_BITS:
+        return f"{float(value):.{DOUBLE_DIGITS - 1}e}"
+    return sympy.sstr(value, full_prec=True)
+
+
+def _refusal(part: object) -> HolonomError:
+    shown = str(part)
+    return HolonomError(Failure.NOT_AN_EXPRESSION, detail=shown if len(shown) <= SHOWN else f"{shown[:SHOWN]}...")

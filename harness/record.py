@@ -1,0 +1,288 @@
+"""The derivation record: what Maxima derived from one scene file, typed and frozen.
+
+This is the only module that knows the record's wire format. The shape is checked against `record.schema.json`, the
+expressions by `harness.mathjson`; what is read is data, and nothing in it is evaluated as code.
+"""
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, TypeVar
+
+import jsonschema
+from sympy import Expr
+
+from harness.failures import Failure, HolonomError
+from harness.mathjson import Tree, to_sympy
+
+SCHEMA = Path(__file__).with_name("record.schema.json")
+NAMED_QUANTITIES = (
+    "coordinates",
+    "velocities",
+    "accelerations",
+    "controls",
+    "control_rates",
+    "control_accelerations",
+    "parameters",
+    "multipliers",
+)
+Result = TypeVar("Result")
+
+
+@dataclass(frozen=True)
+class Relation:
+    """left = right, on every motion of the system; the SymPy expressions are made when they are first asked for."""
+
+    left_tree: Tree
+    right_tree: Tree
+
+    @cached_property
+    def left(self) -> Expr:
+        """The left side."""
+        return to_sympy(self.left_tree)
+
+    @cached_property
+    def right(self) -> Expr:
+        """The right side."""
+        return to_sympy(self.right_tree)
+
+
+@dataclass(frozen=True)
+class Equation:
+    """One item of the derivation.
+
+    Parameters
+    ----------
+    number : str
+        The number that the paper gives it; several items may share one.
+    name : str
+        What it is.
+    relations : tuple of Relation
+        Its components.
+    """
+
+    number: str
+    name: str
+    relations: tuple[Relation, ...]
+
+
+@dataclass(frozen=True)
+class Effect:
+    """A named part of the kinetic or of the potential energy."""
+
+    effect: str
+    value: Expr
+
+
+@dataclass(frozen=True)
+class ForceEffect:
+    """A named part of the generalized forces, one component a coordinate."""
+
+    effect: str
+    value: tuple[Expr, ...]
+
+
+@dataclass(frozen=True)
+class System:
+    """A system as its scene file describes it, before anything is derived.
+
+    Parameters
+    ----------
+    title : str
+        What the system is.
+    source : str or None
+        Where it is published.
+    time : str
+        Name of the time.
+    coordinates, velocities, accelerations : tuple of n str
+        Names of q, dot(q) and ddot(q).
+    controls, control_rates, control_accelerations : tuple of alpha str
+        Names of u, dot(u) and ddot(u).
+    parameters : tuple of str
+        Names of the constants.
+    multipliers : tuple of g str
+        Names of the constraint multipliers.
+    kinetic_energy, potential_energy : tuple of Effect
+        T and V as sums of named parts.
+    forces : tuple of ForceEffect
+        Q as a sum of named parts.
+    constraints : tuple of g Expr
+        Each is zero on every motion.
+    """
+
+    title: str
+    source: str | None
+    time: str
+    coordinates: tuple[str, ...]
+    velocities: tuple[str, ...]
+    accelerations: tuple[str, ...]
+    controls: tuple[str, ...]
+    control_rates: tuple[str, ...]
+    control_accelerations: tuple[str, ...]
+    parameters: tuple[str, ...]
+    multipliers: tuple[str, ...]
+    kinetic_energy: tuple[Effect, ...]
+    potential_energy: tuple[Effect, ...]
+    forces: tuple[ForceEffect, ...]
+    constraints: tuple[Expr, ...]
+
+
+@dataclass(frozen=True)
+class Derivation:
+    """The equations of the system with the effects named."""
+
+    effects: tuple[str, ...]
+    equations: tuple[Equation, ...]
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A system put to work.
+
+    Parameters
+    ----------
+    name, title : str
+        The name it is assigned to and what it is.
+    derivation : int
+        Index of its derivation in the record.
+    effects : tuple of str
+        Names of the effects it calls for.
+    control_law, parameter_values : mapping of str to Expr
+        The controls as functions of the time and the parameters as numbers, by name.
+    initial_state : mapping of str to Expr
+        All coordinates and velocities at the initial instant, by name.
+    time_span : pair of Expr or None
+        First and last instant.
+    observe : tuple of str
+        What to compute.
+    equations : tuple of Equation
+        The equations of its initial motion.
+    """
+
+    name: str
+    title: str
+    derivation: int
+    effects: tuple[str, ...]
+    control_law: Mapping[str, Expr]
+    parameter_values: Mapping[str, Expr]
+    initial_state: Mapping[str, Expr]
+    time_span: tuple[Expr, Expr] | None
+    observe: tuple[str, ...]
+    equations: tuple[Equation, ...]
+
+
+@dataclass(frozen=True)
+class Record:
+    """Everything that Maxima derived from one scene file."""
+
+    maxima: str
+    system: System
+    derivations: tuple[Derivation, ...]
+    scenes: tuple[Scene, ...]
+
+
+def read_record(text: str) -> Record:
+    """Read a derivation record.
+
+    Parameters
+    ----------
+    text : str
+        The JSON document.
+
+    Returns
+    -------
+    Record
+        The record; the expressions in its equations are converted when they are first asked for.
+
+    Raises
+    ------
+    HolonomError
+        The text is not JSON, has not the shape of a record, or one of its expressions is malformed.
+    """
+    document = _parsed(text)
+    _require_shape(document)
+    record = Record(
+        maxima=document["maxima"],
+        system=_system(document["system"]),
+        derivations=_each(_derivation, document["derivations"]),
+        scenes=_each(_scene, document["scenes"]),
+    )
+    for scene in record.scenes:
+        if scene.derivation >= len(record.derivations):
+            raise HolonomError(Failure.NOT_A_RECORD, detail=f"the scene {scene.name} has no derivation")
+    return record
+
+
+def _parsed(text: str) -> Any:
+    try:
+        return json.loads(text)
+    except json.JSONDecodeError as error:
+        raise HolonomError(Failure.NOT_A_RECORD, detail=f"line {error.lineno} is not JSON, {error.msg}") from None
+    except (RecursionError, ValueError):
+        raise HolonomError(Failure.NOT_A_RECORD, detail="it is nested too deeply or holds too long a number") from None
+
+
+def _require_shape(document: Any) -> None:
+    schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
+    validator = jsonschema.Draft202012Validator(schema)
+    if error := jsonschema.exceptions.best_match(validator.iter_errors(document)):
+        raise HolonomError(Failure.NOT_A_RECORD, detail=f"at {error.json_path}, {error.message}")
+
+
+def _system(system: dict[str, Any]) -> System:
+    return System(
+        title=system["title"],
+        source=system["source"],
+        time=system["time"],
+        **{kind: tuple(system[kind]) for kind in NAMED_QUANTITIES},
+        kinetic_energy=_each(_effect, system["kinetic_energy"]),
+        potential_energy=_each(_effect, system["potential_energy"]),
+        forces=_each(_force_effect, system["forces"]),
+        constraints=_each(to_sympy, system["constraints"]),
+    )
+
+
+def _effect(part: dict[str, Any]) -> Effect:
+    return Effect(part["effect"], to_sympy(part["value"]))
+
+
+def _force_effect(part: dict[str, Any]) -> ForceEffect:
+    return ForceEffect(part["effect"], _each(to_sympy, part["value"]))
+
+
+def _derivation(derivation: dict[str, Any]) -> Derivation:
+    return Derivation(tuple(derivation["effects"]), _each(_equation, derivation["equations"]))
+
+
+def _scene(scene: dict[str, Any]) -> Scene:
+    span = scene["time_span"]
+    return Scene(
+        name=scene["name"],
+        title=scene["title"],
+        derivation=scene["derivation"],
+        effects=tuple(scene["effects"]),
+        control_law=_values(scene["control_law"]),
+        parameter_values=_values(scene["parameter_values"]),
+        initial_state=_values(scene["initial_state"]),
+        time_span=None if span is None else (to_sympy(span[0]), to_sympy(span[1])),
+        observe=tuple(scene["observe"]),
+        equations=_each(_equation, scene["equations"]),
+    )
+
+
+def _equation(equation: dict[str, Any]) -> Equation:
+    return Equation(equation["number"], equation["name"], _each(_relation, equation["relations"]))
+
+
+def _relation(relation: dict[str, Any]) -> Relation:
+    return Relation(relation["left"], relation["right"])
+
+
+def _values(values: dict[str, Tree]) -> dict[str, Expr]:
+    return {name: to_sympy(tree) for name, tree in values.items()}
+
+
+def _each(read: Callable[[Any], Result], items: list[Any]) -> tuple[Result, ...]:
+    return tuple(read(item) for item in items)

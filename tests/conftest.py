@@ -1,0 +1,62 @@
+"""What several tests need: a place to write a scene, and a record small enough to read."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from harness.maxima import run_scene
+
+ScenesWriter = Callable[[str], Path]
+
+PARTICLE = """
+load("holonom.mac")$
+
+particle : holonomic_system(
+  title          = "Particle on a table of controlled height",
+  coordinates    = [x, z],
+  controls       = [u],
+  parameters     = [m, g],
+  kinetic_energy = m*(dot(x)^2 + dot(z)^2)/2,
+  potential_energy = m*g*z,
+  constraints    = [z - u])$
+
+rise : holonomic_scene(particle,
+  title            = "The table rises",
+  control_law      = [u = t],
+  parameter_values = [m = 2, g = 981/100],
+  initial_state    = [x = 0, dot(x) = 1/3])$
+"""
+
+
+@pytest.fixture
+def write_scene(tmp_path: Path) -> ScenesWriter:
+    """Put Maxima text into a file of its own."""
+
+    def write(text: str) -> Path:
+        file = tmp_path / "scene.mac"
+        file.write_text(text, encoding="utf-8")
+        return file
+
+    return write
+
+
+@pytest.fixture
+def particle_scene(write_scene: ScenesWriter) -> Path:
+    return write_scene(PARTICLE)
+
+
+@pytest.fixture(scope="session")
+def particle_record(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """The particle's record as Maxima wrote it."""
+    file = tmp_path_factory.mktemp("particle") / "scene.mac"
+    file.write_text(PARTICLE, encoding="utf-8")
+    return run_scene(file)
+
+
+def pytest_terminal_summary(terminalreporter) -> None:
+    """Tell how many pairs of Maxima's own test files passed, which pytest counts as one test a file."""
+    properties = [dict(report.user_properties) for report in terminalreporter.getreports("passed")]
+    counts = [found["maxima_tests"] for found in properties if "maxima_tests" in found]
+    if counts:
+        terminalreporter.write_line(f"Maxima's own tests: {sum(counts)} passed in {len(counts)} files")

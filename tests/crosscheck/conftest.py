@@ -1,0 +1,23 @@
+"""Records of the examples, each derived once."""
+
+from pathlib import Path
+
+import pytest
+
+from harness.maxima import run_scene
+from harness.record import Record, read_record
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+
+
+@pytest.fixture(
+    scope="session",
+    params=["paper/paper.mac", "weightless_cabin.mac", "pendulum.mac", "bead.mac"],
+)
+def example_record(request: pytest.FixtureRequest) -> Record:
+    return read_record(run_scene(EXAMPLES / request.param))
+
+
+@pytest.fixture(scope="session")
+def paper_record() -> Record:
+    return read_record(run_scene(EXAMPLES / "paper" / "paper.mac"))

@@ -1,0 +1,117 @@
+"""Records of the examples pass; a record with one wrong relation does not."""
+
+import dataclasses
+
+import pytest
+import sympy as sp
+
+from harness.crosscheck import EquationVerdict, Verdict, check_record
+from harness.record import Equation, Record, Relation
+
+
+def test_every_equation_of_an_example_is_proved(example_record: Record) -> None:
+    report = check_record(example_record)
+    assert not report.disagreements, [found for found in report.verdicts if found.verdict is Verdict.DISAGREES]
+    assert {found.verdict for found in report.verdicts if "SymPy" not in found.name} == {Verdict.PROVED}
+
+
+def test_every_equation_has_one_verdict_and_the_third_opinion_is_asked(
+    paper_record: Record,
+) -> None:
+    numbers = [found.number for found in check_record(paper_record).verdicts if not found.scene]
+    held = [equation.number for equation in paper_record.derivations[0].equations]
+    assert numbers == [*held, "2"]
+
+
+def test_each_wrong_relation_is_found(example_record: Record) -> None:
+    """Each relation of each equation in turn, its right side larger by a thousandth."""
+    for equation in example_record.derivations[0].equations:
+        for wrong in with_one_relation_changed(equation):
+            found = verdict_on(with_equation(example_record, wrong))
+            assert found.verdict is Verdict.DISAGREES, wrong
+
+
+def test_each_wrong_relation_of_a_scene_is_found(example_record: Record) -> None:
+    for equation in example_record.scenes[0].equations:
+        for wrong in with_one_relation_changed(equation):
+            found = verdict_on_scene(with_equation_in_scene(example_record, wrong))
+            assert found.verdict is Verdict.DISAGREES, wrong
+
+
+def test_each_relation_left_out_is_found(paper_record: Record) -> None:
+    """Left out, an entry of A, B, T0 or A_inverse is zero: those that are zero may be left out."""
+    for equation in paper_record.derivations[0].equations:
+        for i, relation in enumerate(equation.relations):
+            if relation.right == 0 and isinstance(relation.left, sp.Indexed | sp.Symbol):
+                continue
+            kept = equation.relations[:i] + equation.relations[i + 1 :]
+            short = dataclasses.replace(equation, relations=kept)
+            assert verdict_on(with_equation(paper_record, short)).verdict is Verdict.DISAGREES, short
+
+
+def test_christoffel_symbol_that_is_not_there_is_missed(paper_record: Record) -> None:
+    wrong = Equation("6", "Christoffel symbols", (Relation(["Subscript", "christoffel", 1, 2, 3], 1),))
+    assert verdict_on(with_equation(paper_record, wrong)).verdict is Verdict.DISAGREES
+
+
+@pytest.mark.parametrize("number", ["1", "2", "3a", "3", "4", "5", "6", "7", "8", "9", "10", "11"])
+def test_equation_left_out_is_missed(paper_record: Record, number: str) -> None:
+    held = paper_record.derivations[0].equations
+    kept = tuple(equation for equation in held if equation.number != number)
+    missing = [
+        found.number
+        for found in check_record(with_equations(paper_record, kept)).verdicts
+        if found.name == "(missing)" and found.scene is None
+    ]
+    assert missing == [equation.number for equation in held if equation.number == number]
+
+
+@pytest.mark.parametrize("number", ["10", "12", "13", "18", "19"])
+def test_equation_of_a_scene_left_out_is_missed(paper_record: Record, number: str) -> None:
+    scene = paper_record.scenes[0]
+    kept = tuple(equation for equation in scene.equations if equation.number != number)
+    record = dataclasses.replace(paper_record, scenes=(dataclasses.replace(scene, equations=kept),))
+    missing = [found for found in check_record(record).verdicts if found.name == "(missing)"]
+    assert [(found.number, found.scene) for found in missing] == [(number, scene.name)]
+
+
+def test_number_without_a_comparison_disagrees(paper_record: Record) -> None:
+    unknown = Equation("20", "an equation of another paper", ())
+    found = verdict_on(with_equation(paper_record, unknown))
+    assert (found.verdict, found.detail) == (
+        Verdict.DISAGREES,
+        "no comparison has this number",
+    )
+
+
+def with_one_relation_changed(equation: Equation) -> list[Equation]:
+    changed = []
+    for i, relation in enumerate(equation.relations):
+        larger = Relation(relation.left_tree, ["Add", relation.right_tree, ["Rational", 1, 1000]])
+        relations = (*equation.relations[:i], larger, *equation.relations[i + 1 :])
+        changed.append(dataclasses.replace(equation, relations=relations))
+    return changed
+
+
+def with_equations(record: Record, equations: tuple[Equation, ...]) -> Record:
+    derived = dataclasses.replace(record.derivations[0], equations=equations)
+    return dataclasses.replace(record, derivations=(derived,))
+
+
+def with_equation(record: Record, equation: Equation) -> Record:
+    """The record with nothing but this equation in its derivation."""
+    return dataclasses.replace(with_equations(record, (equation,)), scenes=())
+
+
+def with_equation_in_scene(record: Record, equation: Equation) -> Record:
+    """The record with nothing but this equation in its first scene, and none in its derivation."""
+    scene = dataclasses.replace(record.scenes[0], equations=(equation,))
+    return dataclasses.replace(with_equations(record, ()), scenes=(scene,))
+
+
+def verdict_on(record: Record) -> EquationVerdict:
+    return check_record(record).verdicts[0]
+
+
+def verdict_on_scene(record: Record) -> EquationVerdict:
+    return next(found for found in check_record(record).verdicts if found.scene)

@@ -1,0 +1,36 @@
+"""The third opinion, on systems with every kind of term."""
+
+import dataclasses
+
+import pytest
+from systems import charge_in_crossed_fields, paper_example, pendulum
+
+from harness.crosscheck.independent import IndependentEquations
+from harness.crosscheck.lagranges_method import compare
+from harness.crosscheck.report import Verdict
+from harness.crosscheck.system import MechanicalSystem
+from harness.crosscheck.verdict import judge
+
+
+@pytest.mark.parametrize(
+    "system", [paper_example(), pendulum(), charge_in_crossed_fields()], ids=lambda s: s.coordinates
+)
+def test_lagranges_method_gives_the_same_accelerations_and_multipliers(
+    system: MechanicalSystem,
+) -> None:
+    found = judge(compare(IndependentEquations(system)), "third opinion")
+    assert found.verdict is Verdict.AGREES, found.detail
+
+
+def test_a_system_without_constraints_is_taken() -> None:
+    free = dataclasses.replace(pendulum(), multipliers=(), constraints=())
+    assert judge(compare(IndependentEquations(free)), "free").verdict is Verdict.AGREES
+
+
+def test_a_multiplier_of_the_other_sign_is_found() -> None:
+    comparison = compare(IndependentEquations(pendulum()))
+    multiplier = comparison.pairs[-1]
+    turned = multiplier._replace(claimed=-multiplier.claimed)
+    found = judge(dataclasses.replace(comparison, pairs=(turned,)), "third opinion")
+    assert found.verdict is Verdict.DISAGREES
+    assert "lambda1" in found.detail

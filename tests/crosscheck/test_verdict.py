@@ -1,0 +1,66 @@
+"""The three verdicts, and what each rests on."""
+
+import sympy as sp
+from systems import symbols
+
+from harness.crosscheck.linear import LinearEquations
+from harness.crosscheck.report import Verdict
+from harness.crosscheck.verdict import DIGITS, POINTS, Comparison, Pair, judge
+
+X, Y, Z = symbols("x y z")
+
+
+def compared(claimed: sp.Expr, independent: sp.Expr) -> Comparison:
+    return Comparison((Pair("something", sp.sympify(claimed), sp.sympify(independent)),))
+
+
+def test_identity_is_proved() -> None:
+    found = judge(compared((X + Y) ** 2, X**2 + 2 * X * Y + Y**2), "seed")
+    assert (found.verdict, found.digits, found.points) == (Verdict.PROVED, DIGITS, POINTS)
+
+
+def test_identity_that_the_normal_form_does_not_know_agrees() -> None:
+    assert judge(compared(sp.log(X**2 * Y**2), sp.log(X**2) + sp.log(Y**2)), "seed").verdict is (Verdict.AGREES)
+
+
+def test_difference_beyond_double_precision_is_found() -> None:
+    found = judge(compared(X + sp.Rational(1, 10**40), X), "seed")
+    assert found.verdict is Verdict.DISAGREES
+    assert "something: the record gives" in found.detail
+    assert "at x = " in found.detail
+
+
+def test_floating_point_data_are_held_to_their_own_digits() -> None:
+    found = judge(compared(sp.Float(0.1) * X + sp.Float(0.2) * X, sp.Rational(3, 10) * X), "seed")
+    assert found.verdict is Verdict.AGREES
+    assert found.digits < DIGITS
+
+
+def test_points_where_an_expression_is_not_real_are_passed_over() -> None:
+    assert judge(compared(sp.sqrt(X) ** 3, X * sp.sqrt(X)), "seed").verdict is Verdict.PROVED
+
+
+def test_nothing_agrees_where_no_point_is_regular() -> None:
+    imaginary = sp.sqrt(-1 - X**2)
+    found = judge(compared(imaginary, imaginary), "seed")
+    assert (found.verdict, found.detail) == (Verdict.DISAGREES, "no regular point found")
+
+
+def test_a_constant_is_compared_once() -> None:
+    assert judge(compared(sp.sqrt(5) * sp.sqrt(5), sp.Integer(5)), "seed").points == 1
+
+
+def test_solution_is_proved_by_its_certificate_alone() -> None:
+    equations = LinearEquations((Y,), (Z * Y - X,))
+    pairs = (Pair("y", X / Z, Y),)
+    without = Comparison(pairs, solves=(equations,))
+    assert judge(without, "seed").verdict is Verdict.AGREES
+    assert judge(Comparison(pairs, solves=(equations,), certificate={Y: X / Z}), "seed").verdict is (Verdict.PROVED)
+    wrong = Comparison(pairs, solves=(equations,), certificate={Y: Z / X})
+    assert judge(wrong, "seed").verdict is Verdict.AGREES
+
+
+def test_the_same_seed_gives_the_same_point() -> None:
+    details = {judge(compared(X, Y), "seed").detail for _ in range(3)}
+    assert len(details) == 1
+    assert judge(compared(X, Y), "other seed").detail not in details

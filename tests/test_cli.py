@@ -1,0 +1,133 @@
+"""The commands: what they print, what they write, and the status they leave with."""
+
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+HOLONOM = [sys.executable, "-m", "harness"]
+
+
+def holonom(*arguments: str | Path, **options) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([*HOLONOM, *map(str, arguments)], capture_output=True, text=True, timeout=120, **options)
+
+
+def test_help_is_quick():
+    started = time.monotonic()
+    assert "derive" in holonom("--help").stdout
+    assert time.monotonic() - started < 1
+    imported = [sys.executable, "-c", "import harness.cli, sys; print({'sympy', 'rich'} & sys.modules.keys())"]
+    assert subprocess.run(imported, capture_output=True, text=True, check=True).stdout == "set()\n"
+
+
+def test_derive_prints_the_equations_by_their_numbers(particle_scene):
+    done = holonom("derive", particle_scene)
+    assert done.returncode == 0
+    assert "Particle on a table of controlled height" in done.stdout
+    assert "(6) Christoffel symbols" in done.stdout
+    assert "z = 0" in done.stdout
+    assert "\x1b" not in done.stdout
+
+
+def test_derive_writes_the_record_and_nothing_else(particle_scene, tmp_path):
+    printed = json.loads(holonom("derive", particle_scene, "--json", "-").stdout)
+    file = tmp_path / "record.json"
+    assert holonom("derive", particle_scene, "--json", file).returncode == 0
+    assert json.loads(file.read_text()) == printed
+    assert printed["format"] == "holonom-record"
+
+
+def test_check_reports_every_equation(particle_scene):
+    done = holonom("check", particle_scene, "--json", "-")
+    report = json.loads(done.stdout)
+    assert done.returncode == 0
+    assert report["scene"] == str(particle_scene)
+    assert report["disagreements"] == 0
+    assert {"1", "2", "6", "7", "8", "11", "13"} <= {found["number"] for found in report["equations"]}
+    assert {found["verdict"] for found in report["equations"]} <= {"proved", "agrees"}
+
+
+def test_check_of_several_scenes_is_an_array(particle_scene):
+    reports = json.loads(holonom("check", particle_scene, particle_scene, "--json", "-").stdout)
+    assert [report["scene"] for report in reports] == [str(particle_scene)] * 2
+
+
+def test_a_disagreement_is_reported_and_leaves_with_one(particle_record, monkeypatch, capsys, particle_scene):
+    wrong = json.loads(particle_record)
+    multipliers = next(e for e in wrong["derivations"][0]["equations"] if e["name"] == "multipliers")
+    multipliers["relations"][0]["right"] = ["Multiply", 2, multipliers["relations"][0]["right"]]
+    monkeypatch.setattr("harness.maxima.run_scene", lambda *_: json.dumps(wrong))
+    monkeypatch.setattr("sys.argv", ["holonom", "check", str(particle_scene)])
+    from harness.cli import main
+
+    with pytest.raises(SystemExit) as left:
+        main()
+    assert left.value.code == 1
+    assert "disagrees" in capsys.readouterr().out
+
+
+def test_errata_lists_every_equation():
+    report = json.loads(holonom("errata", "--json", "-").stdout)
+    rows = {row["number"]: row for row in report["equations"] if row["number"]}
+    assert {str(number) for number in range(2, 20)} <= rows.keys()
+    assert all(row["agrees"] or (row["difference"] and row["corrected"]) for row in report["equations"])
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["derive", "nowhere.mac"],
+        ["check", "nowhere.mac"],
+        ["derive"],
+        ["check"],
+        ["derive", "x", "--surprise"],
+        ["surprise"],
+        ["derive", "x", "--time-limit", "-1"],
+    ],
+)
+def test_bad_arguments_leave_with_two(arguments):
+    done = holonom(*arguments)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert "Traceback" not in done.stderr
+
+
+def test_bad_input_is_one_sentence_and_writes_nothing(write_scene, tmp_path):
+    scene = write_scene('x : 1$\nerror("holonomic_system: the mass m is not declared")$')
+    done = holonom("derive", scene, "--json", tmp_path / "record.json")
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr == f"holonom: {scene}:2: holonomic_system: the mass m is not declared.\n"
+    assert os.listdir(tmp_path) == [scene.name]
+
+
+def test_verbose_shows_how_to_repeat_the_run(write_scene):
+    done = holonom("--verbose", "derive", write_scene('print("on the way")$ error("lost")$'))
+    assert "on the way" in done.stderr
+    assert "repeat it with: maxima" in done.stderr
+
+
+def test_an_output_that_cannot_be_written(particle_scene, tmp_path):
+    done = holonom("derive", particle_scene, "--json", tmp_path / "nowhere" / "record.json")
+    assert done.returncode == 2
+    assert "cannot be written" in done.stderr
+
+
+def test_a_reader_who_leaves_early_is_no_error(particle_scene):
+    command = f"{' '.join(HOLONOM)} derive {particle_scene} | head -n 1"
+    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, timeout=60)
+    assert done.stderr == ""
+
+
+def test_ctrl_c_leaves_quietly(write_scene):
+    scene = write_scene("for i do 1$")
+    process = subprocess.Popen([*HOLONOM, "derive", str(scene)], stderr=subprocess.PIPE, text=True)
+    time.sleep(1.5)
+    process.send_signal(2)
+    _, said = process.communicate(timeout=10)
+    assert process.returncode == 130
+    assert "Traceback" not in said

@@ -1,0 +1,105 @@
+"""The paper as printed: the misprints found, no others, and no change to a right equation unnoticed."""
+
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from harness.errata import PRINTED, PrintedEquation, errata
+from harness.maxima import run_batch
+
+MISPRINTS = [
+    ("7", "constraints, differentiated twice"),
+    ("8", "equations for the multipliers"),
+    ("10", "condition of free motion"),
+    ("", "equation of motion of q2"),
+    ("", "multiplier"),
+    ("16", "acceleration of q1"),
+    ("16", "acceleration of q2"),
+    ("16", "acceleration of q3"),
+    ("17", "initial acceleration of q3"),
+]
+
+# One change each: what stands there and what is put in its place.
+SLIPS = [
+    (r"\bdot\(", "ddot("),
+    (r"\bdot\(", "("),
+    (r"\bddot\(", "dot("),
+    (r"\bdddot\(", "ddot("),
+    (r" \+ ", " - "),
+    (r" - ", " + "),
+    (r"(?<=\()-", ""),
+    (r"\b2\b", "3"),
+    (r"\b1\b", "2"),
+    (r"\b2\*", ""),
+    (r"(?<= [+=-] )(?=\w)(?!0)", "2*"),
+    (r"\bu0?\b(?!\[)", "1"),
+    (r"\bq(?=[1-3]\b)", "u"),
+    *[(rf"(?<=[\[,]){index}(?=[\],])", other) for index, other in zip("sklm", "klms", strict=True)],
+    *[(rf"\[{index}\]", f"[{other}]") for index, other in [("rho", "alpha"), ("alpha", "rho")]],
+    *[(rf"\[{index}\]", f"[{other}]") for index, other in [("beta", "gamma"), ("gamma", "beta")]],
+]
+
+# Compares each of the texts with the derived equation at its place; writes the places in `texts` that agree.
+COMPARISON = """
+load("{printed}")$
+derived : append(general_equations(), example_equations(system, initial_motion_scene))$
+texts : [{texts}]$
+agreeing(texts) := sublist(makelist(x, x, length(texts)), lambda([x],
+  is(size_of_difference(second(texts[x]), derived_counterpart(printed_equations[first(texts[x])], derived)) = 0)))$
+write_agreeing(file) := write_json(json_list(lambda([x], x), agreeing(texts)), file)$
+"""
+
+
+@pytest.fixture(scope="module")
+def equations() -> tuple[PrintedEquation, ...]:
+    return errata()
+
+
+def mended(equation: PrintedEquation) -> str:
+    return equation.printed if equation.agrees else equation.corrected
+
+
+def one_slip_away(text: str) -> Iterator[str]:
+    """All texts that differ from an equation by one of the slips, at one place."""
+    for pattern, replacement in SLIPS:
+        for match in re.finditer(pattern, text):
+            yield text[: match.start()] + replacement + text[match.end() :]
+
+
+def agreeing(texts: list[tuple[int, str]], directory: Path) -> set[int]:
+    """Places in `texts`, pairs of a row of the errata (from 0) and a text for it, where the text agrees."""
+    job = directory / "comparison.mac"
+    listed = ",\n".join(f'[{row + 1}, "{text}"]' for row, text in texts)
+    job.write_text(COMPARISON.format(printed=PRINTED, texts=listed))
+    return {place - 1 for place in json.loads(run_batch(job, "write_agreeing"))}
+
+
+def test_finds_the_misprints_and_no_others(equations):
+    assert [(e.number, e.name) for e in equations if not e.agrees] == MISPRINTS
+
+
+def test_covers_every_number(equations):
+    assert {e.number for e in equations} == {"", *map(str, range(2, 20))}
+
+
+def test_a_misprint_has_a_difference_and_a_correction_and_nothing_else_has(equations):
+    for equation in equations:
+        assert (equation.difference is None) == (equation.corrected is None) == equation.agrees
+        assert equation.difference != "0"
+        assert equation.corrected != equation.printed
+
+
+def test_the_corrected_equations_agree_and_the_printed_ones_do_not(equations, tmp_path):
+    misprints = [(row, equation) for row, equation in enumerate(equations) if not equation.agrees]
+    corrected = [(row, equation.corrected) for row, equation in misprints]
+    printed = [(row, equation.printed) for row, equation in misprints]
+    assert agreeing(corrected + printed, tmp_path) == set(range(len(corrected)))
+
+
+def test_no_slip_goes_unnoticed(equations, tmp_path):
+    slips = [(row, slip) for row, equation in enumerate(equations) for slip in one_slip_away(mended(equation))]
+    assert len(slips) > 500
+    assert [slips[place] for place in agreeing(slips, tmp_path)] == []

@@ -1,0 +1,154 @@
+"""Headless runs of Maxima: whatever a file does, one clear sentence in bounded time, with the place if known."""
+
+import subprocess
+import time
+
+import pytest
+
+from harness.confined import Limits
+from harness.failures import Failure, HolonomError
+from harness.maxima import count_statements, run_batch, run_rtest, run_scene
+
+SHORT = Limits(seconds=3, memory_mib=512, output_mib=1)
+
+
+def failure_of(file, limits=SHORT) -> HolonomError:
+    with pytest.raises(HolonomError) as raised:
+        run_scene(file, limits)
+    return raised.value
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "failure", "detail"),
+    [
+        ("x : 1$\n\nintegrate(exp(-a*y), y, 0, inf)$", 3, Failure.QUESTION, "Is a positive, negative or zero?"),
+        ('read("your name", x^2)$', 1, Failure.QUESTION, "your name x^2"),
+        ("x : 1$\ny :\n  1/0$", 2, Failure.REFUSED, "expt: undefined: 0 to a negative exponent."),
+        ('/* a /* nested */ one */\nerror("no mass in", x^2 + y/z)$', 2, Failure.REFUSED, "no mass in y/z+x^2"),
+        ('load("nowhere.mac")$', 1, Failure.REFUSED, "file_search1: nowhere.mac not found"),
+        ("f(x) := x$\nf(1, 2)$", 2, Failure.REFUSED, "Too many arguments"),
+        ("x : 1$\ny : 2 +* 3$", 2, Failure.SYNTAX, "* is not a prefix operator"),
+        ("y compare z$", 1, Failure.SYNTAX, "compare is not an infix operator"),
+        ("x : 1$\ny : (2", 2, Failure.SYNTAX, "end of file"),
+        ('x : 1$\ny : "unclosed', 2, Failure.SYNTAX, "end of file"),
+        ("f(x) := 1 + f(x)$\nf(1)$", 2, Failure.LISP_ERROR, "overflow"),
+        ("?car(1, 2)$", 1, Failure.LISP_ERROR, "arguments"),
+    ],
+)
+def test_a_statement_that_fails_is_found(text, line, failure, detail, write_scene):
+    file = write_scene(text)
+    error = failure_of(file)
+    assert error.failure is failure
+    assert error.place == f"{file}:{line}"
+    assert detail in error.detail
+    assert "\n" not in str(error)
+
+
+@pytest.mark.parametrize(
+    ("text", "failure"),
+    [
+        ("for i do 1$", {Failure.TOO_LONG}),
+        ('system("sleep 60")$', {Failure.TOO_LONG}),
+        # GCL collects garbage until the clock runs out where it cannot have the memory it wants.
+        ("hog : []$ for i do hog : cons(1.5*i, hog)$", {Failure.TOO_LARGE, Failure.TOO_LONG}),
+        ('for i do print("so it goes on, and on, and on")$', {Failure.TOO_MUCH_TEXT}),
+        ("quit()$", {Failure.ENDED_EARLY}),
+        ("x : 1$", {Failure.NOTHING_WRITTEN}),
+        ("", {Failure.NOTHING_WRITTEN}),
+    ],
+)
+def test_a_file_that_ends_badly_is_named(text, failure, write_scene):
+    file = write_scene(text)
+    started = time.monotonic()
+    error = failure_of(file)
+    assert error.failure in failure
+    assert str(error).startswith(f"{file}: ")
+    assert time.monotonic() - started < SHORT.seconds + 2
+
+
+def test_a_syntax_error_in_a_loaded_file_is_found_there(write_scene, tmp_path):
+    part = tmp_path / "part.mac"
+    part.write_text("x : 1$\n\ny : ]$\n")
+    assert failure_of(write_scene(f'load("{part}")$')).place == f"{part}:3"
+
+
+def test_an_error_is_caught_by_the_file_itself(write_scene):
+    error = failure_of(write_scene("errcatch(1/0)$ x : 1$"))
+    assert error.failure is Failure.NOTHING_WRITTEN
+
+
+def test_a_file_without_a_system_is_refused(write_scene):
+    assert "system" in str(failure_of(write_scene('load("holonom.mac")$')))
+
+
+def test_missing_and_unreadable_files(tmp_path):
+    assert failure_of(tmp_path / "nowhere.mac").failure is Failure.FILE_MISSING
+    assert failure_of(tmp_path).failure is Failure.FILE_UNREADABLE
+
+
+def test_maxima_not_installed(particle_scene, monkeypatch, tmp_path):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert failure_of(particle_scene).failure is Failure.MAXIMA_MISSING
+
+
+def test_init_files_are_not_read(write_scene, tmp_path, monkeypatch):
+    (tmp_path / "maxima-init.mac").write_text('error("read")$')
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("MAXIMA_USERDIR", str(tmp_path))
+    assert failure_of(write_scene("x : 1$")).failure is Failure.NOTHING_WRITTEN
+
+
+def test_the_command_given_repeats_the_failure_with_maxima_alone(write_scene):
+    error = failure_of(write_scene('x : 1$\nerror("the mass", m, "is negative")$'))
+    printed = subprocess.run(error.command, shell=True, capture_output=True, text=True, timeout=10).stdout
+    assert "the mass m is negative" in printed
+
+
+def test_the_last_lines_come_with_the_error(write_scene):
+    assert "on the way" in failure_of(write_scene('print("on the way")$ error("lost")$')).last_lines[-1]
+
+
+def test_a_name_with_blanks_quotes_and_accents(tmp_path):
+    directory = tmp_path / 'a "quoted" é'
+    directory.mkdir()
+    file = directory / "b c.mac"
+    file.write_text('write(name) := with_stdout(name, print("written"))$')
+    assert run_batch(file, "write") == "written \n"
+
+
+def test_a_scene_finds_the_library(particle_record):
+    assert '"holonom-record"' in particle_record
+
+
+@pytest.mark.parametrize(
+    ("text", "statements"),
+    [
+        ("", 0),
+        ("x : 1$ y : 2;", 2),
+        ("/* x; /* y$ */ z; */ x$", 1),
+        ('print("a; b$ \\" ;")$ /* "unclosed; */ y;', 2),
+        ("x\\$y : 1$", 1),
+    ],
+)
+def test_statements_are_counted(text, statements):
+    assert count_statements(text) == statements
+
+
+@pytest.mark.parametrize(
+    ("text", "failure"),
+    [
+        ("1 + 1;\n2$\n1 + 2;\n4$\n", Failure.RTEST_FAILED),
+        ("1 + 1;\n2$\n1 +* 2;\n3$\n2;\n2$\n", Failure.SYNTAX),
+        ("1 + 1;\n2$\n1 + 2;\n", Failure.RTEST_UNPAIRED),
+    ],
+)
+def test_an_rtest_file_that_does_not_pass_whole_is_refused(text, failure, write_scene):
+    with pytest.raises(HolonomError) as raised:
+        run_rtest(write_scene(text))
+    assert raised.value.failure is failure
+
+
+def test_an_rtest_file_that_passes_is_counted_and_nothing_left_beside_it(write_scene):
+    file = write_scene("1 + 1;\n2$\n1 + 2;\n3$\n")
+    assert run_rtest(file) == 2
+    assert list(file.parent.iterdir()) == [file]
