@@ -8,7 +8,7 @@ SOURCES := $(shell find maxima harness -name '*.mac' -o -name '*.lisp' -o -name 
 
 .DEFAULT_GOAL := paper
 .DELETE_ON_ERROR:
-.PHONY: paper check setup clean help have-maxima have-python
+.PHONY: paper check setup pictures clean help have-maxima have-python
 
 paper: setup $(RECORDS) ## Derive and check every scene, compare the paper as printed (the default)
 	$(BIN)/holonom check $(SCENES) --json build/check.json
@@ -21,6 +21,9 @@ check: setup ## Lint, then run all tests, Maxima's own rtest files among them
 	$(BIN)/pytest -q
 
 setup: have-maxima $(STAMP) ## Install what is missing: Maxima, and the Python packages in .venv
+
+pictures: setup ## Draw the README's pictures again
+	$(BIN)/holonom errata --svg examples/paper/errata.svg > /dev/null
 
 clean: ## Remove all that make made
 	rm -rf build .venv .pytest_cache .ruff_cache .hypothesis *.egg-info

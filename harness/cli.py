@@ -141,13 +141,16 @@ def check(scenes: Sequence[Path], json_file: Path | None, limits: Limits) -> int
 
 @holonom.command()
 @writes_json
-def errata(json_file: Path | None) -> int:
+@click.option("--svg", "svg_file", metavar="FILE", type=click.Path(path_type=Path), help="Also draw the table.")
+def errata(json_file: Path | None, svg_file: Path | None) -> int:
     """Compare every equation that the paper prints with the derived one."""
-    from harness.console import make_console, show_errata
+    from harness.console import draw_errata, make_console, show_errata
     from harness.errata import errata as compare
 
     equations = compare()
     _publish(_json_text({"equations": [asdict(equation) for equation in equations]}), json_file)
+    if svg_file is not None:
+        _publish(draw_errata(equations), svg_file)
     if json_file != STANDARD_OUTPUT:
         show_errata(make_console(), equations)
     return 0
@@ -176,14 +179,14 @@ def _json_text(document: Any) -> str:
     return json.dumps(document, ensure_ascii=False, indent=1) + "\n"
 
 
-def _publish(text: str, json_file: Path | None) -> None:
-    """Put a JSON document where --json asks for it, if it does."""
-    if json_file == STANDARD_OUTPUT:
+def _publish(text: str, file: Path | None) -> None:
+    """Put a document where an option asks for it, if it does."""
+    if file == STANDARD_OUTPUT:
         click.echo(text, nl=False)
-    elif json_file is not None:
+    elif file is not None:
         from harness.files import write_whole
 
-        write_whole(json_file, text)
+        write_whole(file, text)
 
 
 def _explain(error: HolonomError) -> None:

@@ -9,7 +9,7 @@
 (in-package :maxima)
 
 (defvar *mathjson-functions*
-  '((mplus . "Add") (mtimes . "Multiply") (mabs . "Abs") (%log . "Ln") (%signum . "Sign")
+  '((mtimes . "Multiply") (mquotient . "Divide") (mminus . "Negate") (mabs . "Abs") (%log . "Ln") (%signum . "Sign")
     (%sin . "Sin") (%cos . "Cos") (%tan . "Tan") (%sinh . "Sinh") (%cosh . "Cosh") (%tanh . "Tanh")
     (%asin . "Arcsin") (%acos . "Arccos") (%atan . "Arctan") ($atan2 . "Arctan2") (%atan2 . "Arctan2")
     (%asinh . "Arsinh") (%acosh . "Arcosh") (%atanh . "Artanh")))
@@ -69,6 +69,7 @@
         ((eq (caar e) 'rat) (write-tree "Rational" (cdr e) out))
         ((eq (caar e) 'bigfloat) (write-bigfloat e out))
         ((eq (caar e) 'mexpt) (write-power (cadr e) (caddr e) out))
+        ((eq (caar e) 'mplus) (write-sum (cdr e) out))
         ((member 'array (car e)) (write-tree "Subscript" (cons (caar e) (cdr e)) out))
         ((cdr (assoc (caar e) *mathjson-functions*))
          (write-tree (cdr (assoc (caar e) *mathjson-functions*)) (cdr e) out))
@@ -82,6 +83,19 @@
     (write-char #\, out)
     (write-mathjson a out))
   (write-char #\] out))
+
+;;; Maxima's own sums hold no minus signs; those of a motion program do, as differences.
+(defun write-sum (terms out)
+  (let ((plus (remove-if #'negated-p terms))
+        (minus (mapcar #'cadr (remove-if-not #'negated-p terms))))
+    (cond ((null minus) (write-tree "Add" plus out))
+          ((null plus) (write-tree "Negate" (list (sum-expression minus)) out))
+          (t (write-tree "Subtract" (list (sum-expression plus) (sum-expression minus)) out)))))
+
+(defun negated-p (e) (and (consp e) (eq (caar e) 'mminus)))
+
+(defun sum-expression (terms)
+  (if (cdr terms) (cons '(mplus) terms) (car terms)))
 
 (defun write-power (base exponent out)
   (cond ((eq base '$%e) (write-tree "Exp" (list exponent) out))

@@ -37,7 +37,7 @@ def series_of(record: Record, scene_name: str, coordinate: str) -> Expr:
     """Series (18) of a coordinate with the scene's numbers in it."""
     scene = next(scene for scene in record.scenes if scene.name == scene_name)
     numbers = {Symbol(name, real=True): value for name, value in scene.parameter_values.items()}
-    numbers |= {Symbol(name, real=True): value for name, value in scene.initial_state.items()}
+    numbers |= {Symbol(f"{name}_0", real=True): value for name, value in scene.initial_state.items()}
     return solved(scene.equations, "18")[coordinate].subs(numbers)
 
 
