@@ -8,7 +8,7 @@ SOURCES := $(shell find maxima harness -name '*.mac' -o -name '*.lisp' -o -name 
 
 .DEFAULT_GOAL := paper
 .DELETE_ON_ERROR:
-.PHONY: paper check setup pictures clean help have-maxima have-python
+.PHONY: paper check bench setup pictures clean help have-maxima have-python
 
 paper: setup $(RECORDS) ## Derive and check every scene, compare the paper as printed (the default)
 	$(BIN)/holonom check $(SCENES) --json build/check.json
@@ -21,6 +21,10 @@ check: setup ## Lint, then run all tests, Maxima's own rtest files among them
 	$(BIN)/pytest -q
 
 setup: have-maxima $(STAMP) ## Install what is missing: Maxima, and the Python packages in .venv
+
+bench: setup ## Time the motion program against its peers: one table, one log-log figure
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,motion,bench]'
+	$(BIN)/python tests/benchmarks/run.py build/benchmarks
 
 pictures: setup ## Draw the README's pictures again
 	$(BIN)/holonom errata --svg examples/paper/errata.svg > /dev/null
@@ -59,5 +63,5 @@ $(STAMP): pyproject.toml constraints.txt | have-python
 	@test -n "$(PYTHON)" || { echo "Holonom needs Python 3.11 or later: please install it." >&2; exit 2; }
 	@$(PYTHON) -c 'import ensurepip' 2>/dev/null || $(call install,$(notdir $(PYTHON))-venv)
 	$(PYTHON) -m venv --clear .venv
-	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,motion]'
 	@touch $@

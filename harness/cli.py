@@ -1,4 +1,4 @@
-"""The command line: derive, check, errata.
+"""The command line: derive, check, errata, program.
 
 Exit status: 0 when all is well, 1 when an equation disagrees, 2 for bad input, 130 when interrupted. Modules are
 imported inside the commands: ``holonom --help`` waits for no SymPy.
@@ -153,6 +153,32 @@ def errata(json_file: Path | None, svg_file: Path | None) -> int:
         _publish(draw_errata(equations), svg_file)
     if json_file != STANDARD_OUTPUT:
         show_errata(make_console(), equations)
+    return 0
+
+
+@holonom.command()
+@click.argument("scene_file", metavar="SCENE", type=click.Path(path_type=Path))
+@click.option("--scene", metavar="NAME", help="The scene in the file; without it, the last one.")
+@click.option("--set", "settings", metavar="NAME=VALUE", multiple=True, help="A number that the file leaves open.")
+@click.option("--solve", type=click.Choice(["direct", "orthogonal"]), default="direct", show_default=True)
+@click.option("--to", "form", type=click.Choice(["c", "python", "json"]), default="json", show_default=True)
+@click.option("-o", "--output", metavar="FILE", type=click.Path(path_type=Path), default=STANDARD_OUTPUT)
+@runs_scenes
+def program(
+    scene_file: Path,
+    scene: str | None,
+    settings: Sequence[str],
+    solve: str,
+    form: str,
+    output: Path,
+    limits: Limits,
+) -> int:
+    """Write the motion program of a SCENE, for those who carry it elsewhere."""
+    from harness.motion.program import Solve
+    from harness.motion.request import Form, Request, program_text, read_settings
+
+    request = Request(scene, Solve(solve), read_settings(settings))
+    _publish(program_text(scene_file, request, Form(form), limits), output)
     return 0
 
 

@@ -31,6 +31,17 @@ class Failure(Enum):
     NOT_A_RECORD = ("this is not a derivation record: {detail}", "derive it anew with `holonom derive`")
     NOT_AN_EXPRESSION = ("{detail} is not an expression that a derivation record can hold", "")
     UNWRITABLE = ("the output cannot be written: {detail}", "give a file in a directory that can be written")
+    NOT_A_SETTING = ("{detail} sets nothing", "write NAME=VALUE with a number, for instance N=64 or u0=3/10")
+    NOT_A_SCENE_NAME = ("{detail} cannot be the name of a scene", "give the name that the scene is assigned to")
+    NOT_A_PROGRAM = ("this is not a motion program: {detail}", "write it anew with `holonom program`")
+    NOT_AN_IDENTIFIER = ("{detail} cannot name a function in C and Python", "use letters, digits and underscores")
+    INPUT_MISSING = ("nothing is given for {detail}", "give the controls a law and the parameters their values")
+    COMPILER_MISSING = (
+        "no C compiler is installed",
+        "install one, for instance the package `gcc` of your distribution, or name one in the variable CC",
+    )
+    COMPILER_REFUSED = ("the C compiler refused the motion program: {detail}", "")
+    EXTRA_MISSING = ("this needs {detail}, which is not installed", "run `make`, or `pip install {detail}`")
     RTEST_UNPAIRED = ("an input has no expected result", "")
     RTEST_FAILED = ("not all of the {detail} tests passed", "")
 

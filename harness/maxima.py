@@ -10,7 +10,7 @@ import re
 import shlex
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,6 +21,7 @@ from harness.failures import Failure, HolonomError
 LIBRARY = Path(__file__).resolve().parents[1] / "maxima"
 HEADLESS = Path(__file__).with_name("headless.lisp")
 DEFAULT_LIMITS = Limits()
+NO_SETTINGS: Mapping[str, str] = {}
 PHYSICAL_MEMORY = os.sysconf("SC_PHYS_PAGES") * PAGE  # bytes
 LAST_LINES = 10  # lines of Maxima's output that an error carries
 
@@ -68,7 +69,9 @@ def run_scene(scene: Path, limits: Limits = DEFAULT_LIMITS) -> str:
     return run_batch(scene, "write_record", limits)
 
 
-def run_batch(file: Path, writer: str, limits: Limits = DEFAULT_LIMITS) -> str:
+def run_batch(
+    file: Path, writer: str, limits: Limits = DEFAULT_LIMITS, settings: Mapping[str, str] = NO_SETTINGS
+) -> str:
     """Run a Maxima file, then one Maxima function that writes a document.
 
     Parameters
@@ -79,6 +82,8 @@ def run_batch(file: Path, writer: str, limits: Limits = DEFAULT_LIMITS) -> str:
         The Maxima function that writes the document, given the name of the file to write.
     limits : Limits
         What the run may take.
+    settings : mapping of str to str
+        Numbers in Maxima's notation, for what the file leaves open and for parameters.
 
     Returns
     -------
@@ -91,7 +96,7 @@ def run_batch(file: Path, writer: str, limits: Limits = DEFAULT_LIMITS) -> str:
         As `run_scene`.
     """
     with _private_directory() as directory:
-        printed = _run(file, f'{writer}("document")$', limits, directory)
+        printed = _run(file, f'{writer}("document")$', limits, directory, settings)
         document = directory / "document"
         if not document.exists():
             raise HolonomError(Failure.NOTHING_WRITTEN, file, last_lines=_last_lines(printed))
@@ -157,12 +162,12 @@ def _private_directory() -> Iterator[Path]:
         yield Path(name)
 
 
-def _run(file: Path, call: str, limits: Limits, directory: Path) -> str:
+def _run(file: Path, call: str, limits: Limits, directory: Path, settings: Mapping[str, str] = NO_SETTINGS) -> str:
     """Run the statements of `file` and then `call`; return what Maxima printed."""
     _refuse_unreadable(file)
     if (maxima := shutil.which("maxima")) is None:
         raise HolonomError(Failure.MAXIMA_MISSING)
-    (directory / "job.lisp").write_text(_job(file, call), encoding="utf-8")
+    (directory / "job.lisp").write_text(_job(file, call, settings), encoding="utf-8")
     command = [maxima, "--init=/dev/null", "--very-quiet", "--preload-lisp=job.lisp"]
     output = bytearray()
     try:
@@ -179,7 +184,7 @@ def _run(file: Path, call: str, limits: Limits, directory: Path) -> str:
         ending.place,
         ending.detail,
         last_lines=_last_lines(printed),
-        command=_repeating_command(file, call),
+        command=_repeating_command(file, call, settings),
     )
 
 
@@ -204,9 +209,9 @@ def _refuse_unreadable(file: Path) -> None:
         raise HolonomError(Failure.FILE_UNREADABLE, file, error.strerror or str(error)) from None
 
 
-def _job(file: Path, call: str) -> str:
+def _job(file: Path, call: str, settings: Mapping[str, str]) -> str:
     """The Lisp that Maxima loads first, which does the whole run."""
-    preparation = "holonom_print : false$"
+    preparation = f"(holonom_print : false, {_set(settings)})$"
     arguments = [_quoted(argument) for argument in (file.resolve(), LIBRARY, preparation, call, "outcome")]
     return f"{HEADLESS.read_text(encoding='utf-8')}\n(run-headless {' '.join(arguments)})\n"
 
@@ -227,10 +232,15 @@ def _last_lines(printed: str) -> tuple[str, ...]:
     return tuple(line for line in printed.splitlines() if line.strip())[-LAST_LINES:]
 
 
-def _repeating_command(file: Path, call: str) -> str:
+def _set(settings: Mapping[str, str]) -> str:
+    """A Maxima assignment of the settings."""
+    return f"settings : [{', '.join(f'{name} = {value}' for name, value in settings.items())}]"
+
+
+def _repeating_command(file: Path, call: str, settings: Mapping[str, str]) -> str:
     """A shell command that repeats a run with Maxima alone."""
     search = f"file_search_maxima : cons({_quoted(LIBRARY / '$$$.mac')}, file_search_maxima)$"
-    statements = f"{search} batch({_quoted(file.resolve())})$ {call}"
+    statements = f"{_set(settings)}$ {search} batch({_quoted(file.resolve())})$ {call}"
     return f"maxima --init=/dev/null --batch-string={shlex.quote(statements)} </dev/null"
 
 

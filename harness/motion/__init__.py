@@ -1,0 +1,1 @@
+"""Program to numbers: the motion program as NumPy, C, Python and heyoka functions."""

@@ -1,0 +1,67 @@
+"""Formulas as text, with no more parentheses than they need: what C and Python write alike."""
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+
+class Rank(IntEnum):
+    """How tightly the parts of a formula hold together."""
+
+    SUM = 0
+    PRODUCT = 1
+    SIGNED = 2
+    POWER = 3
+    ATOM = 4
+
+
+@dataclass(frozen=True)
+class Formula:
+    """Text and how tightly it holds together."""
+
+    text: str
+    rank: Rank
+
+    def within(self, rank: Rank) -> str:
+        """The text as part of a formula that needs at least this rank."""
+        return self.text if self.rank >= rank else f"({self.text})"
+
+
+def atom(text: str) -> Formula:
+    """A name or a number without a sign."""
+    return Formula(text, Rank.ATOM)
+
+
+def signed(text: str) -> Formula:
+    """A number, perhaps with a minus sign."""
+    return Formula(text, Rank.SIGNED if text.startswith("-") else Rank.ATOM)
+
+
+def call(function: str, *arguments: Formula) -> Formula:
+    """A function call."""
+    return atom(f"{function}({', '.join(argument.text for argument in arguments)})")
+
+
+def add(first: Formula, *others: Formula) -> Formula:
+    """A sum, from left to right."""
+    return Formula(" + ".join([first.text, *(term.within(Rank.PRODUCT) for term in others)]), Rank.SUM)
+
+
+def subtract(a: Formula, b: Formula) -> Formula:
+    """A difference."""
+    return Formula(f"{a.text} - {b.within(Rank.PRODUCT)}", Rank.SUM)
+
+
+def multiply(first: Formula, *others: Formula) -> Formula:
+    """A product, from left to right."""
+    factors = [first.within(Rank.PRODUCT), *(factor.within(Rank.SIGNED) for factor in others)]
+    return Formula("*".join(factors), Rank.PRODUCT)
+
+
+def divide(a: Formula, b: Formula) -> Formula:
+    """A quotient."""
+    return Formula(f"{a.within(Rank.PRODUCT)}/{b.within(Rank.SIGNED)}", Rank.PRODUCT)
+
+
+def negate(a: Formula) -> Formula:
+    """A change of sign."""
+    return Formula(f"-{a.within(Rank.POWER)}", Rank.SIGNED)

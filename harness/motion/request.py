@@ -1,0 +1,130 @@
+"""The motion program of a scene, asked of Maxima, and the forms it can be taken away in."""
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from pathlib import Path
+
+from harness.confined import Limits
+from harness.failures import Failure, HolonomError
+from harness.maxima import run_batch
+from harness.motion.c_source import c_source
+from harness.motion.program import Program, Solve, read_program
+from harness.motion.python_source import python_source
+
+SCENE_NAME = re.compile(r"[^\W\d]\w*")
+SETTING = re.compile(r"([^\W\d]\w*)=(-?\d+(?:\.\d+)?(?:e-?\d+)?(?:/\d+)?)", re.IGNORECASE)
+
+
+class Form(StrEnum):
+    """What `holonom program` writes."""
+
+    C = "c"
+    PYTHON = "python"
+    JSON = "json"
+
+
+SOURCES: Mapping[Form, Callable[[Program], str]] = {Form.C: c_source, Form.PYTHON: python_source}
+
+
+@dataclass(frozen=True)
+class Request:
+    """Which motion program of a scene file.
+
+    Parameters
+    ----------
+    scene : str or None
+        Name of the scene; None for the last one, or for the system where there is none.
+    solve : Solve
+    settings : mapping of str to str
+        Numbers in Maxima's notation, for what the file leaves open and for parameters.
+    """
+
+    scene: str | None = None
+    solve: Solve = Solve.DIRECT
+    settings: Mapping[str, str] = field(default_factory=dict)
+
+
+def read_settings(texts: Iterable[str]) -> dict[str, str]:
+    """Read settings as they stand on a command line.
+
+    Parameters
+    ----------
+    texts : iterable of str
+        Each ``NAME=VALUE``, the value an integer, a decimal or a quotient of integers.
+
+    Returns
+    -------
+    dict of str to str
+
+    Raises
+    ------
+    HolonomError
+        One of them is not of that form.
+    """
+    settings = {}
+    for text in texts:
+        if (found := SETTING.fullmatch(text)) is None:
+            raise HolonomError(Failure.NOT_A_SETTING, detail=text)
+        settings[found[1]] = found[2]
+    return settings
+
+
+def program_text(file: Path, request: Request, form: Form, limits: Limits) -> str:
+    """Write the motion program of a scene file in one of its forms.
+
+    Parameters
+    ----------
+    file : Path
+        The scene file.
+    request : Request
+    form : Form
+    limits : Limits
+        What Maxima may take.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    HolonomError
+        As `program_document`.
+    """
+    document = program_document(file, request, limits)
+    program = read_program(document)
+    return document if form is Form.JSON else SOURCES[form](program)
+
+
+def program_document(file: Path, request: Request, limits: Limits) -> str:
+    """The document of a scene file's motion program, as Maxima writes it.
+
+    Parameters
+    ----------
+    file : Path
+        The scene file.
+    request : Request
+    limits : Limits
+        What Maxima may take.
+
+    Returns
+    -------
+    str
+        JSON text, for `read_program`.
+
+    Raises
+    ------
+    HolonomError
+        As `harness.maxima.run_batch`; the request's scene has a name that no scene can have.
+    """
+    writer = f"lambda([file], write_program(file, {_scene_name(request)}, '{request.solve}))"
+    return run_batch(file, writer, limits, request.settings)
+
+
+def _scene_name(request: Request) -> str:
+    if request.scene is None:
+        return "false"
+    if not SCENE_NAME.fullmatch(request.scene):
+        raise HolonomError(Failure.NOT_A_SCENE_NAME, detail=request.scene)
+    return f"'{request.scene}"

@@ -1,0 +1,460 @@
+;;; Expression graph: every value of the motion program, formed once
+;;;
+;;; A motion program computes many values from few symbols, and most of them again and again.
+;;; Here a value is a node of a graph; the same value is the same node, however it was come by:
+;;;
+;;;     symbol   q1, dot(u), %pi                 call   sin(x), atan2(y, x), a^b
+;;;     sum      c1*n1 + c2*n2 + ...             held   a node that is not to be opened again
+;;;     product  n1^e1 * n2^e2 * ...
+;;;
+;;; with numbers c, whole numbers e and nodes n. A number never has a node of its own: it is a coefficient
+;;; of the node `one', the empty product. What the functions take and return is a term, a
+;;; coefficient times a node, so that x - y and 2*y - 2*x share their node x - y.
+;;;
+;;; Kept true by the constructors: like terms and like factors are collected, zeros and ones
+;;; are gone, a sum has no common factor among its coefficients and starts with a plus sign.
+;;; Sums inside sums and products are left as they are: nothing is ever multiplied out.
+;;;
+;;; Maxima sees terms as opaque values. The graph in use is the value of `expression_graph',
+;;; bound by whoever builds one: block([expression_graph : new_expression_graph(variables)], ...).
+;;;
+;;; This file is loaded as source, interpreted; `do', `dolist' and structures are fast there,
+;;; `loop' is not.
+
+(in-package :maxima)
+
+(defstruct expression-graph
+  (nodes (make-hash-table :test 'equal))   ; description of a node -> node
+  (variables (make-hash-table))            ; symbol to differentiate by -> its position
+  (size 0))
+
+(defstruct node
+  number                                   ; order of birth: parts come before the whole
+  kind                                     ; symbol, sum, product, call or held
+  parts                                    ; sum: terms; product: factors; call: (operator . terms)
+  (gradient 'unknown))                     ; list of (position . term), once asked for
+
+(defstruct term coefficient node)
+
+(defstruct factor node exponent)
+
+(defmvar $expression_graph nil)
+
+(defun $new_expression_graph (variables)
+  "An empty graph, whose gradients are by the given list of symbols."
+  (let ((graph (make-expression-graph)) (position 0))
+    (dolist (v (cdr variables) graph)
+      (setf (gethash v (expression-graph-variables graph)) (incf position)))))
+
+(defun node-of (kind parts description)
+  "The node so described; a new one where there is none yet."
+  (let ((nodes (expression-graph-nodes $expression_graph)))
+    (or (gethash description nodes)
+        (setf (gethash description nodes)
+              (make-node :number (incf (expression-graph-size $expression_graph))
+                         :kind kind :parts parts)))))
+
+;;; ---- numbers and symbols ---------------------------------------------------------------
+
+(defun one () (node-of 'product nil '(product)))
+
+(defun number-term (number) (make-term :coefficient number :node (one)))
+
+(defun zero-term-p (term) (zerop (term-coefficient term)))
+
+(defun number-term-p (term) (one-p (term-node term)))
+
+(defun one-p (node) (and (eq (node-kind node) 'product) (null (node-parts node))))
+
+(defun symbol-term (symbol)
+  (node-term (node-of 'symbol symbol (list 'symbol symbol))))
+
+(defun node-term (node) (make-term :coefficient 1 :node node))
+
+(defun scaled-term (number term)
+  (if (eql number 1)
+      term
+      (normal-term (* number (term-coefficient term)) (term-node term))))
+
+(defun normal-term (coefficient node)
+  (if (zerop coefficient)
+      (number-term 0)
+      (make-term :coefficient coefficient :node node)))
+
+;;; ---- sums ------------------------------------------------------------------------------
+
+(defun sum-of (terms)
+  "Sum of a list of terms."
+  (let ((collected (collect-like-terms (with-numbers-together terms))))
+    (cond ((null collected) (number-term 0))
+          ((null (cdr collected)) (car collected))
+          (t (sum-with-scale (scale-of-sum collected) collected)))))
+
+(defun with-numbers-together (terms)
+  "2*(x + 1) + 3 as 2*x + 2 + 3: sums that contain a number are opened where numbers meet."
+  (if (cdr (remove-if-not #'contains-number-p terms))
+      (mapcan #'(lambda (term)
+                  (if (and (contains-number-p term) (not (number-term-p term)))
+                      (multiples (term-coefficient term) (node-parts (term-node term)))
+                      (list term)))
+              terms)
+      terms))
+
+(defun contains-number-p (term)
+  (or (number-term-p term)
+      (and (eq (node-kind (term-node term)) 'sum)
+           (some #'number-term-p (node-parts (term-node term))))))
+
+(defun multiples (number terms)
+  (mapcar #'(lambda (term) (scaled-term number term)) terms))
+
+(defun collect-like-terms (terms)
+  "The terms in the order of their nodes, each node once, none with coefficient zero."
+  (let ((collected nil))
+    (dolist (term (sort (copy-list terms) #'> :key #'term-order) collected)
+      (if (and collected (eq (term-node term) (term-node (car collected))))
+          (push (make-term :coefficient (+ (term-coefficient term)
+                                           (term-coefficient (pop collected)))
+                           :node (term-node term))
+                collected)
+          (push term collected))
+      (if (zero-term-p (car collected)) (pop collected)))))
+
+(defun term-order (term) (node-number (term-node term)))
+
+(defun scale-of-sum (terms)
+  "The magnitude all coefficients share, or 1; with the sign of the first."
+  (let* ((first (term-coefficient (car terms)))
+         (magnitude (abs first)))
+    (dolist (term (cdr terms))
+      (if (/= magnitude (abs (term-coefficient term))) (setq magnitude 1)))
+    (if (minusp first) (- magnitude) magnitude)))
+
+(defun sum-with-scale (scale terms)
+  (make-term :coefficient scale
+             :node (sum-node (grouped-by-magnitude
+                              (multiples (/ scale) terms)))))
+
+(defun sum-node (terms)
+  (node-of 'sum terms
+           (cons 'sum (mapcan #'(lambda (term) (list (term-coefficient term) (term-order term)))
+                              terms))))
+
+(defun grouped-by-magnitude (terms)
+  "2*a + b - 2*c as b + 2*(a - c): one multiplication for terms of like magnitude."
+  (let ((magnitudes (shared-magnitudes terms)))
+    (if (or (null magnitudes) (every #'unit-coefficient-p terms))
+        terms
+        (let ((grouped (remove-if #'(lambda (term) (member (magnitude term) magnitudes)) terms)))
+          (dolist (m magnitudes (collect-like-terms grouped))
+            (push (sum-of (remove-if-not #'(lambda (term) (eql (magnitude term) m)) terms))
+                  grouped))))))
+
+(defun shared-magnitudes (terms)
+  "The magnitudes other than 1 that more than one coefficient has."
+  (let ((seen nil) (shared nil))
+    (dolist (term terms shared)
+      (let ((m (magnitude term)))
+        (cond ((eql m 1))
+              ((member m seen) (pushnew m shared))
+              (t (push m seen)))))))
+
+(defun magnitude (term) (abs (term-coefficient term)))
+
+(defun unit-coefficient-p (term) (eql (magnitude term) 1))
+
+;;; ---- products and powers ---------------------------------------------------------------
+
+(defun product-of (terms)
+  "Product of a list of terms."
+  (let ((coefficient 1) (factors nil))
+    (dolist (term terms)
+      (setq coefficient (* coefficient (term-coefficient term))
+            factors (append (factors-of (term-node term)) factors)))
+    (if (zerop coefficient)
+        (number-term 0)
+        (scaled-term coefficient (product-of-factors factors)))))
+
+(defun factors-of (node)
+  (if (eq (node-kind node) 'product)
+      (node-parts node)
+      (list (make-factor :node node :exponent 1))))
+
+(defun product-of-factors (factors)
+  (let ((collected (collect-like-factors factors)))
+    (cond ((and collected (null (cdr collected)) (eql (factor-exponent (car collected)) 1))
+           (node-term (factor-node (car collected))))
+          ((some #'openable-p collected)
+           (product-of (mapcar #'opened collected)))
+          (t (node-term (product-node collected))))))
+
+(defun product-node (factors)
+  (node-of 'product factors
+           (cons 'product
+                 (mapcan #'(lambda (factor) (list (factor-order factor) (factor-exponent factor)))
+                         factors))))
+
+(defun collect-like-factors (factors)
+  (let ((collected nil))
+    (dolist (factor (sort (copy-list factors) #'> :key #'factor-order) collected)
+      (if (and collected (eq (factor-node factor) (factor-node (car collected))))
+          (push (make-factor :node (factor-node factor)
+                             :exponent (+ (factor-exponent factor)
+                                          (factor-exponent (pop collected))))
+                collected)
+          (push factor collected))
+      (if (zerop (factor-exponent (car collected))) (pop collected)))))
+
+(defun factor-order (factor) (node-number (factor-node factor)))
+
+(defun openable-p (factor)
+  "A power of a root that is a whole power and more: sqrt(x)^3."
+  (let ((exponent (root-exponent (factor-node factor))))
+    (and exponent (>= (abs (* exponent (factor-exponent factor))) 1))))
+
+(defun opened (factor)
+  (let ((node (factor-node factor)))
+    (if (openable-p factor)
+        (power-of (second (node-parts node)) (* (root-exponent node) (factor-exponent factor)))
+        (product-of-factors (list factor)))))
+
+(defun root-exponent (node)
+  "p/q of a node x^(p/q), else nil."
+  (if (and (eq (node-kind node) 'call) (eq (car (node-parts node)) 'mexpt))
+      (let ((exponent (third (node-parts node))))
+        (if (number-term-p exponent) (term-coefficient exponent)))))
+
+(defun raised-factors (node exponent)
+  (mapcar #'(lambda (factor)
+              (make-factor :node (factor-node factor)
+                           :exponent (* exponent (factor-exponent factor))))
+          (factors-of node)))
+
+(defun power-of (term exponent)
+  "A term to a rational exponent, as whole powers and one root: x^(-3/2) as 1/(x*sqrt(x))."
+  (cond ((integerp exponent)
+         (scaled-term (expt (term-coefficient term) exponent)
+                      (product-of-factors (raised-factors (term-node term) exponent))))
+        ((minusp exponent) (power-of (power-of term (- exponent)) -1))
+        (t (multiple-value-bind (whole part) (floor exponent)
+             (product-of (list (power-of term whole) (root-of term part)))))))
+
+(defun root-of (term exponent)
+  "term^exponent for an exponent between 0 and 1; nothing but squares of numbers is drawn out."
+  (let ((number (exact-power (term-coefficient term) exponent)))
+    (if number
+        (scaled-term number (if (one-p (term-node term))
+                                (number-term 1)
+                                (call-of 'mexpt (node-term (term-node term)) (number-term exponent))))
+        (call-of 'mexpt term (number-term exponent)))))
+
+(defun exact-power (number exponent)
+  "number^exponent where that is rational, else nil."
+  (if (and (rationalp number) (plusp number))
+      (let* ((root (denominator exponent))
+             (n (exact-root (numerator number) root))
+             (d (exact-root (denominator number) root)))
+        (and n d (expt (/ n d) (numerator exponent))))))
+
+(defun exact-root (integer root)
+  (let ((r ($inrt integer root)))
+    (and (integerp r) (= (expt r root) integer) r)))
+
+(defun quotient-of (a b)
+  (product-of (list a (power-of b -1))))
+
+;;; ---- calls and held nodes --------------------------------------------------------------
+
+(defun call-of (operator &rest terms)
+  (node-term (node-of 'call (cons operator terms)
+                      (list* 'call operator
+                             (mapcan #'(lambda (term)
+                                         (list (term-coefficient term) (term-order term)))
+                                     terms)))))
+
+(defun held-term (term)
+  "The same value, but not opened any more: a factor of products as it is."
+  (let ((node (term-node term)))
+    (if (and (member (node-kind node) '(sum product)) (not (one-p node)))
+        (make-term :coefficient (term-coefficient term)
+                   :node (node-of 'held node (list 'held (node-number node))))
+        term)))
+
+;;; ---- reading Maxima expressions --------------------------------------------------------
+
+(defun expression-term (e)
+  "The term that a Maxima expression denotes."
+  (cond ((term-p e) e)
+        ((numberp e) (number-term e))
+        ((symbolp e) (symbol-term e))
+        (t (case (caar e)
+             (rat (number-term (/ (second e) (third e))))
+             (bigfloat (symbol-term e))
+             (mplus (sum-of (mapcar #'expression-term (cdr e))))
+             (mtimes (product-of (mapcar #'expression-term (cdr e))))
+             (mminus (scaled-term -1 (expression-term (second e))))
+             (mquotient (quotient-of (expression-term (second e)) (expression-term (third e))))
+             (%atan2 (call-term '$atan2 (mapcar #'expression-term (cdr e))))
+             (mexpt (exponential-term (second e) (expression-term (third e))))
+             (t (call-term (caar e) (mapcar #'expression-term (cdr e))))))))
+
+(defun exponential-term (base exponent)
+  (cond ((eq base '$%e) (call-of '%exp exponent))
+        ((and (number-term-p exponent) (rationalp (term-coefficient exponent)))
+         (power-of (expression-term base) (term-coefficient exponent)))
+        (t (call-of 'mexpt (expression-term base) exponent))))
+
+(defun call-term (operator terms)
+  (let ((reciprocal (assoc operator '((%sec . %cos) (%csc . %sin) (%cot . %tan)
+                                      (%sech . %cosh) (%csch . %sinh) (%coth . %tanh)))))
+    (cond (reciprocal (power-of (apply #'call-of (cdr reciprocal) terms) -1))
+          ((get operator 'graph-derivative) (apply #'call-of operator terms))
+          (t (merror (intl:gettext "motion_program: the function ~M cannot be written into a motion program") operator)))))
+
+;;; ---- derivatives -----------------------------------------------------------------------
+
+(defmacro define-derivative (operator arguments &rest partials)
+  "Partial derivatives of a function by its arguments, themselves terms."
+  `(setf (get ',operator 'graph-derivative)
+         #'(lambda (f ,@arguments) (declare (ignorable f ,@arguments)) (list ,@partials))))
+
+(defun one-plus (sign term)
+  (sum-of (list (number-term 1) (scaled-term sign (power-of term 2)))))
+
+(define-derivative %sin (x) (call-of '%cos x))
+(define-derivative %cos (x) (scaled-term -1 (call-of '%sin x)))
+(define-derivative %tan (x) (one-plus 1 f))
+(define-derivative %asin (x) (power-of (one-plus -1 x) -1/2))
+(define-derivative %acos (x) (scaled-term -1 (power-of (one-plus -1 x) -1/2)))
+(define-derivative %atan (x) (power-of (one-plus 1 x) -1))
+(define-derivative %sinh (x) (call-of '%cosh x))
+(define-derivative %cosh (x) (call-of '%sinh x))
+(define-derivative %tanh (x) (one-plus -1 f))
+(define-derivative %asinh (x) (power-of (one-plus 1 x) -1/2))
+(define-derivative %acosh (x) (power-of (sum-of (list (power-of x 2) (number-term -1))) -1/2))
+(define-derivative %atanh (x) (power-of (one-plus -1 x) -1))
+(define-derivative %exp (x) f)
+(define-derivative %log (x) (power-of x -1))
+(define-derivative mabs (x) (call-of '%signum x))
+(define-derivative %signum (x) (number-term 0))
+(define-derivative $atan2 (y x)
+  (quotient-of x (sum-of (list (power-of x 2) (power-of y 2))))
+  (scaled-term -1 (quotient-of y (sum-of (list (power-of x 2) (power-of y 2))))))
+(define-derivative mexpt (a b)
+  (if (number-term-p b)
+      (scaled-term (term-coefficient b) (power-of a (1- (term-coefficient b))))
+      (product-of (list b f (power-of a -1))))
+  (if (number-term-p b) (number-term 0) (product-of (list f (call-of '%log a)))))
+
+(defun local-partials (node)
+  "Partial derivatives of a node by the nodes it is made of: list of (node . term)."
+  (case (node-kind node)
+    (symbol nil)
+    (held (list (cons (node-parts node) (number-term 1))))
+    (sum (mapcar #'(lambda (term) (cons (term-node term) (number-term (term-coefficient term))))
+                 (node-parts node)))
+    (product (mapcar #'(lambda (factor) (cons (factor-node factor) (partial-by-factor node factor)))
+                     (node-parts node)))
+    (call (mapcar #'(lambda (term partial)
+                      (cons (term-node term) (scaled-term (term-coefficient term) partial)))
+                  (cdr (node-parts node))
+                  (apply (get (car (node-parts node)) 'graph-derivative)
+                         (node-term node) (cdr (node-parts node)))))))
+
+(defun partial-by-factor (product factor)
+  (scaled-term (factor-exponent factor)
+               (product-of-factors
+                (cons (make-factor :node (factor-node factor) :exponent -1)
+                      (node-parts product)))))
+
+(defun gradient-of (node)
+  "Partial derivatives by the graph's variables: list of (position . term), zeros left out."
+  (if (eq (node-gradient node) 'unknown)
+      (setf (node-gradient node)
+            (if (eq (node-kind node) 'symbol)
+                (symbol-gradient node)
+                (gradient-by-parts node))))
+  (node-gradient node))
+
+(defun symbol-gradient (node)
+  (let ((position (gethash (node-parts node) (expression-graph-variables $expression_graph))))
+    (if position (list (cons position (number-term 1))))))
+
+(defun gradient-by-parts (node)
+  "Chain rule, with the products for each variable summed at once."
+  (let ((products (make-hash-table)) (positions nil) (gradient nil))
+    (dolist (partial (local-partials node))
+      (dolist (entry (gradient-of (car partial)))
+        (if (null (gethash (car entry) products)) (push (car entry) positions))
+        (push (product-of (list (cdr partial) (cdr entry))) (gethash (car entry) products))))
+    (dolist (position positions gradient)
+      (let ((derivative (sum-of (gethash position products))))
+        (if (not (zero-term-p derivative)) (push (cons position derivative) gradient))))))
+
+;;; A direction gives some symbols a rate of change; all others are constant along it.
+
+(defstruct direction
+  (seeds (make-hash-table))                ; symbol -> term
+  (rates (make-hash-table)))               ; node number -> term, as far as known
+
+(defun $graph_direction (equations)
+  "The direction in which symbols change at the rates given by  symbol = rate."
+  (let ((direction (make-direction)))
+    (dolist (e (cdr equations) direction)
+      (setf (gethash (second e) (direction-seeds direction)) (expression-term (third e))))))
+
+(defun rate-of (node direction)
+  "Derivative of a node in a direction."
+  (or (gethash (node-number node) (direction-rates direction))
+      (setf (gethash (node-number node) (direction-rates direction))
+            (if (eq (node-kind node) 'symbol)
+                (or (gethash (node-parts node) (direction-seeds direction)) (number-term 0))
+                (rate-by-parts node direction)))))
+
+(defun rate-by-parts (node direction)
+  (sum-of (mapcar #'(lambda (partial)
+                      (product-of (list (cdr partial) (rate-of (car partial) direction))))
+                  (local-partials node))))
+
+;;; ---- what the Maxima side calls ----------------------------------------------------------
+
+(defun $graph_term (e) (expression-term e))
+
+(defun $graph_sum (terms) (sum-of (mapcar #'expression-term (cdr terms))))
+
+(defun $graph_product (&rest factors) (product-of (mapcar #'expression-term factors)))
+
+(defun $graph_quotient (a b) (quotient-of (expression-term a) (expression-term b)))
+
+(defun $graph_root (a) (power-of (expression-term a) 1/2))
+
+(defun $graph_sign (a) (call-of '%signum (expression-term a)))
+
+(defun $graph_hold (term)
+  "Holds what took a division by more than a symbol; plain products stay open to factoring."
+  (if (some #'computed-factor-p (factors-of (term-node term))) (held-term term) term))
+
+(defun computed-factor-p (factor)
+  (let ((kind (node-kind (factor-node factor))))
+    (or (eq kind 'held)
+        (and (minusp (factor-exponent factor)) (not (eq kind 'symbol))))))
+
+(defun $graph_zerop (term) (zero-term-p (expression-term term)))
+
+(defun $graph_numberp (term) (number-term-p (expression-term term)))
+
+(defun maxima-number (number)
+  (if (typep number 'ratio)
+      (list '(rat simp) (numerator number) (denominator number))
+      number))
+
+(defun $graph_gradient (term)
+  "List of  [position, derivative]  for the variables the term contains."
+  (cons '(mlist)
+        (mapcar #'(lambda (entry)
+                    (list '(mlist) (car entry)
+                          (scaled-term (term-coefficient term) (cdr entry))))
+                (gradient-of (term-node term)))))
+
+(defun $graph_rate (term direction)
+  (scaled-term (term-coefficient term) (rate-of (term-node term) direction)))

@@ -1,0 +1,303 @@
+;;; The same values in fewer operations
+;;;
+;;; The graph below the wanted outputs is rewritten before it is written down, in passes:
+;;;
+;;;     shared sums        a + b + c, a + b - d       ->  s = a + b;  s + c, s - d
+;;;     factored sums      a*b + a*c                  ->  a*(b + c)
+;;;     shared products    a*b/c, a*d/c               ->  p = a/c;  p*b, p*d
+;;;
+;;; Each pass makes new nodes of the same graph and returns the outputs as terms of them.
+
+(in-package :maxima)
+
+(defun economical-terms (terms)
+  "Terms of the same values that take fewer operations together."
+  (share-pairs (share-pairs (factor-sums (share-pairs terms 'sum)) 'product) 'sum))
+
+;;; ---- live nodes and their uses -----------------------------------------------------------
+
+(defun own-parts (node)
+  "The nodes that a node is made of."
+  (case (node-kind node)
+    (sum (mapcar #'term-node (node-parts node)))
+    (product (mapcar #'factor-node (node-parts node)))
+    (call (mapcar #'term-node (cdr (node-parts node))))
+    (held (list (node-parts node)))))
+
+(defun nodes-in (node)
+  "The same, but seen through those that are held."
+  (mapcar #'unheld (own-parts (unheld node))))
+
+(defun unheld (node)
+  (if (eq (node-kind node) 'held) (node-parts node) node))
+
+(defstruct census
+  nodes                                    ; all live nodes, in order of birth
+  (uses (make-hash-table)))                ; node number -> how many parts it is
+
+(defun census-of (roots)
+  "The nodes that the given terms need, and how often each is used."
+  (let ((census (make-census)) (waiting nil) (live nil))
+    (dolist (root roots)
+      (let ((node (unheld (term-node root))))
+        (if (first-use-p node census) (push node waiting))))
+    (do () ((null waiting))
+      (let ((node (pop waiting)))
+        (push node live)
+        (dolist (part (nodes-in node))
+          (if (first-use-p part census) (push part waiting)))))
+    (setf (census-nodes census) (sort live #'< :key #'node-number))
+    census))
+
+(defun first-use-p (node census)
+  (eql 1 (incf (gethash (node-number node) (census-uses census) 0))))
+
+(defun uses-of (node census) (gethash (node-number (unheld node)) (census-uses census) 0))
+
+(defun shared-p (node census) (> (uses-of node census) 1))
+
+;;; ---- rewriting a graph -------------------------------------------------------------------
+
+(defstruct rewriting
+  (done (make-hash-table))                 ; node number -> term it has become
+  (parts (make-hash-table))                ; node number -> its parts regrouped, where they are
+  sum-rule)                                ; (node, its terms rewritten) -> term; nil for their sum
+
+(defun rewritten-terms (terms rewriting nodes)
+  "The terms after all nodes they need, given in order of birth, have been rewritten."
+  (dolist (node nodes) (rewritten-node node rewriting))
+  (mapcar #'(lambda (term) (rewritten-term term rewriting)) terms))
+
+(defun rewritten-term (term rewriting)
+  (scaled-term (term-coefficient term) (rewritten-node (term-node term) rewriting)))
+
+(defun rewritten-node (node rewriting)
+  (or (gethash (node-number node) (rewriting-done rewriting))
+      (setf (gethash (node-number node) (rewriting-done rewriting))
+            (let ((parts (gethash (node-number node) (rewriting-parts rewriting))))
+              (cond (parts (node-again node parts rewriting))
+                    ((and (unruled-p node rewriting) (parts-as-they-were-p node rewriting))
+                     (node-term node))
+                    (t (node-again node (node-parts node) rewriting)))))))
+
+(defun unruled-p (node rewriting)
+  (not (and (eq (node-kind node) 'sum) (rewriting-sum-rule rewriting))))
+
+(defun parts-as-they-were-p (node rewriting)
+  (every #'(lambda (part)
+             (let ((term (rewritten-node part rewriting)))
+               (and (eq (term-node term) part) (eql (term-coefficient term) 1))))
+         (own-parts node)))
+
+(defun node-again (node parts rewriting)
+  "A node made anew from its parts rewritten."
+  (case (node-kind node)
+    (symbol (node-term node))
+    (sum (let ((terms (mapcar #'(lambda (term) (rewritten-term term rewriting)) parts)))
+           (if (rewriting-sum-rule rewriting)
+               (funcall (rewriting-sum-rule rewriting) node terms)
+               (sum-of terms))))
+    (product (product-of (mapcar #'(lambda (factor)
+                                     (power-of (rewritten-node (factor-node factor) rewriting)
+                                               (factor-exponent factor)))
+                                 parts)))
+    (call (call-again (car parts)
+                      (mapcar #'(lambda (term) (rewritten-term term rewriting)) (cdr parts))))
+    (held (held-term (rewritten-node parts rewriting)))))
+
+(defun call-again (operator terms)
+  (if (and (eq operator 'mexpt) (number-term-p (second terms)))
+      (power-of (first terms) (term-coefficient (second terms)))
+      (apply #'call-of operator terms)))
+
+;;; ---- factored sums -----------------------------------------------------------------------
+
+(defun factor-sums (roots)
+  (let ((census (census-of roots)))
+    (rewritten-terms roots
+                     (make-rewriting
+                      :sum-rule #'(lambda (node terms) (factored-sum node terms census)))
+                     (census-nodes census))))
+
+(defun factored-sum (node terms census)
+  "Common factors taken out of the terms; a product used elsewhere too stays whole."
+  (let ((open nil) (closed nil))
+    (mapc #'(lambda (part term)
+              (if (shared-p (term-node part) census) (push term closed) (push term open)))
+          (node-parts node) terms)
+    (if (and (equal terms (node-parts node)) (null (commonest-letter open)))
+        (node-term node)
+        (factored (nreverse open) closed))))
+
+(defun factored (open closed)
+  (let ((letter (commonest-letter open)))
+    (if (null letter)
+        (sum-of (append open closed))
+        (let* ((inside (remove-if-not #'(lambda (term) (contains-letter-p term letter)) open))
+               (outside (set-difference open inside))
+               (divided (mapcar #'(lambda (term) (divided-by-letter term letter)) inside))
+               (product (product-of (list (factored divided nil) (letter-term letter)))))
+          (factored (cons product outside) closed)))))
+
+;;; A letter is (node . 1) or (node . -1): a factor, or what is divided by.
+
+(defun letter-of-factor (factor)
+  (cons (factor-node factor) (signum (factor-exponent factor))))
+
+(defun letter-term (letter) (power-of (node-term (car letter)) (cdr letter)))
+
+(defun contains-letter-p (term letter)
+  (some #'(lambda (factor)
+            (and (eq (factor-node factor) (car letter))
+                 (plusp (* (cdr letter) (factor-exponent factor)))))
+        (factors-of (term-node term))))
+
+(defun divided-by-letter (term letter)
+  (product-of (list term (power-of (node-term (car letter)) (- (cdr letter))))))
+
+(defun commonest-letter (terms)
+  "The letter that most of the terms contain, if it is more than one of them."
+  (let ((counts nil) (best nil))
+    (dolist (term terms)
+      (dolist (factor (factors-of (term-node term)))
+        (let* ((letter (letter-of-factor factor))
+               (count (assoc letter counts :test #'equal-letter-p)))
+          (if count (incf (cdr count)) (push (cons letter 1) counts)))))
+    (dolist (count counts)
+      (if (and (> (cdr count) 1) (or (null best) (> (cdr count) (cdr best))))
+          (setq best count)))
+    (car best)))
+
+(defun equal-letter-p (a b) (and (eq (car a) (car b)) (eql (cdr a) (cdr b))))
+
+;;; ---- shared pairs ------------------------------------------------------------------------
+;;;
+;;; A sum is a bag of terms, a product a bag of letters. Two members that stand together in
+;;; more than one bag, up to a common multiple, become a node of their own; the commonest
+;;; pairs first, until no pair is left that stands in two bags.
+
+(defstruct bag node changed members)       ; members: list of (multiplier . node)
+
+(defun share-pairs (roots kind)
+  (let* ((census (census-of roots))
+         (bags (bags-of kind census))
+         (rewriting (make-rewriting)))
+    (do () ((not (share-once bags kind census))))
+    (dolist (bag bags)
+      (if (bag-changed bag)
+          (setf (gethash (node-number (bag-node bag)) (rewriting-parts rewriting))
+                (parts-of-bag bag kind))))
+    (rewritten-terms roots rewriting (census-nodes census))))
+
+(defun bags-of (kind census)
+  (let ((bags nil))
+    (dolist (node (census-nodes census) (nreverse bags))
+      (if (and (eq (node-kind node) kind) (cdr (members-of node kind)))
+          (push (make-bag :node node :members (members-of node kind)) bags)))))
+
+(defun members-of (node kind)
+  (if (eq kind 'sum)
+      (mapcar #'(lambda (term) (cons (term-coefficient term) (term-node term))) (node-parts node))
+      (mapcan #'repeated-letters (node-parts node))))
+
+(defvar *longest-power-written-out* 3
+  "Powers up to this one are taken for repeated letters: x^2*y may share x*y.")
+
+(defun repeated-letters (factor)
+  (let ((node (factor-node factor)) (exponent (factor-exponent factor)))
+    (if (<= (abs exponent) *longest-power-written-out*)
+        (make-list (abs exponent) :initial-element (cons (signum exponent) node))
+        (list (cons exponent node)))))
+
+(defun parts-of-bag (bag kind)
+  (mapcar #'(lambda (member)
+              (if (eq kind 'sum)
+                  (make-term :coefficient (car member) :node (cdr member))
+                  (make-factor :exponent (car member) :node (cdr member))))
+          (bag-members bag)))
+
+(defun share-once (bags kind census)
+  "Gives each pair that stands in two bags or more a node; true if there was one."
+  (let ((shared nil))
+    (dolist (standing (repeated-pairs bags census) shared)
+      (if (share-pair standing kind) (setq shared t)))))
+
+;;; A standing is where a pair was found: the bags, and the two members in the first of them.
+
+(defstruct standing bags first second)
+
+(defun repeated-pairs (bags census)
+  "The standings of all pairs found in two bags or more, the commonest first."
+  (let ((found (make-hash-table :test 'equal)) (repeated nil))
+    (dolist (bag bags)
+      (do ((rest (members-worth-pairing bag census) (cdr rest)))
+          ((null rest))
+        (dolist (other (cdr rest))
+          (record-pair (car rest) other bag found))))
+    (maphash #'(lambda (key standing)
+                 (declare (ignore key))
+                 (if (cdr (standing-bags standing)) (push standing repeated)))
+             found)
+    (sort repeated #'> :key #'(lambda (standing) (length (standing-bags standing))))))
+
+(defvar *largest-bag-to-pair* 40
+  "Members a bag may have in common with others: its pairs are as many as their square.")
+
+(defun members-worth-pairing (bag census)
+  (let ((common (remove-if #'(lambda (member) (eql 1 (uses-of (cdr member) census)))
+                           (bag-members bag))))
+    (if (<= (length common) *largest-bag-to-pair*) common)))
+
+(defun record-pair (a b bag found)
+  (let* ((key (list (node-number (cdr a)) (node-number (cdr b)) (/ (car b) (car a))))
+         (standing (or (gethash key found)
+                       (setf (gethash key found) (make-standing :first a :second b)))))
+    (if (not (eq bag (car (standing-bags standing))))
+        (push bag (standing-bags standing)))))
+
+(defun share-pair (standing kind)
+  (let* ((a (standing-first standing)) (b (standing-second standing))
+         (bags (remove-if-not #'(lambda (bag) (multiple-of-pair bag a b)) (standing-bags standing))))
+    (when (cdr bags)
+      (let* ((pair (pair-term a b kind))
+             (others (remove (unheld (term-node pair)) bags :key #'bag-node)))
+        (dolist (bag others others)
+          (put-pair bag a b pair kind))))))
+
+(defun multiple-of-pair (bag a b)
+  "What the members a and b are both multiplied by to stand in the bag, if they do."
+  (dolist (member (bag-members bag))
+    (if (eq (cdr member) (cdr a))
+        (let ((multiple (/ (car member) (car a))))
+          (if (find-member b multiple (remove member (bag-members bag) :count 1))
+              (return multiple))))))
+
+(defun find-member (pattern multiple members)
+  (find-if #'(lambda (member)
+               (and (eq (cdr member) (cdr pattern)) (eql (car member) (* multiple (car pattern)))))
+           members))
+
+(defun pair-term (a b kind)
+  "The pair as one node not to be opened, as it was found first; 1/(x*y) counts as x*y."
+  (held-term
+   (cond ((eq kind 'sum) (sum-of (list (member-as-term a) (member-as-term b))))
+         ((minusp (max (car a) (car b))) (product-of (list (node-term (cdr a)) (node-term (cdr b)))))
+         (t (product-of (list (power-of (node-term (cdr a)) (car a))
+                              (power-of (node-term (cdr b)) (car b))))))))
+
+(defun member-as-term (member) (scaled-term (car member) (node-term (cdr member))))
+
+(defun put-pair (bag a b pair kind)
+  (let* ((multiple (multiple-of-pair bag a b))
+         (first (find-member a multiple (bag-members bag)))
+         (rest (remove first (bag-members bag) :count 1))
+         (second (find-member b multiple rest)))
+    (setf (bag-changed bag) t
+          (bag-members bag)
+          (cons (pair-member a b pair multiple kind) (remove second rest :count 1)))))
+
+(defun pair-member (a b pair multiple kind)
+  (cons (cond ((eq kind 'sum) (* multiple (term-coefficient pair)))
+              ((minusp (max (car a) (car b))) (- multiple))
+              (t multiple))
+        (term-node pair)))

@@ -1,0 +1,242 @@
+;;; From the expression graph to a straight-line program
+;;;
+;;; A node that is used more than once, or that would make an expression too long to read,
+;;; becomes an assignment; the others are written where they are used. Parts come before wholes.
+;;;
+;;; Operations are counted on what is written: a sum of k terms takes k-1, a product of k
+;;; factors k-1, every quotient, power, root and function call 1. A minus sign that makes a
+;;; difference of a sum is free, and so is that of a number; any other takes 1.
+
+(in-package :maxima)
+
+;;; ---- signs ---------------------------------------------------------------------------------
+;;;
+;;; A program may compute -x for x: a sum is as easily written with all its signs turned. The
+;;; signs of products follow from their factors. Sums are turned where that saves a minus sign
+;;; standing alone: an output -x, an argument -x, a sum -x - y that has nothing to start with.
+
+(defstruct signs
+  (turned (make-hash-table))               ; number of a sum -> true if its negative is written
+  (users (make-hash-table))                ; node number -> the nodes it is part of
+  (roots (make-hash-table)))               ; node number -> the outputs it is, as terms
+
+(defun sign-of (node signs)
+  "1, or -1 if the negative of the node is what is written."
+  (case (node-kind node)
+    (held (sign-of (node-parts node) signs))
+    (sum (if (gethash (node-number node) (signs-turned signs)) -1 1))
+    (product (let ((sign 1))
+               (dolist (factor (node-parts node) sign)
+                 (if (oddp (factor-exponent factor))
+                     (setq sign (* sign (sign-of (factor-node factor) signs)))))))
+    (t 1)))
+
+(defun written-coefficient (term signs)
+  (* (term-coefficient term) (sign-of (term-node term) signs)))
+
+(defun lone-minus-p (term signs) (eql -1 (written-coefficient term signs)))
+
+(defun lone-minuses (place signs)
+  "How many minus signs stand alone in a sum, a call or an output."
+  (cond ((term-p place) (if (lone-minus-p place signs) 1 0))
+        ((eq (node-kind place) 'call) (count-if #'(lambda (term) (lone-minus-p term signs))
+                                                (cdr (node-parts place))))
+        (t (let ((sign (sign-of place signs)))
+             (if (every #'(lambda (term) (eql -1 (* sign (written-coefficient term signs))))
+                        (node-parts place))
+                 1 0)))))
+
+(defun chosen-signs (roots census)
+  "Signs for all live nodes that leave few minus signs alone. Products that are outputs come
+first and by themselves: sums fit themselves to the signs of products, not the other way."
+  (let ((signs (signs-to-choose roots census)))
+    (save-minuses (remove-if-not #'stiff-p roots) #'stiff-p signs)
+    (save-minuses (append roots (remove-if-not #'place-p (census-nodes census))) #'identity signs)
+    signs))
+
+(defun save-minuses (places counted signs)
+  "Turns sums while that leaves fewer minus signs alone in the counted places around them."
+  (do ((turned t)) ((not turned))
+    (setq turned nil)
+    (dolist (place places)
+      (if (and (plusp (lone-minuses place signs)) (turn-to-save place counted signs))
+          (setq turned t)))))
+
+(defun stiff-p (place)
+  (and (term-p place) (eq (node-kind (unheld (term-node place))) 'product)))
+
+(defun place-p (node) (member (node-kind node) '(sum call)))
+
+(defun signs-to-choose (roots census)
+  (let ((signs (make-signs)))
+    (dolist (root roots)
+      (push root (gethash (node-number (unheld (term-node root))) (signs-roots signs))))
+    (dolist (node (census-nodes census) signs)
+      (dolist (part (nodes-in node))
+        (push node (gethash (node-number part) (signs-users signs)))))))
+
+(defun turn-to-save (place counted signs)
+  "Turns one sum at or below the place if minus signs are saved; true if so."
+  (some #'(lambda (sum) (turned-to-save-p sum counted signs))
+        (if (term-p place) (sums-setting-sign (term-node place)) (sums-around place))))
+
+(defun sums-around (place)
+  (let ((below (mapcan #'sums-setting-sign (nodes-in place))))
+    (if (eq (node-kind place) 'sum) (cons place below) below)))
+
+(defun sums-setting-sign (node)
+  "The sums that a node's sign follows from."
+  (let ((node (unheld node)))
+    (case (node-kind node)
+      (sum (list node))
+      (product (mapcan #'(lambda (factor) (sums-setting-sign (factor-node factor)))
+                       (node-parts node))))))
+
+(defun turned-to-save-p (sum counted signs)
+  (let* ((places (cons sum (remove-if-not counted (places-above sum signs))))
+         (before (minuses-at places signs)))
+    (turn sum signs)
+    (or (< (minuses-at places signs) before)
+        (turn sum signs))))
+
+(defun turn (sum signs)
+  "Turns a sum's sign; returns nil."
+  (let ((number (node-number sum)))
+    (setf (gethash number (signs-turned signs)) (not (gethash number (signs-turned signs))))
+    nil))
+
+(defun minuses-at (places signs)
+  (let ((total 0))
+    (dolist (place (remove-duplicates places) total)
+      (incf total (lone-minuses place signs)))))
+
+(defun places-above (node signs)
+  "The sums, calls and outputs whose terms change sign with the node."
+  (append (gethash (node-number node) (signs-roots signs))
+          (mapcan #'(lambda (user)
+                      (if (place-p user) (list user) (places-above user signs)))
+                  (gethash (node-number node) (signs-users signs)))))
+
+;;; ---- the program under way -------------------------------------------------------------------
+
+(defstruct program prefix census signs
+  (length 0)
+  (assignments nil)                        ; the last one first
+  (operations 0)                           ; in all assignments
+  (writings (make-hash-table)))            ; node number -> how it is written
+
+(defstruct writing expression (operations 0))
+
+(defvar *longest-inline-writing* 6
+  "Operations an expression may have before it gets a name although it is used once.")
+
+(defun $graph_program (outputs prefix)
+  "[assignments, outputs, operations] for a list of  [name, term]."
+  (let* ((roots (economical-terms (mapcar #'third (cdr outputs))))
+         (census (census-of roots))
+         (program (make-program :prefix prefix :census census :signs (chosen-signs roots census))))
+    (dolist (node (census-nodes census)) (if (named-p node program) (writing-of node program)))
+    (let ((variables (mapcar #'(lambda (root) (output-variable root program)) roots)))
+      (list '(mlist)
+            (cons '(mlist) (reverse (program-assignments program)))
+            (cons '(mlist) (mapcar #'(lambda (output variable)
+                                       (list '(mlist) (second output) variable))
+                                   (cdr outputs) variables))
+            (program-operations program)))))
+
+(defun output-variable (term program)
+  (writing-expression (named (writing-of-term term program) program)))
+
+(defun named-p (node program)
+  (and (shared-p node (program-census program)) (not (eq (node-kind node) 'symbol))))
+
+(defun named (writing program)
+  "The writing as a variable; symbols and numbers need none."
+  (if (zerop (writing-operations writing))
+      writing
+      (let ((name ($concat (program-prefix program) (incf (program-length program)))))
+        (push (list '(mlist) name (writing-expression writing)) (program-assignments program))
+        (incf (program-operations program) (writing-operations writing))
+        (make-writing :expression name))))
+
+(defun writing-of (node program)
+  "How a node, with the sign chosen for it, is written."
+  (or (gethash (node-number node) (program-writings program))
+      (setf (gethash (node-number node) (program-writings program))
+            (let ((writing (new-writing node program)))
+              (if (or (named-p node program)
+                      (> (writing-operations writing) *longest-inline-writing*))
+                  (named writing program)
+                  writing)))))
+
+(defun new-writing (node program)
+  (case (node-kind node)
+    (symbol (make-writing :expression (node-parts node)))
+    (held (writing-of (node-parts node) program))
+    (sum (sum-writing node program))
+    (product (product-writing node program))
+    (call (call-writing (node-parts node) program))))
+
+;;; ---- expressions, with their operations --------------------------------------------------------
+
+(defun combined (operator operations writings)
+  "The expression  operator(writings), itself so many operations; Maxima is to leave it as it is."
+  (make-writing :expression (cons (list operator 'simp) (mapcar #'writing-expression writings))
+                :operations (reduce #'+ writings :key #'writing-operations
+                                    :initial-value operations)))
+
+(defun number-writing (number) (make-writing :expression (maxima-number number)))
+
+(defun writing-of-term (term program)
+  (scaled-writing (written-coefficient term (program-signs program)) (term-node term) program))
+
+(defun scaled-writing (coefficient node program)
+  (cond ((one-p node) (number-writing coefficient))
+        ((eql coefficient 1) (writing-of node program))
+        ((eql coefficient -1) (combined 'mminus 1 (list (writing-of node program))))
+        (t (combined 'mtimes 1 (list (number-writing coefficient) (writing-of node program))))))
+
+(defun sum-writing (node program)
+  "A plus sign first, where there is one; then a number that takes the minus sign."
+  (let* ((sign (sign-of node (program-signs program)))
+         (terms (mapcar #'(lambda (term)
+                            (cons (* sign (written-coefficient term (program-signs program)))
+                                  (term-node term)))
+                        (node-parts node)))
+         (first (or (find-if #'plusp terms :key #'car)
+                    (find -1 terms :key #'car :test-not #'eql)
+                    (car terms))))
+    (combined 'mplus (1- (length terms))
+              (cons (scaled-writing (car first) (cdr first) program)
+                    (mapcar #'(lambda (term) (summand-writing (car term) (cdr term) program))
+                            (remove first terms))))))
+
+(defun summand-writing (coefficient node program)
+  (let ((writing (scaled-writing (abs coefficient) node program)))
+    (if (minusp coefficient) (combined 'mminus 0 (list writing)) writing)))
+
+(defun product-writing (node program)
+  (let ((above (remove-if #'minusp (node-parts node) :key #'factor-exponent))
+        (below (remove-if #'plusp (node-parts node) :key #'factor-exponent)))
+    (if below
+        (combined 'mquotient 1 (list (powers-writing above program) (powers-writing below program)))
+        (powers-writing above program))))
+
+(defun powers-writing (factors program)
+  (let ((writings (mapcar #'(lambda (factor) (power-writing factor program)) factors)))
+    (cond ((null writings) (number-writing 1))
+          ((null (cdr writings)) (car writings))
+          (t (combined 'mtimes (1- (length writings)) writings)))))
+
+(defun power-writing (factor program)
+  (let ((writing (writing-of (factor-node factor) program))
+        (exponent (abs (factor-exponent factor))))
+    (if (eql exponent 1)
+        writing
+        (combined 'mexpt 1 (list writing (number-writing exponent))))))
+
+(defun call-writing (parts program)
+  (let ((writings (mapcar #'(lambda (term) (writing-of-term term program)) (cdr parts))))
+    (if (eq (car parts) '%exp)
+        (combined 'mexpt 1 (cons (make-writing :expression '$%e) writings))
+        (combined (car parts) 1 writings))))
