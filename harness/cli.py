@@ -1,4 +1,4 @@
-"""The command line: derive, check, errata, program.
+"""The command line: derive, check, errata, program, effects, free.
 
 Exit status: 0 when all is well, 1 when an equation disagrees, 2 for bad input, 130 when interrupted. Modules are
 imported inside the commands: ``holonom --help`` waits for no SymPy.
@@ -7,7 +7,7 @@ imported inside the commands: ``holonom --help`` waits for no SymPy.
 import functools
 import json
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,6 +19,7 @@ from harness.failures import HolonomError
 
 if TYPE_CHECKING:
     from harness.crosscheck import CheckReport
+    from harness.free_motion import FreeMotion
 
 DISAGREEMENT = 1
 BAD_INPUT = 2
@@ -180,6 +181,83 @@ def program(
     request = Request(scene, Solve(solve), read_settings(settings))
     _publish(program_text(scene_file, request, Form(form), limits), output)
     return 0
+
+
+@holonom.command()
+@click.argument("scene_file", metavar="SCENE", type=click.Path(path_type=Path))
+@click.option("--scene", metavar="NAME", help="The scene in the file; without it, the last one.")
+@click.option("--set", "settings", metavar="NAME=VALUE", multiple=True, help="A number that the file leaves open.")
+@click.option("--solve", type=click.Choice(["direct", "orthogonal"]), default="direct", show_default=True)
+@writes_json
+@runs_scenes
+def effects(
+    scene_file: Path,
+    scene: str | None,
+    settings: Sequence[str],
+    solve: str,
+    json_file: Path | None,
+    limits: Limits,
+) -> int:
+    """Show which terms and effects a SCENE has and what each costs, in operations and in measured time."""
+    from harness.console import make_console, show_costs
+    from harness.motion.effects import measure_costs, read_costs
+    from harness.motion.program import Solve
+    from harness.motion.request import Request, effects_document, read_settings
+
+    request = Request(scene, Solve(solve), read_settings(settings))
+    costs = measure_costs(read_costs(effects_document(scene_file, request, limits)))
+    _publish(_json_text(asdict(costs)), json_file)
+    if json_file != STANDARD_OUTPUT:
+        show_costs(make_console(), str(scene_file), costs)
+    return 0
+
+
+@holonom.command()
+@click.argument("scene_file", metavar="SCENE", type=click.Path(path_type=Path))
+@click.option("--scene", metavar="NAME", help="The scene in the file; without it, the last one.")
+@click.option("--set", "settings", metavar="NAME=VALUE", multiple=True, help="A number that the file leaves open.")
+@writes_json
+@runs_scenes
+def free(scene_file: Path, scene: str | None, settings: Sequence[str], json_file: Path | None, limits: Limits) -> int:
+    """Find when the motion of a SCENE is free: under its law, under which laws, under which for one trajectory."""
+    from harness.console import make_console, show_free_motion
+    from harness.free_motion import free_motion
+    from harness.motion.request import read_settings
+
+    found = free_motion(scene_file, scene, read_settings(settings), limits)
+    _publish(_json_text(_free_motion_document(found)), json_file)
+    if json_file != STANDARD_OUTPUT:
+        show_free_motion(make_console(), found)
+    return 0
+
+
+def _free_motion_document(found: "FreeMotion") -> dict[str, Any]:
+    from harness.console import formula
+
+    def law_text(law: Mapping[str, Any]) -> dict[str, str]:
+        return {control: formula(value) for control, value in law.items()}
+
+    verdict, universal, trajectory = found.verdict, found.universal, found.trajectory
+    return {
+        "scene": found.scene,
+        "condition": [formula(each) for each in found.condition],
+        "law": verdict
+        and {
+            "satisfies": verdict.satisfies,
+            "residual": [formula(each) for each in verdict.residual] or None,
+            "reason": verdict.reason,
+        },
+        "universal": {
+            "laws": [law_text(law) for law in universal.laws],
+            "unique": universal.unique,
+            "reason": universal.reason,
+        },
+        "trajectory": {
+            "law": law_text(trajectory.law) or None,
+            "kind": trajectory.kind,
+            "reason": trajectory.reason,
+        },
+    }
 
 
 def _report_document(scene: str, report: "CheckReport") -> dict[str, Any]:

@@ -14,12 +14,25 @@ from rich.text import Text
 if TYPE_CHECKING:
     from harness.crosscheck import CheckReport
     from harness.errata import PrintedEquation
+    from harness.free_motion import FreeMotion, Law
+    from harness.motion.effects import MeasuredCosts
     from harness.record import Equation, Record
 
 PIPE_WIDTH = 160  # columns where there is no terminal to ask
 PICTURE_WIDTH = 62  # columns of the table of misprints
 FONT_FROM_NETWORK = re.compile(r"@font-face \{.*?\}", re.DOTALL)
-STYLES = {"proved": "green", "agrees": "green", "disagrees": "bold red", "differs": "bold red"}
+SHOWN_DIGITS = 12  # of numbers that would be longer than the next
+SHOWN_TEXT = 24  # characters of an exact number
+NANOSECONDS = 1e9  # in a second
+STYLES = {
+    "proved": "green",
+    "agrees": "green",
+    "disagrees": "bold red",
+    "differs": "bold red",
+    "present": "green",
+    "absent by choice": "yellow",
+    "absent by structure": "dim",
+}
 
 
 def make_console() -> Console:
@@ -85,11 +98,74 @@ def _errata_table(equations: Sequence["PrintedEquation"]) -> Table:
     return table
 
 
+def show_free_motion(console: Console, found: "FreeMotion") -> None:
+    """Print the condition of free motion and the controls that satisfy it."""
+    _show_list(console, "condition of free motion (10)", [f"{formula(e)} = 0" for e in found.condition])
+    if found.verdict is not None:
+        satisfied = {"no": "not free"}.get(found.verdict.satisfies, f"free for {found.verdict.satisfies}")
+        left = [f"leaves {formula(e)}" for e in found.verdict.residual]
+        _show_list(console, f"{found.scene}: motion is {satisfied}", [found.verdict.reason, *left])
+    universal = found.universal
+    ending = " (there are no others)" if universal.unique else ""
+    separated = [f"needs {formula(e)} = 0" for e in universal.conditions]
+    laws = [_law(law) for law in universal.laws] or ["none"]
+    _show_list(console, f"controls that make every motion free{ending}", [*laws, universal.reason, *separated])
+    trajectory = found.trajectory
+    _show_list(console, f"control for one trajectory: {trajectory.kind}", [_law(trajectory.law), trajectory.reason])
+
+
+def _show_list(console: Console, title: str, lines: Iterable[str]) -> None:
+    console.print(Text(title, style="cyan"))
+    for line in lines:
+        if line:
+            console.print(f"    {line}", soft_wrap=True, markup=False)
+
+
+def _law(law: "Law") -> str:
+    return ", ".join(f"{control} = {formula(value)}" for control, value in law.items())
+
+
+def show_costs(console: Console, scene_file: str, costs: "MeasuredCosts") -> None:
+    """Print the terms of (3) and (7) and the effects of a scene, with what each costs."""
+    title = f"{scene_file}: {costs.scene}" if costs.scene else scene_file
+    unit = f"ns in {costs.measured_in}"
+    terms = Table("eq.", "term", "status", "operations", unit, title=title, title_justify="left")
+    for term in costs.terms:
+        cost = (str(term.operations), _nanoseconds(term.seconds)) if term.status == "present" else ("", "")
+        terms.add_row(term.equation, Text(term.term), _styled(term.status), *cost)
+    effects = Table("effect", "status", "operations", unit)
+    for effect in costs.effects:
+        operations = _indispensable(effect.status) if effect.operations is None else f"{effect.operations:+d}"
+        effects.add_row(effect.name, _styled(effect.status), operations, _added_nanoseconds(effect.seconds))
+    for table in (terms, effects):
+        table.columns[-1].justify = table.columns[-2].justify = "right"
+        console.print(table)
+    console.print(
+        "(10) is made of the terms of (3) and (7), the reactions apart: what is absent there is absent in it."
+    )
+    console.print(f"The whole program: {costs.operations} operations, {_nanoseconds(costs.seconds_per_evaluation)} ns.")
+    console.print(
+        "A time is that of one call among many, the call itself included; what an effect adds is a difference."
+    )
+
+
+def _nanoseconds(seconds: float) -> str:
+    return f"{seconds * NANOSECONDS:.1f}"
+
+
+def _added_nanoseconds(seconds: float | None) -> str:
+    return "" if seconds is None else f"{round(seconds * NANOSECONDS, 1) + 0.0:+.1f}"  # no minus sign before a zero
+
+
+def _indispensable(status: str) -> str:
+    return "indispensable" if status == "present" else "unsolvable"
+
+
 def _show_equations(console: Console, equations: Iterable["Equation"]) -> None:
     for equation in equations:
         console.print(Text(f"({equation.number}) {equation.name}", style="cyan"))
         for relation in equation.relations:
-            console.print(f"    {_formula(relation.left)} = {_formula(relation.right)}", soft_wrap=True, markup=False)
+            console.print(f"    {formula(relation.left)} = {formula(relation.right)}", soft_wrap=True, markup=False)
         if not equation.relations:
             console.print("    none", style="dim")
 
@@ -105,7 +181,7 @@ def _show_misprint(console: Console, equation: "PrintedEquation") -> None:
             console.print(f"    {what}: {text}", soft_wrap=True, markup=False)
 
 
-def _formula(expression: object) -> str:
+def formula(expression: object) -> str:
     """One line in the notation of the scene files."""
     return str(expression).replace("**", "^")
 

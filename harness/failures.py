@@ -34,6 +34,7 @@ class Failure(Enum):
     NOT_A_SETTING = ("{detail} sets nothing", "write NAME=VALUE with a number, for instance N=64 or u0=3/10")
     NOT_A_SCENE_NAME = ("{detail} cannot be the name of a scene", "give the name that the scene is assigned to")
     NOT_A_PROGRAM = ("this is not a motion program: {detail}", "write it anew with `holonom program`")
+    NOT_COSTS = ("these are not the costs of a scene: {detail}", "compute them anew with `holonom effects`")
     NOT_AN_IDENTIFIER = ("{detail} cannot name a function in C and Python", "use letters, digits and underscores")
     INPUT_MISSING = ("nothing is given for {detail}", "give the controls a law and the parameters their values")
     COMPILER_MISSING = (
@@ -42,6 +43,8 @@ class Failure(Enum):
     )
     COMPILER_REFUSED = ("the C compiler refused the motion program: {detail}", "")
     EXTRA_MISSING = ("this needs {detail}, which is not installed", "run `make`, or `pip install {detail}`")
+    BEYOND_RADIUS = ("{detail}", "ask for an earlier time, or continue the motion with --until")
+    ORDER_TOO_HIGH = ("{detail}", "ask for a lower order, or for digits")
     RTEST_UNPAIRED = ("an input has no expected result", "")
     RTEST_FAILED = ("not all of the {detail} tests passed", "")
 

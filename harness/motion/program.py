@@ -19,6 +19,7 @@ from enum import StrEnum
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import jsonschema
 
@@ -148,8 +149,31 @@ def read_program(text: str) -> Program:
     """
     try:
         document = json.loads(text)
-        _validator().validate(document)
     except (ValueError, RecursionError) as error:
+        raise _refusal(str(error)) from None
+    return program_of(document)
+
+
+def program_of(document: Any) -> Program:
+    """Read a motion program that is part of a larger document.
+
+    Parameters
+    ----------
+    document : Any
+        What JSON gives for a program.
+
+    Returns
+    -------
+    Program
+
+    Raises
+    ------
+    HolonomError
+        As `read_program`.
+    """
+    try:
+        _validator().validate(document)
+    except RecursionError as error:
         raise _refusal(str(error)) from None
     except jsonschema.ValidationError as error:
         raise _refusal(f"{error.json_path}: {_shown(error.message)}") from None

@@ -118,13 +118,48 @@ def program_document(file: Path, request: Request, limits: Limits) -> str:
     HolonomError
         As `harness.maxima.run_batch`; the request's scene has a name that no scene can have.
     """
-    writer = f"lambda([file], write_program(file, {_scene_name(request)}, '{request.solve}))"
-    return run_batch(file, writer, limits, request.settings)
+    return _document("write_program", file, request, limits)
 
 
-def _scene_name(request: Request) -> str:
-    if request.scene is None:
+def effects_document(file: Path, request: Request, limits: Limits) -> str:
+    """The document of what a scene pays for, as Maxima writes it.
+
+    Parameters
+    ----------
+    file : Path
+        The scene file.
+    request : Request
+    limits : Limits
+        What Maxima may take.
+
+    Returns
+    -------
+    str
+        JSON text, for `harness.motion.effects.read_costs`.
+
+    Raises
+    ------
+    HolonomError
+        As `program_document`.
+    """
+    return _document("write_effects", file, request, limits)
+
+
+def _document(writer: str, file: Path, request: Request, limits: Limits) -> str:
+    call = f"lambda([file], {writer}(file, {scene_argument(request.scene)}, '{request.solve}))"
+    return run_batch(file, call, limits, request.settings)
+
+
+def scene_argument(scene: str | None) -> str:
+    """Return the name of a scene as an argument of a Maxima function; without a name, false.
+
+    Raises
+    ------
+    HolonomError
+        No scene can have that name.
+    """
+    if scene is None:
         return "false"
-    if not SCENE_NAME.fullmatch(request.scene):
-        raise HolonomError(Failure.NOT_A_SCENE_NAME, detail=request.scene)
-    return f"'{request.scene}"
+    if not SCENE_NAME.fullmatch(scene):
+        raise HolonomError(Failure.NOT_A_SCENE_NAME, detail=scene)
+    return f"'{scene}"

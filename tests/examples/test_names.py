@@ -1,17 +1,18 @@
 """A system may use any name that the library uses for itself: Maxima's variables have dynamic scope."""
 
+import json
 import re
 from pathlib import Path
 
 import pytest
 
 from harness.crosscheck import check_record
-from harness.maxima import LIBRARY, run_scene
+from harness.maxima import LIBRARY, run_batch, run_scene
 from harness.record import read_record
 
 BOUND = re.compile(r"\bblock\(\s*\[([^\]]*)\]|^\w+\(([\w, \[\]]*)\)\s*:=|lambda\(\[([^\]]*)\]", re.MULTILINE)
 NAME = re.compile(r"[A-Za-z]\w*")
-MAXIMAS = {"t", "fpprec", "linel", "ratprint", "algexact", "scalarmatrixp", "lambda"}
+MAXIMAS = {"t", "fpprec", "linel", "ratprint", "algexact", "scalarmatrixp", "lambda", "errormsg"}
 ENTRIES = {"coordinates", "parameters", "parameter_values", "initial_state", "title", "effects", "settings"}
 AT_ONCE = 12  # names in one system
 
@@ -26,9 +27,9 @@ scene : holonomic_scene({first}, control_law = [{fourth} = 1 + t*({sum})], param
 """
 
 
-def local_names() -> list[str]:
-    """Every name that a function of the derivation binds."""
-    files = [*LIBRARY.glob("*.mac"), *LIBRARY.glob("derivation/*.mac"), *LIBRARY.glob("record/*.mac")]
+def local_names(*folders: str) -> list[str]:
+    """Every name that a function in these folders of the library binds."""
+    files = [file for folder in folders for file in (LIBRARY / folder).glob("*.mac")]
     text = "\n".join(path.read_text() for path in files)
     bound = {
         match[0]
@@ -44,10 +45,9 @@ def groups(names: list[str]) -> list[list[str]]:
     return [names[max(0, min(start, len(names) - AT_ONCE)) :][:AT_ONCE] for start in range(0, len(names), AT_ONCE)]
 
 
-@pytest.mark.parametrize("names", groups(local_names()), ids=" ".join)
-def test_names_of_the_library_are_the_users_too(names: list[str], tmp_path: Path):
+def scene_with(names: list[str], directory: Path) -> Path:
     first, second, third, fourth, *parameters = names
-    file = tmp_path / "scene.mac"
+    file = directory / "scene.mac"
     file.write_text(
         SCENE.format(
             first=first,
@@ -60,6 +60,29 @@ def test_names_of_the_library_are_the_users_too(names: list[str], tmp_path: Path
             values=", ".join(f"{name} = {place}/7" for place, name in enumerate(parameters, 1)),
         )
     )
-    report = check_record(read_record(run_scene(file)))
+    return file
+
+
+@pytest.mark.parametrize("names", groups(local_names(".", "derivation", "record")), ids=" ".join)
+def test_names_of_the_derivation_are_the_users_too(names: list[str], tmp_path: Path):
+    report = check_record(read_record(run_scene(scene_with(names, tmp_path))))
     assert report.verdicts
     assert report.disagreements == 0
+
+
+@pytest.mark.parametrize("names", groups(local_names("free_motion")), ids=" ".join)
+def test_names_of_the_free_motion_are_the_users_too(names: list[str], tmp_path: Path):
+    writer = "lambda([file], (free_motion_order : 2, write_free_motion(file, false)))"
+    free = json.loads(run_batch(scene_with(names, tmp_path), writer))
+    assert free["universal"]["laws"] == [{names[3]: 0}]
+    assert free["trajectory"]["kind"] == "series"
+
+
+@pytest.mark.parametrize("names", groups(local_names("program")), ids=" ".join)
+def test_names_of_the_program_are_the_users_too(names: list[str], tmp_path: Path):
+    neutral = [f"neutral{place}x" for place in range(len(names))]
+    writer = "lambda([file], write_program(file, false, 'direct))"
+    theirs = json.loads(run_batch(scene_with(names, tmp_path), writer))
+    ours = json.loads(run_batch(scene_with(neutral, tmp_path), writer))
+    assert theirs["operations"] == ours["operations"]
+    assert len(theirs["inputs"]) == len(ours["inputs"])

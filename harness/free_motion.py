@@ -1,0 +1,142 @@
+"""Free motion of a scene: its condition, its control law, universal controls, the control for one trajectory."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from sympy import Expr
+
+from harness.confined import Limits
+from harness.failures import Failure, HolonomError
+from harness.mathjson import to_sympy
+from harness.maxima import run_batch
+from harness.motion.request import scene_argument
+
+Law = Mapping[str, Expr]
+
+
+@dataclass(frozen=True)
+class LawVerdict:
+    """What the scene's control law does.
+
+    Attributes
+    ----------
+    satisfies : str
+        ``all states``, ``this state`` or ``no``.
+    residual : tuple of Expr
+        What the law leaves of the condition; empty where it leaves nothing.
+    reason : str
+    """
+
+    satisfies: str
+    residual: tuple[Expr, ...]
+    reason: str
+
+
+@dataclass(frozen=True)
+class UniversalControls:
+    """The laws under which every motion is free.
+
+    Attributes
+    ----------
+    conditions : tuple of Expr
+        Each must vanish: differential equations for the controls, found by separating the condition.
+    laws : tuple of Law
+        By control; ``u0`` and ``u1`` in them are constants of the control ``u``.
+    unique : bool
+        There are no others.
+    reason : str
+    """
+
+    conditions: tuple[Expr, ...]
+    laws: tuple[Law, ...]
+    unique: bool
+    reason: str
+
+
+@dataclass(frozen=True)
+class TrajectoryControl:
+    """The control under which one motion is free.
+
+    Attributes
+    ----------
+    kind : str
+        ``closed form`` (in the initial data q1_0, dot(q1)_0), ``series`` (with the scene's numbers) or ``none``.
+    law : Law
+    motion : Law
+        The free motion by coordinate, where its closed form is known.
+    reason : str
+    """
+
+    kind: str
+    law: Law
+    motion: Law
+    reason: str
+
+
+@dataclass(frozen=True)
+class FreeMotion:
+    """The answers about one scene; ``verdict`` is None where the scene has no control law."""
+
+    scene: str
+    condition: tuple[Expr, ...]
+    verdict: LawVerdict | None
+    universal: UniversalControls
+    trajectory: TrajectoryControl
+
+
+def free_motion(file: Path, scene: str | None, settings: Mapping[str, str], limits: Limits) -> FreeMotion:
+    """Ask Maxima about the free motion of a scene.
+
+    Parameters
+    ----------
+    file : Path
+        The scene file.
+    scene : str or None
+        Name of the scene; None for the last one.
+    settings : mapping of str to str
+        Numbers for what the file leaves open.
+    limits : Limits
+        What Maxima may take.
+
+    Returns
+    -------
+    FreeMotion
+
+    Raises
+    ------
+    HolonomError
+        As `harness.maxima.run_batch`; the file has no such scene.
+
+    References
+    ----------
+    Chen, Guo & Mei (2019), section 2, eq. (10).
+    """
+    writer = f"lambda([file], write_free_motion(file, {scene_argument(scene)}))"
+    document = json.loads(run_batch(file, writer, limits, settings))
+    if document.get("format") != "holonom-free-motion":
+        raise HolonomError(Failure.NOT_A_RECORD, file, "it holds no free motion")
+    law, universal, trajectory = (document[part] for part in ("law", "universal", "trajectory"))
+    return FreeMotion(
+        document["scene"],
+        _expressions(document["condition"]),
+        law and LawVerdict(law["satisfies"], _expressions(law["residual"]), law["reason"]),
+        UniversalControls(
+            _expressions(universal["conditions"]),
+            tuple(_law(each) for each in universal["laws"]),
+            universal["unique"],
+            universal["reason"],
+        ),
+        TrajectoryControl(
+            trajectory["kind"], _law(trajectory["law"]), _law(trajectory["motion"]), trajectory["reason"]
+        ),
+    )
+
+
+def _expressions(trees: list) -> tuple[Expr, ...]:
+    return tuple(to_sympy(tree) for tree in trees)
+
+
+def _law(trees: dict) -> Law:
+    return {name: to_sympy(tree) for name, tree in trees.items()}
