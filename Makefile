@@ -25,6 +25,7 @@ setup: have-maxima $(STAMP) ## Install what is missing: Maxima, and the Python p
 bench: setup ## Time the motion program against its peers: one table, one log-log figure
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,motion,bench]'
 	$(BIN)/python tests/benchmarks/run.py build/benchmarks
+	cp build/benchmarks/chain.svg build/benchmarks/chain.txt tests/benchmarks/
 
 pictures: setup ## Draw the README's pictures again
 	$(BIN)/holonom errata --svg examples/paper/errata.svg > /dev/null

@@ -1,4 +1,4 @@
-"""The command line: derive, check, errata, program, effects, free.
+"""The command line: derive, check, errata, program, effects, free, series.
 
 Exit status: 0 when all is well, 1 when an equation disagrees, 2 for bad input, 130 when interrupted. Modules are
 imported inside the commands: ``holonom --help`` waits for no SymPy.
@@ -9,6 +9,7 @@ import json
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -74,6 +75,20 @@ def writes_json(command: Callable[..., int]) -> Callable[..., int]:
     )(command)
 
 
+def takes_settings(command: Callable[..., int]) -> Callable[..., int]:
+    """Give a command the option --set."""
+    return click.option(
+        "--set", "settings", metavar="NAME=VALUE", multiple=True, help="A number that the file leaves open."
+    )(command)
+
+
+def asks_one_scene(command: Callable[..., int]) -> Callable[..., int]:
+    """Give a command a scene file, the name of a scene in it, and numbers for what the file leaves open."""
+    command = takes_settings(command)
+    command = click.option("--scene", metavar="NAME", help="The scene in the file; without it, the last one.")(command)
+    return click.argument("scene_file", metavar="SCENE", type=click.Path(path_type=Path))(command)
+
+
 def runs_scenes(command: Callable[..., int]) -> Callable[..., int]:
     """Give a command the options that limit its Maxima runs, passed on as `limits`."""
     defaults = Limits()
@@ -101,17 +116,27 @@ def runs_scenes(command: Callable[..., int]) -> Callable[..., int]:
     return limited
 
 
+def _instant(ctx: click.Context, parameter: click.Parameter, text: str | None) -> Fraction | None:
+    """Read an instant: an integer, a decimal or a quotient of integers."""
+    try:
+        return None if text is None else Fraction(text)
+    except (ValueError, ZeroDivisionError):
+        raise click.BadParameter(f"{text} is no instant; write a number such as 0.75 or 3/4", ctx, parameter) from None
+
+
 @holonom.command()
 @click.argument("scene", type=click.Path(path_type=Path))
+@takes_settings
 @writes_json
 @runs_scenes
-def derive(scene: Path, json_file: Path | None, limits: Limits) -> int:
+def derive(scene: Path, settings: Sequence[str], json_file: Path | None, limits: Limits) -> int:
     """Derive the equations of a SCENE, under the paper's numbers."""
     from harness.console import make_console, show_record
     from harness.maxima import run_scene
+    from harness.motion.request import read_settings
     from harness.record import read_record
 
-    text = run_scene(scene, limits)
+    text = run_scene(scene, limits, read_settings(settings))
     record = read_record(text)
     _publish(text, json_file)
     if json_file != STANDARD_OUTPUT:
@@ -121,16 +146,19 @@ def derive(scene: Path, json_file: Path | None, limits: Limits) -> int:
 
 @holonom.command()
 @click.argument("scenes", metavar="SCENE...", nargs=-1, required=True, type=click.Path(path_type=Path))
+@takes_settings
 @writes_json
 @runs_scenes
-def check(scenes: Sequence[Path], json_file: Path | None, limits: Limits) -> int:
+def check(scenes: Sequence[Path], settings: Sequence[str], json_file: Path | None, limits: Limits) -> int:
     """Derive each SCENE and compare every equation with an independent SymPy evaluation."""
     from harness.console import make_console, show_report
     from harness.crosscheck import check_record
     from harness.maxima import run_scene
+    from harness.motion.request import read_settings
     from harness.record import read_record
 
-    reports = [(str(scene), check_record(read_record(run_scene(scene, limits)))) for scene in scenes]
+    given = read_settings(settings)
+    reports = [(str(scene), check_record(read_record(run_scene(scene, limits, given)))) for scene in scenes]
     documents = [_report_document(scene, report) for scene, report in reports]
     _publish(_json_text(documents[0] if len(documents) == 1 else documents), json_file)
     if json_file != STANDARD_OUTPUT:
@@ -158,9 +186,7 @@ def errata(json_file: Path | None, svg_file: Path | None) -> int:
 
 
 @holonom.command()
-@click.argument("scene_file", metavar="SCENE", type=click.Path(path_type=Path))
-@click.option("--scene", metavar="NAME", help="The scene in the file; without it, the last one.")
-@click.option("--set", "settings", metavar="NAME=VALUE", multiple=True, help="A number that the file leaves open.")
+@asks_one_scene
 @click.option("--solve", type=click.Choice(["direct", "orthogonal"]), default="direct", show_default=True)
 @click.option("--to", "form", type=click.Choice(["c", "python", "json"]), default="json", show_default=True)
 @click.option("-o", "--output", metavar="FILE", type=click.Path(path_type=Path), default=STANDARD_OUTPUT)
@@ -184,9 +210,7 @@ def program(
 
 
 @holonom.command()
-@click.argument("scene_file", metavar="SCENE", type=click.Path(path_type=Path))
-@click.option("--scene", metavar="NAME", help="The scene in the file; without it, the last one.")
-@click.option("--set", "settings", metavar="NAME=VALUE", multiple=True, help="A number that the file leaves open.")
+@asks_one_scene
 @click.option("--solve", type=click.Choice(["direct", "orthogonal"]), default="direct", show_default=True)
 @writes_json
 @runs_scenes
@@ -213,9 +237,7 @@ def effects(
 
 
 @holonom.command()
-@click.argument("scene_file", metavar="SCENE", type=click.Path(path_type=Path))
-@click.option("--scene", metavar="NAME", help="The scene in the file; without it, the last one.")
-@click.option("--set", "settings", metavar="NAME=VALUE", multiple=True, help="A number that the file leaves open.")
+@asks_one_scene
 @writes_json
 @runs_scenes
 def free(scene_file: Path, scene: str | None, settings: Sequence[str], json_file: Path | None, limits: Limits) -> int:
@@ -228,6 +250,51 @@ def free(scene_file: Path, scene: str | None, settings: Sequence[str], json_file
     _publish(_json_text(_free_motion_document(found)), json_file)
     if json_file != STANDARD_OUTPUT:
         show_free_motion(make_console(), found)
+    return 0
+
+
+@holonom.command()
+@asks_one_scene
+@click.option("--order", metavar="N", type=click.IntRange(min=2), required=True, help="Highest power of the time.")
+@click.option("--exact", is_flag=True, help="Rational coefficients, or none; the default is exact where possible.")
+@click.option("--digits", metavar="D", type=click.IntRange(min=1), help="Coefficients of D significant digits.")
+@click.option("--precision", type=click.Choice(["double", "quadruple"]), help="Hardware numbers, by heyoka.")
+@click.option("--at", metavar="T", callback=_instant, help="Also add the series up at the instant T.")
+@click.option("--until", metavar="T", callback=_instant, help="Also continue the motion to T, beyond the radius.")
+@writes_json
+@runs_scenes
+def series(
+    scene_file: Path,
+    scene: str | None,
+    order: int,
+    exact: bool,
+    digits: int | None,
+    precision: str | None,
+    at: Fraction | None,
+    until: Fraction | None,
+    settings: Sequence[str],
+    json_file: Path | None,
+    limits: Limits,
+) -> int:
+    """Expand the initial motion of a SCENE in power series, and say how far they hold."""
+    from harness.console import make_console, show_series
+    from harness.motion import heyoka_series
+    from harness.motion.request import read_settings
+    from harness.motion.series import AUTOMATIC, EXACT, SeriesRequest, compute_series, series_document, values_at
+
+    if sum([exact, digits is not None, precision is not None]) > 1:
+        raise click.UsageError("--exact, --digits and --precision exclude one another")
+    if precision and until is not None:
+        raise click.UsageError("--until continues with digits, not with --precision")
+    request = SeriesRequest(order, scene, EXACT if exact else digits or AUTOMATIC, until, read_settings(settings))
+    if precision:
+        motion = heyoka_series.compute_series(scene_file, request, heyoka_series.Precision(precision), limits)
+    else:
+        motion = compute_series(scene_file, request, limits)
+    values = None if at is None else values_at(motion, at)
+    _publish(_json_text(series_document(motion, values)), json_file)
+    if json_file != STANDARD_OUTPUT:
+        show_series(make_console(), motion, values)
     return 0
 
 

@@ -43,6 +43,7 @@ class Failure(Enum):
     )
     COMPILER_REFUSED = ("the C compiler refused the motion program: {detail}", "")
     EXTRA_MISSING = ("this needs {detail}, which is not installed", "run `make`, or `pip install {detail}`")
+    NOT_A_SERIES = ("this is not a power series: {detail}", "compute it anew with `holonom series`")
     BEYOND_RADIUS = ("{detail}", "ask for an earlier time, or continue the motion with --until")
     ORDER_TOO_HIGH = ("{detail}", "ask for a lower order, or for digits")
     RTEST_UNPAIRED = ("an input has no expected result", "")

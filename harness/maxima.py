@@ -46,7 +46,7 @@ class Ending:
     detail: str = ""
 
 
-def run_scene(scene: Path, limits: Limits = DEFAULT_LIMITS) -> str:
+def run_scene(scene: Path, limits: Limits = DEFAULT_LIMITS, settings: Mapping[str, str] = NO_SETTINGS) -> str:
     """Derive a scene file.
 
     Parameters
@@ -55,6 +55,8 @@ def run_scene(scene: Path, limits: Limits = DEFAULT_LIMITS) -> str:
         A Maxima file that describes one system and any number of scenes.
     limits : Limits
         What the run may take.
+    settings : mapping of str to str
+        As for `run_batch`.
 
     Returns
     -------
@@ -66,7 +68,7 @@ def run_scene(scene: Path, limits: Limits = DEFAULT_LIMITS) -> str:
     HolonomError
         The file is missing, is refused, asks a question, exceeds a limit, or Maxima is missing.
     """
-    return run_batch(scene, "write_record", limits)
+    return run_batch(scene, "write_record", limits, settings)
 
 
 def run_batch(

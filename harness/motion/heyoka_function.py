@@ -55,7 +55,7 @@ class HeyokaFunction:
     """
 
     def __init__(self, program: Program, compact: bool) -> None:
-        heyoka = _heyoka()
+        heyoka = import_heyoka()
         self.inputs = program.inputs
         self.outputs = tuple(program.outputs)
         variables = _variables(program)
@@ -121,7 +121,7 @@ def heyoka_expressions(
     """
     if missing := [name for name in program.inputs if name not in inputs]:
         raise HolonomError(Failure.INPUT_MISSING, detail=missing[0])
-    return run_program(program, inputs, _arithmetic(_heyoka(), number))
+    return run_program(program, inputs, _arithmetic(import_heyoka(), number))
 
 
 def dynamics(
@@ -153,7 +153,7 @@ def dynamics(
     coordinates = [name for name in program.inputs if f"ddot({name})" in program.outputs]
     velocities = [f"dot({name})" for name in coordinates]
     state = {name: variables[name] for name in (*coordinates, *velocities)}
-    results = heyoka_expressions(program, {"t": _heyoka().time, **state, **given}, number)
+    results = heyoka_expressions(program, {"t": import_heyoka().time, **state, **given}, number)
     return [(state[q], state[v]) for q, v in zip(coordinates, velocities, strict=True)] + [
         (state[f"dot({q})"], results[f"ddot({q})"]) for q in coordinates
     ]
@@ -161,7 +161,7 @@ def dynamics(
 
 def _variables(program: Program) -> dict[str, expression]:
     """A heyoka variable for each input."""
-    return {name: _heyoka().expression(name) for name in program.inputs}
+    return {name: import_heyoka().expression(name) for name in program.inputs}
 
 
 def _arithmetic(heyoka: ModuleType, number: Callable[[Fraction], object]) -> Arithmetic[expression]:
@@ -196,7 +196,8 @@ def _arithmetic(heyoka: ModuleType, number: Callable[[Fraction], object]) -> Ari
     )
 
 
-def _heyoka() -> ModuleType:
+def import_heyoka() -> ModuleType:
+    """heyoka, or the sentence that it is missing."""
     try:
         import heyoka
     except ImportError:

@@ -1,0 +1,432 @@
+;;; Power series on a straight-line program
+;;;
+;;; Along a motion every value x of the program has derivatives x_0, x_1, x_2, ... at t0. They
+;;; come order by order, each value's from those of the values before it (Leibniz):
+;;;
+;;;     sum        h = c x + d y       h_n = c x_n + d y_n
+;;;     product    h = x y             h_n = sum over k = 0 ... n of (n k) x_k y_(n-k)
+;;;     quotient   h = x/y             h_n = (x_n - sum over k < n of (n k) h_k y_(n-k))/y_0
+;;;     function   h = f(x)            h_n = sum over k < n of (n-1 k) g_k x_(n-k)
+;;;     integral   dh/dt = x           h_n = x_(n-1)
+;;;
+;;; with (n k) = n!/(k! (n-k)!), and g = f'(x), itself a value of the expression graph: exp is
+;;; its own g, sin has cos, a root has a quotient. So a function needs nothing here but its
+;;; value at t0; and coordinates are integrals of velocities, those of accelerations.
+;;;
+;;; Numbers are Lisp rationals. With a suitable unit of time the derivatives of a motion with
+;;; rational data are all but whole numbers, which takes less work than fractions: t - t0 is
+;;; measured in units of 1/scale. Where numbers are rounded, a series also keeps mantissas
+;;; and exponents of two. Either way the sums are a few passes of `mapcar', which is compiled;
+;;; this file is loaded as source.
+
+(in-package :maxima)
+
+(defvar *binary-digits* nil
+  "Digits that derivatives are rounded to, or nil for exact arithmetic.")
+
+(defvar *scale* 1 "The derivatives are by scale*t.")
+
+;;; All rows run from the highest order down to zero.
+(defstruct power-series
+  (length 0)                               ; orders 0 ... length-1 are known
+  (degree -1)                              ; the last of them that is not zero
+  (derivatives nil)
+  (mantissas nil)                          ; of the derivatives, where they are rounded
+  (exponents nil))
+
+(defun forget-derivatives (x)
+  (setf (power-series-length x) 0
+        (power-series-degree x) -1
+        (power-series-derivatives x) nil
+        (power-series-mantissas x) nil
+        (power-series-exponents x) nil))
+
+;;; ---- one derivative --------------------------------------------------------------------
+
+(defun derivative (x order)
+  (car (descending (power-series-derivatives x) x order)))
+
+(defun descending (row x order)
+  "The items of orders  order ... 0  in a row of the series x."
+  (nthcdr (- (power-series-length x) 1 order) row))
+
+(defun ascending (row x first)
+  "The items of orders  first ... degree."
+  (nthcdr first (reverse (descending row x (power-series-degree x)))))
+
+(defun append-derivative (x value)
+  "Makes value, rounded as need be, the derivative of the first order not known yet."
+  (push (if *binary-digits* (append-rounded x value) value) (power-series-derivatives x))
+  (if (not (eql value 0)) (setf (power-series-degree x) (power-series-length x)))
+  (incf (power-series-length x)))
+
+(defvar *exponent-of-zero* -1000000000
+  "Below that of any other derivative.")
+
+(defun append-rounded (x value)
+  (let* ((exponent (if (eql value 0)
+                       *exponent-of-zero*
+                       (- (binary-magnitude value) *binary-digits*)))
+         (mantissa (if (eql value 0) 0 (nearest-integer value exponent))))
+    (push exponent (power-series-exponents x))
+    (push mantissa (power-series-mantissas x))
+    (times-power-of-two mantissa exponent)))
+
+(defun binary-magnitude (x)
+  (- (integer-length (numerator x)) (integer-length (denominator x))))
+
+(defun nearest-integer (value exponent)
+  "value/2^exponent, rounded."
+  (let ((n (numerator value)) (d (denominator value)))
+    (if (minusp exponent) (setq n (ash n (- exponent))) (setq d (ash d exponent)))
+    (floor (+ n n d) (+ d d))))
+
+(defun times-power-of-two (integer exponent)
+  (cond ((eql integer 0) 0)
+        ((minusp exponent) (/ integer (ash 1 (- exponent))))
+        (t (ash integer exponent))))
+
+;;; ---- sums of products ------------------------------------------------------------------
+
+(defvar *binomials* nil "(n 0), (n 1), ..., (n n) for the order n that is being formed.")
+
+(defvar *binomials-before* nil "The same for n-1.")
+
+(defun next-binomials ()
+  (setq *binomials-before* *binomials*
+        *binomials* (if *binomials*
+                        (mapcar #'+ (cons 0 *binomials*) (append *binomials* '(0)))
+                        '(1))))
+
+(defun product-derivative (x y n)
+  (if (> (power-series-degree x) (power-series-degree y))
+      (product-derivative y x n)
+      (weighted-products x 0 y n *binomials*)))
+
+(defun quotient-derivative (h x y n)
+  "That of h = x/y, while h is known below n."
+  (let ((others (if (> (power-series-degree h) (power-series-degree y))
+                    (weighted-products y 1 h (1- n) (cdr *binomials*))
+                    (weighted-products h 0 y n *binomials*))))
+    (/ (- (derivative x n) others) (derivative y 0))))
+
+(defun function-derivative (g x n)
+  "That of h with dh = g dx."
+  (if (> (power-series-degree g) (power-series-degree x))
+      (weighted-products x 1 g (1- n) *binomials-before*)
+      (weighted-products g 0 x n *binomials-before*)))
+
+(defun weighted-products (x first y last weights)
+  "w_k x_(first+k) y_(last-k), summed over k = 0, 1, ... as far as there are all three."
+  (cond ((< (power-series-degree x) first) 0)
+        (*binary-digits*
+         (sum-of-floats
+          (mapcar #'* (ascending (power-series-mantissas x) x first)
+                  (descending (power-series-mantissas y) y last)
+                  weights)
+          (mapcar #'+ (ascending (power-series-exponents x) x first)
+                  (descending (power-series-exponents y) y last))))
+        (t (reduce #'+ (mapcar #'* (ascending (power-series-derivatives x) x first)
+                               (descending (power-series-derivatives y) y last)
+                               weights)))))
+
+(defun sum-of-floats (mantissas exponents)
+  "Without loss down to the last bit of the largest term."
+  (let* ((largest (reduce #'max exponents))
+         (shifts (mapcar #'- exponents (make-list (length exponents) :initial-element largest))))
+    (times-power-of-two (reduce #'+ (mapcar #'ash mantissas shifts)) largest)))
+
+;;; ---- the machine: what is computed at each order -----------------------------------------
+
+(defstruct series-machine
+  (definitions (make-hash-table))          ; symbol -> term
+  (rates (make-hash-table))                ; symbol -> its rate, a term and in the end a series
+  (series (make-hash-table))               ; node number -> series
+  (steps nil)                              ; list of (series . rule), the last first
+  (functions nil)                          ; whose derivatives are still to be looked up
+  (outputs nil))                           ; list of (name . series)
+
+(defvar *machine* nil)
+
+(defvar *start* nil "Values at t0: symbol -> rational.")
+
+(defvar *defining* nil "Name of the assignment whose steps are being made.")
+
+(defun $series_machine (definitions rates outputs)
+  "The steps that compute all outputs, a list of [name, expression], order by order.
+   definitions: [name, expression] in the order in which they can be computed;
+   rates: [name, expression], for what starts at a given value and changes at a rate."
+  (let ((*machine* (make-series-machine)))
+    (dolist (rate (cdr rates)) (remember-term rate (series-machine-rates *machine*)))
+    (dolist (definition (cdr definitions))
+      (let ((*defining* (second definition)))
+        (series-of-term (remember-term definition (series-machine-definitions *machine*)))))
+    (dolist (rate (cdr rates)) (look-up-rate (second rate) (series-machine-rates *machine*)))
+    (dolist (output (cdr outputs))
+      (push (cons (second output) (series-of-term (expression-term (third output))))
+            (series-machine-outputs *machine*)))
+    (look-up-derivatives)
+    *machine*))
+
+(defun remember-term (pair table)
+  (setf (gethash (second pair) table) (expression-term (third pair))))
+
+(defun look-up-rate (symbol rates)
+  (setf (gethash symbol rates) (series-of-term (gethash symbol rates))))
+
+(defun new-series (rule)
+  "A series that at each order does what rule, a function of the series and the order, says."
+  (let ((x (make-power-series)))
+    (push (cons x rule) (series-machine-steps *machine*))
+    x))
+
+;;; ---- reading the expression graph --------------------------------------------------------
+
+(defun series-of-term (term)
+  (if (eql (term-coefficient term) 1)
+      (series-of-node (term-node term))
+      (sum-series (list term))))
+
+(defun series-of-node (node)
+  (let ((known (series-machine-series *machine*)) (number (node-number node)))
+    (or (gethash number known)
+        (setf (gethash number known)
+              (case (node-kind node)
+                (symbol (symbol-series (node-parts node)))
+                (sum (sum-series (node-parts node)))
+                (product (product-series (node-parts node)))
+                (call (function-series node (car (node-parts node)) (cdr (node-parts node))))
+                (held (series-of-node (node-parts node))))))))
+
+(defun symbol-series (symbol)
+  (let ((definition (gethash symbol (series-machine-definitions *machine*))))
+    (cond (definition (series-of-term definition))
+          ((gethash symbol (series-machine-rates *machine*)) (integral-series symbol))
+          (t (constant-series #'(lambda () (start-value symbol)))))))
+
+(defun constant-series (value)
+  (new-series #'(lambda (h n) (append-derivative h (if (eql n 0) (funcall value) 0)))))
+
+(defun integral-series (symbol)
+  (let ((rates (series-machine-rates *machine*)))
+    (new-series
+     #'(lambda (h n)
+         (append-derivative
+          h (if (eql n 0)
+                (start-value symbol)
+                (* *scale* (derivative (gethash symbol rates) (1- n)))))))))
+
+(defun sum-series (terms)
+  (let ((factors (mapcar #'term-coefficient terms))
+        (parts (mapcar #'(lambda (term) (series-of-node (term-node term))) terms)))
+    (new-series
+     #'(lambda (h n)
+         (append-derivative
+          h (reduce #'+ (mapcar #'(lambda (c x) (* c (derivative x n))) factors parts)))))))
+
+(defun product-series (factors)
+  (let ((above nil) (below nil))
+    (dolist (factor factors)
+      (if (plusp (factor-exponent factor)) (push factor above) (push factor below)))
+    (if below
+        (quotient-of-series (product-of-powers above) (product-of-powers below))
+        (product-of-powers above))))
+
+(defun product-of-powers (factors)
+  (if (null factors)
+      (constant-series #'(lambda () 1))
+      (reduce #'product-of-series
+              (mapcar #'(lambda (factor)
+                          (power-of-series (series-of-node (factor-node factor))
+                                           (abs (factor-exponent factor))))
+                      factors))))
+
+(defun power-of-series (x exponent)
+  (cond ((eql exponent 1) x)
+        ((evenp exponent) (power-of-series (product-of-series x x) (/ exponent 2)))
+        (t (product-of-series (power-of-series x (1- exponent)) x))))
+
+(defun product-of-series (x y)
+  (new-series #'(lambda (h n) (append-derivative h (product-derivative x y n)))))
+
+(defun quotient-of-series (x y)
+  (let ((assignment *defining*))
+    (new-series
+     #'(lambda (h n)
+         (if (eql n 0) (require-nonzero (derivative y 0) assignment))
+         (append-derivative h (quotient-derivative h x y n))))))
+
+;;; ---- functions ---------------------------------------------------------------------------
+
+(defun function-series (node operator terms)
+  (let ((arguments (mapcar #'series-of-term terms)) (gradient nil) (assignment *defining*))
+    (push (list node assignment #'(lambda (found) (setq gradient found)))
+          (series-machine-functions *machine*))
+    (new-series
+     #'(lambda (h n)
+         (append-derivative
+          h (if (eql n 0)
+                (function-at-start operator arguments assignment)
+                (reduce #'+ (mapcar #'(lambda (g x) (function-derivative g x n))
+                                    gradient arguments))))))))
+
+(defun look-up-derivatives ()
+  "Partial derivatives of the functions found, whose own functions are found on the way."
+  (do () ((null (series-machine-functions *machine*)))
+    (destructuring-bind (node *defining* keep) (pop (series-machine-functions *machine*))
+      (funcall keep
+               (mapcar #'series-of-term
+                       (apply (get (car (node-parts node)) 'graph-derivative)
+                              (node-term node) (cdr (node-parts node))))))))
+
+;;; ---- values at t0 ------------------------------------------------------------------------
+
+(defun start-value (symbol)
+  (or (gethash symbol *start*) (number-at-start symbol symbol)))
+
+(defun function-at-start (operator arguments assignment)
+  (let* ((values (mapcar #'(lambda (x) (maxima-value (derivative x 0))) arguments))
+         (call (if (eq operator '%exp)
+                   (list '(mexpt) '$%e (car values))
+                   (cons (list operator) values)))
+         ($errormsg nil)
+         (value (errset (simplifya call nil))))
+    (if (or (null value)
+            (and (member operator '(mabs %signum)) (eql (derivative (car arguments) 0) 0)))
+        (obstacle '$singular call assignment))
+    (number-at-start (car value) assignment)))
+
+(defun maxima-value (number)
+  (if *binary-digits* ($bfloat (maxima-number number)) (maxima-number number)))
+
+(defun number-at-start (e assignment)
+  "The value of a Maxima expression as a Lisp rational."
+  (let ((value (if *binary-digits* ($bfloat e) e)))
+    (cond ((integerp value) value)
+          ((and (consp value) (eq (caar value) 'rat)) (/ (second value) (third value)))
+          ((and (consp value) (eq (caar value) 'bigfloat))
+           (times-power-of-two (second value) (- (third value) (car (last (car value))))))
+          (t (obstacle (if *binary-digits* '$not_real '$irrational) e assignment)))))
+
+(defun require-nonzero (value assignment)
+  (if (eql value 0) (obstacle '$singular "a division by zero" assignment)))
+
+(defun obstacle (kind e assignment)
+  "Ends the expansion: what is in its way, the text of it, the assignment it was met in."
+  (throw 'obstacle (list '($series_obstacle) kind ($sconcat e) assignment)))
+
+;;; ---- expansion ---------------------------------------------------------------------------
+
+(defun $expand_series (machine start order digits)
+  "Coefficients of orders 0 ... order of the machine's outputs: a list of [name, coefficients],
+   or series_obstacle(kind, text, name). start: the values [name = value] at t0; digits:
+   binary ones, or false for exact numbers. All numbers are returned as integers and fractions."
+  (let ((*machine* machine) (*binary-digits* digits) (*defining* nil) (*scale* 1)
+        (*start* (make-hash-table)))
+    (catch 'obstacle
+      (dolist (e (cdr start))
+        (setf (gethash (second e) *start*) (number-at-start (third e) (second e))))
+      (if (null digits) (setq *scale* (suitable-scale)))
+      (run-machine order)
+      (cons '(mlist)
+            (mapcar #'(lambda (output)
+                        (list '(mlist) (car output) (maxima-coefficients (cdr output))))
+                    (reverse (series-machine-outputs machine)))))))
+
+(defun run-machine (order)
+  (let ((steps (reverse (series-machine-steps *machine*))) (*binomials* nil) (*binomials-before* nil))
+    (dolist (step steps) (forget-derivatives (car step)))
+    (do ((n 0 (1+ n))) ((> n order))
+      (next-binomials)
+      (dolist (step steps) (funcall (cdr step) (car step) n)))))
+
+(defvar *orders-for-scale* 6)
+
+(defun suitable-scale ()
+  "What the denominators of the derivatives gain with an order, seen in a trial."
+  (let ((scale 1))
+    (run-machine *orders-for-scale*)
+    (dolist (step (series-machine-steps *machine*) scale)
+      (do ((row (reverse (power-series-derivatives (car step))) (cdr row)))
+          ((null (cdr row)))
+        (setq scale (lcm scale (/ (denominator (second row))
+                                  (gcd (denominator (first row)) (denominator (second row))))))))))
+
+(defun maxima-coefficients (x)
+  (let ((unit 1) (n 0))
+    (cons '(mlist)
+          (mapcar #'(lambda (derivative)
+                      (if (plusp n) (setq unit (* unit n *scale*)))
+                      (incf n)
+                      (maxima-number (/ derivative unit)))
+                  (reverse (power-series-derivatives x))))))
+
+(defun rational-of (e) (if (integerp e) e (/ (second e) (third e))))
+
+;;; ---- two expansions compared --------------------------------------------------------------
+;;;
+;;; What rounding leaves of a zero shrinks with the digits of the arithmetic: a coefficient that
+;;; falls by as many digits as were added, but for a few, is none.
+
+(defvar *few-digits* 5)
+
+(defun $agreeing_digits (coarse fine added)
+  "Significant decimal digits that all coefficients of two expansions share."
+  (let ((digits most-positive-fixnum))
+    (map-coefficients coarse fine
+                      #'(lambda (a b)
+                          (if (not (rounded-zero-p a b added))
+                              (setq digits (min digits (shared-digits a b))))
+                          0))
+    digits))
+
+(defun $without_rounded_zeros (coarse fine added)
+  "The finer expansion, where rounding has left no zero."
+  (map-coefficients coarse fine
+                    #'(lambda (a b) (if (rounded-zero-p a b added) 0 b))))
+
+(defun rounded-zero-p (a b added)
+  (<= (* (abs b) (expt 10 (- added *few-digits*))) (abs a)))
+
+(defun map-coefficients (coarse fine function)
+  (cons '(mlist)
+        (mapcar #'(lambda (x y)
+                    (list '(mlist) (second x)
+                          (cons '(mlist)
+                                (mapcar #'(lambda (a b)
+                                            (maxima-number (funcall function (rational-of a)
+                                                                    (rational-of b))))
+                                        (cdr (third x)) (cdr (third y))))))
+                (cdr coarse) (cdr fine))))
+
+(defun shared-digits (a b)
+  (let ((difference (abs (- a b))))
+    (if (eql difference 0)
+        most-positive-fixnum
+        (floor (* (log 2d0 10d0) (- (binary-magnitude b) (binary-magnitude difference)))))))
+
+;;; ---- numbers as text -----------------------------------------------------------------------
+
+(defun $exact_text (number)
+  "A rational number: \"-1/3\", \"2\"."
+  (let ((value (rational-of number)))
+    (format nil "~d~:[/~d~;~]" (numerator value) (eql (denominator value) 1) (denominator value))))
+
+(defun $decimal_text (number digits)
+  "A rational number, rounded to so many significant digits: \"-1.23e-4\"."
+  (let ((value (rational-of number)))
+    (if (eql value 0)
+        "0"
+        (multiple-value-bind (mantissa exponent) (decimal-parts (abs value) digits)
+          (let ((text (format nil "~d" mantissa)))
+            (format nil "~:[~;-~]~a.~ae~d" (minusp value) (subseq text 0 1) (subseq text 1)
+                    exponent))))))
+
+(defun decimal-parts (value digits)
+  "m and e, so that m has so many digits and value = m*10^(e+1-digits)."
+  (let ((exponent (floor (* (1- (binary-magnitude value)) (log 2d0 10d0)))))
+    (do () ((< value (expt 10 (1+ exponent)))) (incf exponent))
+    (let ((mantissa (round (* value (expt 10 (- digits 1 exponent))))))
+      (if (eql mantissa (expt 10 digits))
+          (values (expt 10 (1- digits)) (1+ exponent))
+          (values mantissa exponent)))))
