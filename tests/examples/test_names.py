@@ -12,8 +12,28 @@ from harness.record import read_record
 
 BOUND = re.compile(r"\bblock\(\s*\[([^\]]*)\]|^\w+\(([\w, \[\]]*)\)\s*:=|lambda\(\[([^\]]*)\]", re.MULTILINE)
 NAME = re.compile(r"[A-Za-z]\w*")
-MAXIMAS = {"t", "fpprec", "linel", "ratprint", "algexact", "scalarmatrixp", "lambda", "errormsg"}
-ENTRIES = {"coordinates", "parameters", "parameter_values", "initial_state", "title", "effects", "settings"}
+MAXIMAS = {
+    "t",
+    "lambda",
+    "errormsg",
+    "fpprec",
+    "linel",
+    "ratprint",
+    "ratepsilon",
+    "bftorat",
+    "algexact",
+    "scalarmatrixp",
+}
+ENTRIES = {
+    "coordinates",
+    "parameters",
+    "parameter_values",
+    "initial_state",
+    "title",
+    "effects",
+    "settings",
+    "expression_graph",
+}
 AT_ONCE = 12  # names in one system
 
 SCENE = """
