@@ -1,5 +1,6 @@
 """The paper as printed: the misprints found, no others, and no change to a right equation unnoticed."""
 
+import difflib
 import json
 import re
 from collections.abc import Iterator
@@ -62,6 +63,13 @@ def mended(equation: PrintedEquation) -> str:
     return equation.printed if equation.agrees else equation.corrected
 
 
+def slips_between(printed: str, corrected: str) -> list[tuple[str, str]]:
+    """The words that differ, as printed and as they must be."""
+    words = [re.findall(r"\w+|[^\w\s]", text) for text in (printed, corrected)]
+    changes = difflib.SequenceMatcher(None, *words, autojunk=False).get_opcodes()
+    return [(" ".join(words[0][a:b]), " ".join(words[1][c:d])) for kind, a, b, c, d in changes if kind != "equal"]
+
+
 def one_slip_away(text: str) -> Iterator[str]:
     """All texts that differ from an equation by one of the slips, at one place."""
     for pattern, replacement in SLIPS:
@@ -79,6 +87,22 @@ def agreeing(texts: list[tuple[int, str]], directory: Path) -> set[int]:
 
 def test_finds_the_misprints_and_no_others(equations):
     assert [(e.number, e.name) for e in equations if not e.agrees] == MISPRINTS
+
+
+def test_each_misprint_is_the_slip_that_a_reader_of_the_print_sees(equations):
+    # printed -> right; a change in the transcription of a misprinted equation shows here
+    undotted, unfactored, overdotted = ("dot", "ddot"), ("", "2 *"), ("ddot", "dot")
+    assert [slips_between(e.printed, e.corrected) for e in equations if not e.agrees] == [
+        [undotted, undotted],  # (7): accelerations of q and u
+        [unfactored, undotted],  # (8): the mixed term of q and u; acceleration of u
+        [unfactored, undotted],  # (10): the same
+        [("u", "2")],  # equation of motion of q2
+        [overdotted],  # multiplier
+        [overdotted],  # (16): each of the three
+        [overdotted],
+        [overdotted],
+        [("u0", "1")],  # (17): the third
+    ]
 
 
 def test_covers_every_number(equations):
