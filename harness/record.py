@@ -131,10 +131,15 @@ class System:
 
 @dataclass(frozen=True)
 class Derivation:
-    """The equations of the system with the effects named."""
+    """The equations of the system with the effects named.
+
+    `closed_form_operations` counts the operations of (8) and (11) as written; None where they are too long to read
+    and stay a linear system, which the motion program solves.
+    """
 
     effects: tuple[str, ...]
     equations: tuple[Equation, ...]
+    closed_form_operations: int | None
 
 
 @dataclass(frozen=True)
@@ -253,7 +258,11 @@ def _force_effect(part: dict[str, Any]) -> ForceEffect:
 
 
 def _derivation(derivation: dict[str, Any]) -> Derivation:
-    return Derivation(tuple(derivation["effects"]), _each(_equation, derivation["equations"]))
+    return Derivation(
+        tuple(derivation["effects"]),
+        _each(_equation, derivation["equations"]),
+        derivation["closed_form_operations"],
+    )
 
 
 def _scene(scene: dict[str, Any]) -> Scene:
