@@ -177,7 +177,6 @@ def test_a_scene_that_calls_for_less_pays_less():
     swinging = costs_of(SPHERICAL, "--scene", "swinging_scene")
     shaken = costs_of(SPHERICAL, "--scene", "shaken_scene")
     assert swinging["operations"] < shaken["operations"]
-    assert swinging["seconds_per_evaluation"] < shaken["seconds_per_evaluation"]
 
 
 def test_costs_are_those_of_the_programs():
