@@ -8,7 +8,7 @@ SOURCES := $(shell find maxima harness -name '*.mac' -o -name '*.lisp' -o -name 
 
 .DEFAULT_GOAL := paper
 .DELETE_ON_ERROR:
-.PHONY: paper check bench setup pictures clean help have-maxima have-python
+.PHONY: paper check bench setup pictures clean help have-maxima have-compiler have-python
 
 paper: setup $(RECORDS) ## Derive and check every scene, compare the paper as printed (the default)
 	$(BIN)/holonom check $(SCENES) --json build/check.json
@@ -20,7 +20,7 @@ check: setup ## Lint, then run all tests, Maxima's own rtest files among them
 	$(BIN)/ruff format --check .
 	$(BIN)/pytest -q
 
-setup: have-maxima $(STAMP) ## Install what is missing: Maxima, and the Python packages in .venv
+setup: have-maxima have-compiler $(STAMP) ## Install what is missing: Maxima, a C compiler, and the Python packages in .venv
 
 bench: setup ## Time the motion program against its peers: one table, one log-log figure
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,motion,bench]'
@@ -52,6 +52,9 @@ endef
 
 have-maxima:
 	@command -v maxima >/dev/null || $(call install,maxima)
+
+have-compiler:
+	@command -v cc >/dev/null || $(call install,gcc libc6-dev)
 
 # The first Python that is new enough; python3 is the last resort because it may be anything.
 PYTHON = $(shell for python in python3.11 python3.12 python3.13 python3; do \
