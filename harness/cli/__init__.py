@@ -1,0 +1,9 @@
+"""The command line. Exit status: 0 when all is well, 1 when a check fails, 2 for bad input, 130 when interrupted.
+
+Modules are imported inside the commands: ``holonom --help`` waits for no SymPy.
+"""
+
+from harness.cli import derivation, free_motion, programs, series
+from harness.cli.group import holonom, main
+
+__all__ = ["derivation", "free_motion", "holonom", "main", "programs", "series"]

@@ -1,0 +1,100 @@
+"""The commands that derive and compare: derive, check, errata."""
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from harness.cli.group import holonom
+from harness.cli.options import STANDARD_OUTPUT, json_text, publish, runs_scenes, takes_settings, writes_json
+from harness.confined import Limits
+
+if TYPE_CHECKING:
+    from harness.crosscheck import CheckReport
+
+DISAGREEMENT = 1
+
+
+@holonom.command()
+@click.argument("scene", type=click.Path(path_type=Path))
+@takes_settings
+@writes_json
+@runs_scenes
+def derive(scene: Path, settings: Sequence[str], json_file: Path | None, limits: Limits) -> int:
+    """Derive the equations of a SCENE, under the paper's numbers."""
+    from harness.console.derivation import show_record
+    from harness.console.text import make_console
+    from harness.maxima import run_scene
+    from harness.motion.request import read_settings
+    from harness.record import read_record
+
+    text = run_scene(scene, limits, read_settings(settings))
+    record = read_record(text)
+    publish(text, json_file)
+    if json_file != STANDARD_OUTPUT:
+        show_record(make_console(), record)
+    return 0
+
+
+@holonom.command()
+@click.argument("scenes", metavar="SCENE...", nargs=-1, required=True, type=click.Path(path_type=Path))
+@takes_settings
+@writes_json
+@runs_scenes
+def check(scenes: Sequence[Path], settings: Sequence[str], json_file: Path | None, limits: Limits) -> int:
+    """Derive each SCENE and compare every equation with an independent SymPy evaluation."""
+    from harness.console.derivation import show_report
+    from harness.console.text import make_console
+    from harness.crosscheck import check_record
+    from harness.maxima import run_scene
+    from harness.motion.request import read_settings
+    from harness.record import read_record
+
+    given = read_settings(settings)
+    reports = [(str(scene), check_record(read_record(run_scene(scene, limits, given)))) for scene in scenes]
+    documents = [_report_document(scene, report) for scene, report in reports]
+    publish(json_text(documents[0] if len(documents) == 1 else documents), json_file)
+    if json_file != STANDARD_OUTPUT:
+        console = make_console()
+        for scene, report in reports:
+            show_report(console, scene, report)
+    return DISAGREEMENT if any(report.disagreements for _, report in reports) else 0
+
+
+@holonom.command()
+@writes_json
+@click.option("--svg", "svg_file", metavar="FILE", type=click.Path(path_type=Path), help="Also draw the table.")
+def errata(json_file: Path | None, svg_file: Path | None) -> int:
+    """Compare every equation that the paper prints with the derived one."""
+    from harness.console.errata import draw_errata, show_errata
+    from harness.console.text import make_console
+    from harness.errata import errata as compare
+
+    equations = compare()
+    publish(json_text({"equations": [asdict(equation) for equation in equations]}), json_file)
+    if svg_file is not None:
+        publish(draw_errata(equations), svg_file)
+    if json_file != STANDARD_OUTPUT:
+        show_errata(make_console(), equations)
+    return 0
+
+
+def _report_document(scene: str, report: "CheckReport") -> dict[str, Any]:
+    return {
+        "scene": scene,
+        "equations": [
+            {
+                "number": found.number,
+                "name": found.name,
+                "scene_name": found.scene,
+                "verdict": found.verdict,
+                "digits": found.digits,
+                "points": found.points,
+                "detail": found.detail,
+            }
+            for found in report.verdicts
+        ],
+        "disagreements": report.disagreements,
+    }

@@ -1,0 +1,59 @@
+"""The command about free motion: free."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from harness.cli.group import holonom
+from harness.cli.options import STANDARD_OUTPUT, asks_one_scene, json_text, publish, runs_scenes, writes_json
+from harness.confined import Limits
+
+if TYPE_CHECKING:
+    from harness.free_motion import FreeMotion
+
+
+@holonom.command()
+@asks_one_scene
+@writes_json
+@runs_scenes
+def free(scene_file: Path, scene: str | None, settings: Sequence[str], json_file: Path | None, limits: Limits) -> int:
+    """Find when the motion of a SCENE is free: under its law, under which laws, under which for one trajectory."""
+    from harness.console.free_motion import show_free_motion
+    from harness.console.text import make_console
+    from harness.free_motion import free_motion
+    from harness.motion.request import read_settings
+
+    found = free_motion(scene_file, scene, read_settings(settings), limits)
+    publish(json_text(_free_motion_document(found)), json_file)
+    if json_file != STANDARD_OUTPUT:
+        show_free_motion(make_console(), found)
+    return 0
+
+
+def _free_motion_document(found: "FreeMotion") -> dict[str, Any]:
+    from harness.console.text import formula
+
+    def law_text(law: Mapping[str, Any]) -> dict[str, str]:
+        return {control: formula(value) for control, value in law.items()}
+
+    verdict, universal, trajectory = found.verdict, found.universal, found.trajectory
+    return {
+        "scene": found.scene,
+        "condition": [formula(each) for each in found.condition],
+        "law": verdict
+        and {
+            "satisfies": verdict.satisfies,
+            "residual": [formula(each) for each in verdict.residual] or None,
+            "reason": verdict.reason,
+        },
+        "universal": {
+            "laws": [law_text(law) for law in universal.laws],
+            "unique": universal.unique,
+            "reason": universal.reason,
+        },
+        "trajectory": {
+            "law": law_text(trajectory.law) or None,
+            "kind": trajectory.kind,
+            "reason": trajectory.reason,
+        },
+    }

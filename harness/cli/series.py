@@ -1,0 +1,65 @@
+"""The command about initial motion: series."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from pathlib import Path
+
+import click
+
+from harness.cli.group import holonom
+from harness.cli.options import (
+    STANDARD_OUTPUT,
+    asks_one_scene,
+    json_text,
+    publish,
+    read_instant,
+    runs_scenes,
+    writes_json,
+)
+from harness.confined import Limits
+
+
+@holonom.command()
+@asks_one_scene
+@click.option("--order", metavar="N", type=click.IntRange(min=2), required=True, help="Highest power of the time.")
+@click.option("--exact", is_flag=True, help="Rational coefficients, or none; the default is exact where possible.")
+@click.option("--digits", metavar="D", type=click.IntRange(min=1), help="Coefficients of D significant digits.")
+@click.option("--precision", type=click.Choice(["double", "quadruple"]), help="Hardware numbers, by heyoka.")
+@click.option("--at", metavar="T", callback=read_instant, help="Also add the series up at the instant T.")
+@click.option("--until", metavar="T", callback=read_instant, help="Also continue the motion to T, beyond the radius.")
+@writes_json
+@runs_scenes
+def series(
+    scene_file: Path,
+    scene: str | None,
+    order: int,
+    exact: bool,
+    digits: int | None,
+    precision: str | None,
+    at: Fraction | None,
+    until: Fraction | None,
+    settings: Sequence[str],
+    json_file: Path | None,
+    limits: Limits,
+) -> int:
+    """Expand the initial motion of a SCENE in power series, and say how far they hold."""
+    from harness.console.series import show_series
+    from harness.console.text import make_console
+    from harness.motion import heyoka_series
+    from harness.motion.request import read_settings
+    from harness.motion.series import AUTOMATIC, EXACT, SeriesRequest, compute_series, series_document, values_at
+
+    if sum([exact, digits is not None, precision is not None]) > 1:
+        raise click.UsageError("--exact, --digits and --precision exclude one another")
+    if precision and until is not None:
+        raise click.UsageError("--until continues with digits, not with --precision")
+    request = SeriesRequest(order, scene, EXACT if exact else digits or AUTOMATIC, until, read_settings(settings))
+    if precision:
+        motion = heyoka_series.compute_series(scene_file, request, heyoka_series.Precision(precision), limits)
+    else:
+        motion = compute_series(scene_file, request, limits)
+    values = None if at is None else values_at(motion, at)
+    publish(json_text(series_document(motion, values)), json_file)
+    if json_file != STANDARD_OUTPUT:
+        show_series(make_console(), motion, values)
+    return 0

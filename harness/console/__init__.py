@@ -1,0 +1,1 @@
+"""What the commands show: tables and equations, in colour on a terminal and plain elsewhere."""
