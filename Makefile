@@ -23,7 +23,7 @@ check: setup ## Lint, then run all tests, Maxima's own rtest files among them
 setup: have-maxima have-compiler $(STAMP) ## Install what is missing: Maxima, a C compiler, and the Python packages in .venv
 
 bench: setup ## Time the motion program against its peers: one table, one log-log figure
-	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,motion,bench]'
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,motion,companion,bench]'
 	$(BIN)/python tests/benchmarks/run.py build/benchmarks
 	cp build/benchmarks/chain.svg build/benchmarks/chain.txt tests/benchmarks/
 
@@ -67,5 +67,5 @@ $(STAMP): pyproject.toml constraints.txt | have-python
 	@test -n "$(PYTHON)" || { echo "Holonom needs Python 3.11 or later: please install it." >&2; exit 2; }
 	@$(PYTHON) -c 'import ensurepip' 2>/dev/null || $(call install,$(notdir $(PYTHON))-venv)
 	$(PYTHON) -m venv --clear .venv
-	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,motion]'
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,motion,companion]'
 	@touch $@
