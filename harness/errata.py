@@ -7,6 +7,7 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
+from harness.mathjson import Tree
 from harness.maxima import run_batch
 
 PRINTED = Path(__file__).resolve().parents[1] / "examples" / "paper" / "printed.mac"
@@ -32,6 +33,8 @@ class PrintedEquation:
         The printed equation, mended; None where the print agrees.
     remark : str or None
         What there is to say about the transcription.
+    printed_tree, difference_tree, corrected_tree : Tree or None
+        The same equations as trees that `harness.typeset` sets in type, in their own order; None where there is none.
     """
 
     number: str
@@ -41,6 +44,9 @@ class PrintedEquation:
     difference: str | None
     corrected: str | None
     remark: str | None
+    printed_tree: Tree
+    difference_tree: Tree | None
+    corrected_tree: Tree | None
 
 
 def errata() -> tuple[PrintedEquation, ...]:

@@ -31,6 +31,11 @@ class Failure(Enum):
     NOT_A_RECORD = ("this is not a derivation record: {detail}", "derive it anew with `holonom derive`")
     NOT_AN_EXPRESSION = ("{detail} is not an expression that a derivation record can hold", "")
     UNWRITABLE = ("the output cannot be written: {detail}", "give a file in a directory that can be written")
+    NOT_A_COMPANION = (
+        "the directory holds other things than a companion",
+        "give the name of a new directory, or of one that `holonom companion` made",
+    )
+    DEFINITION_MISSING = ("the file does not define {detail}", "the companion shows how each step is derived there")
     NOT_A_SETTING = ("{detail} sets nothing", "write NAME=VALUE with a number, for instance N=64 or u0=3/10")
     NOT_A_SCENE_NAME = ("{detail} cannot be the name of a scene", "give the name that the scene is assigned to")
     NOT_A_PROGRAM = ("this is not a motion program: {detail}", "write it anew with `holonom program`")
@@ -46,6 +51,29 @@ class Failure(Enum):
     NOT_A_SERIES = ("this is not a power series: {detail}", "compute it anew with `holonom series`")
     BEYOND_RADIUS = ("{detail}", "ask for an earlier time, or continue the motion with --until")
     ORDER_TOO_HIGH = ("{detail}", "ask for a lower order, or for digits")
+    NOT_A_PRECISION = ("{detail}", "take another one, or ask for --digits, which Maxima computes with")
+    NO_CONTINUATION = ("{detail}", "ask for an earlier instant")
+    NO_SUCH_FORMAT = ("no such file can be written", "give a name that ends in one of {detail}")
+    NO_END = ("the scene has no time span", "give the last instant with --until")
+    NOT_AFTER_START = ("the last instant is not after the start: {detail}", "give a later one with --until")
+    NO_PIVOTS = ("the Taylor engine cannot follow this motion: {detail}", "take --engine auto or robust")
+    ROBUST_IS_DOUBLE = (
+        "the robust engine computes in double precision: {detail}",
+        "leave --precision out, or make the constraints independent",
+    )
+    TOLERANCE_UNHELD = ("{detail}", "ask for another tolerance, or for more digits with --precision")
+    NO_MOTION_PROGRAM = ("there is no motion program to measure: {detail}", "take constraints that are independent")
+    NO_TIME_SPAN = ("the scene {detail} names no end of its motion", "give it a time_span, for instance [0, 10]")
+    METHOD_GAVE_UP = ("{detail}", "ask for a larger tolerance, or for another method")
+    MASS_SINGULAR = (
+        "the mass matrix is singular along a direction that the constraints leave free",
+        "give every coordinate a mass or a constraint",
+    )
+    INCONSISTENT = (
+        "the constraints cannot all be satisfied at t = {detail}",
+        "end the run before, or remove the constraint that contradicts the others",
+    )
+    NO_WAY_ON = ("the motion cannot be followed beyond t = {detail}", "end the run before it")
     RTEST_UNPAIRED = ("an input has no expected result", "")
     RTEST_FAILED = ("not all of the {detail} tests passed", "")
 

@@ -127,3 +127,28 @@ def test_no_slip_goes_unnoticed(equations, tmp_path):
     slips = [(row, slip) for row, equation in enumerate(equations) for slip in one_slip_away(mended(equation))]
     assert len(slips) > 500
     assert [slips[place] for place in agreeing(slips, tmp_path)] == []
+
+
+def leaves(tree) -> list[str]:
+    return [leaf for part in tree[1:] for leaf in leaves(part)] if isinstance(tree, list) else [str(tree)]
+
+
+def test_the_trees_keep_every_letter_in_its_place(equations):
+    functions = {"dot", "ddot", "dddot", "partial", "rate", "exp"}
+    for equation in equations:
+        for text, tree in [
+            (equation.printed, equation.printed_tree),
+            (equation.difference, equation.difference_tree),
+            (equation.corrected, equation.corrected_tree),
+        ]:
+            assert (tree is None) == (text is None)
+            if text is not None:
+                assert leaves(tree) == [word for word in re.findall(r"\w+", text) if word not in functions]
+
+
+def test_the_trees_keep_every_sign(equations):
+    def signs(tree) -> int:
+        return (tree[0] == "Negate") + sum(map(signs, tree[1:])) if isinstance(tree, list) else 0
+
+    for equation in equations:
+        assert signs(equation.printed_tree) == equation.printed.count("-")

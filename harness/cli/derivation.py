@@ -13,6 +13,7 @@ from harness.confined import Limits
 
 if TYPE_CHECKING:
     from harness.crosscheck import CheckReport
+    from harness.record import Record
 
 DISAGREEMENT = 1
 
@@ -21,8 +22,11 @@ DISAGREEMENT = 1
 @click.argument("scene", type=click.Path(path_type=Path))
 @takes_settings
 @writes_json
+@click.option(
+    "--tex", "tex_file", metavar="FILE|-", type=click.Path(path_type=Path), help="Also write it as a LaTeX document."
+)
 @runs_scenes
-def derive(scene: Path, settings: Sequence[str], json_file: Path | None, limits: Limits) -> int:
+def derive(scene: Path, settings: Sequence[str], json_file: Path | None, tex_file: Path | None, limits: Limits) -> int:
     """Derive the equations of a SCENE, under the paper's numbers."""
     from harness.console.derivation import show_record
     from harness.console.text import make_console
@@ -32,8 +36,9 @@ def derive(scene: Path, settings: Sequence[str], json_file: Path | None, limits:
 
     text = run_scene(scene, limits, read_settings(settings))
     record = read_record(text)
+    _publish_document(record, tex_file)
     publish(text, json_file)
-    if json_file != STANDARD_OUTPUT:
+    if STANDARD_OUTPUT not in (json_file, tex_file):
         show_record(make_console(), record)
     return 0
 
@@ -79,6 +84,13 @@ def errata(json_file: Path | None, svg_file: Path | None) -> int:
     if json_file != STANDARD_OUTPUT:
         show_errata(make_console(), equations)
     return 0
+
+
+def _publish_document(record: "Record", tex_file: Path | None) -> None:
+    if tex_file is not None:
+        from harness.typeset.document import tex_document
+
+        publish(tex_document(record), tex_file)
 
 
 def _report_document(scene: str, report: "CheckReport") -> dict[str, Any]:

@@ -1,0 +1,90 @@
+"""Equations of a derivation record: their relations below each other, the entries of an array as one matrix."""
+
+from collections.abc import Sequence
+from itertools import groupby
+from math import inf
+
+from sympy import Indexed
+
+from harness.record import Equation, Relation
+from harness.typeset.boxes import EQUALS, Box, aligned
+from harness.typeset.formula import formula_box, is_long, relation_lines, relation_rows
+from harness.typeset.presentation import presented
+from harness.typeset.quantities import letter_box
+
+COLUMN_GAP = 2  # digits
+
+
+def latex_equation(equation: Equation, width: float = inf) -> tuple[str, ...]:
+    """Typeset an equation.
+
+    Parameters
+    ----------
+    equation : Equation
+        An item of a derivation.
+    width : float
+        Width to keep to where a formula can be broken over lines, in digits of its typeface.
+
+    Returns
+    -------
+    tuple of str
+        LaTeX for math mode, with amsmath: a formula for each block of relations that belong together.
+    """
+    return tuple(rows[0].replace("&", "", 1) if len(rows) == 1 else aligned(rows) for rows in blocks(equation, width))
+
+
+def blocks(equation: Equation, width: float = inf) -> list[list[str]]:
+    """The same as lines with the mark & of LaTeX's alignments."""
+    runs = groupby(equation.relations, _array)
+    return [
+        _plain_rows(list(relations), width) if name is None else _array_rows(name, list(relations), width)
+        for name, relations in runs
+    ]
+
+
+def _array(relation: Relation) -> str | None:
+    """Name of the vector or matrix that the left side is an entry of."""
+    left = relation.left
+    return left.base.label.name if isinstance(left, Indexed) and len(left.indices) < 3 else None
+
+
+def _plain_rows(relations: Sequence[Relation], width: float) -> list[str]:
+    """Relations aligned at their equals signs, or flush left if one of them has a long left side."""
+    sides = [(presented(relation.left), presented(relation.right)) for relation in relations]
+    margins = [formula_box(left) for left, _ in sides]
+    if any(is_long(margin, width) for margin in margins):
+        return [f"& {line.latex}" for left, right in sides for line in relation_lines(left, right, width)]
+    widest = max(margin.width for margin in margins)
+    return [
+        row
+        for (left, right), margin in zip(sides, margins, strict=True)
+        for row in relation_rows(left, right, width - widest + margin.width)
+    ]
+
+
+def _array_rows(name: str, entries: Sequence[Relation], width: float) -> list[str]:
+    """The entries between brackets where they are easy to read there, else below each other without the zeros."""
+    matrix = _matrix(entries)
+    if _suits_brackets(entries) and matrix.width <= width:
+        letter = "A^{-1}" if name == "A_inverse" else letter_box(name).latex
+        return [f"{letter} &= {matrix.latex}"]
+    present = [entry for entry in entries if entry.right != 0]
+    if len(present) in (0, len(entries)):
+        return _plain_rows(entries, width)
+    return [*_plain_rows(present, width), r"& \text{and zero for all other indices}"]
+
+
+def _suits_brackets(entries: Sequence[Relation]) -> bool:
+    """Matrices do, and vectors of numbers."""
+    return len(entries) > 1 and (len(entries[0].left.indices) == 2 or all(entry.right.is_number for entry in entries))
+
+
+def _matrix(entries: Sequence[Relation]) -> Box:
+    rows = [list(map(_value, row)) for _, row in groupby(entries, lambda entry: entry.left.indices[0])]
+    widths = [max(entry.width for entry in column) + COLUMN_GAP for column in zip(*rows, strict=True)]
+    cells = r" \\ ".join(" & ".join(entry.latex for entry in row) for row in rows)
+    return Box(rf"\begin{{pmatrix}} {cells} \end{{pmatrix}}", sum(widths) + 2 * COLUMN_GAP + EQUALS.width, len(rows))
+
+
+def _value(entry: Relation) -> Box:
+    return formula_box(presented(entry.right))

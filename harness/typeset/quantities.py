@@ -1,0 +1,89 @@
+"""Names of quantities as letters with dots and indices: dot(q1)_0 is q with a dot and the indices 1 and 0."""
+
+import re
+import unicodedata
+from functools import cache
+
+from sympy.core.alphabets import greeks
+from sympy.printing.latex import tex_greek_dictionary
+
+from harness.typeset.boxes import (
+    COMMA,
+    SEMICOLON,
+    Box,
+    above,
+    below,
+    beside,
+    bracketed,
+    digits,
+    dotted,
+    separated,
+    word,
+)
+
+RATE = re.compile(r"(d{1,3})ot\((.+)\)(\w*)")
+UNDERSCORE = r"\_"  # of a name that is nothing else
+NUMBERED = re.compile(r"([^\W\d]+?)(\d*)")
+GREEK = {name.replace("lamda", "lambda") for name in greeks}
+
+
+@cache
+def name_box(name: str, dots: int = 0) -> Box:
+    """A quantity under as many dots as it is differentiated, with the indices in its name."""
+    return indexed_box(name, [], dots)
+
+
+def indexed_box(name: str, indices: list[Box], dots: int = 0) -> Box:
+    """The same with further indices, which come before those in its name: q_0[s] has the indices s and 0."""
+    if name == "A_inverse":
+        return above(letter_box("A"), beside(*indices))
+    if name == "christoffel":
+        return _christoffel(*indices)
+    if rate := RATE.fullmatch(name):
+        return indexed_box(rate[2] + rate[3], indices, dots + len(rate[1]))
+    stem, *parts = [part for part in name.replace("%", "").split("_") if part] or [UNDERSCORE]
+    letter, number = _letter_and_number(stem)
+    own = [digits(number)] if number else []
+    together = [beside(*indices)] if indices else []
+    return _with_indices(dotted(letter_box(letter), dots), [*together, *own, *map(_index, parts)])
+
+
+def _letter_and_number(stem: str) -> tuple[str, str]:
+    found = NUMBERED.fullmatch(stem)
+    return (found[1], found[2]) if found else (stem, "")
+
+
+def letter_box(letter: str) -> Box:
+    """A letter, Latin or Greek, or a word."""
+    letter = spelled_out(letter)
+    if letter.lower() in GREEK:
+        return word(tex_greek_dictionary.get(letter, rf"\{letter}"), 1)
+    if len(letter) == 1 and letter.isascii():
+        return word(letter, 1)
+    return word(rf"\text{{{letter}}}", len(letter))
+
+
+def spelled_out(letter: str) -> str:
+    """The name of a Greek letter that is written as itself."""
+    match unicodedata.name(letter, "").split() if len(letter) == 1 else []:
+        case ["GREEK", "SMALL", "LETTER", name]:
+            return name.lower().replace("lamda", "lambda")
+        case ["GREEK", "CAPITAL", "LETTER", name]:
+            return name.capitalize().replace("Lamda", "Lambda")
+        case _:
+            return letter
+
+
+def _index(part: str) -> Box:
+    if part.isdecimal():
+        return digits(part)
+    return name_box(part) if len(part) == 1 or part.lower() in GREEK else word(rf"\text{{{part}}}", len(part))
+
+
+def _christoffel(first: Box, second: Box, third: Box) -> Box:
+    """The symbol [k, m; s] of the first kind."""
+    return bracketed(beside(first, COMMA, second, SEMICOLON, third), "[", "]")
+
+
+def _with_indices(letter: Box, indices: list[Box]) -> Box:
+    return below(letter, separated(indices, COMMA)) if indices else letter

@@ -1,0 +1,10 @@
+"""The paper as printed, compared once for all tests of its typesetting."""
+
+import pytest
+
+from harness.errata import PrintedEquation, errata
+
+
+@pytest.fixture(scope="session")
+def printed_equations() -> tuple[PrintedEquation, ...]:
+    return errata()
