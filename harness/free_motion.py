@@ -1,4 +1,7 @@
-"""Free motion of a scene: its condition, its control law, universal controls, the control for one trajectory."""
+"""Free motion of a scene: its condition, its control law, universal controls, the control for one trajectory.
+
+And the motion under prescribed reactions, of which free motion is the case zero.
+"""
 
 import json
 from collections.abc import Mapping
@@ -62,28 +65,45 @@ class TrajectoryControl:
     Attributes
     ----------
     kind : str
-        ``closed form`` (in the initial data q1_0, dot(q1)_0), ``series`` (with the scene's numbers) or ``none``.
+        ``closed form`` (in the initial data q1_0, dot(q1)_0), ``numeric`` (with the scene's numbers, along its time
+        span), ``series`` (with the scene's numbers, at the initial instant) or ``none``.
     law : Law
+        By control; the series where the kind is ``numeric``.
     motion : Law
         The free motion by coordinate, where its closed form is known.
+    samples : tuple of tuple of float
+        Instants of the scene's time span with the values of the controls, as far as there are such controls.
     reason : str
     """
 
     kind: str
     law: Law
     motion: Law
+    samples: tuple[tuple[float, ...], ...]
     reason: str
 
 
 @dataclass(frozen=True)
+class PrescribedReactions:
+    """The multipliers that a scene prescribes, by name, and what the controls do then: ``ddot(u)`` by name."""
+
+    reactions: Law
+    controls: Law
+
+
+@dataclass(frozen=True)
 class FreeMotion:
-    """The answers about one scene; ``verdict`` is None where the scene has no control law."""
+    """The answers about one scene.
+
+    ``verdict`` is None where the scene has no control law, ``prescribed`` where it prescribes no reactions.
+    """
 
     scene: str
     condition: tuple[Expr, ...]
     verdict: LawVerdict | None
     universal: UniversalControls
     trajectory: TrajectoryControl
+    prescribed: PrescribedReactions | None
 
 
 def free_motion(file: Path, scene: str | None, settings: Mapping[str, str], limits: Limits) -> FreeMotion:
@@ -117,7 +137,9 @@ def free_motion(file: Path, scene: str | None, settings: Mapping[str, str], limi
     document = json.loads(run_batch(file, writer, limits, settings))
     if document.get("format") != "holonom-free-motion":
         raise HolonomError(Failure.NOT_A_RECORD, file, "it holds no free motion")
-    law, universal, trajectory = (document[part] for part in ("law", "universal", "trajectory"))
+    law, universal, trajectory, prescribed = (
+        document[part] for part in ("law", "universal", "trajectory", "prescribed")
+    )
     return FreeMotion(
         document["scene"],
         _expressions(document["condition"]),
@@ -129,8 +151,13 @@ def free_motion(file: Path, scene: str | None, settings: Mapping[str, str], limi
             universal["reason"],
         ),
         TrajectoryControl(
-            trajectory["kind"], _law(trajectory["law"]), _law(trajectory["motion"]), trajectory["reason"]
+            trajectory["kind"],
+            _law(trajectory["law"]),
+            _law(trajectory["motion"]),
+            tuple(tuple(map(float, sample)) for sample in trajectory["samples"]),
+            trajectory["reason"],
         ),
+        prescribed and PrescribedReactions(_law(prescribed["reactions"]), _law(prescribed["controls"])),
     )
 
 

@@ -1,8 +1,11 @@
 """Free motion, asked of Maxima, against the equations of motion written down here."""
 
 import json
+import math
+from functools import cache
 from pathlib import Path
 
+import numpy
 import pytest
 import sympy
 from sympy import Function, Symbol, cos, exp, symbols
@@ -10,11 +13,18 @@ from sympy import Function, Symbol, cos, exp, symbols
 from harness.confined import Limits
 from harness.failures import HolonomError
 from harness.free_motion import free_motion
+from harness.maxima import run_scene
+from harness.motion.numpy_function import NumpyFunction
+from harness.motion.program import read_program
+from harness.motion.request import Request, program_document
+from harness.motion.series import SeriesRequest, compute_series
+from harness.record import read_record
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 t = Symbol("t", real=True)
 
 
+@cache
 def asked(example: str, scene: str | None = None):
     return free_motion(EXAMPLES / f"{example}.mac", scene, {}, Limits())
 
@@ -46,7 +56,7 @@ def test_pendulum_trajectory_law_is_the_distance_of_the_parabola():
 def test_bead_series_follows_the_free_slider():
     # free: M x'' = -m (x'' - projected), so the slider is pushed by the bead alone; solved here by sympy's own series
     found = asked("bead", "resting_scene").trajectory
-    assert found.kind == "series"
+    assert found.kind == "numeric"
     m, slider, w = 1, 3, 2
     x, r = Function("x")(t), Function("r")(t)
     energy = (slider * x.diff(t) ** 2) / 2 + m * (
@@ -65,6 +75,73 @@ def test_bead_series_follows_the_free_slider():
         ]
         known |= sympy.solve(equations, [a[order], b[order]])
     assert sympy.expand(found.law["u"] - trial_x.subs(known)) == 0
+
+
+def test_bead_samples_keep_the_momentum_of_the_free_slider():
+    # free: nothing holds slider and bead along the rail, and the bead's polar angle w t is prescribed by no force on r:
+    # integrated by scipy, in the accelerations that sympy solves for
+    from scipy.integrate import solve_ivp
+
+    found = asked("bead", "resting_scene").trajectory
+    m, slider, w = 1.0, 3.0, 2.0
+
+    def rates(time, state):
+        _, r, vx, vr = state
+        matrix = [[slider + m, m * math.cos(w * time)], [m * math.cos(w * time), m]]
+        right = [m * (2 * vr * w * math.sin(w * time) + r * w**2 * math.cos(w * time)), m * w**2 * r]
+        return [vx, vr, *numpy.linalg.solve(matrix, right)]
+
+    instants = [sample[0] for sample in found.samples]
+    motion = solve_ivp(rates, (0, 2), [0, 1, 0, 0], "DOP853", instants, rtol=1e-12, atol=1e-13)
+    assert len(instants) == 21
+    assert numpy.abs(motion.y[0] - [sample[1] for sample in found.samples]).max() < 1e-10
+
+
+@pytest.mark.parametrize(("scene", "tension"), [("thrown_scene", "0"), ("steady_scene", "S"), ("growing_scene", "S*t")])
+def test_winch_obeys_newtons_second_law_along_the_string(scene, tension):
+    prescribed = asked("prescribed_tension", scene).prescribed
+    r, v, phi, g, m = symbols(["r", "dot(phi)", "phi", "g", "m"], real=True)
+    pull = sympy.sympify(tension, {"S": Symbol("S", real=True), "t": t})
+    assert prescribed.reactions == {"lambda1": -pull}
+    assert sympy.simplify(prescribed.controls["ddot(u)"] - (r * v**2 + g * cos(phi) - pull / m)) == 0
+
+
+def test_untensed_string_follows_the_parabola():
+    samples = asked("prescribed_tension", "thrown_scene").trajectory.samples
+    assert len(samples) == 21
+    assert all(math.isclose(u, math.hypot(2 * time, 1 + 5 * time**2), rel_tol=1e-14) for time, u in samples)
+
+
+def test_motion_under_prescribed_reactions_is_a_motion_program():
+    # polar coordinates: angular momentum per mass changes by the torque of gravity, and the energy by the winch's work
+    example = EXAMPLES / "prescribed_tension.mac"
+    program = read_program(program_document(example, Request("growing_scene"), Limits()))
+    time, r, phi, u, vr, vphi, vu = state = [0.7, 1.3, 0.4, 1.3, -0.2, 0.9, -0.2]
+    assert program.inputs == ("t", "r", "phi", "u", "dot(r)", "dot(phi)", "dot(u)")
+    found = dict(zip(program.outputs, NumpyFunction(program)(state), strict=True))
+    assert found["lambda1"] == -10 * time
+    assert math.isclose(2 * r * vr * vphi + r**2 * found["ddot(phi)"], -10 * r * math.sin(phi), rel_tol=1e-14)
+    gained = vr * found["ddot(r)"] + r * vr * vphi**2 + r**2 * vphi * found["ddot(phi)"]
+    gained += -10 * vr * math.cos(phi) + 10 * r * vphi * math.sin(phi)
+    assert math.isclose(gained, found["lambda1"] * vu, rel_tol=1e-13)
+    assert found["ddot(u)"] == found["ddot(r)"]
+
+
+def test_record_holds_scenes_under_control_laws_only():
+    record = read_record(run_scene(EXAMPLES / "prescribed_tension.mac"))
+    assert record.derivations
+    assert record.scenes == ()
+
+
+def test_law_in_pieces_is_refused_a_series(tmp_path):
+    scene = tmp_path / "scene.mac"
+    scene.write_text(
+        'load("holonom.mac")$'
+        "system : holonomic_system(coordinates = [z], controls = [u], kinetic_energy = dot(z)^2, constraints = [z-u])$"
+        "kicked_scene : holonomic_scene(system, control_law = [u = unit_step(t)], initial_state = [])$"
+    )
+    with pytest.raises(HolonomError, match="must be analytic"):
+        compute_series(scene, SeriesRequest(order=4), Limits())
 
 
 def test_cabin_is_free_in_parabolic_flight_and_not_in_a_lift():
@@ -99,3 +176,5 @@ def test_json_has_the_stated_shape(capsys, monkeypatch):
     }
     assert document["law"]["satisfies"] == "no"
     assert document["trajectory"]["kind"] == "closed form"
+    assert document["trajectory"]["samples"][0] == [0, 0.3]
+    assert document["prescribed"] is None

@@ -36,7 +36,7 @@ def _free_motion_document(found: "FreeMotion") -> dict[str, Any]:
     def law_text(law: Mapping[str, Any]) -> dict[str, str]:
         return {control: formula(value) for control, value in law.items()}
 
-    verdict, universal, trajectory = found.verdict, found.universal, found.trajectory
+    verdict, universal, trajectory, prescribed = found.verdict, found.universal, found.trajectory, found.prescribed
     return {
         "scene": found.scene,
         "condition": [formula(each) for each in found.condition],
@@ -54,6 +54,9 @@ def _free_motion_document(found: "FreeMotion") -> dict[str, Any]:
         "trajectory": {
             "law": law_text(trajectory.law) or None,
             "kind": trajectory.kind,
+            "samples": trajectory.samples or None,
             "reason": trajectory.reason,
         },
+        "prescribed": prescribed
+        and {"reactions": law_text(prescribed.reactions), "controls": law_text(prescribed.controls)},
     }

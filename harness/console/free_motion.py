@@ -25,7 +25,13 @@ def show_free_motion(console: Console, found: "FreeMotion") -> None:
     laws = [_law(law) for law in universal.laws] or ["none"]
     _show_list(console, f"controls that make every motion free{ending}", [*laws, universal.reason, *separated])
     trajectory = found.trajectory
-    _show_list(console, f"control for one trajectory: {trajectory.kind}", [_law(trajectory.law), trajectory.reason])
+    samples = [_sample(sample, trajectory.law) for sample in trajectory.samples if trajectory.kind == "numeric"]
+    _show_list(
+        console, f"control for one trajectory: {trajectory.kind}", [_law(trajectory.law), trajectory.reason, *samples]
+    )
+    if found.prescribed is not None:
+        reactions, controls = _law(found.prescribed.reactions), _law(found.prescribed.controls)
+        _show_list(console, f"controls under the prescribed reactions {reactions}", [controls])
 
 
 def _show_list(console: Console, title: str, lines: Iterable[str]) -> None:
@@ -33,6 +39,10 @@ def _show_list(console: Console, title: str, lines: Iterable[str]) -> None:
     for line in lines:
         if line:
             console.print(f"    {line}", soft_wrap=True, markup=False)
+
+
+def _sample(sample: Iterable[float], law: "Law") -> str:
+    return "  ".join(f"{name} = {value:<12.6g}" for name, value in zip(("t", *law), sample, strict=True)).rstrip()
 
 
 def _law(law: "Law") -> str:

@@ -46,6 +46,11 @@ scene : holonomic_scene({first}, control_law = [{fourth} = 1 + t*({sum})], param
   initial_state = [{second} = 1, dot({second}) = 2])$
 """
 
+PRESCRIBED = SCENE.replace(
+    "control_law = [{fourth} = 1 + t*({sum})]", "prescribed_reactions = [lambda1 = 1 + t*({sum})]"
+)
+PRESCRIBED = PRESCRIBED.replace("initial_state = [", "initial_state = [{fourth} = 1, dot({fourth}) = 1, ")
+
 
 def local_names(*folders: str) -> list[str]:
     """Every name that a function in these folders of the library binds."""
@@ -65,11 +70,11 @@ def groups(names: list[str]) -> list[list[str]]:
     return [names[max(0, min(start, len(names) - AT_ONCE)) :][:AT_ONCE] for start in range(0, len(names), AT_ONCE)]
 
 
-def scene_with(names: list[str], directory: Path) -> Path:
+def scene_with(names: list[str], directory: Path, template: str = SCENE) -> Path:
     first, second, third, fourth, *parameters = names
     file = directory / "scene.mac"
     file.write_text(
-        SCENE.format(
+        template.format(
             first=first,
             second=second,
             third=third,
@@ -95,6 +100,14 @@ def test_names_of_the_free_motion_are_the_users_too(names: list[str], tmp_path: 
     writer = "lambda([file], (free_motion_order : 2, write_free_motion(file, false)))"
     free = json.loads(run_batch(scene_with(names, tmp_path), writer))
     assert free["universal"]["laws"] == [{names[3]: 0}]
+    assert free["trajectory"]["kind"] == "series"
+
+
+@pytest.mark.parametrize("names", groups(local_names("free_motion", "program")), ids=" ".join)
+def test_names_of_prescribed_reactions_are_the_users_too(names: list[str], tmp_path: Path):
+    writer = "lambda([file], (free_motion_order : 2, write_free_motion(file, false)))"
+    free = json.loads(run_batch(scene_with(names, tmp_path, PRESCRIBED), writer))
+    assert free["prescribed"]["controls"].keys() == {f"ddot({names[3]})"}
     assert free["trajectory"]["kind"] == "series"
 
 
