@@ -8,12 +8,15 @@ SOURCES := $(shell find maxima harness -name '*.mac' -o -name '*.lisp' -o -name 
 
 .DEFAULT_GOAL := paper
 .DELETE_ON_ERROR:
-.PHONY: paper check bench setup pictures clean help have-maxima have-compiler have-python
+.PHONY: paper companion check bench setup pictures clean help have-maxima have-compiler have-python
 
-paper: setup $(RECORDS) ## Derive and check every scene, compare the paper as printed (the default)
+paper: setup $(RECORDS) companion ## Derive and check every scene, compare the paper as printed (the default)
 	$(BIN)/holonom check $(SCENES) --json build/check.json
 	$(BIN)/holonom errata --json build/errata.json
 	@echo "The derivations are in build/examples/, the verdicts in build/check.json, the misprints in build/errata.json."
+
+companion: setup ## Make the textbook companion: build/companion/index.html
+	$(BIN)/holonom companion -o build/companion
 
 check: setup ## Lint, then run all tests, Maxima's own rtest files among them
 	$(BIN)/ruff check .
@@ -22,13 +25,18 @@ check: setup ## Lint, then run all tests, Maxima's own rtest files among them
 
 setup: have-maxima have-compiler $(STAMP) ## Install what is missing: Maxima, a C compiler, and the Python packages in .venv
 
-bench: setup ## Time the motion program against its peers: one table, one log-log figure
+bench: setup ## Time the motion program, the power series and simulations against their peers: tables and figures
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,motion,companion,bench]'
 	$(BIN)/python tests/benchmarks/run.py build/benchmarks
+	$(BIN)/python tests/benchmarks/series.py build/benchmarks
+	$(BIN)/python tests/benchmarks/simulation.py build/benchmarks
 	cp build/benchmarks/chain.svg build/benchmarks/chain.txt tests/benchmarks/
+	cp build/benchmarks/series.svg build/benchmarks/series.txt tests/benchmarks/
+	cp build/benchmarks/simulation.svg build/benchmarks/simulation.txt tests/benchmarks/
 
 pictures: setup ## Draw the README's pictures again
 	$(BIN)/holonom errata --svg examples/paper/errata.svg > /dev/null
+	$(BIN)/python -m harness.figures.radius examples/paper/radius.svg
 
 clean: ## Remove all that make made
 	rm -rf build .venv .pytest_cache .ruff_cache .hypothesis *.egg-info

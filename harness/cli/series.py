@@ -24,7 +24,11 @@ from harness.confined import Limits
 @click.option("--order", metavar="N", type=click.IntRange(min=2), required=True, help="Highest power of the time.")
 @click.option("--exact", is_flag=True, help="Rational coefficients, or none; the default is exact where possible.")
 @click.option("--digits", metavar="D", type=click.IntRange(min=1), help="Coefficients of D significant digits.")
-@click.option("--precision", type=click.Choice(["double", "quadruple"]), help="Hardware numbers, by heyoka.")
+@click.option(
+    "--precision",
+    metavar="double|extended|quadruple|DIGITS",
+    help="Compute with heyoka, in these numbers; their last digits are rounded, not confirmed.",
+)
 @click.option("--at", metavar="T", callback=read_instant, help="Also add the series up at the instant T.")
 @click.option("--until", metavar="T", callback=read_instant, help="Also continue the motion to T, beyond the radius.")
 @writes_json
@@ -46,16 +50,15 @@ def series(
     from harness.console.series import show_series
     from harness.console.text import make_console
     from harness.motion import heyoka_series
+    from harness.motion.precision import read_precision
     from harness.motion.request import read_settings
     from harness.motion.series import AUTOMATIC, EXACT, SeriesRequest, compute_series, series_document, values_at
 
     if sum([exact, digits is not None, precision is not None]) > 1:
         raise click.UsageError("--exact, --digits and --precision exclude one another")
-    if precision and until is not None:
-        raise click.UsageError("--until continues with digits, not with --precision")
     request = SeriesRequest(order, scene, EXACT if exact else digits or AUTOMATIC, until, read_settings(settings))
-    if precision:
-        motion = heyoka_series.compute_series(scene_file, request, heyoka_series.Precision(precision), limits)
+    if precision is not None:
+        motion = heyoka_series.compute_series(scene_file, request, read_precision(precision), limits)
     else:
         motion = compute_series(scene_file, request, limits)
     values = None if at is None else values_at(motion, at)

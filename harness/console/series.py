@@ -22,7 +22,7 @@ def show_series(console: Console, motion: "MotionSeries", values: "Values | None
     for name in columns:
         table.add_column(name)
     for n, row in enumerate(zip(*columns.values(), strict=True)):
-        table.add_row(str(n), *(text if len(text) <= SHOWN_TEXT else _rounded(number(text)) for text in row))
+        table.add_row(str(n), *(text if _is_short_and_exact(text) else _rounded(number(text)) for text in row))
     console.print(table)
     radius = motion.radius
     size = "" if radius.estimate is None else f"{radius.estimate:.8g}, known to {radius.uncertainty:.1g}; "
@@ -44,6 +44,10 @@ def _show_continuation(console: Console, continuation: "Continuation") -> None:
     for row in zip(*rows, strict=True):
         table.add_row(*(_rounded(mpmath.mpf(text)) for text in row))
     console.print(table)
+
+
+def _is_short_and_exact(text: str) -> bool:
+    return len(text) <= SHOWN_TEXT and "." not in text
 
 
 def _rounded(value: mpmath.mpf) -> str:

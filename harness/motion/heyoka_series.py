@@ -1,41 +1,34 @@
-"""The initial motion of a scene as power series, in double or quadruple precision, by heyoka's Taylor integrators.
+"""The initial motion of a scene as power series, and its continuation, by heyoka's Taylor integrators.
 
 An integrator expands its state at every step, to an order that its tolerance decides: the order is asked for in those
 terms, and the coefficients of the first step are taken. Multipliers and constraint forces are no state; each is the
 rate of an additional one, which starts from zero.
+
+A continuation is what the integrators are for: step by step, each step's tolerance the precision of the numbers.
 """
 
 import json
-import math
-from collections.abc import Mapping
-from dataclasses import dataclass
-from enum import StrEnum
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import mpmath
 import numpy as np
 
 from harness.confined import Limits
 from harness.failures import Failure, HolonomError
 from harness.maxima import run_batch
 from harness.motion.heyoka_function import dynamics, heyoka_expressions, import_heyoka
+from harness.motion.precision import GUARD_DIGITS, Precision
 from harness.motion.program import Program, read_program
 from harness.motion.request import scene_argument
-from harness.motion.series import MotionSeries, Numbers, SeriesRequest
+from harness.motion.series import Continuation, MotionSeries, Numbers, SeriesRequest
 
-HIGHEST_ORDER = 370  # its tolerance exp(-2*order) is about the smallest number that a double holds
-
-
-class Precision(StrEnum):
-    """Floating-point numbers that heyoka computes with."""
-
-    DOUBLE = "double"
-    QUADRUPLE = "quadruple"
-
-
-DIGITS = {Precision.DOUBLE: 17, Precision.QUADRUPLE: 36}  # decimal digits that tell any two numbers apart
+MOST_STEPS = 10**6  # of a continuation
+ONCE, OFTEN = 0, 3  # LLVM's levels of optimisation: compiled in a tenth of the time, and run in half
 
 
 @dataclass(frozen=True)
@@ -54,9 +47,24 @@ class InitialValueProblem:
     start: Mapping[str, str]
     program: Program
 
+    @property
+    def coordinates(self) -> list[str]:
+        """Names of the coordinates."""
+        return [name for name in self.program.inputs if f"ddot({name})" in self.program.outputs]
+
+    @property
+    def state(self) -> list[str]:
+        """Names of the coordinates, then of the velocities."""
+        return [*self.coordinates, *(f"dot({name})" for name in self.coordinates)]
+
+    @property
+    def reactions(self) -> list[str]:
+        """Names of what is no state: multipliers and constraint forces."""
+        return [name for name in self.program.outputs if not name.startswith("ddot(")]
+
 
 def compute_series(file: Path, request: SeriesRequest, precision: Precision, limits: Limits) -> MotionSeries:
-    """Expand a scene's motion with heyoka.
+    """Expand a scene's motion with heyoka, and continue it where that is asked for.
 
     Parameters
     ----------
@@ -75,12 +83,15 @@ def compute_series(file: Path, request: SeriesRequest, precision: Precision, lim
     Raises
     ------
     HolonomError
-        As `harness.maxima.run_batch`; heyoka is not installed; the order is too high, or the coefficients overflow.
+        As `harness.maxima.run_batch`, `expand` and `continue_motion`.
     """
-    arguments = f"{scene_argument(request.scene)}, {DIGITS[precision]}"
+    arguments = f"{scene_argument(request.scene)}, {request.order}, {precision.digits + GUARD_DIGITS}"
     call = f"lambda([file], write_initial_value_problem(file, {arguments}))"
     problem = read_problem(run_batch(file, call, limits, request.settings))
-    return expand(problem, request.order, precision)
+    motion = expand(problem, request.order, precision)
+    if request.until is None:
+        return motion
+    return replace(motion, continuation=continue_motion(problem, request.until, precision))
 
 
 def read_problem(text: str) -> InitialValueProblem:
@@ -96,7 +107,7 @@ def expand(problem: InitialValueProblem, order: int, precision: Precision) -> Mo
     ----------
     problem : InitialValueProblem
     order : int
-        From 2 to `HIGHEST_ORDER`.
+        2 or more.
     precision : Precision
 
     Returns
@@ -108,35 +119,66 @@ def expand(problem: InitialValueProblem, order: int, precision: Precision) -> Mo
     HolonomError
         heyoka is not installed; the order is too high, or a coefficient is too large for the numbers.
     """
-    integrator = make_integrator(problem, order, precision)
+    integrator = expanding_integrator(problem, order, precision)
     integrator.step(write_tc=True)
     coefficients = integrator.tc
-    if not np.all(np.isfinite(coefficients.astype(float))):
+    if not np.all(np.isfinite(coefficients)):
         raise HolonomError(
-            Failure.ORDER_TOO_HIGH, detail="the coefficients leave the range of a double or are singular"
+            Failure.ORDER_TOO_HIGH, detail=f"the coefficients leave the range of {precision.name} or are singular"
         )
-    state, reactions = _names(problem.program)
-    digits = DIGITS[precision]
-    coordinates = state[: len(state) // 2]
-    found = {name: _texts(row[: order + 1], digits) for name, row in zip(coordinates, coefficients, strict=False)}
-    rates = {
-        name: _texts([row[n + 1] * (n + 1) for n in range(order + 1)], digits)
-        for name, row in zip(reactions, coefficients[len(state) :], strict=True)
-    }
+    coordinates = zip(problem.coordinates, coefficients, strict=False)
+    rates = zip(problem.reactions, map(_rate, coefficients[len(problem.state) :]), strict=True)
+    reactions = {name: _texts(row, precision) for name, row in rates}
     return MotionSeries(
         scene=problem.program.scene or "",
         title=problem.title,
         order=order,
         t0=problem.start["t"],
-        arithmetic=str(precision),
-        coordinates=found,
-        multipliers={name: row for name, row in rates.items() if not name.startswith("Lambda")},
-        constraint_forces={name: row for name, row in rates.items() if name.startswith("Lambda")},
+        arithmetic=precision.name,
+        coordinates={name: _texts(row[: order + 1], precision) for name, row in coordinates},
+        multipliers={name: row for name, row in reactions.items() if not name.startswith("Lambda")},
+        constraint_forces={name: row for name, row in reactions.items() if name.startswith("Lambda")},
     )
 
 
-def make_integrator(problem: InitialValueProblem, order: int, precision: Precision) -> Any:
-    """Set up heyoka's integrator of a motion; its state ends with the integrals of multipliers and forces.
+def continue_motion(problem: InitialValueProblem, until: Fraction, precision: Precision) -> Continuation:
+    """Follow a motion step by step.
+
+    Parameters
+    ----------
+    problem : InitialValueProblem
+    until : Fraction
+        The last instant.
+    precision : Precision
+
+    Returns
+    -------
+    Continuation
+
+    Raises
+    ------
+    HolonomError
+        heyoka is not installed; the steps shrink to nothing, or there are more than `MOST_STEPS`.
+    """
+    integrator = continuing_integrator(problem, precision)
+    last, states = precision.ratio(until), [(integrator.time, integrator.state.copy())]
+    shortest = abs(last - integrator.time) * precision.number(f"1e-{precision.sure_digits}")
+
+    def keep_state(following: Any) -> bool:
+        states.append((following.time, following.state.copy()))
+        return abs(following.last_h) > shortest or following.time == last
+
+    outcome, *_ = integrator.propagate_until(last, callback=keep_state, max_steps=MOST_STEPS)
+    if outcome != import_heyoka().taylor_outcome.time_limit:
+        _refuse_to_continue(float(integrator.time), len(states))
+    instants, values = zip(*states, strict=True)
+    rows = [(name, _texts(row, precision)) for name, row in zip(problem.state, zip(*values, strict=True), strict=True)]
+    n = len(problem.coordinates)
+    return Continuation(precision.sure_digits, _texts(instants, precision), dict(rows[:n]), dict(rows[n:]))
+
+
+def expanding_integrator(problem: InitialValueProblem, order: int, precision: Precision, effort: int = ONCE) -> Any:
+    """Set up heyoka's integrator for one expansion; its state ends with the integrals of multipliers and forces.
 
     Parameters
     ----------
@@ -144,45 +186,82 @@ def make_integrator(problem: InitialValueProblem, order: int, precision: Precisi
     order : int
         The coefficients of the multipliers reach it; those of the state go one further.
     precision : Precision
+    effort : int
+        ``ONCE`` for one expansion, ``OFTEN`` for many.
 
     Returns
     -------
-    heyoka.taylor_adaptive_dbl or heyoka.taylor_adaptive_real128
+    heyoka.taylor_adaptive_dbl, _ldbl, _f128 or _real
+
+    Raises
+    ------
+    HolonomError
+        heyoka is not installed; the order is too high.
     """
-    if order > HIGHEST_ORDER:
-        raise HolonomError(Failure.ORDER_TOO_HIGH, detail=f"heyoka reaches order {HIGHEST_ORDER}, not {order}")
+    if order > precision.highest_order:
+        raise HolonomError(
+            Failure.ORDER_TOO_HIGH, detail=f"in {precision.name} heyoka reaches order {precision.highest_order}"
+        )
     heyoka = import_heyoka()
-    real = _real(heyoka, precision)
-    state, reactions = _names(problem.program)
-    equations = dynamics(problem.program, {}, lambda q: _ratio(q, real))
-    variables = {symbol: heyoka.expression(symbol) for symbol in state}
-    values = heyoka_expressions(problem.program, {"t": heyoka.time, **variables}, lambda q: _ratio(q, real))
-    equations += [(heyoka.expression(f"integral of {name}"), values[name]) for name in reactions]
-    start = [real(problem.start[name]) for name in state] + [real(0)] * len(reactions)
-    return heyoka.taylor_adaptive(
-        equations,
-        np.array(start),
-        time=real(problem.start["t"]),
-        tol=real(math.exp(-2 * order) * (1 + 1e-9)),
-        fp_type=real,
-        compact_mode=True,  # the other mode's code grows with the square of the order: 30 s to compile at order 160
+    variables = {"t": heyoka.time, **{name: heyoka.expression(name) for name in problem.state}}
+    values = heyoka_expressions(problem.program, variables, precision.ratio)
+    integrals = [(heyoka.expression(f"integral of {name}"), values[name]) for name in problem.reactions]
+    return _integrator(
+        heyoka,
+        problem,
+        precision,
+        integrals,
+        tol=precision.number(mpmath.nstr(mpmath.exp(-2 * order) * (1 + mpmath.mpf(1e-9)), 15)),
+        opt_level=effort,
     )
 
 
-def _names(program: Program) -> tuple[list[str], list[str]]:
-    """The state, coordinates first, and what is no state: multipliers and constraint forces."""
-    coordinates = [name for name in program.inputs if f"ddot({name})" in program.outputs]
-    reactions = [name for name in program.outputs if not name.startswith("ddot(")]
-    return [*coordinates, *(f"dot({name})" for name in coordinates)], reactions
+def continuing_integrator(problem: InitialValueProblem, precision: Precision) -> Any:
+    """Set up heyoka's integrator of a motion, its tolerance the precision of the numbers.
+
+    Parameters
+    ----------
+    problem : InitialValueProblem
+    precision : Precision
+
+    Returns
+    -------
+    heyoka.taylor_adaptive_dbl, _ldbl, _f128 or _real
+
+    Raises
+    ------
+    HolonomError
+        heyoka is not installed.
+    """
+    return _integrator(import_heyoka(), problem, precision, [])
 
 
-def _real(heyoka: ModuleType, precision: Precision) -> type:
-    return float if precision is Precision.DOUBLE else heyoka.real128
+def _integrator(
+    heyoka: ModuleType, problem: InitialValueProblem, precision: Precision, integrals: Sequence[tuple], **options: Any
+) -> Any:
+    start = [precision.number(problem.start[name]) for name in problem.state]
+    return heyoka.taylor_adaptive(
+        [*dynamics(problem.program, {}, precision.ratio), *integrals],
+        np.array(start + [precision.number("0")] * len(integrals)),
+        time=precision.number(problem.start["t"]),
+        compact_mode=True,  # the other mode's code grows with the square of the order: 30 s to compile at order 160
+        **precision.options,
+        **options,
+    )
 
 
-def _ratio(value: Fraction, real: type) -> Any:
-    return real(str(value.numerator)) / real(str(value.denominator))
+def _rate(coefficients: Sequence[Any]) -> list[Any]:
+    """Coefficients of the derivative."""
+    return [coefficients[n] * n for n in range(1, len(coefficients))]
 
 
-def _texts(row: Any, digits: int) -> Numbers:
-    return tuple(str(x) if digits > DIGITS[Precision.DOUBLE] else f"{x:.{digits - 1}e}" for x in row)
+def _texts(row: Sequence[Any], precision: Precision) -> Numbers:
+    return tuple(map(precision.text, row))
+
+
+def _refuse_to_continue(instant: float, states: int) -> None:
+    many = states > MOST_STEPS
+    reason = f"it arrived after {MOST_STEPS} steps" if many else "its radius of convergence shrinks to nothing"
+    raise HolonomError(
+        Failure.NO_CONTINUATION, detail=f"the motion cannot be continued beyond t = {instant:.10g}, where {reason}"
+    )

@@ -8,7 +8,8 @@ and the singularities z = t - t0 satisfy 1 + p_0 z + s_0 z^2 = 0. Without correc
 is Mercer and Roberts' test. Here the corrections are fitted over the later orders, which extrapolates that test to
 n = infinity, and Domb and Sykes' with it where one singularity stands alone; with two terms more, two pairs are told
 apart. Each number of corrections gives an estimate; those that agree best with their neighbours are taken, and what
-they differ by is the uncertainty.
+they differ by, times a factor of safety, is the uncertainty. Where they do not agree, the root test is left: |c_n|
+falls like R^-n at a finite radius R, and faster by some power of n! where the motion is entire.
 
 A series in even or in odd powers alone is one in the square of the time: its singularities come in pairs ±z.
 
@@ -32,11 +33,16 @@ FEWEST = 12  # coefficients below which a series tells nothing about its end
 MOST_CORRECTIONS = 5
 LATER = (0.5, 0.7)  # shares of the orders after which a fit looks
 EQUATIONS_PER_UNKNOWN = 1.2
-ENTIRE_GROWTH = 0.4  # an entire series' radius by the root test grows at least like this power of the order
+# How wrong N orders can be, and the factor of safety, come from expansions to orders 8 to 160 whose end is known: those
+# of tests/motion/test_radius.py and more of their kind.
+ENTIRE_GROWTH, GROWTH_ERROR = 0.25, 24.0  # the power of n! is above 1/4 + 24/N: entire
+FINITE_GROWTH = 4.0  # it is below 4/N: a finite radius
+ROOT_TEST_ERROR = 12.0  # of log R, times N
 NEGLIGIBLE = 1e-13  # relative to its neighbours: the rounding of a zero in double precision
-SAFETY = 4.0  # times the difference of two estimates: the uncertainty
+SAFETY = 12.0  # times the difference of two estimates: the uncertainty
+FARTHER = 1.2  # a singularity farther away by this factor still shows, as its power -N, in the last of N coefficients
 FINEST = 1e-12  # relative uncertainty that a fit in double precision can have
-COARSE = 0.1  # relative uncertainty of the root test, and the largest that a fit may have
+COARSE = 0.1  # relative uncertainty that a fit may have
 
 
 @dataclass(frozen=True)
@@ -62,6 +68,7 @@ class Radius:
 
 POLYNOMIAL = Radius(None, None, (), "infinite: the motion is a polynomial of the time")
 ENTIRE = Radius(None, None, (), "infinite: the motion is entire, as far as its coefficients show")
+UNDECIDED = Radius(None, None, (), "unknown: these orders do not tell how far the series holds")
 TOO_FEW = Radius(None, None, (), f"unknown: it takes {FEWEST} coefficients that are not zero")
 
 
@@ -83,7 +90,7 @@ def estimate_radius(series: Iterable[Sequence[mpmath.mpf]]) -> Radius:
     if finite:
         first_end = min(radius.estimate + radius.uncertainty for radius in finite)
         return min((r for r in finite if r.estimate - r.uncertainty <= first_end), key=lambda r: r.uncertainty)
-    return next(kind for kind in (TOO_FEW, ENTIRE, POLYNOMIAL) if kind in found)
+    return next(kind for kind in (TOO_FEW, UNDECIDED, ENTIRE, POLYNOMIAL) if kind in found)
 
 
 def truncation_error(coefficients: Sequence[mpmath.mpf], radius: Radius, time: float) -> float:
@@ -119,14 +126,16 @@ def _radius_of(coefficients: Sequence[mpmath.mpf]) -> Radius:
         return POLYNOMIAL if len(coefficients) > FEWEST else TOO_FEW
     scale, balanced = _balanced(coefficients)
     first, stride = _powers(balanced)
-    if len(balanced[first::stride]) < FEWEST:
+    strided = balanced[first::stride]
+    if len(strided) < FEWEST:
         return TOO_FEW
-    if _root_test_growth(coefficients[first::stride]) > ENTIRE_GROWTH:
+    growth, last = _growth(strided), len(strided) - 1
+    if growth > ENTIRE_GROWTH + GROWTH_ERROR / last:
         return ENTIRE
-    fitted = _fitted_radius(balanced[first::stride], stride, scale)
-    by_roots = _root_test(balanced[first::stride], stride, scale)
-    agrees = fitted is not None and abs(fitted.estimate - by_roots.estimate) <= 2 * COARSE * by_roots.estimate
-    return fitted if agrees and fitted.uncertainty <= COARSE * fitted.estimate else by_roots
+    by_roots, fitted = _root_test(strided, stride, scale), _fitted_radius(strided, stride, scale)
+    if fitted is not None and fitted.uncertainty <= COARSE * fitted.estimate and _agree(fitted, by_roots):
+        return fitted
+    return by_roots if growth < FINITE_GROWTH / last and by_roots.uncertainty < by_roots.estimate else UNDECIDED
 
 
 def _balanced(coefficients: Sequence[mpmath.mpf]) -> tuple[float, NDArray[np.float64]]:
@@ -147,18 +156,24 @@ def _powers(balanced: NDArray[np.float64]) -> tuple[int, int]:
     return 0, 1
 
 
-def _root_test_growth(coefficients: Sequence[mpmath.mpf]) -> float:
-    """Exponent a in |c_n|^(-1/n) ~ n^a, between the middle and the last orders."""
-    last = len(coefficients) - 1
-    radii = [_largest_root(coefficients, order) for order in (last // 2, last)]
-    return math.log(radii[1] / radii[0]) / math.log(2) if radii[0] else math.inf
+def _growth(balanced: NDArray[np.float64]) -> float:
+    """Exponent a in |c_n|^(-1/n) ~ (n/e)^a: zero at a finite radius, 1/rho for an entire function of order rho."""
+    n, logarithms = _envelope(balanced)
+    factorials = np.array([math.lgamma(order + 1) for order in n])
+    return -float(_slopes(logarithms, factorials, n)[0])
 
 
-def _largest_root(coefficients: Sequence[mpmath.mpf], order: int) -> float:
-    """1/|c_n|^(1/n), the smallest of three neighbours, as a fraction of the first coefficients' size."""
-    size = max(abs(c) for c in coefficients[:3]) or mpmath.mpf(1)
-    late = [abs(coefficients[n] / size) ** (mpmath.mpf(-1) / n) for n in range(order - 2, order + 1) if coefficients[n]]
-    return float(min(late)) if late else 0.0
+def _envelope(balanced: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Later orders, and log|c_n| there of the largest of three neighbours each."""
+    n = np.arange((len(balanced) - 1) // 3 + 2, len(balanced))
+    sizes = np.max([np.abs(balanced[n - shift]) for shift in range(3)], axis=0)
+    return n[sizes > 0], np.log(sizes[sizes > 0])
+
+
+def _slopes(values: NDArray[np.float64], *columns: NDArray) -> NDArray[np.float64]:
+    """Coefficients of the columns, fitted to the values together with a constant."""
+    solution, *_ = np.linalg.lstsq(np.column_stack([*columns, np.ones(len(values))]), values, rcond=None)
+    return solution[:-1]
 
 
 def _fitted_radius(balanced: NDArray[np.float64], stride: int, scale: float) -> Radius | None:
@@ -168,8 +183,9 @@ def _fitted_radius(balanced: NDArray[np.float64], stride: int, scale: float) -> 
         return None
     difference, roots = min(choices, key=lambda choice: choice[0])
     nearest = float(abs(roots[0]))
-    spread = max(SAFETY * difference / nearest, FINEST) / stride
-    singularities = [_in_time(root, stride, scale) for root in roots if abs(root) <= nearest * (1 + SAFETY * spread)]
+    unseen = FARTHER ** (stride * (1 - len(balanced)))
+    spread = (SAFETY * difference / nearest + unseen + FINEST) / stride
+    singularities = [_in_time(root, stride, scale) for root in roots if abs(root) <= nearest * (1 + spread)]
     return _radius(nearest ** (1 / stride) * scale, spread, [z for group in singularities for z in group])
 
 
@@ -214,13 +230,14 @@ def _in_time(root: complex, stride: int, scale: float) -> list[complex]:
 
 
 def _root_test(balanced: NDArray[np.float64], stride: int, scale: float) -> Radius:
-    """log|c_n| = -n log R + a log n + b, fitted to the largest of three neighbours each."""
-    last = len(balanced) - 1
-    n = np.arange(last // 3 + 2, last + 1)
-    sizes = np.max([np.abs(balanced[n - shift]) for shift in range(3)], axis=0)
-    kept = sizes > 0
-    columns = np.column_stack([n[kept], np.log(n[kept]), np.ones(kept.sum())])
-    slope, *_ = np.linalg.lstsq(columns, np.log(sizes[kept]), rcond=None)[0]
+    """log|c_n| = -n log R + b, and with a term a log n more: what that changes is uncertain."""
+    n, logarithms = _envelope(balanced)
+    slope, slope_with_power = (_slopes(logarithms, *columns)[0] for columns in ((n,), (n, np.log(n))))
+    error = max(ROOT_TEST_ERROR / n[-1], SAFETY * abs(slope - slope_with_power)) / stride
     estimate = math.exp(-slope / stride) * scale
-    uncertainty = max(COARSE * estimate, abs(estimate - scale))
-    return Radius(estimate, uncertainty, (), "by the root test: the orders do not tell the nearest singularities apart")
+    remark = "by the root test: the orders do not tell the nearest singularities apart"
+    return Radius(estimate, estimate * math.expm1(error), (), remark)
+
+
+def _agree(one: Radius, other: Radius) -> bool:
+    return abs(one.estimate - other.estimate) <= one.uncertainty + other.uncertainty

@@ -5,6 +5,7 @@ as many digits, where something is computed from them.
 """
 
 import json
+import math
 import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -74,7 +75,7 @@ class MotionSeries:
     order : int
     t0 : str
     arithmetic : str
-        ``exact``, ``bigfloat(D)``, ``double`` or ``quadruple``.
+        ``exact``, ``bigfloat(D)``, ``double``, ``extended``, ``quadruple`` or ``heyoka(D)``.
     coordinates, multipliers, constraint_forces : mapping of str to tuple of str
         Coefficients of (t - t0)^0 ... (t - t0)^order, by name.
     continuation : Continuation or None
@@ -193,17 +194,21 @@ def values_at(motion: MotionSeries, time: Fraction) -> Values:
     Raises
     ------
     HolonomError
-        The instant is not inside the radius of convergence, as far as that is known.
+        The instant is not inside the radius of convergence; or that is unknown and the terms do not fall.
     """
     with mpmath.workdps(motion.digits):
         step = mpmath.mpf(time.numerator) / time.denominator - number(motion.t0)
         _require_inside(motion, time, float(abs(step)))
         series = {name: numbers(texts) for name, texts in motion.all_series()}
-        return Values(
-            time=time,
-            values={name: mpmath.polyval(coefficients[::-1], step) for name, coefficients in series.items()},
-            truncation_error=max(truncation_error(c, motion.radius, float(step)) for c in series.values()),
-        )
+        left_out = max(truncation_error(c, motion.radius, float(step)) for c in series.values())
+        if math.isinf(left_out):
+            raise HolonomError(
+                Failure.BEYOND_RADIUS,
+                detail=f"the terms of the series about t = {motion.t0} do not fall at t = {float(time):g}; "
+                f"its radius of convergence is {motion.radius.remark}",
+            )
+        sums = {name: mpmath.polyval(coefficients[::-1], step) for name, coefficients in series.items()}
+        return Values(time, sums, left_out)
 
 
 def series_document(motion: MotionSeries, values: Values | None = None) -> dict[str, Any]:

@@ -9,19 +9,25 @@ from functools import cache
 from pathlib import Path
 
 import mpmath
+import numpy as np
 import pytest
+from paper_series import START, paper_by_hand
 
 from harness.confined import Limits
 from harness.failures import HolonomError
-from harness.maxima import run_batch
 from harness.motion import heyoka_series
-from harness.motion.heyoka_series import Precision
-from harness.motion.radius import estimate_radius, truncation_error
+from harness.motion.precision import read_precision
+from harness.motion.radius import truncation_error
 from harness.motion.series import MotionSeries, SeriesRequest, compute_series, number, numbers, read_series, values_at
 
 ROOT = Path(__file__).resolve().parents[2]
 PAPER = ROOT / "examples" / "paper" / "paper.mac"
 PENDULUM = ROOT / "examples" / "pendulum.mac"
+ANDREWS = ROOT / "examples" / "andrews.mac"
+
+needs_extended = pytest.mark.skipif(
+    np.finfo(np.longdouble).nmant != 63, reason="this machine has no extended precision"
+)
 
 
 @cache
@@ -30,39 +36,18 @@ def series(file: Path, order: int, digits: int | str = "exact", scene: str | Non
     return compute_series(file, SeriesRequest(order, scene, digits, settings=settings), Limits())
 
 
-def compiled(order: int, precision: Precision, file: Path = PAPER, scene: str | None = None) -> MotionSeries:
-    return heyoka_series.compute_series(file, SeriesRequest(order, scene), precision, Limits())
-
-
-def paper_by_hand(order: int, u0: Fraction) -> dict[str, list[Fraction]]:
-    """Equation (14) under u = u0 + t. With s = q1 + q2:
-
-    ddot(q1) = -s - u lambda, ddot(q2) = -2 dot(s) - u lambda, ddot(q3) = lambda with q3 = u s, hence
-    (1 + 2 u^2) lambda = 2 dot(s) - u (s + 2 dot(s)).
-    """
-    q1, q2 = [Fraction(1), Fraction(1, 2)], [Fraction(2), Fraction(-1, 3)]
-    reaction: list[Fraction] = []
-
-    def at(row: list[Fraction], n: int) -> Fraction:
-        return row[n] if n >= 0 else Fraction(0)
-
-    for n in range(order + 1):
-        s = [a + b for a, b in zip(q1, q2, strict=True)]
-        ds = [k * c for k, c in enumerate(s)][1:]
-        driven = 2 * ds[n] - u0 * (s[n] + 2 * ds[n]) - at(s, n - 1) - 2 * at(ds, n - 1)
-        reaction.append((driven - 4 * u0 * at(reaction, n - 1) - 2 * at(reaction, n - 2)) / (1 + 2 * u0**2))
-        carried = u0 * reaction[n] + at(reaction, n - 1)
-        q1.append((-s[n] - carried) / ((n + 1) * (n + 2)))
-        q2.append((-2 * ds[n] - carried) / ((n + 1) * (n + 2)))
-    s = [a + b for a, b in zip(q1, q2, strict=True)]
-    q3 = [u0 * s[n] + at(s, n - 1) for n in range(order + 1)]
-    return {"q1": q1[: order + 1], "q2": q2[: order + 1], "q3": q3, "lambda1": reaction}
+def compiled(
+    order: int, precision: str, file: Path = PAPER, scene: str | None = None, until: Fraction | None = None
+) -> MotionSeries:
+    return heyoka_series.compute_series(
+        file, SeriesRequest(order, scene, until=until), read_precision(precision), Limits()
+    )
 
 
 def relative_digits(found: MotionSeries, exact: MotionSeries) -> float:
     """Digits in which all coefficients agree."""
     worst = mpmath.mpf(0)
-    with mpmath.workdps(80):
+    with mpmath.workdps(130):
         for (_, row), (_, true) in zip(found.all_series(), exact.all_series(), strict=True):
             for a, b in zip(numbers(row), numbers(true), strict=True):
                 worst = max(worst, abs(a - b) / abs(b) if b else abs(a))
@@ -71,7 +56,7 @@ def relative_digits(found: MotionSeries, exact: MotionSeries) -> float:
 
 def test_paper_to_order_40_in_exact_rationals():
     found = dict(series(PAPER, 40).all_series())
-    expected = paper_by_hand(40, Fraction(3, 10))
+    expected = paper_by_hand(40, Fraction(3, 10), START["q1"], START["q2"])
     assert {name: [Fraction(text) for text in row] for name, row in found.items()} == expected
     assert found["q1"][:3] == ("1", "1/2", "-167/118")
 
@@ -86,14 +71,28 @@ def test_entire_motion_loses_no_digits():
     assert relative_digits(series(PAPER, 40, 20, free), series(PAPER, 40, "exact", free)) >= 19
 
 
-@pytest.mark.parametrize(("precision", "digits"), [(Precision.DOUBLE, 12), (Precision.QUADRUPLE, 29)])
+PRECISIONS = [
+    ("double", 12),
+    pytest.param("extended", 15, marks=needs_extended),
+    ("quadruple", 29),
+    ("20", 19),
+    ("100", 99),
+]
+
+
+@pytest.mark.parametrize(("precision", "digits"), PRECISIONS)
 def test_engines_agree(precision, digits):
     assert relative_digits(compiled(40, precision), series(PAPER, 40)) >= digits
 
 
 def test_engines_agree_on_a_pendulum():
-    swing = compiled(20, Precision.QUADRUPLE, PENDULUM, "lengthening_scene")
+    swing = compiled(20, "quadruple", PENDULUM, "lengthening_scene")
     assert relative_digits(swing, series(PENDULUM, 20, 40, "lengthening_scene")) >= 28
+
+
+def test_engines_agree_on_the_squeezer_in_fifty_digits():
+    """Seven bodies, six constraints, order 40: Maxima's confirmed bigfloats and heyoka's arithmetic of MPFR."""
+    assert relative_digits(compiled(40, "50", ANDREWS), series(ANDREWS, 40, 50)) >= 48
 
 
 def test_automatic_arithmetic_is_exact_where_it_can_be():
@@ -136,35 +135,6 @@ def test_radius_of_a_pendulum_released_at_rest():
     assert len(radius.singularities) == 4
 
 
-@pytest.mark.parametrize(
-    ("coefficient", "true"),
-    [
-        (lambda n: mpmath.mpf(3) ** -n, 3.0),
-        (lambda n: mpmath.binomial(mpmath.mpf(1) / 2, n) / mpmath.mpf(2) ** n, 2.0),
-        (lambda n: mpmath.mpf(0) if n % 2 else mpmath.mpf(5) ** -n, 5.0),
-        (lambda n: mpmath.mpf(n % 2) / (n + 1) * mpmath.mpf(4) ** -n, 4.0),
-    ],
-    ids=["pole", "square root", "even", "odd logarithm"],
-)
-def test_radius_of_known_functions(coefficient, true):
-    radius = estimate_radius([[coefficient(n) for n in range(41)]])
-    assert abs(radius.estimate - true) <= radius.uncertainty <= 1e-2 * true
-
-
-@pytest.mark.parametrize(
-    ("row", "said"),
-    [
-        ([mpmath.mpf(1)] * 5 + [mpmath.mpf(0)] * 20, "polynomial"),
-        ([1 / mpmath.factorial(n) for n in range(30)], "entire"),
-        ([mpmath.mpf(1)] * 5, "unknown"),
-    ],
-)
-def test_where_there_is_no_radius_words_say_why(row, said):
-    radius = estimate_radius([row])
-    assert radius.estimate is None
-    assert said in radius.remark
-
-
 def test_truncation_error_covers_the_error():
     motion = series(PAPER, 40)
     longer = {name: numbers(row) for name, row in series(PAPER, 160).all_series()}
@@ -179,23 +149,71 @@ def test_values_beyond_the_radius_are_refused_with_the_reason():
         values_at(series(PAPER, 40), Fraction(2))
 
 
+def test_values_are_refused_where_the_radius_is_unknown_and_the_terms_grow():
+    with pytest.raises(HolonomError, match=r"do not fall at t = 5; its radius of convergence is unknown"):
+        values_at(series(PAPER, 10), Fraction(5))
+
+
+def worst_difference_at_the_end(one, other):
+    """Between two continuations."""
+    with mpmath.workdps(60):
+        return max(
+            abs(number(ours[name][-1]) - number(theirs[name][-1]))
+            for ours, theirs in ((one.coordinates, other.coordinates), (one.velocities, other.velocities))
+            for name in theirs
+        )
+
+
 def test_continuation_passes_the_radius():
-    """Beyond it, heyoka's integrator in quadruple precision is the witness."""
-    request = SeriesRequest(8, None, "exact", Fraction(3))
-    continuation = compute_series(PAPER, request, Limits()).continuation
-    arguments = "lambda([file], write_initial_value_problem(file, false, 36))"
-    problem = heyoka_series.read_problem(run_batch(PAPER, arguments))
-    integrator = heyoka_series.make_integrator(problem, 38, Precision.QUADRUPLE)
-    integrator.propagate_until(type(integrator.time)("3"))
-    rows = [*continuation.coordinates.values(), *continuation.velocities.values()]
-    with mpmath.workdps(40):
-        for row, witness in zip(rows, integrator.state, strict=False):
-            assert abs(number(row[-1]) - mpmath.mpf(str(witness))) < 1e-26
+    """Beyond it, heyoka's integrator in quadruple precision is the witness of Maxima's expansions."""
+    found = compute_series(PAPER, SeriesRequest(8, None, "exact", Fraction(3)), Limits()).continuation
+    assert worst_difference_at_the_end(found, compiled(8, "quadruple", until=Fraction(3)).continuation) < 1e-26
+
+
+@pytest.mark.parametrize(
+    ("precision", "error"), [("double", 1e-13), pytest.param("extended", 1e-16, marks=needs_extended), ("40", 1e-39)]
+)
+def test_continuation_has_the_precision_of_its_numbers(precision, error):
+    witness = compute_series(PAPER, SeriesRequest(8, None, 50, Fraction(-2)), Limits()).continuation
+    found = compiled(8, precision, until=Fraction(-2)).continuation
+    assert number(found.instants[-1]) == -2
+    assert worst_difference_at_the_end(found, witness) < error
+
+
+def test_continuation_ends_at_a_pole(tmp_path):
+    """ddot(x) = 6 x^2 from x = 1, dot(x) = 2: x = 1/(1 - t)^2."""
+    scene = tmp_path / "pole.mac"
+    scene.write_text(
+        'load("holonom.mac")$\n'
+        "system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [pull = [6*x^2]],"
+        " constraints = [])$\n"
+        "escape : holonomic_scene(system, initial_state = [x = 1, dot(x) = 2])$\n"
+    )
+    before = compiled(20, "double", scene, until=Fraction(1, 2)).continuation
+    assert float(before.coordinates["x"][-1]) == pytest.approx(4, rel=1e-14)
+    with pytest.raises(HolonomError, match="cannot be continued beyond t = 1"):
+        compiled(20, "double", scene, until=Fraction(2))
+
+
+def test_constraint_forces_are_multipliers_times_gradients(tmp_path):
+    """Where a scene observes them: Lambda = lambda df/dq, a product of series, with f = q3 - (u0 + t) (q1 + q2)."""
+    scene = tmp_path / "paper.mac"
+    text = PAPER.read_text().replace("../../maxima/holonom.mac", str(ROOT / "maxima" / "holonom.mac"))
+    text = text.replace("sconcat(pathname_directory(load_pathname), ", "(")
+    scene.write_text(text.rpartition("  time_span")[0] + "  observe = [constraint_forces])$\n")
+    for motion in (series(scene, 12), compiled(12, "quadruple", scene)):
+        assert set(motion.constraint_forces) == {"Lambda[1]", "Lambda[2]", "Lambda[3]"}
+        with mpmath.workdps(50):
+            reaction = numbers(motion.multipliers["lambda1"])
+            pulled = [-(mpmath.mpf(3) / 10 * reaction[n] + (reaction[n - 1] if n else 0)) for n in range(13)]
+            for name, expected in zip(motion.constraint_forces, (pulled, pulled, reaction), strict=True):
+                found = numbers(motion.constraint_forces[name])
+                assert max(abs(a - b) for a, b in zip(found, expected, strict=True)) < 1e-26
 
 
 def test_order_that_heyoka_cannot_reach_is_refused():
     with pytest.raises(HolonomError, match="heyoka reaches order"):
-        compiled(1000, Precision.DOUBLE)
+        compiled(1000, "double")
 
 
 def test_long_exact_numbers_are_read():
@@ -226,6 +244,11 @@ def test_command_writes_the_document():
         ["--order", "4", "--digits", "0"],
         ["--order", "4", "--exact", "--digits", "3"],
         ["--order", "4", "--digits", "10000000000"],
+        ["--order", "4", "--precision", "0"],
+        ["--order", "4", "--precision", "half"],
+        ["--order", "4", "--precision", "10000000000"],
+        ["--order", "4", "--precision", "double", "--exact"],
+        ["--order", "400", "--precision", "double"],
         ["--order", "4", "--at", "noon"],
         ["--order", "40", "--at", "5"],
         ["--order", "4", "--scene", "nowhere"],

@@ -1,0 +1,1 @@
+"""Figures: what a run computed, drawn. One file a figure, one style for all."""

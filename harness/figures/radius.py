@@ -1,0 +1,101 @@
+"""The control governs convergence: the paper's example, its radius of convergence against the initial control u0.
+
+Under u = u0 + t the motion is singular where 1 + 2 u^2 = 0, at t = -u0 ± i/sqrt(2): the series converges up to
+sqrt(u0^2 + 1/2). Under u = u0 exp(t) it is entire. The points are estimated from the coefficients alone.
+"""
+
+import math
+import sys
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from fractions import Fraction
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from harness.confined import Limits
+from harness.figures.style import BLUE, GREEN, INK, VERMILION, figure_style, new_figure, write_figure
+from harness.motion.radius import ENTIRE, Radius
+from harness.motion.series import SeriesRequest, compute_series
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+PAPER = Path(__file__).parents[2] / "examples" / "paper" / "paper.mac"
+LINEAR, EXPONENTIAL = "initial_motion_scene", "free_motion_scene"  # u = u0 + t, u = u0 exp(t)
+CONTROLS = [Fraction(k, 4) for k in range(-8, 9)]
+ORDERS = (26, 160)  # few, so that the uncertainty shows; and many
+ORDER_OF_ENTIRE = 60
+HIGHEST = 2.5  # radius in the drawing
+AT_ONCE = 2  # runs of Maxima
+
+
+def draw_radius(file: Path) -> None:
+    """Draw the radius of convergence and the nearest singularities against u0.
+
+    Parameters
+    ----------
+    file : Path
+        The SVG file to write.
+
+    Raises
+    ------
+    HolonomError
+        As `harness.motion.series.compute_series`; Matplotlib is not installed; the file cannot be written.
+    """
+    with figure_style():
+        figure = new_figure(10, 4.2)
+        radii, plane = figure.subplots(1, 2)
+        coarse, fine = (_radii(LINEAR, order) for order in ORDERS)
+        _draw_radii(radii, coarse, fine, _radii(EXPONENTIAL, ORDER_OF_ENTIRE))
+        _draw_singularities(plane, fine)
+        write_figure(figure, file)
+
+
+def _radii(scene: str, order: int) -> list[Radius]:
+    """One for each of the controls."""
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        return list(pool.map(partial(_radius, scene, order), CONTROLS))
+
+
+def _radius(scene: str, order: int, u0: Fraction) -> Radius:
+    request = SeriesRequest(order, scene, settings={"u0": str(u0)})
+    return compute_series(PAPER, request, Limits()).radius
+
+
+def _draw_radii(axes: "Axes", coarse: Sequence[Radius], fine: Sequence[Radius], entire: Sequence[Radius]) -> None:
+    u0 = np.linspace(float(CONTROLS[0]), float(CONTROLS[-1]), 201)
+    axes.plot(u0, np.sqrt(u0**2 + 0.5), color=INK, linewidth=1, label="√(u₀² + 1/2)")
+    for radii, order, colour, marker in ((coarse, ORDERS[0], VERMILION, "s"), (fine, ORDERS[1], BLUE, "o")):
+        told = [(float(u), r.estimate, r.uncertainty) for u, r in zip(CONTROLS, radii, strict=True) if r.estimate]
+        axes.errorbar(*zip(*told, strict=True), fmt=marker, color=colour, label=f"u = u₀ + t, {order} orders")
+    infinite = [float(u) for u, radius in zip(CONTROLS, entire, strict=True) if radius == ENTIRE]
+    axes.plot(infinite, [HIGHEST] * len(infinite), "^", color=GREEN, clip_on=False, label="u = u₀ exp(t): entire")
+    axes.set(xlabel="initial control u₀", ylabel="radius of convergence", ylim=(0, HIGHEST))
+    axes.set_title("How far the series of the motion holds", pad=12)
+    axes.legend(loc="lower center", ncols=2)
+
+
+def _draw_singularities(axes: "Axes", radii: Sequence[Radius]) -> None:
+    drawn = list(zip(CONTROLS, radii, strict=True))[::2]
+    true = [complex(-float(u), sign * math.sqrt(0.5)) for u, _ in drawn for sign in (-1, 1)]
+    axes.plot(*_parts(true), "o", color=INK, fillstyle="none", markersize=10, label="1 + 2 (u₀ + t)² = 0")
+    found = [z for _, radius in drawn for z in radius.singularities]
+    axes.plot(*_parts(found), "x", color=BLUE, label=f"from {ORDERS[1]} orders")
+    for u0, _ in drawn:
+        axes.annotate(f"u₀ = {float(u0):g}", (-float(u0), 0.88), ha="center", rotation=40, fontsize=8)
+    axes.plot(0, 0, "+", color=INK)
+    axes.annotate("t = 0", (0.07, 0.05))
+    axes.set(xlabel="Re t", ylabel="Im t", xlim=(-2.4, 2.4), ylim=(-1.5, 1.5))
+    axes.set_title("What stops it: singularities in the complex time plane", pad=12)
+    axes.legend(loc="lower center", ncols=2)
+
+
+def _parts(points: Sequence[complex]) -> tuple[list[float], list[float]]:
+    return [z.real for z in points], [z.imag for z in points]
+
+
+if __name__ == "__main__":
+    draw_radius(Path(sys.argv[1]))

@@ -1,0 +1,155 @@
+"""One style for all figures: SVG with its text as text, the same bytes from the same numbers, on light and dark pages.
+
+    with figure_style():
+        figure = new_figure(9, 4)
+        left, right = figure.subplots(1, 2)
+        left.plot(times, values, color=BLUE, label="...")
+    write_figure(figure, Path("build/motion.svg"))
+
+Axes, text and grid are drawn in `INK`, which stands for the reader's own ink: dark on a light page, light on a dark
+one, inside an <img> as well as inside a page. Nothing is drawn behind them. Colours are those of Okabe and Ito that
+show on both, told apart with any colour vision; still, let markers and line styles say the same once more.
+
+References
+----------
+Okabe & Ito, Color Universal Design (2008).
+"""
+
+import io
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+from harness.failures import Failure, HolonomError
+from harness.files import write_whole
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+BLUE, VERMILION, GREEN = "#0072b2", "#d55e00", "#009e73"
+ORANGE, SKY, PURPLE = "#e69f00", "#56b4e9", "#cc79a7"
+PALETTE = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY)
+MARKERS = ("o", "s", "^", "D", "v", "P")
+LINES = ("-", "--", "-.", ":")
+INK = "#1f2328"
+INK_ON_DARK = "#d1d7e0"
+
+SETTINGS = {
+    "axes.edgecolor": INK,
+    "axes.grid": True,
+    "axes.labelcolor": INK,
+    "axes.spines.right": False,
+    "axes.spines.top": False,
+    "axes.titlecolor": INK,
+    "axes.titlelocation": "left",
+    "axes.titlesize": "medium",
+    "errorbar.capsize": 3.0,
+    "figure.facecolor": "none",
+    "axes.facecolor": "none",
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans"],
+    "grid.alpha": 0.15,
+    "grid.color": INK,
+    "legend.frameon": False,
+    "lines.linewidth": 1.6,
+    "lines.markersize": 5.0,
+    "savefig.facecolor": "none",
+    "text.color": INK,
+    "xtick.color": INK,
+    "ytick.color": INK,
+}
+WRITING = {"svg.fonttype": "none", "svg.hashsalt": "holonom"}
+COLOUR_OF_INK = f"<style>svg{{color:{INK}}}@media(prefers-color-scheme:dark){{svg{{color:{INK_ON_DARK}}}}}</style>"
+
+
+@contextmanager
+def figure_style() -> Iterator[None]:
+    """Draw in this style inside the block; Matplotlib's own settings return after it.
+
+    Raises
+    ------
+    HolonomError
+        Matplotlib is not installed.
+    """
+    matplotlib = import_matplotlib()
+    with matplotlib.rc_context():
+        matplotlib.rcParams.update(matplotlib.rcParamsDefault)
+        matplotlib.rcParams.update({**SETTINGS, "axes.prop_cycle": matplotlib.cycler(color=PALETTE)})
+        yield
+
+
+def new_figure(width: float, height: float) -> "Figure":
+    """An empty figure, of no window and no global state.
+
+    Parameters
+    ----------
+    width, height : float
+        In inches; the text is of 10 points.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Its panels are laid out so that nothing overlaps.
+
+    Raises
+    ------
+    HolonomError
+        Matplotlib is not installed.
+    """
+    import_matplotlib()
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def write_figure(figure: "Figure", path: Path) -> None:
+    """Write a figure as SVG, or as PNG on white where the name says so, whole or not at all.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+    path : Path
+        The file; what it held is replaced. The same figure gives the same bytes.
+
+    Raises
+    ------
+    HolonomError
+        The file cannot be written.
+    """
+    write_whole(path, _png(figure) if path.suffix == ".png" else svg_text(figure))
+
+
+def svg_text(figure: "Figure") -> str:
+    """A figure as the text of an SVG document, its ink the reader's.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+
+    Returns
+    -------
+    str
+    """
+    buffer = io.StringIO()
+    with import_matplotlib().rc_context(WRITING):
+        figure.savefig(buffer, format="svg", metadata={"Date": None})
+    head, defs, rest = buffer.getvalue().partition("<defs>")
+    lines = (line.rstrip() for line in (head + COLOUR_OF_INK + defs + rest.replace(INK, "currentColor")).splitlines())
+    return "\n".join(lines) + "\n"
+
+
+def _png(figure: "Figure") -> bytes:
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", facecolor="white", metadata={"Software": None})
+    return buffer.getvalue()
+
+
+def import_matplotlib() -> ModuleType:
+    """Matplotlib, or the sentence that it is missing."""
+    try:
+        import matplotlib
+    except ImportError:
+        raise HolonomError(Failure.EXTRA_MISSING, detail="matplotlib") from None
+    return matplotlib
