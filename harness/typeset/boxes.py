@@ -117,4 +117,9 @@ def stacked(rows: Sequence[Box]) -> Box:
 
 def aligned(lines: Iterable[str]) -> str:
     """Lines of LaTeX below each other, each with its mark &."""
-    return "\\begin{aligned}\n" + " \\\\\n".join(lines) + "\n\\end{aligned}"
+    return "\\begin{aligned}\n" + " \\\\\n".join(map(_guarded, lines)) + "\n\\end{aligned}"
+
+
+def _guarded(line: str) -> str:
+    """LaTeX takes a bracket at the head of a line for an option."""
+    return f"{{}}{line}" if line.startswith("[") else line

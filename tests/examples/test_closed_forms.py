@@ -130,3 +130,22 @@ class TestBead:
     def test_slider_at_rest_gives_the_hyperbolic_cosine(self):
         t = Symbol("t", real=True)
         assert agree_to_third_order(series_of(record_of("bead"), "resting_scene", "r"), cosh(2 * t))
+
+
+class TestWhirlingBob:
+    def test_christoffel_symbols_of_polar_coordinates(self):
+        # christoffel[k, m, s] stands for [k,m;s] = (dA_ks/dq_m + dA_ms/dq_k - dA_km/dq_s)/2, with A = diag(m, m r^2)
+        m, r = symbols("m r")
+        (symbols_of_polar,) = (e for e in record_of("whirling_bob").derivations[0].equations if e.number == "6")
+        values = {str(relation.left): relation.right for relation in symbols_of_polar.relations}
+        assert values == {"christoffel[2, 2, 1]": -m * r, "christoffel[1, 2, 2]": m * r}
+
+    def test_pull_of_the_string(self):
+        m, r, rate, ddu = symbols("m r dot(phi) ddot(u)")
+        multiplier = solved(record_of("whirling_bob").derivations[0].equations, "8")["lambda1"]
+        assert same(multiplier, m * (ddu - r * rate**2))
+
+    def test_angular_momentum_stays_as_the_string_is_drawn_in(self):
+        # r^2 dot(phi) = 1 with r = 1 - t/10, so phi = t/(1 - t/10)
+        t = Symbol("t", real=True)
+        assert agree_to_third_order(series_of(record_of("whirling_bob"), "drawn_in_scene", "phi"), t / (1 - t / 10))

@@ -1,0 +1,59 @@
+"""The command that makes the textbook: companion."""
+
+from collections.abc import Sequence
+from importlib.util import find_spec
+from pathlib import Path
+
+import click
+
+from harness.cli.group import holonom
+from harness.cli.options import runs_scenes, takes_settings
+from harness.confined import Limits
+from harness.failures import Failure, HolonomError
+
+EXTRAS = ("jinja2", "latex2mathml", "matplotlib", "heyoka")
+
+
+@holonom.command()
+@click.argument("scenes", metavar="[SCENE...]", nargs=-1, type=click.Path(path_type=Path))
+@click.option(
+    "-o",
+    "--output",
+    "directory",
+    metavar="DIR",
+    required=True,
+    type=click.Path(path_type=Path),
+    help="Where the pages are put; begin to read with index.html.",
+)
+@takes_settings
+@runs_scenes
+def companion(scenes: Sequence[Path], directory: Path, settings: Sequence[str], limits: Limits) -> int:
+    """Make the textbook companion of the paper, or of the SCENEs given, as pages for a browser."""
+    require_extras()
+    from harness.companion.book import make_book
+    from harness.companion.own_scenes import book_of_scenes
+    from harness.companion.paper import book_of_the_paper
+    from harness.console.progress import progress
+    from harness.motion.request import read_settings
+
+    given = tuple(read_settings(settings).items())
+    if given and not scenes:
+        raise click.UsageError("--set needs a SCENE")
+    book = book_of_scenes(scenes, given, limits) if scenes else book_of_the_paper()
+    with progress(f"Making {directory}", len(book.runs)) as done:
+        make_book(book, directory, done)
+    click.echo(f"The companion is in {directory}: open {directory / 'index.html'} in a browser.")
+    return 0
+
+
+def require_extras() -> None:
+    """Refuse to begin where a package that the pages take is missing.
+
+    Raises
+    ------
+    HolonomError
+        It names the package.
+    """
+    for package in EXTRAS:
+        if find_spec(package) is None:
+            raise HolonomError(Failure.EXTRA_MISSING, detail=package)

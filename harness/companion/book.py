@@ -1,0 +1,146 @@
+"""The book: chapters in their order, their runs performed, their pages written."""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from itertools import count
+from pathlib import Path
+from string import ascii_uppercase
+from typing import Any
+
+from harness.companion.chapter import Chapter, Page, Run
+from harness.companion.pages import (
+    STYLE,
+    Contents,
+    Entry,
+    Part,
+    chapter_page,
+    index_page,
+    source_name,
+    source_page,
+)
+from harness.companion.runs import Derived, Study, perform
+from harness.failures import Failure, HolonomError
+from harness.files import write_whole_directory
+
+APPENDICES = "Appendices"  # title of the part whose chapters have letters
+GENERATOR = '<meta name="generator" content="Holonom companion" />'
+
+
+@dataclass(frozen=True)
+class Book:
+    """Chapters, in parts.
+
+    Attributes
+    ----------
+    title, subtitle : str
+    foreword : str
+        Template of what the first page says before the contents.
+    command : str
+        The command that makes the book.
+    root : Path
+        What the names of source files are relative to.
+    parts : tuple of (str, tuple of Chapter)
+        Title and chapters of each part.
+    """
+
+    title: str
+    subtitle: str
+    foreword: str
+    command: str
+    root: Path
+    parts: tuple[tuple[str, tuple[Chapter, ...]], ...]
+
+    @property
+    def runs(self) -> dict[Run, None]:
+        """What its chapters need, each once."""
+        return {run: None for chapter in self.chapters for run in chapter.runs.values()}
+
+    @property
+    def chapters(self) -> list[Chapter]:
+        """All chapters in their order."""
+        return [chapter for _, chapters in self.parts for chapter in chapters]
+
+
+def make_book(book: Book, directory: Path, done: Callable[[], None]) -> None:
+    """Perform a book's runs and write its pages.
+
+    Parameters
+    ----------
+    book : Book
+    directory : Path
+        Where the pages are put; a companion that is there is replaced.
+    done : callable
+        Called each time that one of the runs is done.
+
+    Raises
+    ------
+    HolonomError
+        A run fails, or the directory holds something else or cannot be written.
+    """
+    require_companion_or_nothing(directory)
+    results = perform(book.runs, done)
+    write_whole_directory(directory, pages(book, results))
+
+
+def require_companion_or_nothing(directory: Path) -> None:
+    """Refuse a directory that holds what is no companion.
+
+    Raises
+    ------
+    HolonomError
+        It does.
+    """
+    first_page = directory / "index.html"
+    if not directory.exists() or (directory.is_dir() and not any(directory.iterdir())):
+        return
+    if not first_page.is_file() or GENERATOR not in first_page.read_text(encoding="utf-8", errors="replace"):
+        raise HolonomError(Failure.NOT_A_COMPANION, directory)
+
+
+def pages(book: Book, results: Mapping[Run, Any]) -> dict[str, str]:
+    """The files of a book.
+
+    Parameters
+    ----------
+    book : Book
+    results : mapping of Run to object
+        Of all the book's runs.
+
+    Returns
+    -------
+    dict of str to str
+        Text by file name.
+    """
+    contents = _contents(book, results)
+    made = {chapter: _page(chapter, results) for chapter in book.chapters}
+    files = {"companion.css": STYLE.read_text(encoding="utf-8"), "index.html": index_page(contents)}
+    for chapter, page in made.items():
+        files[f"{chapter.slug}.html"] = chapter_page(contents, chapter, page.content)
+        files |= {f"figures/{name}.svg": svg for name, svg in page.figures.items()}
+    for file in dict.fromkeys(source for page in made.values() for source in page.sources):
+        files[source_name(file)] = source_page(contents, file, (book.root / file).read_text(encoding="utf-8"))
+    return files
+
+
+def _page(chapter: Chapter, results: Mapping[Run, Any]) -> Page:
+    return chapter.page({name: results[run] for name, run in chapter.runs.items()})
+
+
+def _contents(book: Book, results: Mapping[Run, Any]) -> Contents:
+    numbers, letters = map(str, count(1)), iter(ascii_uppercase)
+    return Contents(
+        title=book.title,
+        subtitle=book.subtitle,
+        foreword=book.foreword,
+        command=book.command,
+        maxima=next(found.record.maxima for found in results.values() if isinstance(found, Derived | Study)),
+        parts=tuple(
+            Part(title, tuple(_entries(chapters, letters if title == APPENDICES else numbers)))
+            for title, chapters in book.parts
+        ),
+    )
+
+
+def _entries(chapters: tuple[Chapter, ...], labels: Iterator[str]) -> Iterator[Entry]:
+    for chapter in chapters:
+        yield Entry(next(labels), chapter.slug, chapter.title, chapter.aim)

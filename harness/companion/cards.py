@@ -1,0 +1,218 @@
+"""The card of an equation: as printed, as derived, by which Maxima lines, with which verdict, and in plain words."""
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from harness.companion.excerpts import Excerpt
+from harness.companion.runs import Derived
+from harness.companion.steps import step
+from harness.companion.words import words
+from harness.crosscheck import EquationVerdict
+from harness.errata import PrintedEquation
+from harness.record import Equation, Scene
+
+MISSING = "(missing)"  # what the report calls an equation that is not there
+
+
+@dataclass(frozen=True)
+class Instance:
+    """An equation as derived for one system.
+
+    Attributes
+    ----------
+    title : str
+        The system, or the scene of it.
+    equation : Equation
+    verdicts : tuple of EquationVerdict
+        What the cross-check says of it; a third opinion is one more.
+    """
+
+    title: str
+    equation: Equation
+    verdicts: tuple[EquationVerdict, ...]
+
+
+@dataclass(frozen=True)
+class Card:
+    """All that a reader is told about one equation.
+
+    Attributes
+    ----------
+    anchor : str
+        Where the card is, on its page.
+    number, name : str
+        The paper's number and what the equation is.
+    words : str
+        One or two plain sentences, with TeX between dollar signs.
+    printed : tuple of PrintedEquation
+        As the paper prints it; empty where there is no print to compare with.
+    instances : tuple of Instance
+        As derived: the first is shown, the others on request.
+    lines : tuple of Excerpt
+        The Maxima lines that derive it.
+    """
+
+    anchor: str
+    number: str
+    name: str
+    words: str
+    printed: tuple[PrintedEquation, ...]
+    instances: tuple[Instance, ...]
+    lines: tuple[Excerpt, ...]
+
+
+def derivation_cards(
+    numbers: Sequence[str],
+    derivations: Sequence[Derived],
+    printed: Iterable[PrintedEquation],
+    root: Path,
+) -> list[Card]:
+    """Cards of equations (1) to (11).
+
+    Parameters
+    ----------
+    numbers : sequence of str
+        Which ones; the cards come in the order of the first record.
+    derivations : sequence of Derived
+        The first has the equations that are shown, the others those shown on request.
+    printed : iterable of PrintedEquation
+    root : Path
+        The repository that the Maxima lines are taken from.
+    """
+    instances = [_derivation_instances(each) for each in derivations]
+    return _cards(numbers, instances, tuple(printed), root)
+
+
+def scene_cards(
+    numbers: Sequence[str],
+    scenes: Sequence[tuple[Derived, str]],
+    printed: Iterable[PrintedEquation],
+    root: Path,
+    prefix: str = "",
+) -> list[Card]:
+    """Cards of equations (10) and (12) to (19) of scenes, each given with the derivation that it belongs to.
+
+    Parameters
+    ----------
+    numbers : sequence of str
+    scenes : sequence of (Derived, str)
+        The derivation, and the name of the scene in it.
+    printed : iterable of PrintedEquation
+    root : Path
+    prefix : str
+        What the anchors begin with, where a page shows the cards of several scenes.
+    """
+    instances = [_scene_instances(derived, name) for derived, name in scenes]
+    return _cards(numbers, instances, tuple(printed), root, prefix)
+
+
+def named_equations(derived: Derived, scene: str | None = None) -> dict[str, Equation]:
+    """The equations of a derivation, of all its effects, or of a scene, by the names that they have in the record."""
+    record = derived.record
+    whole = max(record.derivations, key=lambda each: len(each.effects))
+    found = whole.equations if scene is None else scene_named(derived, scene).equations
+    return {equation.name: equation for equation in found}
+
+
+def scene_named(derived: Derived, name: str) -> Scene:
+    """The scene of that name in a record."""
+    return next(scene for scene in derived.record.scenes if scene.name == name)
+
+
+def verdicts_on(derived: Derived, equation: Equation, scene: str | None) -> tuple[EquationVerdict, ...]:
+    """The verdicts on an equation of a scene or, without a scene, of the derivation."""
+    return tuple(found for found in derived.report.verdicts if found.scene == scene and _same(found, equation))
+
+
+def missing(derived: Derived) -> list[EquationVerdict]:
+    """The verdicts on equations that a record should hold and does not: they have no card."""
+    return [found for found in derived.report.verdicts if found.name == MISSING]
+
+
+def files_of(cards: Iterable[Card]) -> tuple[str, ...]:
+    """The Maxima files that the lines on some cards come from."""
+    return tuple(each.file for card in cards for each in card.lines)
+
+
+def anchor(prefix: str, equation: Equation | PrintedEquation, taken: Iterable[str] = ()) -> str:
+    """The anchor of an equation: its number, or its name where there is none or another has it."""
+    short = "-".join(filter(None, [prefix, "eq", equation.number]))
+    named = f"{short}-{re.sub(r'[^a-z0-9]+', '-', equation.name.lower()).strip('-')}"
+    return named if not equation.number or short in taken else short
+
+
+def anchors(equations: Iterable[Equation | PrintedEquation], prefix: str = "") -> list[str]:
+    """Anchors of equations on one page, all different."""
+    found: list[str] = []
+    for each in equations:
+        found.append(anchor(prefix, each, found))
+    return found
+
+
+def _cards(
+    numbers: Sequence[str],
+    instances: Sequence[Sequence[Instance]],
+    printed: tuple[PrintedEquation, ...],
+    root: Path,
+    prefix: str = "",
+) -> list[Card]:
+    equations = _distinct(shown.equation for shown in instances[0] if shown.equation.number in numbers)
+    return [
+        Card(
+            anchor=place,
+            number=equation.number,
+            name=equation.name,
+            words=words(equation.number, equation.name),
+            printed=tuple(each for each in printed if _same(each, equation)),
+            instances=tuple(each for group in instances for each in group if _same(each.equation, equation)),
+            lines=step(root, equation.number, equation.name),
+        )
+        for place, equation in zip(anchors(equations, prefix), equations, strict=True)
+    ]
+
+
+def _distinct(equations: Iterable[Equation]) -> list[Equation]:
+    return list({(equation.number, equation.name): equation for equation in equations}.values())
+
+
+def _same(one: Equation | PrintedEquation | EquationVerdict, other: Equation) -> bool:
+    return (one.number, one.name) == (other.number, other.name)
+
+
+def _derivation_instances(derived: Derived) -> list[Instance]:
+    """The equations of all derivations of a record, those with most effects first."""
+    record = derived.record
+    parts = list(zip(record.derivations, _verdicts_by_derivation(derived), strict=True))
+    parts.sort(key=lambda part: len(part[0].effects), reverse=True)
+    return [
+        Instance(
+            record.system.title if len(parts) == 1 else f"{record.system.title}, with {', '.join(derivation.effects)}",
+            equation,
+            tuple(found for found in verdicts if _same(found, equation) or _third_opinion(found, equation)),
+        )
+        for derivation, verdicts in parts
+        for equation in derivation.equations
+    ]
+
+
+def _verdicts_by_derivation(derived: Derived) -> list[list[EquationVerdict]]:
+    """The report goes through one derivation after the other; each begins with (1)."""
+    parts: list[list[EquationVerdict]] = []
+    for found in derived.report.verdicts:
+        if found.scene is None:
+            if found.number == "1":
+                parts.append([])
+            parts[-1].append(found)
+    return parts
+
+
+def _scene_instances(derived: Derived, name: str) -> list[Instance]:
+    scene = scene_named(derived, name)
+    return [Instance(scene.title, equation, verdicts_on(derived, equation, name)) for equation in scene.equations]
+
+
+def _third_opinion(found: EquationVerdict, equation: Equation) -> bool:
+    """SymPy's own LagrangesMethod speaks of equation (2), under a name of its own."""
+    return found.number == equation.number == "2" and found.name != equation.name

@@ -1,0 +1,64 @@
+"""Free motion: the condition (10), and whether the example satisfies it."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from harness.companion.cards import Card, anchor, derivation_cards, files_of, named_equations, scene_cards
+from harness.companion.chapter import Chapter, Page
+from harness.companion.examples import BOB, CABIN, FREE_SCENE, INITIAL_SCENE, PAPER, PENDULUM
+from harness.companion.runs import derived, free, printed
+from harness.companion.words import words
+from harness.errata import PrintedEquation
+
+PARABOLIC_FLIGHT = "parabolic_flight_scene"
+LIFT = "lift_scene"
+UNPUSHED = "Lagrange's equations on a free motion"
+
+
+def chapter(root: Path) -> Chapter:
+    """The chapter, with the systems under a root."""
+
+    def page(results: Mapping[str, Any]) -> Page:
+        paper, cabin = results["paper"], results["cabin"]
+        cards = derivation_cards(["10"], [paper, results["bob"]], results["printed"], root)
+        scenes = scene_cards(["10"], [(paper, FREE_SCENE), (paper, INITIAL_SCENE)], (), root, "law")
+        return Page(
+            {
+                "cards": cards,
+                "scenes": scenes,
+                "free_law": results["free_law"],
+                "other_law": results["other_law"],
+                "unpushed": unpushed_card(results["printed"]),
+                "cabin": named_equations(cabin),
+                "flight": results["flight"].verdict,
+                "lift": results["lift"].verdict,
+                "pendulum": named_equations(results["pendulum"]),
+            },
+            sources=files_of(cards),
+        )
+
+    return Chapter(
+        slug="free-motion",
+        title="Free motion",
+        aim="When the constraints are kept without a push: the condition (10).",
+        template="free_motion.html",
+        runs={
+            "paper": derived(root / PAPER),
+            "bob": derived(root / BOB),
+            "cabin": derived(root / CABIN),
+            "pendulum": derived(root / PENDULUM),
+            "printed": printed(),
+            "free_law": free(root / PAPER, FREE_SCENE),
+            "other_law": free(root / PAPER, INITIAL_SCENE),
+            "flight": free(root / CABIN, PARABOLIC_FLIGHT),
+            "lift": free(root / CABIN, LIFT),
+        },
+        page=page,
+    )
+
+
+def unpushed_card(equations: tuple[PrintedEquation, ...]) -> Card:
+    """The card of Lagrange's equations without reactions, which the paper prints without a number."""
+    found = next(each for each in equations if each.name == UNPUSHED)
+    return Card(anchor("", found), found.number, found.name, words(found.number, found.name), (found,), (), ())

@@ -1,0 +1,223 @@
+"""The gallery: every example of the repository in motion."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+
+from harness.companion.chapter import Chapter, Page
+from harness.companion.motions import Motion, figures_of, motion
+
+
+@dataclass(frozen=True)
+class Exhibit:
+    """A scene that is shown.
+
+    Attributes
+    ----------
+    name : str
+        What the names of its figures begin with.
+    file : str
+        Relative to the root.
+    to_see : (str, str)
+        What to look at in the drawing, and what in the curves.
+    scene : str or None
+        Without a name, the last one of the file.
+    until : Fraction or None
+        Where the film ends, if not with the scene.
+    """
+
+    name: str
+    file: str
+    to_see: tuple[str, str]
+    scene: str | None = None
+    until: Fraction | None = None
+
+
+EXHIBITS = (
+    Exhibit(
+        "free-particle",
+        "examples/paper/paper.mac",
+        (
+            "The paper's example as a particle in space on a plane, of which the piece between its hinge on the ground "
+            "and the particle is drawn. The control tilts the plane ever faster, and the particle stays on it by itself.",
+            "The multiplier is rounding noise, as the power of ten at its axis says: the motion is free, and the plane "
+            "never pushes.",
+        ),
+        scene="free_motion_scene",
+        until=Fraction(3),
+    ),
+    Exhibit(
+        "pushed-particle",
+        "examples/paper/paper.mac",
+        (
+            "The same particle from the same place, but the plane is tilted evenly.",
+            "Now the plane has to push: the multiplier is not zero.",
+        ),
+        scene="initial_motion_scene",
+        until=Fraction(3),
+    ),
+    Exhibit(
+        "pendulum",
+        "examples/pendulum.mac",
+        (
+            "The string is paid out: the bob swings to and fro on arcs that become wider, flatter and slower.",
+            "The multiplier is negative, for the string pulls and cannot push; it swings twice as often as the bob.",
+        ),
+        scene="lengthening_scene",
+        until=Fraction(20),
+    ),
+    Exhibit(
+        "whirling-bob",
+        "examples/whirling_bob.mac",
+        (
+            "The string is drawn in through the hole in the middle, and the bob whirls faster: of two positions that "
+            "follow each other the later ones are further apart.",
+            "The length falls evenly, the angle rises ever more steeply, and the pull grows most of all.",
+        ),
+    ),
+    Exhibit(
+        "prescribed-tension",
+        "examples/prescribed_tension.mac",
+        (
+            "The winch holds the string to a tension instead of a length, and the bob goes in and out as it whirls.",
+            "The multiplier is a straight line, for it was prescribed; what was sought is the control, which has "
+            "become a coordinate.",
+        ),
+        scene="steady_scene",
+    ),
+    Exhibit(
+        "lift",
+        "examples/weightless_cabin.mac",
+        (
+            "A passenger on the floor of a lift that starts upwards.",
+            "The floor presses evenly, and harder than the weight alone would ask for.",
+        ),
+        scene="lift_scene",
+    ),
+    Exhibit(
+        "bead",
+        "examples/bead.mac",
+        (
+            "The rod turns evenly and flings the bead out, while the slider at its foot is shaken to and fro.",
+            "The bead hardly feels the shaking, but the multiplier, the force that shakes the slider, is full of it.",
+        ),
+        scene="driven_scene",
+        until=Fraction(6, 5),
+    ),
+    Exhibit(
+        "spherical-pendulum",
+        "examples/spherical_pendulum.mac",
+        (
+            "A pendulum in space, seen from above, with the plumb line under the bob. Its support is shaken, turns and "
+            "goes through air: the path keeps to no plane and shrinks.",
+            "The multiplier carries the fast shaking of the support on the slow swings of the bob.",
+        ),
+    ),
+    Exhibit(
+        "chain",
+        "examples/chain.mac",
+        (
+            "A chain released on a straight line, its first link drawn in: at the turning point it begins to fold.",
+            "The uppermost link carries most, each further one less.",
+        ),
+    ),
+    Exhibit(
+        "linkage",
+        "examples/linkage.mac",
+        (
+            "A parallelogram turns over. Twice a revolution all rods are in line, where it might fold into another "
+            "shape; it does not.",
+            "The coordinates pass these places smoothly, with the robust engine at work.",
+        ),
+    ),
+    Exhibit(
+        "andrews",
+        "examples/andrews.mac",
+        (
+            "The small crank on the right goes round and drags seven bodies along; the long line is the spring.",
+            "The crank's angle runs up evenly at last, and the multipliers beat with its revolutions.",
+        ),
+    ),
+    Exhibit(
+        "car-axis",
+        "examples/car_axis.mac",
+        (
+            "The right foot follows the bumps of the road, the left one stands on flat ground; between them the axle "
+            "rides on two stiff springs.",
+            "On the slow wave of the road lies the fast ringing of the springs.",
+        ),
+    ),
+    Exhibit(
+        "heavy-bob",
+        "examples/hard/heavy_bob.mac",
+        (
+            "The lower mass is a million million times as heavy as the upper one: it falls, and the light one goes "
+            "where it is pulled.",
+            "The multipliers are of the size that the heavy bob asks for; the light mass moves by their difference.",
+        ),
+    ),
+    Exhibit(
+        "repeated-constraint",
+        "examples/hard/repeated_constraint.mac",
+        (
+            "A pendulum whose one constraint is given twice. Nothing of that is to be seen in its motion.",
+            "Each of the two multipliers carries half of the force: their curves are one.",
+        ),
+    ),
+    Exhibit(
+        "sarrus-linkage",
+        "examples/hard/sarrus_linkage.mac",
+        (
+            "Two pairs of hinged plates at right angles let the table go straight down and no other way, with one "
+            "constraint more than it needs.",
+            "The table's corners fall alike. The multipliers are those of the smallest norm.",
+        ),
+    ),
+    Exhibit(
+        "stiff-spring",
+        "examples/hard/stiff_spring.mac",
+        (
+            "A rod of growing length between a soft spring, on the left, and a stiff one: the later positions are "
+            "below the earlier ones.",
+            "The stiff spring rings so fast and so little that only the multiplier shows it.",
+        ),
+    ),
+    Exhibit(
+        "swing",
+        "examples/hard/swing.mac",
+        (
+            "A swing on two ropes. Their hinges are together at first, so that the ropes are nearly one, and move apart.",
+            "The closer the hinges, the larger the two multipliers that have to share one force.",
+        ),
+    ),
+    Exhibit(
+        "vanishing-length",
+        "examples/hard/vanishing_length.mac",
+        (
+            "A pendulum drawn in to its hinge, position beside position. The film stops shortly before the length is zero.",
+            "Near the end the multiplier rises without bound: no finite force holds the bob to a vanishing length.",
+        ),
+        until=Fraction(9, 10),
+    ),
+)
+
+
+def chapter(root: Path) -> Chapter:
+    """The chapter, with the examples under a root."""
+
+    def page(results: Mapping[str, Motion]) -> Page:
+        return Page(
+            {"exhibits": [(exhibit, results[exhibit.name]) for exhibit in EXHIBITS]},
+            figures=figures_of(results.items()),
+            sources=tuple(dict.fromkeys(exhibit.file for exhibit in EXHIBITS)),
+        )
+
+    return Chapter(
+        slug="gallery",
+        title="Gallery",
+        aim="Every example in motion: how it looks, where it goes, and what its constraints have to do.",
+        template="gallery.html",
+        runs={each.name: motion(root / each.file, each.scene, each.until) for each in EXHIBITS},
+        page=page,
+    )

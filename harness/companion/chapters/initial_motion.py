@@ -1,0 +1,81 @@
+"""Initial motion: the state at the first instant, the accelerations there, and the series that begins with them."""
+
+from collections.abc import Mapping
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import mpmath
+from sympy import Expr, Symbol
+
+from harness.companion.cards import derivation_cards, files_of, named_equations, scene_cards, scene_named
+from harness.companion.chapter import Chapter, Page
+from harness.companion.examples import BOB, BOB_SCENE, INITIAL_SCENE, PAPER
+from harness.companion.runs import derived, printed, series
+from harness.motion.series import MotionSeries, Numbers, number, numbers
+from harness.record import Equation, Scene
+
+LOW_ORDER, HIGH_ORDER = 3, 40
+INSTANT = Fraction(1, 10)
+
+
+def chapter(root: Path) -> Chapter:
+    """The chapter, with the systems under a root."""
+
+    def page(results: Mapping[str, Any]) -> Page:
+        paper, bob = results["paper"], results["bob"]
+        eliminated = derivation_cards(["11"], [paper, bob], results["printed"], root)
+        cards = scene_cards(
+            ["12", "19", "13", "18"], [(paper, INITIAL_SCENE), (bob, BOB_SCENE)], results["printed"], root
+        )
+        bob_equations, bob_scene = named_equations(bob, BOB_SCENE), scene_named(bob, BOB_SCENE)
+        return Page(
+            {
+                "eliminated": eliminated,
+                "cards": {card.anchor: card for card in cards},
+                "scene": scene_named(paper, INITIAL_SCENE),
+                "fixed": named_equations(paper, INITIAL_SCENE)["initial values that the constraints fix"],
+                "bob_accelerations": bob_equations["initial accelerations"],
+                "bob_numbers": values_in_numbers(bob_equations["initial accelerations"], bob_scene),
+                "instant": INSTANT,
+                "orders": (LOW_ORDER, HIGH_ORDER),
+                "compared": compared(results["expanded"]),
+            },
+            sources=files_of([*eliminated, *cards]),
+        )
+
+    return Chapter(
+        slug="initial-motion",
+        title="Initial motion",
+        aim="What the system does in the first instants: (11) to (13), (18) and (19).",
+        template="initial_motion.html",
+        runs={
+            "paper": derived(root / PAPER),
+            "bob": derived(root / BOB),
+            "printed": printed(),
+            "expanded": series(root / PAPER, INITIAL_SCENE, HIGH_ORDER),
+        },
+        page=page,
+    )
+
+
+def values_in_numbers(equation: Equation, scene: Scene) -> dict[str, Expr]:
+    """The right sides of a scene's equation with its initial state and parameters put in, by their left sides."""
+    values = {f"{name}_0": value for name, value in scene.initial_state.items()} | dict(scene.parameter_values)
+    numbers = {Symbol(name, real=True): value for name, value in values.items()}
+    return {str(each.left): each.right.subs(numbers) for each in equation.relations}
+
+
+def compared(expanded: MotionSeries) -> list[tuple[str, mpmath.mpf, mpmath.mpf]]:
+    """Name of each coordinate, its series at the instant cut off at the low order, and at the high order."""
+    with mpmath.workdps(expanded.digits):
+        step = mpmath.mpf(INSTANT.numerator) / INSTANT.denominator - number(expanded.t0)
+        return [
+            (name, partial_sum(series[: LOW_ORDER + 1], step), partial_sum(series, step))
+            for name, series in expanded.coordinates.items()
+        ]
+
+
+def partial_sum(coefficients: Numbers, step: mpmath.mpf) -> mpmath.mpf:
+    """The sum of a power series as far as its coefficients go."""
+    return mpmath.polyval(numbers(coefficients)[::-1], step)

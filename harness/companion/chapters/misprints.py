@@ -1,0 +1,61 @@
+"""The paper's misprints: every printed equation compared with the derived one."""
+
+from collections.abc import Mapping
+from itertools import takewhile
+from pathlib import Path
+
+from harness.companion.cards import anchor, anchors
+from harness.companion.chapter import Chapter, Page
+from harness.companion.runs import printed
+from harness.errata import PrintedEquation
+
+PAGES = {
+    "equations-of-motion": ("2", "3", "4", "5", "6", "7", "8", "9"),
+    "free-motion": ("10",),
+    "initial-motion": ("11", "12", "13"),
+}
+TRANSCRIPTION = "examples/paper/printed.mac"
+EXAMPLE, FIRST_OF_EXAMPLE = "worked-example", "14"
+
+
+def chapter(root: Path) -> Chapter:
+    """The chapter; it does not depend on a root."""
+
+    def page(results: Mapping[str, tuple[PrintedEquation, ...]]) -> Page:
+        equations = results["printed"]
+        return Page(
+            {
+                "rows": rows(equations),
+                "misprints": [each for each in equations if not each.agrees],
+                "transcription": TRANSCRIPTION,
+            },
+            sources=(TRANSCRIPTION,),
+        )
+
+    return Chapter(
+        slug="misprints",
+        title="Misprints",
+        aim="Every equation that the paper prints, compared with the derived one.",
+        template="misprints.html",
+        runs={"printed": printed()},
+        page=page,
+    )
+
+
+def rows(equations: tuple[PrintedEquation, ...]) -> list[tuple[PrintedEquation, str]]:
+    """Each printed equation with the link to its card."""
+    general = list(takewhile(_before_the_example, equations))
+    example = equations[len(general) :]
+    return [
+        *((each, f"{_page(each)}.html#{anchor('', each)}") for each in general),
+        *((each, f"{EXAMPLE}.html#{place}") for each, place in zip(example, anchors(example), strict=True)),
+    ]
+
+
+def _before_the_example(each: PrintedEquation) -> bool:
+    return each.number != FIRST_OF_EXAMPLE
+
+
+def _page(each: PrintedEquation) -> str:
+    """The page of a general equation; the one without a number is about free motion."""
+    return next((page for page, numbers in PAGES.items() if each.number in numbers), "free-motion")

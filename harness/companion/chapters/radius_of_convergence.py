@@ -1,0 +1,90 @@
+"""How far a power series holds: its radius of convergence, what sets it, and the motion beyond."""
+
+from collections.abc import Mapping
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import mpmath
+import sympy
+from sympy import Expr, Symbol
+
+from harness.companion.cards import named_equations, scene_named
+from harness.companion.chapter import Chapter, Page
+from harness.companion.examples import FREE_SCENE, INITIAL_SCENE, PAPER, PENDULUM
+from harness.companion.expressions import zeros
+from harness.companion.runs import Derived, derived, figure, series, simulation
+from harness.figures.partial_sums import draw_partial_sums
+from harness.figures.radius import draw_radius
+from harness.motion.series import MotionSeries, number, numbers
+from harness.simulation.result import Simulation
+
+ORDER = 80
+COORDINATE = "q3"
+UNTIL, SAMPLES = Fraction(3, 2), 301
+SWING = "swing_scene"
+
+
+def chapter(root: Path) -> Chapter:
+    """The chapter, with the systems under a root."""
+
+    def page(results: Mapping[str, Any]) -> Page:
+        paper = results["paper"]
+        scene = scene_named(paper, INITIAL_SCENE)
+        exact = singular_instants(paper, INITIAL_SCENE)
+        start = scene.time_span[0]
+        return Page(
+            {
+                "scene": scene,
+                "order": ORDER,
+                "series": results["initial"],
+                "entire": results["free"].radius,
+                "pendulum": results["pendulum"],
+                "denominator": denominator(paper),
+                "exact": exact,
+                "exact_radius": min(sympy.Abs(instant - start) for instant in exact),
+                "coordinate": COORDINATE,
+                "instants": [
+                    float(instant) for instant in (results["motion"].instants[0], results["motion"].instants[-1])
+                ],
+            },
+            figures={"partial-sums": partial_sums(results["initial"], results["motion"]), "radius": results["radius"]},
+        )
+
+    return Chapter(
+        slug="radius-of-convergence",
+        title="Radius of convergence and the global trajectory",
+        aim="How far the series of the initial motion holds, what sets the limit, and how to go beyond it.",
+        template="radius_of_convergence.html",
+        runs={
+            "paper": derived(root / PAPER),
+            "initial": series(root / PAPER, INITIAL_SCENE, ORDER),
+            "free": series(root / PAPER, FREE_SCENE, ORDER),
+            "pendulum": series(root / PENDULUM, SWING, ORDER),
+            "motion": simulation(root / PAPER, INITIAL_SCENE, UNTIL, SAMPLES),
+            "radius": figure(draw_radius),
+        },
+        page=page,
+    )
+
+
+def denominator(paper: Derived) -> Expr:
+    """What the accelerations (11) are divided by."""
+    accelerations = named_equations(paper)["accelerations, multipliers eliminated"].relations
+    return sympy.fraction(sympy.together(accelerations[0].right))[1]
+
+
+def singular_instants(paper: Derived, name: str) -> list[Expr]:
+    """Complex instants at which the denominator of (11) vanishes in a scene, with its parameters put in."""
+    scene = scene_named(paper, name)
+    values = {Symbol(parameter, real=True): value for parameter, value in scene.parameter_values.items()}
+    law = {Symbol(control, real=True): value.subs(values) for control, value in scene.control_law.items()}
+    return zeros(denominator(paper).subs(law))
+
+
+def partial_sums(expanded: MotionSeries, motion: Simulation) -> str:
+    """The figure of the partial sums of one coordinate, as SVG."""
+    with mpmath.workdps(expanded.digits):
+        coefficients = [float(each) for each in numbers(expanded.coordinates[COORDINATE])]
+        times = motion.instants - float(number(expanded.t0))
+    return draw_partial_sums(COORDINATE, coefficients, expanded.radius, times, motion.coordinates[COORDINATE])

@@ -1,0 +1,47 @@
+"""The system and its words: what is described, and in which terms."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from harness.companion.cards import derivation_cards, files_of
+from harness.companion.chapter import Chapter, Page
+from harness.companion.description import description
+from harness.companion.examples import CABIN, FREE_SCENE, LINKAGE, PAPER, PENDULUM
+from harness.companion.excerpts import excerpt
+from harness.companion.runs import Derived, derived
+
+
+def chapter(root: Path) -> Chapter:
+    """The chapter, with the systems under a root."""
+
+    def page(results: Mapping[str, Derived]) -> Page:
+        paper = results["paper"]
+        cards = derivation_cards(["1"], [paper, results["pendulum"]], (), root)
+        return Page(
+            {
+                "system": paper.record.system,
+                "description": description(paper.record.system),
+                "description_lines": excerpt(root, PAPER, "system"),
+                "scene_lines": excerpt(root, PAPER, FREE_SCENE),
+                "cards": cards,
+                "pendulum": results["pendulum"].record.system,
+                "linkage": results["linkage"].record.system,
+                "cabin": results["cabin"].record.system,
+                "cabin_lines": excerpt(root, CABIN, "system"),
+            },
+            sources=(PAPER, CABIN, *files_of(cards)),
+        )
+
+    return Chapter(
+        slug="the-system",
+        title="The system and its words",
+        aim="Coordinates, controls, constraints: what a controllable system is, and how to write one down.",
+        template="the_system.html",
+        runs={
+            "paper": derived(root / PAPER),
+            "pendulum": derived(root / PENDULUM),
+            "linkage": derived(root / LINKAGE),
+            "cabin": derived(root / CABIN),
+        },
+        page=page,
+    )

@@ -1,0 +1,47 @@
+"""The control for one trajectory: a constraint that goes where the free system goes."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from harness.companion.chapter import Chapter, Page
+from harness.companion.examples import BEAD, BOB, CABIN, INITIAL_SCENE, PAPER, PENDULUM, SPHERICAL_PENDULUM
+from harness.companion.excerpts import excerpt
+from harness.companion.runs import derived, free
+
+SOURCE = "maxima/free_motion/trajectory.mac"
+FUNCTIONS = ("trajectory_control", "obstacle_to_trajectory_law", "integrated_motion", "law_along")
+FILES = {
+    "paper": PAPER,
+    "pendulum": PENDULUM,
+    "cabin": CABIN,
+    "bob": BOB,
+    "bead": BEAD,
+    "spherical_pendulum": SPHERICAL_PENDULUM,
+}
+
+SCENES = {"paper": INITIAL_SCENE}  # of other files, the last
+
+
+def chapter(root: Path) -> Chapter:
+    """The chapter, with the systems under a root."""
+
+    def page(results: Mapping[str, Any]) -> Page:
+        return Page(
+            {
+                "answers": {name: results[f"{name} free"].trajectory for name in FILES},
+                "titles": {name: results[name].record.system.title for name in FILES},
+                "excerpts": [excerpt(root, SOURCE, name) for name in FUNCTIONS],
+            },
+            sources=(SOURCE,),
+        )
+
+    return Chapter(
+        slug="trajectory-control",
+        title="The control for one trajectory",
+        aim="Where no law serves every motion, one may still serve this motion.",
+        template="trajectory_control.html",
+        runs={name: derived(root / file) for name, file in FILES.items()}
+        | {f"{name} free": free(root / file, SCENES.get(name)) for name, file in FILES.items()},
+        page=page,
+    )

@@ -1,0 +1,44 @@
+"""Which controls make every motion free: the question that the paper's equation (15) answers for one example."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from harness.companion.chapter import Chapter, Page
+from harness.companion.examples import BEAD, CABIN, INITIAL_SCENE, PAPER, PENDULUM, SPHERICAL_PENDULUM
+from harness.companion.excerpts import excerpt
+from harness.companion.runs import derived, free
+from harness.free_motion import FreeMotion
+
+SOURCE = "maxima/free_motion/universal.mac"
+FUNCTIONS = ("universal_controls", "separated_conditions", "solved_laws", "linear_law")
+OTHERS = {"cabin": CABIN, "pendulum": PENDULUM, "bead": BEAD, "spherical_pendulum": SPHERICAL_PENDULUM}
+
+SCENES = {"paper": INITIAL_SCENE}  # of other files, the last
+
+
+def chapter(root: Path) -> Chapter:
+    """The chapter, with the systems under a root."""
+
+    def page(results: Mapping[str, Any]) -> Page:
+        answers: dict[str, FreeMotion] = {name: results[f"{name} free"] for name in ("paper", *OTHERS)}
+        return Page(
+            {
+                "answers": answers,
+                "titles": {name: results[name].record.system.title for name in answers},
+                "others": tuple(OTHERS),
+                "excerpts": [excerpt(root, SOURCE, name) for name in FUNCTIONS],
+            },
+            sources=(SOURCE,),
+        )
+
+    files = {"paper": PAPER, **OTHERS}
+    return Chapter(
+        slug="universal-controls",
+        title="Which controls make every motion free",
+        aim="The condition (10) for all states at once is a differential equation for the control.",
+        template="universal_controls.html",
+        runs={name: derived(root / file) for name, file in files.items()}
+        | {f"{name} free": free(root / file, SCENES.get(name)) for name, file in files.items()},
+        page=page,
+    )

@@ -1,0 +1,65 @@
+"""How to do it with a system of your own."""
+
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from harness.companion.chapter import Chapter, Page, Run
+from harness.companion.examples import PENDULUM
+from harness.companion.excerpts import excerpt
+from harness.companion.runs import derived
+from harness.failures import HolonomError
+from harness.maxima import run_scene
+
+SCENE = "swing_scene"
+FITTING, CONTRADICTING = "y = -cos(%pi/13)", "y = -1"
+
+
+def chapter(root: Path) -> Chapter:
+    """The chapter, with the systems under a root."""
+
+    def page(results: Mapping[str, Any]) -> Page:
+        return Page(
+            {
+                "record": results["pendulum"].record,
+                "report": results["pendulum"].report,
+                "system_lines": excerpt(root, PENDULUM, "system"),
+                "scene_lines": excerpt(root, PENDULUM, SCENE),
+                "fitting": FITTING,
+                "contradicting": CONTRADICTING,
+                "refusal": results["refusal"],
+            },
+            sources=(PENDULUM,),
+        )
+
+    return Chapter(
+        slug="your-own-system",
+        title="How to do it with a system of your own",
+        aim="From a description in a file to pages like these.",
+        template="your_own_system.html",
+        runs={
+            "pendulum": derived(root / PENDULUM),
+            "refusal": Run(refusal_of_the_change, (root / PENDULUM, FITTING, CONTRADICTING)),
+        },
+        page=page,
+    )
+
+
+def refusal_of_the_change(file: Path, given: str, changed: str) -> str:
+    """What Holonom says to a scene file in which one entry is changed."""
+    text = file.read_text(encoding="utf-8").replace(given, changed)
+    with tempfile.TemporaryDirectory(prefix="holonom-") as directory:
+        copy = Path(directory) / file.name
+        copy.write_text(_loading_the_library(text), encoding="utf-8")
+        try:
+            run_scene(copy)
+        except HolonomError as error:
+            return error.detail
+    raise ValueError(f"{changed} is not refused")
+
+
+def _loading_the_library(text: str) -> str:
+    """The text with the library loaded by its name, for the file is not where it was."""
+    load = next(line for line in text.splitlines() if line.startswith("load("))
+    return text.replace(load, 'load("holonom.mac")$')

@@ -1,0 +1,65 @@
+"""The Maxima lines that do a step, taken from the source file by the name of what they define."""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from harness.failures import Failure, HolonomError
+from harness.maxima import statement_ends
+
+
+@dataclass(frozen=True)
+class Excerpt:
+    """A definition in a Maxima file, with the comment just above it.
+
+    Attributes
+    ----------
+    file : str
+        Path of the file, relative to the root that it was asked of.
+    name : str
+        What is defined.
+    first_line : int
+        Line of the file that the excerpt starts in, from 1.
+    text : str
+    """
+
+    file: str
+    name: str
+    first_line: int
+    text: str
+
+
+def excerpt(root: Path, file: str, name: str) -> Excerpt:
+    """Find the definition of a Maxima function or variable.
+
+    Parameters
+    ----------
+    root : Path
+        The directory that `file` is relative to.
+    file : str
+    name : str
+
+    Returns
+    -------
+    Excerpt
+
+    Raises
+    ------
+    HolonomError
+        The file does not define it.
+    """
+    text = (root / file).read_text(encoding="utf-8")
+    found = re.search(rf"^{re.escape(name)}\s*(\([^()]*\)\s*:=|:)", text, re.MULTILINE)
+    if found is None:
+        raise HolonomError(Failure.DEFINITION_MISSING, file, name)
+    start = _with_comment(text, found.start())
+    end = next(statement_ends(text, found.start()), len(text))
+    return Excerpt(file, name, text.count("\n", 0, start) + 1, text[start:end])
+
+
+def _with_comment(text: str, start: int) -> int:
+    """Where the comment begins that ends on the line above, or the start itself."""
+    if not text[:start].endswith("*/\n"):
+        return start
+    opening = text.rindex("/*", 0, start)
+    return opening if text[:opening].endswith("\n\n") else start

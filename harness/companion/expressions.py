@@ -1,0 +1,39 @@
+"""SymPy expressions that the exercises ask about."""
+
+from collections.abc import Mapping
+
+import sympy
+from sympy import Expr, Symbol
+
+from harness.mathjson import Tree, to_sympy
+
+
+def under(law: Mapping[str, Expr], expression: Expr) -> Expr:
+    """An expression under a control law, simplified."""
+    time = Symbol("t", real=True)
+    for control, value in law.items():
+        for order, name in enumerate((control, f"dot({control})", f"ddot({control})")):
+            expression = expression.subs(Symbol(name, real=True), value.diff(time, order))
+    return sympy.factor(sympy.simplify(expression))
+
+
+def right_side(tree: Tree) -> Expr:
+    """The right side of a printed equation of the example as a SymPy expression."""
+    return to_sympy(_named(tree[2]))
+
+
+def _named(tree: Tree) -> Tree:
+    """The same tree with the names of a record: Dot of q1 is dot(q1) there."""
+    match tree:
+        case [("Dot" | "Ddot") as dots, str(name)]:
+            return f"{dots.lower()}({name})"
+        case [head, *arguments]:
+            return [head, *map(_named, arguments)]
+        case _:
+            return tree
+
+
+def zeros(expression: Expr) -> list[Expr]:
+    """The zeros, complex ones too, of an expression in a single symbol."""
+    (symbol,) = expression.free_symbols
+    return sympy.solve(expression.subs(symbol, sympy.Dummy()))

@@ -1,0 +1,113 @@
+"""Pictures of a motion: the system drawn as it moves, where it says how it looks; coordinates and multipliers in time."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import partial
+from pathlib import Path
+
+from harness.companion.chapter import Run
+from harness.companion.runs import DEFAULT_LIMITS, NO_SETTINGS, Settings, drawn
+from harness.confined import Limits
+from harness.figures.drawing import animation, film_of, strip
+from harness.figures.motion import draw_motion
+from harness.motion.problem import motion_problem
+from harness.motion.request import Request
+from harness.simulation.request import SimulationRequest
+from harness.simulation.result import Report
+from harness.simulation.simulate import simulate
+
+SAMPLES = 1801
+SHOWN = ("trajectory", "multipliers")
+
+
+@dataclass(frozen=True)
+class Film:
+    """A drawing in motion.
+
+    Attributes
+    ----------
+    moving, still : str
+        SVG: an animation, and a strip of positions.
+    start, end : float
+        Its first and last instant.
+    pace : float
+        Time of the motion that passes in a second of the animation.
+    """
+
+    moving: str
+    still: str
+    start: float
+    end: float
+    pace: float
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A scene's motion in pictures.
+
+    Attributes
+    ----------
+    system, source, title : str
+        Title of the system, where it comes from, and title of the scene.
+    film : Film or None
+        None where the system does not say how it looks.
+    curves : str
+        SVG: coordinates and multipliers against the time.
+    report : Report
+        How well the motion was followed.
+    """
+
+    system: str
+    source: str
+    title: str
+    film: Film | None
+    curves: str
+    report: Report
+
+
+def motion(file: Path, scene: str | None = None, until: Fraction | None = None) -> Run:
+    """The pictures of a scene's motion, through its time span or to an instant: a `Motion`."""
+    return Run(follow, (file, scene, until, NO_SETTINGS, DEFAULT_LIMITS))
+
+
+def follow(file: Path, scene: str | None, until: Fraction | None, settings: Settings, limits: Limits) -> Motion:
+    """Follow a motion and draw it.
+
+    Parameters
+    ----------
+    file : Path
+    scene : str or None
+        Without a name, the last one of the file.
+    until : Fraction or None
+        Without it, the end of the scene's time span.
+    settings : tuple of (str, str)
+    limits : Limits
+        What Maxima may take.
+
+    Raises
+    ------
+    HolonomError
+        The motion cannot be followed so far.
+    """
+    problem = replace(motion_problem(file, Request(scene, settings=dict(settings)), limits), observe=SHOWN)
+    simulation = simulate(problem, SimulationRequest(until=until, samples=SAMPLES))
+    shown = film_of(simulation, problem.drawing) if problem.drawing else None
+    return Motion(
+        problem.system,
+        problem.source,
+        problem.title,
+        shown and Film(animation(shown), strip(shown), *map(float, shown.instants[[0, -1]]), shown.pace),
+        drawn(partial(draw_motion, replace(simulation, velocities={}))),
+        simulation.report,
+    )
+
+
+def figures_of(motions: Iterable[tuple[str, Motion]]) -> dict[str, str]:
+    """The SVG files of motions, whose names each begin with the motion's own."""
+    files: dict[str, str] = {}
+    for name, found in motions:
+        files[f"{name}-curves"] = found.curves
+        if found.film:
+            files |= {f"{name}-moving": found.film.moving, f"{name}-still": found.film.still}
+    return files

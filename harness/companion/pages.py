@@ -1,0 +1,228 @@
+"""Pages from templates: XHTML that a browser reads as HTML, and that parses as XML."""
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import jinja2
+from markupsafe import Markup, escape
+
+from harness.companion import mathematics
+from harness.companion.chapter import Chapter
+from harness.companion.excerpts import Excerpt
+from harness.motion.series import number
+
+TEMPLATES = Path(__file__).with_name("templates")
+LONGEST_COEFFICIENT = 12  # characters of an exact number in a table
+NAMED_BY_MAXIMA = re.compile(r"(no control can make )(.+)( vanish)")
+NEGLIGIBLE = 1e-9  # of a complex number: a part of it that is rounding alone
+STYLE = TEMPLATES / "companion.css"
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A chapter's line in the contents.
+
+    Attributes
+    ----------
+    label : str
+        Its number, or the letter of an appendix.
+    slug, title, aim : str
+    """
+
+    label: str
+    slug: str
+    title: str
+    aim: str
+
+
+@dataclass(frozen=True)
+class Part:
+    """Chapters under one heading of the contents; without a title where there is one part only."""
+
+    title: str
+    entries: tuple[Entry, ...]
+
+
+@dataclass(frozen=True)
+class Contents:
+    """What every page knows about the book.
+
+    Attributes
+    ----------
+    title, subtitle : str
+    foreword : str
+        Template of what the first page says before the contents.
+    command : str
+        The command that makes the book.
+    maxima : str
+        Version of Maxima that derived it.
+    parts : tuple of Part
+    """
+
+    title: str
+    subtitle: str
+    foreword: str
+    command: str
+    maxima: str
+    parts: tuple[Part, ...]
+
+    @property
+    def entries(self) -> list[Entry]:
+        """All chapters in their order."""
+        return [entry for part in self.parts for entry in part.entries]
+
+
+def index_page(book: Contents) -> str:
+    """The first page: foreword and contents."""
+    return _rendered("index.html", book=book)
+
+
+def chapter_page(book: Contents, chapter: Chapter, content: Mapping[str, Any]) -> str:
+    """The page of a chapter.
+
+    Parameters
+    ----------
+    book : Contents
+    chapter : Chapter
+        One of the book's.
+    content : mapping of str to object
+        The variables of its template.
+
+    Returns
+    -------
+    str
+        The page's text, well-formed.
+
+    Raises
+    ------
+    jinja2.TemplateError
+        The template wants what it is not given.
+    xml.etree.ElementTree.ParseError
+        The template makes a page that is not well-formed.
+    """
+    entries = book.entries
+    place = next(place for place, entry in enumerate(entries) if entry.slug == chapter.slug)
+    about = {
+        "slug": chapter.slug,
+        "title": chapter.title,
+        "label": _spelled_label(entries[place].label),
+        "previous": entries[place - 1] if place else None,
+        "next": entries[place + 1] if place + 1 < len(entries) else None,
+    }
+    return _rendered(chapter.template, book=book, chapter=about, **content)
+
+
+def source_page(book: Contents, file: str, text: str) -> str:
+    """A Maxima file with numbered lines."""
+    return _rendered("source.html", book=book, file=file, lines=text.splitlines())
+
+
+def source_name(file: str) -> str:
+    """Name of the page of a Maxima file."""
+    return f"source/{file.replace('/', '-')}.html"
+
+
+def source_link(excerpt: Excerpt) -> str:
+    """Link to the first line of an excerpt."""
+    return f"{source_name(excerpt.file)}#L{excerpt.first_line}"
+
+
+def _rendered(template: str, **content: Any) -> str:
+    page = _environment().get_template(template).render(**content)
+    ElementTree.fromstring(page)
+    return page
+
+
+def _environment() -> jinja2.Environment:
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(TEMPLATES),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.filters |= {
+        "prose": mathematics.prose,
+        "typeset": mathematics.typeset,
+        "nothing_to_show": mathematics.nothing_to_show,
+        "as_printed": mathematics.as_printed,
+        "as_corrected": mathematics.as_corrected,
+        "expression": mathematics.expression,
+        "source_link": source_link,
+        "source_page_link": source_name,
+        "difference": mathematics.difference,
+        "sentence": _sentence,
+        "points": _points,
+        "rounded": _rounded,
+        "power_of_ten": _power_of_ten,
+        "counted": _counted,
+        "complex_numbers": _complex_numbers,
+        "coefficient": _coefficient,
+        "symbol": mathematics.symbol,
+        "maxima_text": _maxima_text,
+    }
+    environment.globals |= {
+        "tex": mathematics.tex,
+        "equality": mathematics.equality,
+        "display": mathematics.display,
+        "display_named": mathematics.display_named,
+        "display_expression": mathematics.display_expression,
+    }
+    return environment
+
+
+def _sentence(text: str) -> str:
+    return text[:1].upper() + text[1:]
+
+
+def _points(count: int) -> str:
+    return "one point" if count == 1 else f"{count} random points"
+
+
+def _rounded(value: float, digits: int = 6) -> str:
+    return f"{float(value):.{digits}g}"
+
+
+def _counted(count: int, one: str, several: str = "") -> str:
+    return f"{count or 'no'} {one if count == 1 else several or one + 's'}"
+
+
+def _complex_numbers(values: Sequence[complex]) -> Markup:
+    """Complex numbers, of each conjugate pair both at once."""
+    upper = [value for value in values if value.imag >= 0 or value.conjugate() not in values]
+    return Markup(", ").join(mathematics.tex(_complex_number(value, value.conjugate() in values)) for value in upper)
+
+
+def _complex_number(value: complex, paired: bool) -> str:
+    real = "" if abs(value.real) < NEGLIGIBLE * abs(value) else f"{value.real:.6g}"
+    if not value.imag:
+        return real
+    sign = r"\pm" if paired else "+" if value.imag > 0 else "-"
+    return rf"{real} {sign} {abs(value.imag):.6g}\,i"
+
+
+def _coefficient(text: str) -> str:
+    """An exact number that is short, or a rounded one."""
+    return text if len(text) <= LONGEST_COEFFICIENT else f"{float(number(text)):.10g}"
+
+
+def _maxima_text(text: str) -> Markup:
+    """A reason in which Maxima names an expression, that expression as code."""
+    return Markup(NAMED_BY_MAXIMA.sub(r"\1<code>\2</code>\3", str(escape(text))))
+
+
+def _power_of_ten(value: float) -> Markup:
+    """A small number with one digit and its power of ten."""
+    if not value:
+        return mathematics.tex("0")
+    digit, exponent = f"{value:.0e}".split("e")
+    return mathematics.tex(rf"{digit} \times 10^{{{int(exponent)}}}")
+
+
+def _spelled_label(label: str) -> str:
+    return f"Chapter {label}" if label.isdecimal() else f"Appendix {label}"

@@ -1,0 +1,46 @@
+"""The book of the paper: its chapters and their order."""
+
+from pathlib import Path
+
+from harness.companion.book import APPENDICES, Book
+from harness.companion.chapters import (
+    equations_of_motion,
+    free_motion,
+    initial_motion,
+    misprints,
+    notation,
+    prescribed_reactions,
+    radius_of_convergence,
+    the_system,
+    trajectory_control,
+    universal_controls,
+    worked_example,
+    your_own_system,
+)
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+
+CHAPTERS = {
+    "The paper": (the_system, equations_of_motion, free_motion, initial_motion, worked_example),
+    "What the paper left open": (universal_controls, trajectory_control, prescribed_reactions, radius_of_convergence),
+    APPENDICES: (misprints, notation, your_own_system),
+}
+
+
+def book_of_the_paper(root: Path = REPOSITORY) -> Book:
+    """The companion of the paper.
+
+    Parameters
+    ----------
+    root : Path
+        The repository whose examples and Maxima files it shows.
+    """
+    return Book(
+        title="Free motion and initial motion",
+        subtitle="A textbook companion to Chen, Guo & Mei, “Free motion and initial motion of controllable holonomic "
+        "system with redundant coordinates” (2019)",
+        foreword="foreword.html",
+        command="make companion",
+        root=root,
+        parts=tuple((title, tuple(each.chapter(root) for each in chapters)) for title, chapters in CHAPTERS.items()),
+    )

@@ -1,0 +1,201 @@
+"""The runs that chapters ask for, and all of them performed, two at a time.
+
+They are performed by processes, not by threads: mpmath's precision belongs to the whole process.
+"""
+
+import json
+import tempfile
+from collections.abc import Callable, Iterable, Mapping
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from fractions import Fraction
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+from harness.companion.chapter import Run
+from harness.confined import Limits
+from harness.crosscheck import CheckReport, check_record
+from harness.errata import errata
+from harness.failures import HolonomError
+from harness.free_motion import FreeMotion, free_motion
+from harness.maxima import run_batch, run_scene
+from harness.motion.problem import motion_problem
+from harness.motion.request import Request
+from harness.motion.series import MotionSeries, SeriesRequest, compute_series
+from harness.record import Record, read_record
+from harness.simulation.request import SimulationRequest
+from harness.simulation.result import Simulation
+
+WORKERS = 2
+Settings = tuple[tuple[str, str], ...]
+NO_SETTINGS: Settings = ()
+# What Maxima writes: the names of the scenes, of those too that prescribe reactions and are not in the record.
+NAMES_OF_SCENES = "lambda([file], write_json(json_names(map('lhs, bound_structures('motion_scene))), file))"
+OWN_ORDER = 40  # of the series of somebody's own scenes
+DEFAULT_LIMITS = Limits()
+
+
+@dataclass(frozen=True)
+class Derived:
+    """A record and the verdicts on it."""
+
+    record: Record
+    report: CheckReport
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """Why there is no answer."""
+
+    reason: str
+
+
+@dataclass(frozen=True)
+class Study:
+    """Answers about one scene file; where mathematics refuses one, the reason is the answer.
+
+    A scene that prescribes reactions is not in the record, but it has its free motion and its series.
+
+    Attributes
+    ----------
+    derived : Derived
+    free : mapping of str to FreeMotion or Refusal
+        By scene.
+    series : mapping of str to MotionSeries or Refusal
+        By scene.
+    """
+
+    derived: Derived
+    free: Mapping[str, FreeMotion | Refusal]
+    series: Mapping[str, MotionSeries | Refusal]
+
+    @property
+    def record(self) -> Record:
+        """What Maxima derived."""
+        return self.derived.record
+
+    @property
+    def titles(self) -> dict[str, str]:
+        """Title of each scene by its name, which stands in where it is not known."""
+        expanded = {name: answer.title for name, answer in self.series.items() if isinstance(answer, MotionSeries)}
+        return {name: name for name in self.free} | expanded | {each.name: each.title for each in self.record.scenes}
+
+
+def derived(file: Path, settings: Settings = NO_SETTINGS, limits: Limits = DEFAULT_LIMITS) -> Run:
+    """The derivation of a scene file, cross-checked: a `Derived`."""
+    return Run(_derive, (file, settings, limits))
+
+
+def printed() -> Run:
+    """The paper as printed, compared with the derivation: a tuple of `PrintedEquation`."""
+    return Run(errata)
+
+
+def free(
+    file: Path, scene: str | None = None, settings: Settings = NO_SETTINGS, limits: Limits = DEFAULT_LIMITS
+) -> Run:
+    """The free motion of a scene: a `FreeMotion`."""
+    return Run(_free, (file, scene, settings, limits))
+
+
+def series(
+    file: Path, scene: str | None, order: int, settings: Settings = NO_SETTINGS, limits: Limits = DEFAULT_LIMITS
+) -> Run:
+    """The power series of a scene's motion: a `MotionSeries`."""
+    return Run(_series, (file, scene, order, settings, limits))
+
+
+def simulation(file: Path, scene: str | None, until: Fraction | None, samples: int | None) -> Run:
+    """A scene's motion followed through its time span or to an instant: a `Simulation`."""
+    return Run(_simulate, (file, scene, until, samples))
+
+
+def figure(draw: Callable[[Path], None]) -> Run:
+    """A figure that makes its own runs and writes itself to a file: the text of its SVG document."""
+    return Run(drawn, (draw,))
+
+
+def study(file: Path, settings: Settings, limits: Limits) -> Run:
+    """All that is asked of somebody's own scene file: a `Study`."""
+    return Run(_study, (file, settings, limits))
+
+
+def perform(runs: Iterable[Run], done: Callable[[], None]) -> dict[Run, Any]:
+    """Perform runs, two at a time.
+
+    Parameters
+    ----------
+    runs : iterable of Run
+        Equal ones are performed once.
+    done : callable
+        Called each time that one is done.
+
+    Returns
+    -------
+    dict of Run to object
+        Their results.
+
+    Raises
+    ------
+    HolonomError
+        One of them fails; those that have not begun are given up.
+    """
+    with ProcessPoolExecutor(WORKERS, get_context("spawn")) as processes:
+        waiting = {processes.submit(run.compute, *run.arguments): run for run in dict.fromkeys(runs)}
+        results = {}
+        try:
+            for future in as_completed(waiting):
+                results[waiting[future]] = future.result()
+                done()
+        except BaseException:
+            processes.shutdown(cancel_futures=True)
+            raise
+    return results
+
+
+def _derive(file: Path, settings: Settings, limits: Limits) -> Derived:
+    record = read_record(run_scene(file, limits, dict(settings)))
+    return Derived(record, check_record(record))
+
+
+def _free(file: Path, scene: str | None, settings: Settings, limits: Limits) -> FreeMotion:
+    return free_motion(file, scene, dict(settings), limits)
+
+
+def _series(file: Path, scene: str | None, order: int, settings: Settings, limits: Limits) -> MotionSeries:
+    motion = compute_series(file, SeriesRequest(order, scene, settings=dict(settings)), limits)
+    motion.radius  # noqa: B018
+    return motion
+
+
+def _simulate(file: Path, scene: str | None, until: Fraction | None, samples: int | None) -> Simulation:
+    from harness.simulation.simulate import simulate
+
+    problem = motion_problem(file, Request(scene), DEFAULT_LIMITS)
+    return simulate(problem, SimulationRequest(until=until, samples=samples))
+
+
+def drawn(draw: Callable[[Path], None]) -> str:
+    """The text of the SVG document that a function writes to a file."""
+    with tempfile.TemporaryDirectory(prefix="holonom-") as directory:
+        file = Path(directory) / "figure.svg"
+        draw(file)
+        return file.read_text(encoding="utf-8")
+
+
+def _study(file: Path, settings: Settings, limits: Limits) -> Study:
+    found = _derive(file, settings, limits)
+    names = json.loads(run_batch(file, NAMES_OF_SCENES, limits, dict(settings)))
+    return Study(
+        found,
+        {name: _or_refusal(_free, file, name, settings, limits) for name in names},
+        {name: _or_refusal(_series, file, name, OWN_ORDER, settings, limits) for name in names},
+    )
+
+
+def _or_refusal(compute: Callable[..., Any], *arguments: Any) -> Any:
+    try:
+        return compute(*arguments)
+    except HolonomError as error:
+        return Refusal(str(error))

@@ -1,0 +1,22 @@
+"""The companion of the paper, made once for all tests."""
+
+import pytest
+
+from harness.companion.book import pages
+from harness.companion.paper import book_of_the_paper
+from harness.companion.runs import perform
+from harness.files import write_whole_directory
+
+
+@pytest.fixture(scope="session")
+def results():
+    """What the companion's runs gave, by run."""
+    return perform(book_of_the_paper().runs, lambda: None)
+
+
+@pytest.fixture(scope="session")
+def companion(results, tmp_path_factory):
+    """Directory of its pages."""
+    directory = tmp_path_factory.mktemp("made") / "companion"
+    write_whole_directory(directory, pages(book_of_the_paper(), results))
+    return directory

@@ -1,0 +1,110 @@
+"""The pages of the companion: well-formed, linked, readable by everybody, and complete."""
+
+from itertools import pairwise
+
+import pages
+import pytest
+
+from harness.companion import runs
+from harness.companion.examples import PAPER
+from harness.companion.paper import REPOSITORY, book_of_the_paper
+
+CARDS = {
+    "the-system": ("1",),
+    "equations-of-motion": ("2", "3a", "3", "4", "5", "6", "7", "8", "9"),
+    "free-motion": ("10",),
+    "initial-motion": ("11", "12", "13", "18", "19"),
+    "worked-example": ("14", "15", "16", "17", "18", "19"),
+}
+
+
+def test_every_page_parses_as_xml_and_says_that_it_is_html(companion):
+    for page in pages.pages(companion):
+        assert page.read_text().startswith("<!DOCTYPE html>")
+        assert pages.parsed(page).get("lang") == "en"
+
+
+def test_every_link_and_anchor_resolves_inside_the_companion(companion):
+    assert pages.broken_references(companion) == []
+
+
+def test_no_name_is_given_twice_on_a_page(companion):
+    for page in pages.pages(companion):
+        found = pages.names(page)
+        assert len(found) == len(set(found)), page.name
+
+
+def test_nothing_is_loaded_from_the_network_and_nothing_is_a_script(companion):
+    for page in pages.pages(companion):
+        text = page.read_text()
+        assert "<script" not in text
+        assert not [each for each in pages.references(page) if "//" in each]
+    assert "url(" not in (companion / "companion.css").read_text()
+    assert "@import" not in (companion / "companion.css").read_text()
+
+
+def test_headings_begin_with_one_of_the_first_level_and_skip_none(companion):
+    for page in pages.pages(companion):
+        levels = pages.heading_levels(page)
+        assert levels[0] == 1, page.name
+        assert levels.count(1) == 1, page.name
+        assert all(below - above <= 1 for above, below in pairwise(levels)), page.name
+
+
+def test_paragraphs_hold_no_blocks(companion):
+    for page in pages.pages(companion):
+        assert pages.badly_nested(page) == [], page.name
+
+
+def test_no_text_is_escaped_twice(companion):
+    for page in pages.pages(companion):
+        assert not [sign for sign in ("&lt;", "&gt;", "&amp;", "&#") if sign in pages.words(page)], page.name
+
+
+def test_mathematics_and_figures_say_in_words_what_they_show(companion):
+    for page in pages.pages(companion):
+        assert pages.nameless_mathematics(page) == 0, page.name
+        assert all(image.get("alt") for image in pages.parsed(page).iter(f"{pages.HTML}img")), page.name
+
+
+def test_the_contents_and_the_neighbours_lead_through_every_chapter(companion):
+    slugs = [chapter.slug for chapter in book_of_the_paper().chapters]
+    contents = list(pages.references(companion / "index.html"))
+    assert [f"{slug}.html" for slug in slugs] == [each for each in contents if each in {f"{s}.html" for s in slugs}]
+    for slug, following in pairwise(slugs):
+        assert f"{following}.html" in pages.references(companion / f"{slug}.html")
+
+
+def test_every_equation_of_the_paper_s_record_has_a_card(companion, results):
+    record = results[runs.derived(REPOSITORY / PAPER)].record
+    derived = {each.number for part in (*record.derivations, *record.scenes) for each in part.equations}
+    assert derived <= {number for numbers in CARDS.values() for number in numbers}
+    for page, numbers in CARDS.items():
+        assert {f"eq-{number}" for number in numbers} <= set(pages.names(companion / f"{page}.html"))
+
+
+def test_every_misprint_is_counted_and_marked(companion, results):
+    printed = results[runs.printed()]
+    shown = pages.words(companion / "misprints.html")
+    wrong = sum(not each.agrees for each in printed)
+    assert f"Of {len(printed)} equations {len(printed) - wrong} are printed as derived, {wrong} are not." in shown
+    marked = [
+        element for element in pages.parsed(companion / "misprints.html").iter() if element.get("class") == "misprint"
+    ]
+    assert len(marked) >= wrong
+
+
+def test_no_verdict_disagrees(companion):
+    for page in pages.pages(companion):
+        if page.name not in ("index.html", "your-own-system.html"):
+            assert "verdict disagrees" not in page.read_text(), page.name
+
+
+@pytest.mark.parametrize("page", CARDS)
+def test_chapters_open_with_aims_and_end_with_exercises_whose_answers_fold(companion, page):
+    root = pages.parsed(companion / f"{page}.html")
+    headings = [element.get("id") for element in root.iter(f"{pages.HTML}h2")]
+    assert headings[0] == "aims-heading"
+    assert headings[-1] == "exercises-heading"
+    answers = [each for each in root.iter(f"{pages.HTML}summary") if each.text == "Answer"]
+    assert 2 <= len(answers) <= 3

@@ -1,0 +1,27 @@
+"""The names in the table of notation are names: of Maxima functions, and of what a record holds."""
+
+from dataclasses import fields
+
+import pytest
+
+from harness.companion.chapters.notation import SYMBOLS
+from harness.companion.paper import REPOSITORY
+from harness.companion.steps import STEPS
+from harness.record import Scene, System
+
+RECORD = {"system": {each.name for each in fields(System)}, "scene": {each.name for each in fields(Scene)}}
+FILES = [path.relative_to(REPOSITORY) for path in sorted((REPOSITORY / "maxima").rglob("*.mac"))]
+
+
+@pytest.mark.parametrize("function", [each.maxima for each in SYMBOLS if each.maxima])
+def test_maxima_functions_are_defined(function):
+    assert any(f"\n{function}(" in (REPOSITORY / file).read_text() for file in FILES)
+
+
+@pytest.mark.parametrize("path", [each.python for each in SYMBOLS])
+def test_python_names_are_in_the_record(path):
+    if path.startswith("derivation equation"):
+        assert path.split('"')[1] in STEPS
+    else:
+        owner, name = path.split(".")
+        assert name in RECORD[owner]

@@ -1,0 +1,109 @@
+"""`holonom companion SCENE... -o DIR`: the same pages for anybody's system, and refusals that say why."""
+
+import pages
+import pytest
+from click.testing import CliRunner
+
+from harness.cli import holonom
+from harness.companion.book import GENERATOR
+from harness.companion.paper import REPOSITORY
+
+OWN = """load("holonom.mac")$
+
+system : holonomic_system(
+  title          = "Cart & bob on a <stiff> spring",
+  coordinates    = [x, y],
+  controls       = [u],
+  parameters     = [k],
+  kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  forces         = [spring = [-k*x, 0]],
+  constraints    = [y - u*x])$
+
+{scene}"""
+SMOOTH = """smooth_scene : holonomic_scene(system, title = "Smooth",
+  control_law = [u = 1 + t], parameter_values = [k = 2], initial_state = [x = 1, dot(x) = 0])$
+"""
+ROUGH = """rough_scene : holonomic_scene(system, title = "Rough",
+  control_law = [u = 1 + t^(7/2)], parameter_values = [k = 2], initial_state = [x = 1, y = 1, dot(x) = 0, dot(y) = 0])$
+"""
+CHAPTERS = ("the-system", "equations-of-motion", "free-motion", "initial-motion")
+
+
+def made(tmp_path, scene: str, *others, constrained=True):
+    """The command's outcome and the directory of the pages."""
+    file, directory = tmp_path / "my system.mac", tmp_path / "pages"
+    text = OWN.format(scene=scene)
+    file.write_text(text if constrained else text.replace("[y - u*x]", "[]"))
+    arguments = ["companion", str(file), *map(str, others), "-o", str(directory)]
+    return CliRunner(mix_stderr=False).invoke(holonom, arguments, standalone_mode=False), directory
+
+
+@pytest.fixture(scope="module")
+def own(tmp_path_factory):
+    tmp_path = tmp_path_factory.mktemp("own")
+    outcome, directory = made(tmp_path, SMOOTH, REPOSITORY / "examples" / "weightless_cabin.mac")
+    assert outcome.return_value == 0
+    return directory
+
+
+def test_every_file_has_its_chapters(own):
+    assert {f"{prefix}-{slug}.html" for prefix in ("1-my-system", "2-weightless-cabin") for slug in CHAPTERS} <= {
+        page.name for page in own.glob("*.html")
+    }
+
+
+def test_links_resolve_and_pages_are_sound(own):
+    assert pages.broken_references(own) == []
+    for page in pages.pages(own):
+        found = pages.names(page)
+        assert len(found) == len(set(found)), page.name
+        assert pages.badly_nested(page) == [], page.name
+
+
+def test_signs_of_markup_in_a_title_are_text(own):
+    assert "Cart & bob on a <stiff> spring" in pages.words(own / "1-my-system-the-system.html")
+
+
+def test_free_motion_and_series_are_answered(own):
+    assert "Under the scene's law every motion is free" in pages.words(own / "2-weightless-cabin-free-motion.html")
+    assert "The series converges for" in pages.words(own / "1-my-system-initial-motion.html")
+
+
+def test_an_answer_that_mathematics_refuses_is_replaced_by_the_reason(tmp_path):
+    outcome, directory = made(tmp_path, ROUGH)
+    assert outcome.return_value == 0
+    assert "There is no answer: " in (shown := pages.words(directory / "initial-motion.html"))
+    assert "not analytic" in shown
+
+
+def test_a_system_without_constraints_is_free(tmp_path):
+    outcome, directory = made(tmp_path, "", constrained=False)
+    assert outcome.return_value == 0
+    assert "every motion is free" in pages.words(directory / "free-motion.html")
+
+
+def test_a_file_that_is_refused_leaves_nothing(tmp_path):
+    outcome, directory = made(tmp_path, SMOOTH.replace("x = 1", "x = 1, y = 2"))
+    assert outcome.return_value == 2
+    assert "contradicts constraint 1" in outcome.stderr
+    assert outcome.stderr.count("\n") == 1
+    assert list(tmp_path.iterdir()) == [tmp_path / "my system.mac"]
+
+
+def test_a_directory_with_other_things_in_it_is_left_alone(tmp_path):
+    (tmp_path / "pages").mkdir()
+    (tmp_path / "pages" / "thesis.txt").write_text("years of work")
+    outcome, directory = made(tmp_path, SMOOTH)
+    assert outcome.return_value == 2
+    assert "other things than a companion" in outcome.stderr
+    assert (directory / "thesis.txt").read_text() == "years of work"
+
+
+def test_a_companion_is_replaced_as_a_whole(tmp_path):
+    (tmp_path / "pages").mkdir()
+    (tmp_path / "pages" / "index.html").write_text(GENERATOR)
+    (tmp_path / "pages" / "stale.html").write_text("from an earlier edition")
+    outcome, directory = made(tmp_path, "")
+    assert outcome.return_value == 0
+    assert not (directory / "stale.html").exists()
+    assert "The file has no scene" in pages.words(directory / "the-system.html")

@@ -1,0 +1,48 @@
+"""A sign turned in a derivation file: the page shows the turned lines, and the verdict turns with them."""
+
+import shutil
+
+import pytest
+
+from harness.companion.chapters import equations_of_motion
+from harness.companion.paper import REPOSITORY
+from harness.companion.runs import perform
+
+RIGHT = '"2 d^2f/dq_s du_r dot(q_s) dot(u_r)" = 2*inner(v,'
+WRONG = RIGHT.replace("= 2*", "= -2*")
+
+
+@pytest.fixture(scope="module")
+def cards(tmp_path_factory):
+    root = tmp_path_factory.mktemp("slip")
+    for folder in ("maxima", "examples"):
+        shutil.copytree(REPOSITORY / folder, root / folder)
+    file = root / "maxima" / "derivation" / "constraint_acceleration.mac"
+    text = file.read_text()
+    assert RIGHT in text
+    file.write_text(text.replace(RIGHT, WRONG))
+    chapter = equations_of_motion.chapter(root)
+    derivations = {name: run for name, run in chapter.runs.items() if name != "printed"}
+    results = perform(derivations.values(), lambda: None)
+    answers = {name: results[run] for name, run in derivations.items()}
+    return chapter.page({**answers, "printed": ()}).content["cards"]
+
+
+def verdicts(card):
+    return {found.verdict for instance in card.instances for found in instance.verdicts}
+
+
+def test_the_page_shows_the_lines_as_they_are(cards):
+    shown = "".join(each.text for each in cards["eq-7"].lines)
+    assert WRONG in shown
+    assert RIGHT not in shown
+
+
+@pytest.mark.parametrize("anchor", ["eq-7", "eq-8", "eq-8-multipliers", "eq-9"])
+def test_the_equation_and_what_follows_from_it_disagree(cards, anchor):
+    assert "disagrees" in verdicts(cards[anchor])
+
+
+@pytest.mark.parametrize("anchor", ["eq-2", "eq-3a", "eq-3", "eq-4", "eq-5", "eq-6"])
+def test_what_does_not_depend_on_it_stands(cards, anchor):
+    assert "disagrees" not in verdicts(cards[anchor])
