@@ -2,7 +2,7 @@
 
 BIN     := .venv/bin
 STAMP   := .venv/installed
-SCENES  := $(filter-out %/printed.mac,$(shell find examples -name '*.mac' | sort))
+SCENES  := $(filter-out %/printed.mac examples/hard/%,$(shell find examples -name '*.mac' | sort))
 RECORDS := $(SCENES:%.mac=build/%.json)
 SOURCES := $(shell find maxima harness -name '*.mac' -o -name '*.lisp' -o -name '*.py')
 
@@ -37,6 +37,7 @@ bench: setup ## Time the motion program, the power series and simulations agains
 pictures: setup ## Draw the README's pictures again
 	$(BIN)/holonom errata --svg examples/paper/errata.svg > /dev/null
 	$(BIN)/python -m harness.figures.radius examples/paper/radius.svg
+	$(BIN)/holonom stability --plot examples/hard/stability.svg > /dev/null
 
 clean: ## Remove all that make made
 	rm -rf build .venv .pytest_cache .ruff_cache .hypothesis *.egg-info

@@ -58,12 +58,11 @@ class Failure(Enum):
     NOT_AFTER_START = ("the last instant is not after the start: {detail}", "give a later one with --until")
     NO_PIVOTS = ("the Taylor engine cannot follow this motion: {detail}", "take --engine auto or robust")
     ROBUST_IS_DOUBLE = (
-        "the robust engine computes in double precision: {detail}",
+        "this takes the robust engine, which computes in double precision: {detail}",
         "leave --precision out, or make the constraints independent",
     )
-    TOLERANCE_UNHELD = ("{detail}", "ask for another tolerance, or for more digits with --precision")
+    TOLERANCE_UNHELD = ("{detail}", "ask for another tolerance, or the Taylor engine for more digits with --precision")
     NO_MOTION_PROGRAM = ("there is no motion program to measure: {detail}", "take constraints that are independent")
-    NO_TIME_SPAN = ("the scene {detail} names no end of its motion", "give it a time_span, for instance [0, 10]")
     METHOD_GAVE_UP = ("{detail}", "ask for a larger tolerance, or for another method")
     MASS_SINGULAR = (
         "the mass matrix is singular along a direction that the constraints leave free",
@@ -73,6 +72,7 @@ class Failure(Enum):
         "the constraints cannot all be satisfied at t = {detail}",
         "end the run before, or remove the constraint that contradicts the others",
     )
+    NO_WAY_THROUGH = ("the motion cannot be followed beyond t = {detail}", "")
     NO_WAY_ON = ("the motion cannot be followed beyond t = {detail}", "end the run before it")
     RTEST_UNPAIRED = ("an input has no expected result", "")
     RTEST_FAILED = ("not all of the {detail} tests passed", "")
@@ -113,6 +113,6 @@ class HolonomError(Exception):
 
     def __str__(self) -> str:
         sentence, remedy = self.failure.value
-        said = sentence.format(detail=self.detail)
+        said, advised = (text.format(detail=self.detail) for text in (sentence, remedy))
         located = f"{self.place}: {said}" if self.place else said
-        return located.rstrip(".") + (f"; {remedy}." if remedy else ".")
+        return located.rstrip(".") + (f"; {advised}." if advised else ".")

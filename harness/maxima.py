@@ -150,12 +150,30 @@ def count_statements(text: str) -> int:
     int
         The number of terminators outside comments and strings.
     """
-    position = depth = statements = 0
+    return sum(1 for _ in statement_ends(text))
+
+
+def statement_ends(text: str, position: int = 0) -> Iterator[int]:
+    """Yield where statements end in Maxima text.
+
+    Parameters
+    ----------
+    text : str
+        Maxima text.
+    position : int
+        Where to begin, outside comments and strings.
+
+    Yields
+    ------
+    int
+        The position just past a terminator, ``;`` or ``$``.
+    """
+    depth = 0
     while match := (IN_COMMENT if depth else IN_CODE).search(text, position):
         position = match.end()
         depth += {"/*": 1, "*/": -1}.get(match[0], 0)
-        statements += match[0] in (";", "$")
-    return statements
+        if match[0] in (";", "$"):
+            yield position
 
 
 @contextmanager

@@ -3,7 +3,18 @@
 Modules are imported inside the commands: ``holonom --help`` waits for no SymPy.
 """
 
-from harness.cli import derivation, free_motion, programs, series
+from harness.cli import accuracy, companion, derivation, free_motion, programs, series, simulation, stability
 from harness.cli.group import holonom, main
 
-__all__ = ["derivation", "free_motion", "holonom", "main", "programs", "series"]
+__all__ = [
+    "accuracy",
+    "companion",
+    "derivation",
+    "free_motion",
+    "holonom",
+    "main",
+    "programs",
+    "series",
+    "simulation",
+    "stability",
+]

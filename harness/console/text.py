@@ -12,6 +12,9 @@ STYLES = {
     "present": "green",
     "absent by choice": "yellow",
     "absent by structure": "dim",
+    "holds": "green",
+    "loses it": "yellow",
+    "fails": "bold red",
 }
 
 

@@ -8,12 +8,15 @@ import json
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from harness.confined import Limits
 from harness.maxima import run_batch
 from harness.motion.program import Program, count_operations, names_in, program_of
 from harness.motion.request import Request, scene_argument
+
+if TYPE_CHECKING:
+    from harness.motion.drawing import Drawing
 
 DOUBLE_DIGITS = 17  # decimal digits that tell any two doubles apart
 
@@ -24,6 +27,8 @@ class MotionProblem:
 
     Attributes
     ----------
+    system, source : str
+        Title of the system, and where it comes from.
     scene, title : str
     time_span : (str, str) or None
         First and last instant, as decimal digits; None where the scene names none.
@@ -45,8 +50,12 @@ class MotionProblem:
         ``residual[beta]``, ``residual_rate[beta]``, indices from 1: A a - J^T lambda = h, J a = -c.
     energy : Program
         ``energy``, the energy function, and ``power``, its rate along the motion; they need the multipliers.
+    drawing : Drawing or None
+        How the system looks; None where it does not say.
     """
 
+    system: str
+    source: str
     scene: str
     title: str
     time_span: tuple[str, str] | None
@@ -59,6 +68,7 @@ class MotionProblem:
     projection: Program | None
     matrices: Program
     energy: Program
+    drawing: "Drawing | None"
 
     @property
     def state(self) -> tuple[str, ...]:
@@ -88,9 +98,30 @@ def motion_problem(file: Path, request: Request, limits: Limits, digits: int = D
     HolonomError
         As `harness.maxima.run_batch`; the file has no scene, a control no law, a parameter no value.
     """
+    return read_problem(problem_document(file, request, limits, digits))
+
+
+def problem_document(file: Path, request: Request, limits: Limits, digits: int = DOUBLE_DIGITS) -> str:
+    """The document of a scene's motion, as Maxima writes it.
+
+    Parameters
+    ----------
+    file, request, limits, digits
+        As for `motion_problem`.
+
+    Returns
+    -------
+    str
+        JSON text, for `read_problem`.
+
+    Raises
+    ------
+    HolonomError
+        As `motion_problem`.
+    """
     arguments = f"{scene_argument(request.scene)}, '{request.solve}, {digits}"
     call = f"lambda([file], write_motion_problem(file, {arguments}))"
-    return read_problem(run_batch(file, call, limits, request.settings))
+    return run_batch(file, call, limits, request.settings)
 
 
 def read_problem(text: str) -> MotionProblem:
@@ -113,6 +144,8 @@ def read_problem(text: str) -> MotionProblem:
     document = json.loads(text)
     span = document["time_span"]
     return MotionProblem(
+        system=document["system"]["title"],
+        source=document["system"]["source"],
         scene=document["scene"],
         title=document["title"],
         time_span=span and tuple(span),
@@ -125,6 +158,7 @@ def read_problem(text: str) -> MotionProblem:
         projection=_optional(document["projection"]),
         matrices=program_of(document["matrices"]),
         energy=program_of(document["energy"]),
+        drawing=_drawing(document["drawing"]),
     )
 
 
@@ -155,3 +189,11 @@ def computing(program: Program, wanted: Collection[str]) -> Program:
 
 def _optional(document: Any) -> Program | None:
     return None if document is None else program_of(document)
+
+
+def _drawing(document: Any) -> "Drawing | None":
+    if document is None:
+        return None
+    from harness.motion.drawing import Drawing, Shape
+
+    return Drawing(tuple(map(Shape, document["shapes"])), program_of(document["program"]))

@@ -19,11 +19,12 @@ from enum import StrEnum
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
-from typing import Any
-
-import jsonschema
+from typing import TYPE_CHECKING, Any
 
 from harness.failures import Failure, HolonomError
+
+if TYPE_CHECKING:
+    from jsonschema import Draft202012Validator
 
 SCHEMA = Path(__file__).with_name("program.schema.json")
 DEEPEST = 100  # levels of an expression: Maxima names what is deeper, and Python's recursion limit stays far away
@@ -171,11 +172,13 @@ def program_of(document: Any) -> Program:
     HolonomError
         As `read_program`.
     """
+    from jsonschema import ValidationError
+
     try:
         _validator().validate(document)
     except RecursionError as error:
         raise _refusal(str(error)) from None
-    except jsonschema.ValidationError as error:
+    except ValidationError as error:
         raise _refusal(f"{error.json_path}: {_shown(error.message)}") from None
     program = Program(
         scene=document["scene"],
@@ -228,8 +231,10 @@ def names_in(expression: Expression) -> Set[str]:
 
 
 @cache
-def _validator() -> jsonschema.Draft202012Validator:
-    return jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8")))
+def _validator() -> "Draft202012Validator":
+    from jsonschema import Draft202012Validator
+
+    return Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8")))
 
 
 def _expression(tree: object, levels: int) -> Expression:

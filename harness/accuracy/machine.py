@@ -1,0 +1,76 @@
+"""What measured: every table and figure of times says so."""
+
+import os
+import platform
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import date
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+PROCESSORS = Path("/proc/cpuinfo")
+PACKAGES = ("heyoka", "numpy", "scipy", "scikit-sundae", "mpmath")
+
+
+@dataclass(frozen=True)
+class Machine:
+    """A machine on a day.
+
+    Attributes
+    ----------
+    processor : str
+    cores : int
+        That this process may use.
+    system : str
+    versions : mapping of str to str
+        Of Python and of the packages that were measured.
+    date : str
+        ISO 8601.
+    """
+
+    processor: str
+    cores: int
+    system: str
+    versions: Mapping[str, str]
+    date: str
+
+    def __str__(self) -> str:
+        versions = ", ".join(f"{name} {number}" for name, number in self.versions.items())
+        cores = f"{self.cores} core{'' if self.cores == 1 else 's'}"
+        return f"{self.processor}, {cores}, {self.system}; {versions}; {self.date}"
+
+
+def this_machine(packages: tuple[str, ...] = PACKAGES) -> Machine:
+    """The machine this runs on, today.
+
+    Parameters
+    ----------
+    packages : tuple of str
+        Whose versions matter; those that are not installed are left out.
+
+    Returns
+    -------
+    Machine
+    """
+    versions = {"Python": platform.python_version()}
+    for package in packages:
+        try:
+            versions[package] = version(package)
+        except PackageNotFoundError:
+            continue
+    return Machine(
+        processor=_processor(),
+        cores=len(os.sched_getaffinity(0)),
+        system=f"{platform.system()} {platform.machine()}",
+        versions=versions,
+        date=date.today().isoformat(),
+    )
+
+
+def _processor() -> str:
+    try:
+        lines = PROCESSORS.read_text(encoding="utf-8").splitlines()
+    except OSError:
+        lines = []
+    named = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
+    return next(named, platform.processor() or "unknown processor")

@@ -1,0 +1,140 @@
+"""The command about motion in numbers: simulate."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from fractions import Fraction
+from pathlib import Path
+from threading import Thread
+
+import click
+
+from harness.cli.group import holonom
+from harness.cli.options import (
+    STANDARD_OUTPUT,
+    asks_one_scene,
+    json_text,
+    publish,
+    read_instant,
+    runs_scenes,
+    writes_json,
+)
+from harness.confined import Limits
+from harness.failures import HolonomError
+
+SAMPLES_OF_A_PLOT = 1001
+
+
+@holonom.command()
+@asks_one_scene
+@click.option("--tol", type=float, help="Tolerance of a step; without it, what the precision holds.")
+@click.option(
+    "--precision",
+    metavar="double|extended|quadruple|DIGITS",
+    default="double",
+    show_default=True,
+    help="Numbers to use.",
+)
+@click.option("--engine", type=click.Choice(["auto", "taylor", "robust"]), default="auto", show_default=True)
+@click.option(
+    "--drift",
+    type=click.Choice(["projection", "baumgarte", "ggl", "none"]),
+    default="projection",
+    show_default=True,
+    help="What keeps the constraints, with the Taylor engine.",
+)
+@click.option("--solve", type=click.Choice(["direct", "orthogonal"]), default="direct", show_default=True)
+@click.option("--compact/--no-compact", default=None, help="heyoka's compact mode; without it, what pays.")
+@click.option("--until", metavar="T", callback=read_instant, help="The last instant, in place of the scene's.")
+@click.option("--samples", metavar="N", type=click.IntRange(min=2), help="Keep N equidistant instants, not the steps.")
+@click.option("--final", is_flag=True, help="Of the motion, only the final state goes into the JSON document.")
+@writes_json
+@click.option(
+    "-o",
+    "--output",
+    metavar="FILE.csv|.npz|.parquet",
+    type=click.Path(path_type=Path),
+    help="Also write the samples of the motion.",
+)
+@click.option(
+    "--plot", "plot_file", metavar="FILE.svg|.png", type=click.Path(path_type=Path), help="Also draw the motion."
+)
+@runs_scenes
+def simulate(
+    scene_file: Path,
+    scene: str | None,
+    tol: float | None,
+    precision: str,
+    engine: str,
+    drift: str,
+    solve: str,
+    compact: bool | None,
+    until: Fraction | None,
+    samples: int | None,
+    final: bool,
+    json_file: Path | None,
+    output: Path | None,
+    plot_file: Path | None,
+    settings: Sequence[str],
+    limits: Limits,
+) -> int:
+    """Follow the motion of a SCENE in numbers, and say how well it was followed."""
+    from harness.motion.problem import problem_document, read_problem
+    from harness.motion.program import Solve
+    from harness.motion.request import Request, read_settings
+
+    request, digits = Request(scene, Solve(solve), read_settings(settings)), _digits_of(precision)
+    with _imported_meanwhile():
+        document = problem_document(scene_file, request, limits, digits)
+    problem = read_problem(document)
+    from harness.console.simulation import motion_progress, show_simulation
+    from harness.simulation.document import report_document, simulation_document
+    from harness.simulation.output import require_formats, write_files
+    from harness.simulation.request import FINAL_STATE_ALONE, Drift, Engine, SimulationRequest
+    from harness.simulation.simulate import simulate as follow
+
+    require_formats(output, plot_file)
+    if final and output is None and plot_file is None:
+        samples = FINAL_STATE_ALONE
+    elif samples is None and plot_file is not None:
+        samples = SAMPLES_OF_A_PLOT
+    wanted = SimulationRequest(tol, precision, Engine(engine), Drift(drift), until, samples, compact)
+    with motion_progress(problem.title) as progress:
+        simulation = follow(problem, wanted, progress)
+    write_files(simulation, output, plot_file)
+    if json_file is not None:
+        publish(json_text(report_document(simulation.report) if final else simulation_document(simulation)), json_file)
+    if json_file != STANDARD_OUTPUT:
+        show_simulation(simulation)
+    return 0
+
+
+def _digits_of(precision: str) -> int:
+    """Decimal digits that the initial state is to have."""
+    from harness.motion.problem import DOUBLE_DIGITS
+
+    if precision == "double":
+        return DOUBLE_DIGITS  # without waiting for heyoka
+    from harness.motion.precision import read_precision
+
+    return read_precision(precision).digits
+
+
+@contextmanager
+def _imported_meanwhile() -> Iterator[None]:
+    """Import what is needed next while the block waits for Maxima; the block itself must import nothing."""
+    importing = Thread(target=_import_what_follows)
+    importing.start()
+    try:
+        yield
+    finally:
+        importing.join()
+
+
+def _import_what_follows() -> None:
+    with suppress(ImportError, HolonomError):  # what is missing is told when it is needed
+        import jsonschema  # noqa: F401
+
+        import harness.simulation.simulate  # noqa: F401
+        from harness.simulation.evaluation import wake_compiler
+
+        wake_compiler()

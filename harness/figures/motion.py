@@ -1,0 +1,58 @@
+"""A motion as a figure: coordinates, and multipliers where the scene observes them, over the time."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from harness.figures.style import LINES, PALETTE, figure_style, new_figure, write_figure
+from harness.simulation.result import Simulation
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+WIDTH, HEIGHT_OF_PANEL = 9.0, 3.2  # inches
+LEGIBLE = 12  # curves that a legend can still tell apart
+
+
+def draw_motion(simulation: Simulation, file: Path) -> None:
+    """Draw a motion.
+
+    Parameters
+    ----------
+    simulation : Simulation
+    file : Path
+        The SVG or PNG file.
+
+    Raises
+    ------
+    HolonomError
+        Matplotlib is not installed; the file cannot be written.
+    """
+    groups = {
+        "coordinates": simulation.coordinates,
+        "velocities": simulation.velocities,
+        "multipliers": simulation.multipliers,
+        "constraint forces": simulation.constraint_forces,
+    }
+    drawn = {title: curves for title, curves in groups.items() if curves}
+    with figure_style():
+        figure = new_figure(WIDTH, HEIGHT_OF_PANEL * len(drawn))
+        panels = figure.subplots(len(drawn), 1, sharex=True, squeeze=False)[:, 0]
+        for panel, (title, curves) in zip(panels, drawn.items(), strict=True):
+            _draw(panel, simulation.instants.astype(float), curves)
+            panel.set_ylabel(f"{title}\n(units of the scene)")
+        panels[0].set_title(simulation.title)
+        panels[-1].set_xlabel("t (units of the scene)")
+        write_figure(figure, file)
+
+
+def _draw(axes: "Axes", instants: NDArray[np.float64], curves: Mapping[str, NDArray]) -> None:
+    for index, (name, samples) in enumerate(curves.items()):
+        line = LINES[index // len(PALETTE) % len(LINES)]
+        colour = PALETTE[index % len(PALETTE)]
+        axes.plot(instants, samples.astype(float), linestyle=line, color=colour, label=name)
+    if len(curves) <= LEGIBLE:
+        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))

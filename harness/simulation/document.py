@@ -1,0 +1,79 @@
+"""A simulation as the document of `holonom simulate --json`: doubles as numbers, longer ones as decimal text."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from harness.simulation.result import Report, Simulation
+
+
+def simulation_document(simulation: Simulation) -> dict[str, Any]:
+    """The report and the samples.
+
+    Parameters
+    ----------
+    simulation : Simulation
+
+    Returns
+    -------
+    dict
+        As `report_document`, with the samples by name under ``samples``.
+    """
+    digits = simulation.report.digits
+    columns = {name: published_list(samples, digits) for name, samples in simulation.columns()}
+    named = {"scene": simulation.scene, "title": simulation.title}
+    return named | report_document(simulation.report) | {"samples": columns}
+
+
+def report_document(report: Report) -> dict[str, Any]:
+    """The report alone.
+
+    Parameters
+    ----------
+    report : Report
+
+    Returns
+    -------
+    dict
+        Its attributes.
+    """
+    return {name: _published(value, report.digits) for name, value in vars(report).items()}
+
+
+def published_list(samples: np.ndarray, digits: int) -> list[float | str]:
+    """Samples for another program to read.
+
+    Parameters
+    ----------
+    samples : ndarray
+    digits : int
+        Of those that no double can hold.
+
+    Returns
+    -------
+    list
+    """
+    return samples.tolist() if samples.dtype == float else [_published(sample, digits) for sample in samples]
+
+
+def _published(value: Any, digits: int) -> Any:
+    match value:
+        case str() | int():
+            return value
+        case Mapping():
+            return {name: _published(each, digits) for name, each in value.items()}
+        case tuple():
+            return list(value)
+        case float():
+            return float(value)
+        case _:
+            return _text(value, digits)
+
+
+def _text(number: Any, digits: int) -> str:
+    """Decimal digits of a number that no double can hold."""
+    import mpmath
+
+    with mpmath.workdps(digits + 5):
+        return mpmath.nstr(mpmath.mpf(str(number)), digits, strip_zeros=False)

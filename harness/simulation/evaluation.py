@@ -1,0 +1,66 @@
+"""Programs as functions in the numbers of a run: compiled by heyoka in a few milliseconds, and not to the utmost.
+
+One evaluation takes about a microsecond in double precision, most of it the call; the compilation's optimiser would
+take longer than it ever gains at the few states where these are wanted.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from harness.motion.heyoka_function import COMPACT_FROM, heyoka_expressions, import_heyoka
+from harness.motion.precision import Precision
+from harness.motion.program import Program
+
+Numbers = NDArray[Any]  # floats in double precision, heyoka's own numbers beyond
+Evaluation = Callable[[Numbers], Numbers]
+
+
+def evaluation(program: Program, precision: Precision) -> Evaluation:
+    """Compile a program.
+
+    Parameters
+    ----------
+    program : Program
+    precision : Precision
+
+    Returns
+    -------
+    callable
+        Takes the inputs, shape (inputs,) or (inputs, points), to the outputs, shape (outputs,) or (outputs, points).
+
+    Raises
+    ------
+    HolonomError
+        heyoka is not installed.
+    """
+    heyoka = import_heyoka()
+    variables = {name: heyoka.expression(name) for name in program.inputs}
+    outputs = heyoka_expressions(program, variables, precision.ratio)
+    return heyoka.cfunc(
+        list(outputs.values()),
+        vars=list(variables.values()),
+        compact_mode=program.operations >= COMPACT_FROM,
+        opt_level=0,
+        **precision.options,
+    )
+
+
+def zeros(precision: Precision, *shape: int) -> Numbers:
+    """An array of zeros of these numbers."""
+    array = np.empty(shape, dtype=np.asarray([precision.number("0")]).dtype)
+    array[...] = precision.number("0")
+    return array
+
+
+def as_floats(numbers: Numbers) -> NDArray[np.float64]:
+    """The same numbers in double precision."""
+    return np.array([float(number) for number in numbers])
+
+
+def wake_compiler() -> None:
+    """Compile next to nothing: heyoka's first compilation takes 0.1 s longer than any other, best while one waits."""
+    heyoka = import_heyoka()
+    heyoka.cfunc([heyoka.expression("x")], vars=[heyoka.expression("x")], opt_level=0)

@@ -1,0 +1,140 @@
+"""Hard cases that a motion is, as far as its matrices tell at the start and at the end.
+
+Those that the engines meet on the way, redundant constraints, singular configurations, vanishing gradients, they tell
+themselves.
+"""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from harness.simulation.advice import HardCase
+from harness.simulation.balance import condition
+from harness.simulation.constraints import factored_constraints, rank_of, weighted_constraints
+from harness.simulation.matrices import Matrices, MotionMatrices, Vector
+
+ILL_CONDITIONED, DEPENDENT = 1e8, 1e20  # condition of G: half of a double's digits lost, and none left
+UNEQUAL_MASSES = 1e8  # ratio of the entries on A's diagonal: half of a double's digits
+UNSQUARED = 1e150  # numbers whose squares leave the range of a double, or soon will
+MANY_STEPS = 10_000
+FREE = 1e-13  # constraint forces, in terms of the others
+STIFF = 1e5  # squares of frequencies, one in terms of another
+AT_REST = 1e-8  # squares of frequencies, in terms of the largest, that differences do not tell from zero
+DIFFERENCE = 1e-5  # in coordinates: the cube root of a double's rounding error
+
+
+class Instant(NamedTuple):
+    """A state of a motion.
+
+    Attributes
+    ----------
+    t : float
+    state : ndarray, shape (2n,)
+    """
+
+    t: float
+    state: Vector
+
+
+def hard_cases(
+    matrices: MotionMatrices, start: Instant, end: Instant, multipliers: Vector, steps: int
+) -> Iterator[HardCase]:
+    """The kinds of hard case that a motion is.
+
+    Parameters
+    ----------
+    matrices : MotionMatrices
+    start, end : Instant
+    multipliers : ndarray, shape (g,)
+        At the end.
+    steps : int
+        That the motion took.
+
+    Yields
+    ------
+    HardCase
+        Nearly dependent constraints, large mass ratio, overflow, free motion, long run, stiffness.
+    """
+    ends = [matrices(*start), matrices(*end)]
+    if any(ILL_CONDITIONED < condition(at) < DEPENDENT for at in ends):
+        yield HardCase.NEARLY_DEPENDENT
+    if any(_mass_ratio(at) > UNEQUAL_MASSES for at in ends):
+        yield HardCase.MASS_RATIO
+    if any(_largest(at) > UNSQUARED for at in ends):
+        yield HardCase.OVERFLOW
+    if _free(ends, multipliers):
+        yield HardCase.FREE_CANCELLATION
+    if steps > MANY_STEPS:
+        yield HardCase.LONG_RUN
+    if stiffness(matrices, start) > STIFF:
+        yield HardCase.STIFF
+
+
+def dependence(matrices: MotionMatrices, at: Instant) -> str | None:
+    """Why no fixed order of pivots can solve the equations of motion at a state, if none can.
+
+    Parameters
+    ----------
+    matrices : MotionMatrices
+    at : Instant
+
+    Returns
+    -------
+    str or None
+        A clause; None where the constraints are independent.
+    """
+    found = matrices(*at)
+    rank = rank_of(weighted_constraints(found.mass, found.jacobian).singular_values())
+    g = len(found.jacobian)
+    return None if rank == g else f"of {g} constraints only {rank} are independent at t = {at.t:g}"
+
+
+def stiffness(matrices: MotionMatrices, at: Instant) -> float:
+    """Ratio of the largest to the smallest square of a frequency that small deviations from a motion have.
+
+    Parameters
+    ----------
+    matrices : MotionMatrices
+    at : Instant
+
+    Returns
+    -------
+    float
+        From the derivative of the accelerations with respect to the coordinates, along what the constraints leave
+        free, in the mass metric.
+    """
+    here = matrices(*at)
+    weighted = weighted_constraints(here.mass, here.jacobian)
+    left, values, _ = np.linalg.svd(weighted.directions)
+    free = np.linalg.solve(weighted.factor.T, left[:, rank_of(values) :])
+    moves = DIFFERENCE * np.concatenate([free, np.zeros_like(free)])
+    change = [_accelerations(matrices, at, move) - _accelerations(matrices, at, -move) for move in moves.T]
+    if not change:
+        return 1.0
+    squares = np.abs(np.linalg.eigvals(free.T @ here.mass @ np.array(change).T / (2 * DIFFERENCE)))
+    moving = squares[squares > AT_REST * squares.max()]
+    return float(moving.max() / moving.min()) if moving.size else 1.0
+
+
+def _accelerations(matrices: MotionMatrices, at: Instant, move: Vector) -> Vector:
+    moved = matrices(at.t, at.state + move)
+    weighted = weighted_constraints(moved.mass, moved.jacobian)
+    factored = factored_constraints(weighted, rank_of(weighted.singular_values()))
+    return factored.accelerations(moved.force, moved.curvature)
+
+
+def _mass_ratio(at: Matrices) -> float:
+    masses = at.mass.diagonal()[at.mass.diagonal() > 0]
+    return float(masses.max() / masses.min()) if masses.size else 1.0
+
+
+def _largest(at: Matrices) -> float:
+    return max(float(np.abs(part).max(initial=0.0)) for part in (at.mass, at.force, at.jacobian, at.curvature))
+
+
+def _free(ends: Sequence[Matrices], multipliers: Vector) -> bool:
+    """Whether the constraints make no force to speak of at the end, although there are other forces."""
+    forces = max(float(np.abs(at.force).max(initial=0.0)) for at in ends)
+    reaction = float(np.abs(ends[-1].jacobian.T @ multipliers).max(initial=0.0))
+    return forces > 0 and len(multipliers) > 0 and reaction <= FREE * forces

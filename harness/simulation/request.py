@@ -1,0 +1,61 @@
+"""What a simulation is asked for."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from fractions import Fraction
+
+FINAL_STATE_ALONE = 0
+
+
+class Engine(StrEnum):
+    """What follows the motion."""
+
+    AUTO = "auto"
+    TAYLOR = "taylor"
+    ROBUST = "robust"
+
+
+class Drift(StrEnum):
+    """What keeps the constraints, which the accelerations alone let go: rounding makes f grow with the time.
+
+    ``PROJECTION`` moves the state to the nearest one, in the mass metric, that keeps them; ``BAUMGARTE`` adds damped
+    springs to the accelerations (Comput. Methods Appl. Mech. Eng. 1 (1972) 1); ``GGL`` adds to the velocities, too,
+    in the way of Gear, Gupta and Leimkuhler (J. Comput. Appl. Math. 12 (1985) 77).
+    """
+
+    PROJECTION = "projection"
+    BAUMGARTE = "baumgarte"
+    GGL = "ggl"
+    NONE = "none"
+
+
+@dataclass(frozen=True)
+class SimulationRequest:
+    """How a motion is to be followed.
+
+    Parameters
+    ----------
+    tol : float or None
+        Tolerance of a step, relative; None for what the engine and the precision can hold.
+    precision : str or int
+        ``double``, ``extended``, ``quadruple``, or a number of decimal digits. Only the Taylor engine knows others
+        than double.
+    engine : Engine
+    drift : Drift
+        What the Taylor engine does; the robust one always projects.
+    until : Fraction or None
+        Last instant; None for the end of the scene's time span.
+    samples : int or None
+        So many equidistant instants from the first to the last, or, with 0, the final state alone; None for the
+        engine's own steps.
+    compact : bool or None
+        Whether heyoka compiles in its compact mode; None to choose by what the compilation takes and the run gains.
+    """
+
+    tol: float | None = None
+    precision: str | int = "double"
+    engine: Engine = Engine.AUTO
+    drift: Drift = Drift.PROJECTION
+    until: Fraction | None = None
+    samples: int | None = None
+    compact: bool | None = None

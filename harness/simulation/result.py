@@ -1,0 +1,95 @@
+"""What came of a simulation: samples of the motion, and a report on how well it was followed."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from numpy.typing import NDArray
+
+Samples = Mapping[str, NDArray[Any]]
+
+
+@dataclass(frozen=True)
+class Report:
+    """The end of a motion, and how well it was followed to there.
+
+    Numbers of the motion are floats in double precision, heyoka's own beyond.
+
+    Attributes
+    ----------
+    t : number
+    coordinates, velocities : mapping of str to number
+    multipliers : mapping of str to number
+        Empty where the scene does not observe them.
+    residuals : mapping of str to float
+        ``position``, ``velocity`` and ``acceleration``: how far the final state is from the constraints, as
+        `harness.simulation.balance` defines it.
+    energy_error : float
+        Energy gained beyond what the forces and the controls did as work, as `harness.simulation.balance` defines it.
+    condition : float
+        Condition number of G = J A^-1 J^T at the end, each constraint scaled to unit length.
+    steps : int
+    engine : str
+        ``taylor``, ``robust``, or who worked when: ``taylor, robust 0.31..0.35, taylor``.
+    code : str
+        How heyoka compiled the Taylor engine in the end, see `harness.simulation.code`; empty where it did nothing.
+    precision : str
+    digits : int
+        Decimal digits that tell its numbers apart.
+    tol : float
+    compile_seconds, run_seconds : float
+    remarks : tuple of str
+        One sentence each: a hand-over, advice on a hard case.
+    """
+
+    t: Any
+    coordinates: Mapping[str, Any]
+    velocities: Mapping[str, Any]
+    multipliers: Mapping[str, Any]
+    residuals: Mapping[str, float]
+    energy_error: float
+    condition: float
+    steps: int
+    engine: str
+    code: str
+    precision: str
+    digits: int
+    tol: float
+    compile_seconds: float
+    run_seconds: float
+    remarks: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """A motion followed from its start to its end.
+
+    Attributes
+    ----------
+    scene, title : str
+    instants : ndarray, shape (k,)
+    coordinates, velocities, multipliers, constraint_forces : mapping of str to ndarray of shape (k,)
+        At the instants; empty where the scene does not observe them.
+    energy, residuals : mapping of str to ndarray of shape (k,)
+        ``energy`` and ``energy_error``; ``position``, ``velocity`` and ``acceleration``. Empty likewise.
+    report : Report
+    """
+
+    scene: str
+    title: str
+    instants: NDArray[Any]
+    coordinates: Samples
+    velocities: Samples
+    multipliers: Samples
+    constraint_forces: Samples
+    energy: Samples
+    residuals: Samples
+    report: Report
+
+    def columns(self) -> Iterator[tuple[str, NDArray[Any]]]:
+        """The time, then every series of samples with its name; residuals are named ``residual.position`` and so on."""
+        yield "t", self.instants
+        for group in (self.coordinates, self.velocities, self.multipliers, self.constraint_forces, self.energy):
+            yield from group.items()
+        for name, samples in self.residuals.items():
+            yield f"residual.{name}", samples

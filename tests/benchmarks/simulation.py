@@ -1,0 +1,187 @@
+"""`make bench`: five motions simulated by Holonom and its peers, one table and one figure.
+
+    python tests/benchmarks/simulation.py build/benchmarks
+
+Every method starts from the scene's initial state and is measured at a relative error of 1e-9 against one reference:
+its tolerance is tightened until the error is below, and its time interpolated between the last two tolerances, both
+logarithmically. All runs of a motion take turns. Compilation is timed apart, as it is the first time.
+"""
+
+import math
+import sys
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+from simulation_bars import Bar, bars_of, general_bars
+from simulation_motions import MOTIONS, Motion
+from simulation_peers import HEYOKA, PEERS, Prepared, Run, State
+from simulation_report import write_report
+
+from harness.accuracy.compilation import without_caches
+from harness.accuracy.contest import times_in_turns
+from harness.accuracy.errors import numbers_of, relative_error
+from harness.accuracy.reference import Reference, find_reference
+from harness.confined import Limits
+from harness.failures import HolonomError
+from harness.motion.problem import MotionProblem, motion_problem
+from harness.motion.request import Request
+from harness.motion.timing import python_batch
+from harness.simulation.request import Drift
+from harness.simulation.taylor import TaylorMotion
+
+ERROR = 1e-9
+TOLERANCES = tuple(float(f"1e-{n}") for n in range(5, 16))
+DIGITS = 20  # more than any method has; the reference has `MORE_DIGITS` on top
+PATIENCE = 5.0  # seconds of a run after which a method is given up
+REPEATED = 0.05  # seconds of a run up to which it takes many turns
+OURS, UNPROJECTED = "Holonom", "Holonom, drift: none"
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A method at one tolerance, its error, and the seconds that it takes to compile and to run."""
+
+    tolerance: float
+    error: float
+    compile: float
+    seconds: float
+    run: Run
+
+
+@dataclass(frozen=True)
+class Row:
+    """What a method takes for a motion at `ERROR`; None where it does not get there, and why."""
+
+    motion: str
+    method: str
+    seconds: float | None
+    compile: float | None
+    reason: str = ""
+
+
+def measure(directory: Path) -> None:
+    """Measure, then write ``simulation.json``, ``simulation.txt`` and ``simulation.svg`` into a directory."""
+    rows: list[Row] = []
+    bars: list[Bar] = []
+    for motion in MOTIONS:
+        problem = motion_problem(motion.file, Request(motion.scene, settings=motion.settings), Limits(), DIGITS + 40)
+        with without_caches():
+            settings, reasons = contest(motion, problem)
+        found = {name: row_of(motion, name, settings[name], reasons[name]) for name in settings}
+        rows += found.values()
+        bars += bars_of(motion, problem, found, same_settings(settings, OURS, HEYOKA), projection_share(settings))
+    write_report(rows, [*bars, *general_bars(MOTIONS[0])], directory)
+
+
+def contest(motion: Motion, problem: MotionProblem) -> tuple[dict[str, list[Setting]], dict[str, str]]:
+    """The last two settings of each method, timed in turns; none, and the reason, where it does not get there."""
+    reference = find_reference(problem, [motion.until], DIGITS)
+    settings: dict[str, list[Setting]] = {}
+    reasons: dict[str, str] = {}
+    tolerances: Sequence[float] = TOLERANCES
+    for name, peer in PEERS.items():
+        settings[name], reasons[name] = tighten(partial(peer, motion, problem), motion, reference, tolerances)
+        print(f"{motion.name}: {name} {reasons[name]}", file=sys.stderr)
+    tolerances = TOLERANCES[TOLERANCES.index(settings[HEYOKA][0].tolerance) :]
+    for name, drift in ((OURS, Drift.PROJECTION), (UNPROJECTED, Drift.NONE)):
+        prepare = partial(holonom, motion, problem, drift)
+        settings[name], reasons[name] = tighten(prepare, motion, reference, tolerances)
+    return with_turns(settings), reasons
+
+
+def holonom(motion: Motion, problem: MotionProblem, drift: Drift) -> Prepared:
+    """The Taylor engine, its code unrolled, which is heyoka's own default."""
+
+    def at_tolerance(tolerance: float) -> Run:
+        follower = TaylorMotion(problem, tolerance, drift=drift, compact=False)
+        begin, start, end = follower.time, np.array(follower.state), float(motion.until)
+
+        def run() -> State:
+            follower.restart(begin, start)
+            follower.advance(end)
+            return follower.state.copy()
+
+        return run
+
+    return at_tolerance
+
+
+def tighten(
+    prepare: Callable[[], Prepared], motion: Motion, reference: Reference, tolerances: Sequence[float]
+) -> tuple[list[Setting], str]:
+    """Tighten the tolerance until the error is small enough."""
+    begun = time.perf_counter()
+    at_tolerance = prepare()
+    prepared = time.perf_counter() - begun
+    found: list[Setting] = []
+    for tolerance in tolerances:
+        try:
+            setting = first_run(at_tolerance, tolerance, motion, reference)
+        except HolonomError as refusal:
+            return [], str(refusal)
+        found.append(replace(setting, compile=prepared + setting.compile))
+        if setting.error <= ERROR:
+            return found[-2:], ""
+        if setting.seconds > PATIENCE:
+            break
+    last = found[-1]
+    return [], f"error {last.error:.1g} after {last.seconds:.2g} s at tolerance {last.tolerance:g}"
+
+
+def first_run(at_tolerance: Prepared, tolerance: float, motion: Motion, reference: Reference) -> Setting:
+    """Compile for a tolerance and run once."""
+    begun = time.perf_counter()
+    run = at_tolerance(tolerance)
+    compiled = time.perf_counter()
+    state = run()
+    seconds = time.perf_counter() - compiled
+    error = relative_error(numbers_of(map(repr, map(float, state))), reference.states[motion.until])
+    return Setting(tolerance, error, compiled - begun, seconds, run)
+
+
+def with_turns(settings: Mapping[str, list[Setting]]) -> dict[str, list[Setting]]:
+    """The settings with the shortest of many times; runs that take long are timed twice."""
+    batches = {(name, s.tolerance): python_batch(_ignoring(s.run), ()) for name, row in settings.items() for s in row}
+    once = {key: batch(1) for key, batch in batches.items()}
+    shortest = times_in_turns({key: batch for key, batch in batches.items() if once[key] < REPEATED})
+    return {
+        name: [
+            replace(s, seconds=shortest.get((name, s.tolerance), min(s.seconds, once[name, s.tolerance]))) for s in row
+        ]
+        for name, row in settings.items()
+    }
+
+
+def row_of(motion: Motion, name: str, settings: Sequence[Setting], reason: str) -> Row:
+    """A method's time at `ERROR`, interpolated between its two settings."""
+    if not settings:
+        return Row(motion.name, name, None, None, reason)
+    first, last = settings[0], settings[-1]
+    if first is last or first.error <= last.error:
+        return Row(motion.name, name, last.seconds, last.compile)
+    share = math.log(first.error / ERROR) / math.log(first.error / last.error)
+    return Row(motion.name, name, first.seconds * (last.seconds / first.seconds) ** share, last.compile)
+
+
+def same_settings(settings: Mapping[str, Sequence[Setting]], one: str, other: str) -> float:
+    """Ratio of two methods' times at the finest tolerance that both were run at."""
+    times = [{s.tolerance: s.seconds for s in settings[name]} for name in (one, other)]
+    finest = min(times[0].keys() & times[1].keys())
+    return times[0][finest] / times[1][finest]
+
+
+def projection_share(settings: Mapping[str, Sequence[Setting]]) -> float:
+    """What projection adds to a run, relative to the run without."""
+    return same_settings(settings, OURS, UNPROJECTED) - 1
+
+
+def _ignoring(run: Run) -> Callable[[object], State]:
+    return lambda _: run()
+
+
+if __name__ == "__main__":
+    measure(Path(sys.argv[1]))

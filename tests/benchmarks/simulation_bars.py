@@ -1,0 +1,137 @@
+"""What the simulations are held to, and how far that holds; one-shot runs and many digits."""
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import mpmath
+from simulation_motions import Motion, paper_in_mpmath
+from simulation_peers import DOP853, HEYOKA, OLDER_SCIPY, SOLVE_IVP, SUNDIALS, start_of
+
+from harness.accuracy.errors import State, relative_error
+from harness.accuracy.reference import find_reference
+from harness.accuracy.taylor import prepare_taylor
+from harness.confined import Limits
+from harness.motion.problem import MotionProblem, motion_problem
+from harness.motion.request import Request
+from harness.motion.timing import python_batch, shortest_times
+from harness.simulation.request import Drift, Engine, SimulationRequest
+from harness.simulation.simulate import simulate
+
+if TYPE_CHECKING:
+    from simulation import Row
+
+SAME_SETTINGS, BEST_BY_HAND, SUNDIALS_TIMES = 1.25, 1.5, 12.0
+SCIPY_TIMES = {"paper": 100.0, "pendulum": 100.0, "chain_8": 12.0, "car_axis": 12.0, "andrews": 12.0}
+ONE_SHOT, HELP = 1.0, 0.2  # seconds
+RESIDUAL, PROJECTION_SHARE = 1e-12, 0.25
+MPMATH_TIMES, MPMATH_DIGITS = 300.0, 30
+OUR_DIGITS, OUR_TOLERANCE = "34", 1e-34
+
+ONE_SHOT_REPEATS = 3
+TOLERANCE = "1e-9"  # of one-shot runs
+OURS = "Holonom"
+HERE = Path(__file__).parent
+ROOT = HERE.parents[1]
+
+
+@dataclass(frozen=True)
+class Bar:
+    """A ratio or a quantity, and what it has to be; no bound where it stands for comparison."""
+
+    motion: str
+    what: str
+    value: float
+    bound: float | None = None
+    at_least: bool = False
+
+    @property
+    def verdict(self) -> str:
+        """Whether it is what it has to be."""
+        if self.bound is None:
+            return ""
+        return "holds" if (self.value >= self.bound if self.at_least else self.value <= self.bound) else "FAILS"
+
+
+def bars_of(
+    motion: Motion, problem: MotionProblem, rows: Mapping[str, "Row"], same_settings: float, projection_share: float
+) -> Iterator[Bar]:
+    """The bars of one motion."""
+    ours, name = rows[OURS].seconds, motion.name
+    by_hand = _best(rows, (HEYOKA, DOP853))
+    yield Bar(name, "time to heyoka by hand, same settings", same_settings, SAME_SETTINGS)
+    yield Bar(name, "time to the better by hand", ours / by_hand, BEST_BY_HAND)
+    yield Bar(name, "times faster than SciPy's best solver", _best(rows, SOLVE_IVP) / ours, SCIPY_TIMES[name], True)
+    yield Bar(name, "times faster than SciPy's older interfaces", _best(rows, tuple(OLDER_SCIPY)) / ours)
+    yield Bar(name, "times faster than SUNDIALS' best", _best(rows, SUNDIALS) / ours, SUNDIALS_TIMES, True)
+    yield Bar(name, "share that projection adds", projection_share, PROJECTION_SHARE)
+    request = SimulationRequest(float(TOLERANCE), engine=Engine.TAYLOR, until=motion.until, samples=0)
+    residuals = simulate(problem, request).report.residuals
+    for kind in ("position", "velocity"):
+        yield Bar(name, f"{kind} residual at the end", residuals[kind], RESIDUAL)
+    ours, script = _ours_in_one_shot(motion), _sympy_in_one_shot(motion, problem)
+    first, theirs = _shortest([ours, script])
+    yield Bar(name, "seconds of `holonom simulate`, whole process, the first time", first, ONE_SHOT)
+    yield Bar(name, "seconds of SymPy and solve_ivp, whole process", theirs)
+
+
+def general_bars(paper: Motion) -> Iterator[Bar]:
+    """Many digits on the paper's example, and what `holonom --help` takes."""
+    problem = motion_problem(paper.file, Request(paper.scene), Limits(), 80)
+    true = find_reference(problem, [paper.until], int(OUR_DIGITS)).states[paper.until]
+    ours = prepare_taylor(problem, paper.until, OUR_DIGITS, OUR_TOLERANCE, Drift.PROJECTION)
+    seconds = shortest_times({0: python_batch(lambda _: ours.run(), ())})[0]
+    begun = time.perf_counter()
+    theirs = _odefun(problem, paper)
+    yield Bar("paper", "times faster at 34 digits than mpmath.odefun at 30",
+              (time.perf_counter() - begun) / seconds, MPMATH_TIMES, True)  # fmt: skip
+    yield Bar("paper", "its error", relative_error(ours.state(ours.run()), true))
+    yield Bar("paper", "mpmath.odefun's error", relative_error(theirs, true))
+    yield Bar("", "seconds of `holonom --help`", _shortest([[_holonom(), "--help"]])[0], HELP)
+
+
+def _odefun(problem: MotionProblem, paper: Motion) -> State:
+    with mpmath.workdps(MPMATH_DIGITS):
+        start = [mpmath.mpf(problem.start[name]) for name in problem.state]
+        return mpmath.odefun(paper_in_mpmath, 0, start)(mpmath.mpf(int(paper.until)))
+
+
+def _best(rows: Mapping[str, "Row"], names: Sequence[str]) -> float:
+    return min(rows[name].seconds for name in names if rows[name].seconds is not None)
+
+
+def _ours_in_one_shot(motion: Motion) -> list[str]:
+    settings = [text for name, value in motion.settings.items() for text in ("--set", f"{name}={value}")]
+    scene = [str(motion.file), "--scene", motion.scene, *settings]
+    return [_holonom(), "simulate", *scene, "--until", str(motion.until), "--tol", TOLERANCE, "--final", "--json", "-"]
+
+
+def _sympy_in_one_shot(motion: Motion, problem: MotionProblem) -> list[str]:
+    script = str(HERE / "simulation_sympy.py")
+    start = map(repr, map(float, start_of(problem)))
+    return [sys.executable, script, motion.name, str(float(motion.until)), TOLERANCE, *start]
+
+
+def _holonom() -> str:
+    return str(Path(sys.executable).with_name("holonom"))
+
+
+def _shortest(commands: Sequence[Sequence[str]]) -> list[float]:
+    """Seconds of whole processes, which take turns."""
+    rounds = [[_seconds(command) for command in commands] for _ in range(ONE_SHOT_REPEATS)]
+    return [min(times) for times in zip(*rounds, strict=True)]
+
+
+def _seconds(command: Sequence[str]) -> float:
+    """Of a process that finds no cache of heyoka's."""
+    with tempfile.TemporaryDirectory() as empty:
+        begun = time.perf_counter()
+        environment = os.environ | {"XDG_CACHE_HOME": empty}
+        subprocess.run(command, cwd=ROOT, stdout=subprocess.DEVNULL, env=environment, check=True)
+        return time.perf_counter() - begun

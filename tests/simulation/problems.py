@@ -1,0 +1,15 @@
+"""Motions of the examples, each asked of Maxima once in a test run."""
+
+from functools import cache
+from pathlib import Path
+
+from harness.confined import Limits
+from harness.motion.problem import MotionProblem, motion_problem
+from harness.motion.request import Request
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+@cache
+def problem(file: str, scene: str | None = None, digits: int = 17, **settings: str) -> MotionProblem:
+    return motion_problem(EXAMPLES / file, Request(scene, settings=settings), Limits(), digits)

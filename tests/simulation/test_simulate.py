@@ -1,0 +1,319 @@
+"""The motion in numbers, against closed forms, published solutions and conservation laws."""
+
+import re
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+from problems import problem
+
+from harness.confined import Limits
+from harness.failures import Failure, HolonomError
+from harness.motion.problem import MotionProblem, motion_problem
+from harness.motion.request import Request
+from harness.simulation.request import Drift, Engine, SimulationRequest
+from harness.simulation.result import Report, Simulation
+from harness.simulation.simulate import simulate
+
+# Test Set for IVP Solvers, car axis, t = 3, as its file R/ex_reference.R prints it: positions, velocities, multipliers.
+CAR_AXIS_POSITIONS = [
+    0.493455784275402809122e-1,
+    0.496989460230171153861,
+    0.104174252488542151681e1,
+    0.373911027265361256927,
+]
+CAR_AXIS_VELOCITIES = [
+    -0.770583684040972357970e-1,
+    0.744686658723778553466e-2,
+    0.175568157537232222276e-1,
+    0.770341043779251976443,
+]
+CAR_AXIS_MULTIPLIERS = [-0.473688659084893324729e-2, -0.110468033125734368808e-2]
+
+# Test Set for IVP Solvers, Andrews' squeezing mechanism, t = 0.03. The true solution agrees to 9, 7 and 5 digits; there
+# the multipliers have the opposite sign, M a + G^T lambda = f.
+ANDREWS_POSITIONS = [
+    0.1581077119629904e2,
+    -0.1575637105984298e2,
+    0.4082224013073101e-1,
+    -0.5347301163226948,
+    0.5244099658805304,
+    0.5347301163226948,
+    0.1048080741042263e1,
+]
+ANDREWS_VELOCITIES = [
+    0.1139920302151208e4,
+    -0.1424379294994111e4,
+    0.1103291221937134e2,
+    0.1929337464421385e2,
+    0.5735699284790808,
+    -0.1929337464421385e2,
+    0.3231791658026955,
+]
+ANDREWS_MULTIPLIERS = [
+    0.1991753333731910e3,
+    -0.2975531228015052e2,
+    0.2306654119098399e2,
+    0.3145271365475927e2,
+    0.2264249232082739e2,
+    0.1161740700019673e2,
+]
+
+
+def final(motion: MotionProblem, **request) -> Report:
+    return simulate(motion, SimulationRequest(samples=0, **request)).report
+
+
+def followed(motion: MotionProblem, **request) -> Simulation:
+    return simulate(motion, SimulationRequest(**request))
+
+
+def numbers(values) -> list[float]:
+    return [float(value) for value in values.values()]
+
+
+def free_motion_of_the_paper(t):
+    """s = q1 + q2 obeys s'' + 2 s' + s = 0, and q1'' = -s; q3 = u s."""
+    a, b, decay = 3, 19 / 6, np.exp(-t)
+    s = (a + b * t) * decay
+    q1 = 1 + (1 / 2 - a - b) * t + (a + b) * (1 - decay) + b * (1 - (1 + t) * decay)
+    return q1, s - q1, 0.3 * np.exp(t) * s
+
+
+def test_the_papers_free_motion_is_its_closed_form():
+    simulation = followed(problem("paper/paper.mac", "free_motion_scene"), samples=21)
+    expected = free_motion_of_the_paper(simulation.instants)
+    for samples, truth in zip(simulation.coordinates.values(), expected, strict=True):
+        assert samples == pytest.approx(truth, rel=1e-12, abs=1e-12)
+    assert np.abs(simulation.multipliers["lambda1"]).max() < 1e-13
+
+
+def test_a_pendulum_swings_as_jacobis_elliptic_functions_say():
+    """Truth: released at rest at the angle a, sin(theta/2) = sin(a/2) cd(sqrt(g) t)."""
+    simulation = followed(problem("pendulum.mac", "swing_scene"), samples=11)
+    k = mpmath.sin(mpmath.pi / 26)
+    for t, x, y in zip(simulation.instants, *simulation.coordinates.values(), strict=True):
+        half = mpmath.asin(k * mpmath.ellipfun("cd", mpmath.sqrt(9.81) * t, k=k))
+        assert [x, y] == pytest.approx([float(mpmath.sin(2 * half)), -float(mpmath.cos(2 * half))], abs=1e-12)
+
+
+def test_a_thrown_body_without_constraints_flies_a_parabola(write_scene):
+    scene = write_scene("""
+load("holonom.mac")$
+body : holonomic_system(coordinates = [x, z], kinetic_energy = (dot(x)^2 + dot(z)^2)/2, potential_energy = 10*z,
+  constraints = [])$
+flight : holonomic_scene(body, initial_state = [x = 0, z = 0, dot(x) = 1, dot(z) = 5], time_span = [0, 1])$
+""")
+    report = final(motion_problem(scene, Request(), Limits()))
+    assert numbers(report.coordinates) == pytest.approx([1, 0], abs=1e-14)
+    assert numbers(report.velocities) == pytest.approx([1, -5], abs=1e-14)
+
+
+def test_the_car_axis_arrives_where_it_is_published_to():
+    report = final(problem("car_axis.mac"), tol=1e-14)
+    assert numbers(report.coordinates) == pytest.approx(CAR_AXIS_POSITIONS, abs=1e-10)
+    assert numbers(report.velocities) == pytest.approx(CAR_AXIS_VELOCITIES, abs=1e-10)
+    assert numbers(report.multipliers) == pytest.approx(CAR_AXIS_MULTIPLIERS, abs=1e-12)
+
+
+def test_andrews_squeezer_arrives_where_it_is_published_to():
+    report = final(problem("andrews.mac"))
+    assert numbers(report.coordinates) == pytest.approx(ANDREWS_POSITIONS, rel=1e-9)
+    assert numbers(report.velocities) == pytest.approx(ANDREWS_VELOCITIES, rel=1e-7)
+    assert numbers(report.multipliers) == pytest.approx([-x for x in ANDREWS_MULTIPLIERS], rel=3e-6)
+
+
+def test_a_linkage_keeps_its_branch_through_its_dead_centres():
+    """Truth: the rods' angle is an elliptic function of the time; the tip is (2 sn cn, 2 sn^2 - 1), mirrored."""
+    report = final(problem("linkage.mac"))
+    k = 9.81 * 2 / (2 / 3 + 1)
+    a, m = mpmath.sqrt(1 + 4 * k), 4 * k / (1 + 4 * k)
+    sn, cn = (mpmath.ellipfun(name, a * 5 - mpmath.ellipk(m), m=m) for name in ("sn", "cn"))
+    assert [report.coordinates["x0"], report.coordinates["y0"]] == pytest.approx(
+        [float(-2 * sn * cn), float(2 * sn**2 - 1)], abs=1e-10
+    )
+    assert abs(report.energy_error) < 1e-10
+
+
+def test_a_hand_over_is_told_in_one_line_each():
+    report = final(problem("linkage.mac"), until=Fraction(1))
+    assert report.engine.startswith("taylor, robust 0.6")
+    assert report.engine.endswith(", taylor")
+    said = [line for line in report.remarks if "the robust engine takes over" in line]
+    assert len(said) == 1
+    assert "because the configuration nears a singular one" in said[0]
+
+
+def test_the_taylor_engine_alone_stops_before_a_singular_configuration():
+    """Truth: the rods lie in line for the first time where their angle is a right one, at t = 0.70845."""
+    with pytest.raises(HolonomError, match="nears a singular one") as refusal:
+        final(problem("linkage.mac"), engine=Engine.TAYLOR)
+    assert refusal.value.failure is Failure.NO_WAY_ON
+
+
+def test_redundant_constraints_are_told_and_followed():
+    """Truth: a constraint given twice changes nothing but the multipliers, which share the reaction."""
+    report = final(problem("hard/repeated_constraint.mac"))
+    assert report.engine == "robust"
+    assert any("takes over, because of 2 constraints only 1" in line for line in report.remarks)
+    assert report.multipliers["lambda1"] == pytest.approx(report.multipliers["lambda2"])
+    with pytest.raises(HolonomError, match="the Taylor engine cannot follow this motion: of 2 constraints only 1"):
+        final(problem("hard/repeated_constraint.mac"), engine=Engine.TAYLOR)
+    with pytest.raises(HolonomError, match="takes the robust engine, which computes in double precision"):
+        final(problem("hard/repeated_constraint.mac"), precision="quadruple")
+
+
+def test_a_precision_that_the_robust_engine_lacks_is_not_feigned():
+    with pytest.raises(HolonomError, match="nears a singular one"):
+        final(problem("linkage.mac", digits=36), precision="quadruple")
+
+
+@pytest.mark.parametrize("scene", [("chain.mac", "swing_scene"), ("andrews.mac", None), ("pendulum.mac", None)])
+def test_both_engines_find_the_same_motion(scene):
+    ours, theirs = (final(problem(*scene), engine=engine) for engine in (Engine.TAYLOR, Engine.ROBUST))
+    assert (ours.engine, theirs.engine) == ("taylor", "robust")
+    assert numbers(theirs.coordinates) == pytest.approx(numbers(ours.coordinates), rel=1e-7, abs=1e-7)
+    assert numbers(theirs.multipliers) == pytest.approx(numbers(ours.multipliers), rel=1e-5, abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    "file", ["paper/paper.mac", "chain.mac", "andrews.mac", "car_axis.mac", "spherical_pendulum.mac"]
+)
+def test_residuals_and_energy_balance_are_rounding(file):
+    report = final(problem(file))
+    assert max(report.residuals.values()) < 1e-12
+    assert abs(report.energy_error) < 1e-11
+
+
+def test_energy_is_balanced_by_the_work_of_the_control():
+    """Truth: the energy of a pendulum that is paid out changes, by the work of the string alone."""
+    motion = problem("pendulum.mac", "lengthening_scene")
+    observing = MotionProblem(**{**vars(motion), "observe": ("energy", "residuals")})
+    simulation = followed(observing, samples=50, until=Fraction(20))
+    energy, error = simulation.energy["energy"], simulation.energy["energy_error"]
+    assert np.ptp(energy) > 1
+    assert np.abs(error).max() < 1e-11
+    assert set(simulation.residuals) == {"position", "velocity", "acceleration"}
+    assert max(samples.max() for samples in simulation.residuals.values()) < 1e-12
+    assert simulation.coordinates == simulation.multipliers == {}
+
+
+def test_projection_keeps_the_constraints_that_nothing_else_keeps():
+    """Over ten thousand swings rounding adds up, unless the state is projected."""
+    motion = problem("pendulum.mac", "swing_scene")
+    left = {drift: final(motion, drift=drift, until=Fraction(20000)).residuals["position"] for drift in Drift}
+    assert left[Drift.PROJECTION] < 1e-15
+    assert left[Drift.NONE] > 1e-13
+
+
+def test_the_cures_in_the_equations_let_an_error_die_out():
+    """Truth: a position that misses its constraint by 1e-6 is back after many decay times, with both cures."""
+    motion = problem("pendulum.mac", "swing_scene")
+    astray = MotionProblem(**{**vars(motion), "start": {**motion.start, "y": str(float(motion.start["y"]) - 1e-6)}})
+    left = {drift: final(astray, drift=drift).residuals["position"] for drift in Drift}
+    assert left[Drift.NONE] > 1e-7
+    assert left[Drift.BAUMGARTE] < 1e-13
+    assert left[Drift.GGL] < 1e-13
+
+
+def test_quadruple_precision_agrees_with_fifty_digits():
+    reports = [
+        final(problem("pendulum.mac", "lengthening_scene", digits), precision=precision, until=Fraction(3, 2))
+        for precision, digits in (("quadruple", 36), (50, 50))
+    ]
+    for ours, theirs in zip(*(report.coordinates.values() for report in reports), strict=True):
+        with mpmath.workdps(50):
+            assert abs(mpmath.mpf(str(ours)) - mpmath.mpf(str(theirs))) < mpmath.mpf("1e-31")
+
+
+def test_extended_precision_has_three_digits_more_than_double():
+    truth = final(problem("pendulum.mac", "lengthening_scene", 36), precision="quadruple", until=Fraction(30))
+    errors = {
+        precision: max(
+            abs(float(x - type(x)(str(y))))
+            for x, y in zip(
+                final(
+                    problem("pendulum.mac", "lengthening_scene", 36), precision=precision, until=Fraction(30)
+                ).coordinates.values(),
+                truth.coordinates.values(),
+                strict=True,
+            )
+        )
+        for precision in ("double", "extended")
+    }
+    assert errors["extended"] < errors["double"] / 100
+    assert errors["double"] < 1e-11
+
+
+def test_samples_are_those_asked_for():
+    motion = problem("pendulum.mac", "swing_scene")
+    steps, few, last = (followed(motion, samples=samples) for samples in (None, 5, 0))
+    assert len(steps.instants) == steps.report.steps + 1
+    assert few.instants.tolist() == [0, 2.5, 5, 7.5, 10]
+    assert last.instants.tolist() == [10]
+    for name in motion.coordinates:
+        ends = {float(simulation.coordinates[name][-1]) for simulation in (steps, few, last)}
+        assert max(ends) - min(ends) < 1e-13
+        assert few.coordinates[name][-1] == few.report.coordinates[name]
+
+
+def test_a_tolerance_is_met():
+    """Truth: the closed form of the paper's free motion; a looser tolerance is less exact."""
+    motion, truth = problem("paper/paper.mac", "free_motion_scene"), free_motion_of_the_paper(10.0)
+    loose, tight = (final(motion, tol=tol) for tol in (1e-5, 1e-13))
+    errors = [max(abs(np.array(numbers(report.coordinates)) - truth) / 1e2) for report in (loose, tight)]
+    assert errors[1] < 1e-12 < errors[0] < 1e-3
+
+
+@pytest.mark.parametrize(
+    ("tol", "precision"), [(1e-17, "double"), (1e-20, "extended"), (1e-40, "quadruple"), (2, "double")]
+)
+def test_a_tolerance_that_the_numbers_cannot_hold_is_refused(tol, precision):
+    with pytest.raises(HolonomError, match="holds tolerances from 1e-"):
+        final(problem("paper/paper.mac"), tol=tol, precision=precision)
+
+
+def test_a_length_that_goes_through_zero_stops_the_motion_there():
+    """Truth: the length 1 - t is zero at t = 1."""
+    with pytest.raises(HolonomError, match="the gradient of the constraint of lambda1 vanishes") as refusal:
+        final(problem("hard/vanishing_length.mac"))
+    assert re.search(r"beyond t = (1|0\.9999\d*),", str(refusal.value))
+
+
+def test_a_tolerance_that_the_robust_engine_cannot_hold_is_refused():
+    with pytest.raises(HolonomError, match="the robust engine holds tolerances from"):
+        final(problem("paper/paper.mac"), tol=1e-15, engine=Engine.ROBUST)
+
+
+def test_a_singularity_of_the_control_law_stops_the_motion_there(write_scene):
+    """Truth: the table's height 1/(1 - t) has a pole at t = 1."""
+    scene = write_scene("""
+load("holonom.mac")$
+particle : holonomic_system(coordinates = [x, z], controls = [u], kinetic_energy = (dot(x)^2 + dot(z)^2)/2,
+  constraints = [z - u])$
+rise : holonomic_scene(particle, control_law = [u = 1/(1 - t)], initial_state = [x = 0, dot(x) = 1],
+  time_span = [0, 2])$
+""")
+    with pytest.raises(HolonomError, match=r"beyond t = (1|0\.9999\d*), where"):
+        final(motion_problem(scene, Request(), Limits()))
+
+
+def test_an_end_before_the_start_is_refused():
+    with pytest.raises(HolonomError, match="is not after"):
+        final(problem("paper/paper.mac"), until=Fraction(0))
+
+
+def test_a_motion_without_an_end_is_refused():
+    motion = problem("paper/paper.mac")
+    with pytest.raises(HolonomError, match="has no time span"):
+        final(MotionProblem(**{**vars(motion), "time_span": None}))
+
+
+def test_a_long_run_earns_better_code():
+    """Quick code is for short runs; the motion is the same."""
+    motion = problem("pendulum.mac", "swing_scene")
+    short, long = (final(motion, until=Fraction(until)) for until in (1, 30000))
+    assert long.compile_seconds > 0
+    assert long.steps > 10000 * short.steps
+    assert long.residuals["position"] < 1e-15

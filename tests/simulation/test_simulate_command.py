@@ -1,0 +1,126 @@
+"""The command simulate: what it prints and writes, and the status it leaves with."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+SIMULATE = [sys.executable, "-m", "harness", "simulate"]
+PENDULUM = EXAMPLES / "pendulum.mac"
+
+
+def simulate(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([*SIMULATE, *map(str, arguments)], capture_output=True, text=True, timeout=120)
+
+
+def test_the_final_state_is_one_document():
+    done = simulate(PENDULUM, "--final", "--json", "-")
+    final = json.loads(done.stdout)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert final["t"] == 10
+    assert set(final["coordinates"]) == {"x", "y"}
+    assert set(final["velocities"]) == {"dot(x)", "dot(y)"}
+    assert set(final["multipliers"]) == {"lambda1"}
+    assert {"position", "velocity", "acceleration"} == set(final["residuals"])
+    assert isinstance(final["energy_error"], float)
+    assert final["steps"] > 10
+    assert final["engine"] == "taylor"
+    assert "samples" not in final
+
+
+def test_a_simulation_waits_for_no_sympy():
+    asked = ["simulate", str(PENDULUM), "--final", "--json", "-"]
+    script = f"import sys; from harness.cli import holonom; holonom({asked}, standalone_mode=False); "
+    done = subprocess.run(
+        [
+            sys.executable,
+            "-c",
+            script + "print({'sympy', 'rich', 'matplotlib', 'scipy.integrate'} & sys.modules.keys())",
+        ],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.endswith("}\nset()\n")
+
+
+def test_without_final_the_document_holds_the_samples():
+    found = json.loads(simulate(PENDULUM, "--samples", "3", "--json", "-").stdout)
+    assert found["samples"]["t"] == [0, 5, 10]
+    assert found["samples"]["x"][-1] == found["coordinates"]["x"]
+
+
+def test_longer_numbers_are_decimal_text():
+    final = json.loads(simulate(PENDULUM, "--precision", "40", "--until", "1", "--final", "--json", "-").stdout)
+    assert isinstance(final["coordinates"]["x"], str)
+    assert len(final["coordinates"]["x"]) > 40
+
+
+def test_a_table_shows_the_end_and_how_well_it_was_reached():
+    done = simulate(PENDULUM)
+    assert done.returncode == 0
+    assert "lambda1" in done.stdout
+    assert "energy error" in done.stdout
+    assert "steps by taylor" in done.stdout
+    assert "\x1b" not in done.stdout
+    assert done.stderr == ""
+
+
+def test_samples_and_figures_are_written(tmp_path):
+    samples, vector, pixels = (tmp_path / name for name in ("swing.csv", "swing.svg", "swing.png"))
+    assert simulate(PENDULUM, "-o", samples, "--plot", vector).returncode == 0
+    assert simulate(PENDULUM, "--plot", pixels).returncode == 0
+    assert samples.read_text().startswith("t,x,y,dot(x),dot(y),lambda1\n0.0,")
+    assert "multipliers" in vector.read_text()
+    assert pixels.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        (["--tol", "1e-30"], "double precision holds tolerances from 1e-16 to 1, not 1e-30"),
+        (["--until", "-1"], "the last instant is not after the start"),
+        (["--precision", "single"], "single is no precision"),
+        (["-o", "motion.xls"], "no such file can be written; give a name that ends in one of .csv, .npz, .parquet"),
+        (["--plot", "motion.pdf"], "no such file can be written; give a name that ends in one of .svg, .png"),
+        (["-o", "/dev/full/motion.csv"], "cannot be written"),
+        (["--scene", "no_scene"], "no_scene"),
+    ],
+)
+def test_bad_input_is_one_sentence(options, sentence, tmp_path):
+    done = subprocess.run(
+        [*SIMULATE, str(PENDULUM), *options], capture_output=True, text=True, timeout=120, cwd=tmp_path, env=in_place()
+    )
+    assert done.returncode == 2
+    assert sentence in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert done.stdout == ""
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_scene_without_an_end_is_refused(particle_scene):
+    done = simulate(particle_scene)
+    assert done.returncode == 2
+    assert "the scene has no time span; give the last instant with --until" in done.stderr
+    assert simulate(particle_scene, "--until", "1").returncode == 0
+
+
+def test_an_interrupted_run_leaves_no_file(tmp_path):
+    samples = tmp_path / "swing.csv"
+    command = [*SIMULATE, str(PENDULUM), "--until", "100000000", "--samples", "2", "-o", str(samples)]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    time.sleep(4)
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert list(tmp_path.iterdir()) == []
+
+
+def in_place() -> dict[str, str]:
+    return os.environ | {"PYTHONPATH": str(EXAMPLES.parent)}
