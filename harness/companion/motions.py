@@ -7,7 +7,15 @@ from functools import partial
 from pathlib import Path
 
 from harness.companion.chapter import Run
-from harness.companion.runs import DEFAULT_LIMITS, NO_SETTINGS, Settings, drawn
+from harness.companion.runs import (
+    DEFAULT_LIMITS,
+    NO_SETTINGS,
+    Refusal,
+    Settings,
+    drawn,
+    names_of_scenes,
+    or_refusal,
+)
 from harness.confined import Limits
 from harness.figures.drawing import animation, film_of, strip
 from harness.figures.motion import draw_motion
@@ -69,6 +77,17 @@ class Motion:
 def motion(file: Path, scene: str | None = None, until: Fraction | None = None) -> Run:
     """The pictures of a scene's motion, through its time span or to an instant: a `Motion`."""
     return Run(follow, (file, scene, until, NO_SETTINGS, DEFAULT_LIMITS))
+
+
+def motions(file: Path, settings: Settings, limits: Limits) -> Run:
+    """The pictures of all motions of a file: by scene a `Motion`, or the `Refusal` that takes its place."""
+    return Run(follow_all, (file, settings, limits))
+
+
+def follow_all(file: Path, settings: Settings, limits: Limits) -> dict[str, Motion | Refusal]:
+    """Follow and draw every scene of a file."""
+    names = names_of_scenes(file, settings, limits)
+    return {name: or_refusal(follow, file, name, None, settings, limits) for name in names}
 
 
 def follow(file: Path, scene: str | None, until: Fraction | None, settings: Settings, limits: Limits) -> Motion:

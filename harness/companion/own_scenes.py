@@ -5,12 +5,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from harness.companion.book import Book
-from harness.companion.own import equations, free_motion, initial_motion, system
+from harness.companion.own import equations, free_motion, initial_motion, motion, system
 from harness.companion.paper import REPOSITORY
 from harness.companion.runs import Settings, study
 from harness.confined import Limits
 
-CHAPTERS = (system, equations, free_motion, initial_motion)
+CHAPTERS = (system, equations, free_motion, initial_motion, motion)
 
 
 def book_of_scenes(files: Sequence[Path], settings: Settings, limits: Limits) -> Book:

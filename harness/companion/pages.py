@@ -18,6 +18,7 @@ from harness.motion.series import number
 TEMPLATES = Path(__file__).with_name("templates")
 LONGEST_COEFFICIENT = 12  # characters of an exact number in a table
 NAMED_BY_MAXIMA = re.compile(r"(no control can make )(.+)( vanish)")
+CODE_IN_TEXT = re.compile(r"`([^`]+)`")
 NEGLIGIBLE = 1e-9  # of a complex number: a part of it that is rounding alone
 STYLE = TEMPLATES / "companion.css"
 
@@ -160,6 +161,7 @@ def _environment() -> jinja2.Environment:
         "points": _points,
         "rounded": _rounded,
         "power_of_ten": _power_of_ten,
+        "with_code": _with_code,
         "counted": _counted,
         "complex_numbers": _complex_numbers,
         "coefficient": _coefficient,
@@ -185,7 +187,7 @@ def _points(count: int) -> str:
 
 
 def _rounded(value: float, digits: int = 6) -> str:
-    return f"{float(value):.{digits}g}"
+    return f"{float(f'{value:.{digits}g}'):.15g}"
 
 
 def _counted(count: int, one: str, several: str = "") -> str:
@@ -222,6 +224,11 @@ def _power_of_ten(value: float) -> Markup:
         return mathematics.tex("0")
     digit, exponent = f"{value:.0e}".split("e")
     return mathematics.tex(rf"{digit} \times 10^{{{int(exponent)}}}")
+
+
+def _with_code(text: str) -> Markup:
+    """Text with what stands between backquotes as code."""
+    return Markup(CODE_IN_TEXT.sub(r"<code>\1</code>", str(escape(text))))
 
 
 def _spelled_label(label: str) -> str:

@@ -4,8 +4,12 @@ from pathlib import Path
 
 from harness.companion.book import APPENDICES, Book
 from harness.companion.chapters import (
+    accuracy,
+    effects,
     equations_of_motion,
     free_motion,
+    gallery,
+    hard_cases,
     initial_motion,
     misprints,
     notation,
@@ -22,8 +26,16 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 
 CHAPTERS = {
     "The paper": (the_system, equations_of_motion, free_motion, initial_motion, worked_example),
-    "What the paper left open": (universal_controls, trajectory_control, prescribed_reactions, radius_of_convergence),
-    APPENDICES: (misprints, notation, your_own_system),
+    "What the paper left open": (
+        universal_controls,
+        trajectory_control,
+        prescribed_reactions,
+        radius_of_convergence,
+        accuracy,
+        hard_cases,
+        effects,
+    ),
+    APPENDICES: (misprints, notation, your_own_system, gallery),
 }
 
 

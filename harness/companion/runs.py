@@ -186,15 +186,21 @@ def drawn(draw: Callable[[Path], None]) -> str:
 
 def _study(file: Path, settings: Settings, limits: Limits) -> Study:
     found = _derive(file, settings, limits)
-    names = json.loads(run_batch(file, NAMES_OF_SCENES, limits, dict(settings)))
+    names = names_of_scenes(file, settings, limits)
     return Study(
         found,
-        {name: _or_refusal(_free, file, name, settings, limits) for name in names},
-        {name: _or_refusal(_series, file, name, OWN_ORDER, settings, limits) for name in names},
+        {name: or_refusal(_free, file, name, settings, limits) for name in names},
+        {name: or_refusal(_series, file, name, OWN_ORDER, settings, limits) for name in names},
     )
 
 
-def _or_refusal(compute: Callable[..., Any], *arguments: Any) -> Any:
+def names_of_scenes(file: Path, settings: Settings, limits: Limits) -> list[str]:
+    """Names of a file's scenes, of those too that prescribe reactions."""
+    return json.loads(run_batch(file, NAMES_OF_SCENES, limits, dict(settings)))
+
+
+def or_refusal(compute: Callable[..., Any], *arguments: Any) -> Any:
+    """What a function returns, or why it does not."""
     try:
         return compute(*arguments)
     except HolonomError as error:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from harness.accuracy.study import Study
 
-WIDTH, HEIGHT = 15.0, 9.5  # inches
+WIDTH, HEIGHT = 10.0, 13.0  # inches
 FEW_DIGITS = 20  # as far as numbers of the hardware reach, and a little beyond
 SECONDS, OPERATIONS = "time / s", "operations"
 
@@ -31,9 +31,9 @@ class Panel:
 PANELS = (
     Panel("Methods, to t = {until:g}", lambda m: _in_contest(m) and digits_of(m) <= FEW_DIGITS, SECONDS),
     Panel("The same by operations", lambda m: _in_contest(m) and digits_of(m) <= FEW_DIGITS, OPERATIONS),
-    Panel("One series, to t = {instant:g}, order by order", lambda m: m.group is Group.SERIES, SECONDS),
     Panel("Many digits, to t = {until:g}", lambda m: m.group is Group.TAYLOR, SECONDS),
     Panel("The same by operations", lambda m: m.group is Group.TAYLOR, OPERATIONS),
+    Panel("One series, to t = {instant:g}, order by order", lambda m: m.group is Group.SERIES, SECONDS),
     Panel("Cures of drift and the two solves", lambda m: m.group in {Group.DRIFT, Group.SOLVE}, SECONDS),
 )
 TITLE = "What accuracy costs: {scene}"
@@ -55,7 +55,7 @@ def draw_study(study: "Study", path: Path) -> None:
     """
     with figure_style():
         figure = new_figure(WIDTH, HEIGHT)
-        for axes, panel in zip(figure.subplots(2, 3).flat, PANELS, strict=True):
+        for axes, panel in zip(figure.subplots(3, 2).flat, PANELS, strict=True):
             _draw(axes, [m for m in study.measurements if panel.shows(m)], panel.quantity)
             axes.set_title(panel.title.format(until=float(study.until), instant=_instant_of_series(study)))
         figure.suptitle(TITLE.format(scene=study.scene), x=0.01, ha="left")

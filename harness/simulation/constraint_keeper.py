@@ -39,7 +39,7 @@ class ConstraintKeeper:
         """
         self._inputs[0] = instant
         self._inputs[1:] = state
-        state[:] = self._nearest(self._inputs)
+        self._nearest(self._inputs, outputs=state)
 
     def project_if(self, instant: Any, state: Numbers, allowed: float) -> bool:
         """Project a state if it is far from the constraints, and say so.

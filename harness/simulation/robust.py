@@ -35,6 +35,7 @@ from harness.simulation.stiffness import StiffnessWatch
 
 TOLERANCE = 1e-11
 TIGHTEST = 100 * EPSILON  # relative tolerance that SciPy's integrators hold
+SHORTEST = 1e-8  # of the longest step so far: a step that leads nowhere
 REACH = 5.0  # steps ahead within which a singular configuration calls for an arc over it
 ARC_ERROR = 1e-12  # relative error of an arc's coordinates that will do at any tolerance
 OFF_BRANCH = 1e-7  # relative distance from the constraints at the end of an arc that is not rounding
@@ -199,7 +200,8 @@ class RobustMotion:
         start, solver, length = self.time, self._solver, self._solver.h_abs
         solver.t_bound, solver.status = min(until, (start + self._vanishing) / 2), "running"
         solver.step()
-        if solver.status == "failed":
+        self._longest = max(self._longest, solver.h_abs)
+        if solver.status == "failed" or solver.h_abs < SHORTEST * self._longest:
             raise HolonomError(Failure.NO_WAY_ON, detail=f"{start:.10g}, where steps become too short")
         if solver.status == "finished":
             solver.h_abs = max(solver.h_abs, length)
@@ -228,6 +230,7 @@ class RobustMotion:
             self._rates, t, kept, np.inf, rtol=self.tol, atol=self.tol, first_step=length
         )
         self.time, self.state, self._vanishing, self._refused = t, kept, np.inf, np.inf
+        self._longest = self._solver.h_abs
 
     def _move(self, t: float, state: Vector) -> None:
         """Project what a step gave, and go on from there."""

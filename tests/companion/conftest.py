@@ -1,9 +1,10 @@
-"""The companion of the paper, made once for all tests."""
+"""The companion of the paper and one of somebody's own systems, each made once for all tests."""
 
 import pytest
+from own_system import SMOOTH, made
 
 from harness.companion.book import pages
-from harness.companion.paper import book_of_the_paper
+from harness.companion.paper import REPOSITORY, book_of_the_paper
 from harness.companion.runs import perform
 from harness.files import write_whole_directory
 
@@ -19,4 +20,12 @@ def companion(results, tmp_path_factory):
     """Directory of its pages."""
     directory = tmp_path_factory.mktemp("made") / "companion"
     write_whole_directory(directory, pages(book_of_the_paper(), results))
+    return directory
+
+
+@pytest.fixture(scope="session")
+def own(tmp_path_factory):
+    """Directory of the pages of two files, one written for the purpose, one an example."""
+    outcome, directory = made(tmp_path_factory.mktemp("own"), SMOOTH, REPOSITORY / "examples" / "weightless_cabin.mac")
+    assert outcome.return_value == 0
     return directory

@@ -1,49 +1,14 @@
 """`holonom companion SCENE... -o DIR`: the same pages for anybody's system, and refusals that say why."""
 
 import pages
-import pytest
-from click.testing import CliRunner
+from own_system import SMOOTH, made
 
-from harness.cli import holonom
 from harness.companion.book import GENERATOR
-from harness.companion.paper import REPOSITORY
 
-OWN = """load("holonom.mac")$
-
-system : holonomic_system(
-  title          = "Cart & bob on a <stiff> spring",
-  coordinates    = [x, y],
-  controls       = [u],
-  parameters     = [k],
-  kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
-  forces         = [spring = [-k*x, 0]],
-  constraints    = [y - u*x])$
-
-{scene}"""
-SMOOTH = """smooth_scene : holonomic_scene(system, title = "Smooth",
-  control_law = [u = 1 + t], parameter_values = [k = 2], initial_state = [x = 1, dot(x) = 0])$
-"""
 ROUGH = """rough_scene : holonomic_scene(system, title = "Rough",
   control_law = [u = 1 + t^(7/2)], parameter_values = [k = 2], initial_state = [x = 1, y = 1, dot(x) = 0, dot(y) = 0])$
 """
 CHAPTERS = ("the-system", "equations-of-motion", "free-motion", "initial-motion")
-
-
-def made(tmp_path, scene: str, *others, constrained=True):
-    """The command's outcome and the directory of the pages."""
-    file, directory = tmp_path / "my system.mac", tmp_path / "pages"
-    text = OWN.format(scene=scene)
-    file.write_text(text if constrained else text.replace("[y - u*x]", "[]"))
-    arguments = ["companion", str(file), *map(str, others), "-o", str(directory)]
-    return CliRunner(mix_stderr=False).invoke(holonom, arguments, standalone_mode=False), directory
-
-
-@pytest.fixture(scope="module")
-def own(tmp_path_factory):
-    tmp_path = tmp_path_factory.mktemp("own")
-    outcome, directory = made(tmp_path, SMOOTH, REPOSITORY / "examples" / "weightless_cabin.mac")
-    assert outcome.return_value == 0
-    return directory
 
 
 def test_every_file_has_its_chapters(own):

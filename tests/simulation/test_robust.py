@@ -214,3 +214,11 @@ def test_a_near_miss_is_no_passage(write_scene):
         conditions.append(condition(motion.matrices(motion.time, motion.state)))
     assert max(conditions) > 1e3
     assert motion.passages == []
+
+
+def test_a_length_that_vanishes_stops_the_motion():
+    motion = RobustMotion(problem("hard/vanishing_length.mac"))
+    with pytest.raises(HolonomError, match="steps become too short") as refused:
+        motion.advance(2.0)
+    assert refused.value.failure is Failure.NO_WAY_ON
+    assert motion.time == pytest.approx(1.0, abs=1e-5)

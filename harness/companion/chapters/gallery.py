@@ -100,7 +100,8 @@ EXHIBITS = (
         "examples/bead.mac",
         (
             "The rod turns evenly and flings the bead out, while the slider at its foot is shaken to and fro.",
-            "The bead hardly feels the shaking, but the multiplier, the force that shakes the slider, is full of it.",
+            "The bead hardly feels the shaking. The multiplier, the force that drives the slider, grows with the bead's "
+            "distance.",
         ),
         scene="driven_scene",
         until=Fraction(6, 5),
@@ -110,8 +111,8 @@ EXHIBITS = (
         "examples/spherical_pendulum.mac",
         (
             "A pendulum in space, seen from above, with the plumb line under the bob. Its support is shaken, turns and "
-            "goes through air: the path keeps to no plane and shrinks.",
-            "The multiplier carries the fast shaking of the support on the slow swings of the bob.",
+            "goes through air: the path keeps to no plane.",
+            "The multiplier swings with the bob, the more the wider that swings.",
         ),
     ),
     Exhibit(
@@ -152,9 +153,8 @@ EXHIBITS = (
         "heavy-bob",
         "examples/hard/heavy_bob.mac",
         (
-            "The lower mass is a million million times as heavy as the upper one: it falls, and the light one goes "
-            "where it is pulled.",
-            "The multipliers are of the size that the heavy bob asks for; the light mass moves by their difference.",
+            "The lower mass is by far the heavier: it falls as if it were free, and the light one goes where it is pulled.",
+            "The multipliers are as small as the light mass, while the terms they come from are as large as the heavy one.",
         ),
     ),
     Exhibit(
@@ -178,8 +178,7 @@ EXHIBITS = (
         "stiff-spring",
         "examples/hard/stiff_spring.mac",
         (
-            "A rod of growing length between a soft spring, on the left, and a stiff one: the later positions are "
-            "below the earlier ones.",
+            "A rod of growing length between a soft spring, on the left, and a stiff one.",
             "The stiff spring rings so fast and so little that only the multiplier shows it.",
         ),
     ),
@@ -195,7 +194,7 @@ EXHIBITS = (
         "vanishing-length",
         "examples/hard/vanishing_length.mac",
         (
-            "A pendulum drawn in to its hinge, position beside position. The film stops shortly before the length is zero.",
+            "A pendulum drawn in to its hinge. The film stops shortly before the length is zero.",
             "Near the end the multiplier rises without bound: no finite force holds the bob to a vanishing length.",
         ),
         until=Fraction(9, 10),

@@ -4,10 +4,10 @@ const ROUNDING = 1;  // CSS pixels by which boxes may differ
 const LARGE_TEXT = 24, LARGE_BOLD_TEXT = 18.66;  // CSS pixels; WCAG 2.2, success criterion 1.4.3
 
 const everything = [...document.body.querySelectorAll("*")];
-const ancestors = element => element.parentElement ? [element.parentElement, ...ancestors(element.parentElement)] : [];
 const box = element => element.getBoundingClientRect();
 const style = element => getComputedStyle(element);
-const scrolls = element => ["auto", "scroll"].includes(style(element).overflowX);
+const scrollBoxes = new Set(everything.filter(element => ["auto", "scroll"].includes(style(element).overflowX)));
+const inScrollBox = element => element !== null && (scrollBoxes.has(element) || inScrollBox(element.parentElement));
 const shown = element => element.checkVisibility({visibilityProperty: true, opacityProperty: true});
 const drawn = element => box(element).width > 0 && box(element).height > 0;
 const inPicture = element => element.ownerSVGElement != null;
@@ -22,7 +22,7 @@ const told = elements => elements.map(said);
 // ---- widths ---------------------------------------------------------------------------------------------------
 
 function wider(width) {
-  const free = everything.filter(element => !inPicture(element) && shown(element) && !ancestors(element).some(scrolls));
+  const free = everything.filter(element => !inPicture(element) && shown(element) && !inScrollBox(element.parentElement));
   const far = told(free.filter(element => box(element).right > width + ROUNDING));
   return document.documentElement.scrollWidth > width ? [`the page: ${document.documentElement.scrollWidth}`, ...far] : far;
 }
@@ -30,7 +30,7 @@ function wider(width) {
 const cutOff = () => told(everything.filter(element => !inPicture(element) && shown(element)
   && ["hidden", "clip"].includes(style(element).overflowY) && element.scrollHeight > element.clientHeight + ROUNDING));
 
-const outOfReach = () => told(everything.filter(element => scrolls(element) && shown(element)
+const outOfReach = () => told([...scrollBoxes].filter(element => shown(element)
   && element.scrollWidth > element.clientWidth + ROUNDING && element.tabIndex < 0));
 
 // ---- mathematics and pictures ---------------------------------------------------------------------------------
@@ -39,8 +39,14 @@ const flatMathematics = () => told([...document.querySelectorAll("math")].filter
 
 const brokenMathematics = () => told([...document.querySelectorAll("merror, math:empty")]);
 
-const emptyPictures = () => told([...document.querySelectorAll("img, svg")].filter(element => !inPicture(element)
-  && (!drawn(element) || element.localName === "img" && !(element.complete && element.naturalWidth > 0))));
+const pictures = within => [...within.querySelectorAll("img, svg")].filter(element => !inPicture(element));
+const loaded = picture => picture.localName !== "img" || picture.complete && picture.naturalWidth > 0;
+
+// A figure may hold pictures of which the reader sees one at a time.
+const emptyPictures = () => told([
+  ...pictures(document).filter(picture => !loaded(picture) || shown(picture) && !drawn(picture)),
+  ...[...document.querySelectorAll("figure")].filter(figure => !pictures(figure).some(drawn)),
+]);
 
 // ---- contrast -------------------------------------------------------------------------------------------------
 

@@ -29,7 +29,6 @@ class View:
 
 VIEWS = (
     View("phone", 360, 740, mobile=True),
-    View("phone in the dark", 360, 740, mobile=True, colours="dark"),
     View("desk", 1280, 900),
     View("desk in the dark", 1280, 900, colours="dark"),
     View("paper", 680, 960, medium="print"),  # what A4 leaves between margins of 15 mm

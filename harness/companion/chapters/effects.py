@@ -1,0 +1,93 @@
+"""Effects: the named parts of a system, what each costs and what it does, and what is not called for."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from harness.accuracy.machine import this_machine
+from harness.companion.chapter import Chapter, Page, Run
+from harness.companion.examples import SPHERICAL_PENDULUM
+from harness.companion.excerpts import excerpt
+from harness.companion.runs import derived, simulation
+from harness.confined import Limits
+from harness.figures.effects import draw_with_and_without
+from harness.motion.effects import MeasuredCosts, measure_costs, read_costs
+from harness.motion.request import Request, effects_document
+from harness.record import Record
+from harness.simulation.result import Simulation
+
+SPARING, LAVISH = "swinging_scene", "shaken_scene"
+TURNING, STILL = "foucault_scene", "still_scene"
+SAMPLES = 1801
+
+
+def chapter(root: Path) -> Chapter:
+    """The chapter, with the systems under a root."""
+    file = root / SPHERICAL_PENDULUM
+
+    def page(results: Mapping[str, Any]) -> Page:
+        turning, still = results["turning"], results["still"]
+        return Page(
+            {
+                "system": results["pendulum"].record.system,
+                "sparing": results["sparing"],
+                "lavish": results["lavish"],
+                "titles": titles(results["pendulum"].record),
+                "called": {name: called(results["pendulum"].record, name) for name in (SPARING, LAVISH)},
+                "machine": this_machine(()),
+                "turning": turning,
+                "still": still,
+                "turned": (instant := turning_point(turning))[1],
+                "expected": -float(rate_of_the_frame(results["pendulum"].record)) * instant[0],
+                "instant": instant[0],
+                "system_lines": excerpt(root, SPHERICAL_PENDULUM, "system"),
+                "scene_lines": excerpt(root, SPHERICAL_PENDULUM, SPARING),
+            },
+            figures={"foucault": draw_with_and_without(turning, still, "x", "y")},
+            sources=(SPHERICAL_PENDULUM,),
+        )
+
+    return Chapter(
+        slug="effects",
+        title="Effects",
+        aim="Gravity, drag, a turning frame, each on and off by its name; what is off costs nothing.",
+        template="effects.html",
+        runs={
+            "pendulum": derived(file),
+            "sparing": Run(costs, (file, SPARING)),
+            "lavish": Run(costs, (file, LAVISH)),
+            "turning": simulation(file, TURNING, None, SAMPLES),
+            "still": simulation(file, STILL, None, SAMPLES),
+        },
+        page=page,
+    )
+
+
+def costs(file: Path, scene: str) -> MeasuredCosts:
+    """What a scene pays for, as `holonom effects` says it."""
+    return measure_costs(read_costs(effects_document(file, Request(scene), Limits())))
+
+
+def titles(record: Record) -> dict[str, str]:
+    """Title of each scene by its name."""
+    return {scene.name: scene.title for scene in record.scenes}
+
+
+def called(record: Record, name: str) -> tuple[str, ...]:
+    """The effects that a scene calls for."""
+    return next(scene.effects for scene in record.scenes if scene.name == name)
+
+
+def rate_of_the_frame(record: Record) -> Any:
+    """The rate at which the frame of the Foucault pendulum turns."""
+    return next(scene.parameter_values["Omega"] for scene in record.scenes if scene.name == TURNING)
+
+
+def turning_point(motion: Simulation) -> tuple[float, float]:
+    """The last instant at which the bob turns on the side where it began, and the angle of its place from the start."""
+    x, y = motion.coordinates["x"], motion.coordinates["y"]
+    away = np.hypot(x, y)
+    turns = np.flatnonzero((away[1:-1] >= away[:-2]) & (away[1:-1] > away[2:]) & (x[1:-1] * x[0] > 0)) + 1
+    return float(motion.instants[turns[-1]]), float(np.arctan2(y[turns[-1]], x[turns[-1]]) - np.arctan2(y[0], x[0]))

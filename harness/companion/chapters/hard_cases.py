@@ -1,0 +1,39 @@
+"""Hard cases: motions on which a plain method loses its digits, and what to do about each."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from harness.companion.chapter import Chapter, Page, Run
+from harness.companion.runs import drawn
+from harness.figures.stability import draw_stability
+from harness.stability.case import CaseReport, Extent
+from harness.stability.register import REGISTER, examine
+
+
+def chapter(root: Path) -> Chapter:
+    """The chapter; the register takes its scenes from the repository's own examples, whatever the root."""
+
+    def page(results: Mapping[str, CaseReport]) -> Page:
+        reports = list(results.values())
+        return Page(
+            {"reports": reports, "best": best_gain(reports), "sweeps": [each for each in reports if each.findings.sweep]},
+            figures={"hard-cases": drawn(lambda file: draw_stability(reports, file))},
+        )
+
+    return Chapter(
+        slug="hard-cases",
+        title="Hard cases",
+        aim="Where a plain method loses its digits, what keeps them, and what to do.",
+        template="hard_cases.html",
+        runs={case.name: Run(examine, (case, Extent.SHORT)) for case in REGISTER},
+        page=page,
+    )
+
+
+def best_gain(reports: Sequence[CaseReport]) -> CaseReport:
+    """The case in which the best method keeps most digits more than the worst."""
+    return max(reports, key=lambda report: _spread([r.digits for r in report.findings.results if r.digits is not None]))
+
+
+def _spread(digits: Sequence[float]) -> float:
+    return max(digits, default=0.0) - min(digits, default=0.0)

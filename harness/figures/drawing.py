@@ -1,0 +1,315 @@
+"""A system in motion, drawn as it looks: moving (SVG that animates itself, without a script), or as a strip of positions.
+
+    film = film_of(simulation, drawing)
+    animation(film), strip(film)        # SVG, in the reader's ink like all figures
+
+The strip shows some instants over each other, the later the stronger. Of both the scale and the time are drawn at the
+foot. What never moves, a hinge or a rail, is drawn in ink; what moves, in colour, bodies leaving a trace.
+"""
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element, SubElement
+
+import numpy as np
+from numpy.typing import NDArray
+
+from harness.figures.style import BLUE, INK, INK_ON_DARK, VERMILION
+from harness.motion.drawing import Drawing, Shape
+from harness.simulation.result import Simulation
+
+FRAMES = 180  # at most
+ROUNDS = 6.0  # a film ends when a body has gone so many times through the whole picture
+SHORTEST, LONGEST = 4.0, 12.0  # seconds that a film takes
+POSITIONS = 9  # in a strip
+FAINTEST = 0.12  # opacity of the first of them
+TALL, FLAT = 0.45, 0.15  # width by height, height by width: below them the positions stand side by side, or in a column
+WIDTH, HIGHEST, HIGHEST_IN_ROW, LOWEST, MARGIN, FOOT = 520.0, 400.0, 220.0, 24.0, 16.0, 48.0  # pixels
+BODY, HINGE = 5.0, 3.5  # radii, pixels
+STEADY = 1e-9  # of the picture: what moves less does not move
+STILL = {"class": "fixed"}
+STYLE = (
+    f"svg{{color:{INK};font:14px 'DejaVu Sans',sans-serif}}@media(prefers-color-scheme:dark){{svg{{color:{INK_ON_DARK}}}}}"
+    "line,polyline,circle{fill:none;stroke:currentColor;stroke-width:1.5;stroke-linejoin:round;stroke-linecap:round}"
+    "text{fill:currentColor}"
+    f".rod{{stroke:{BLUE};stroke-width:2.5}}.body{{fill:{VERMILION};stroke:none}}"
+    f".trace{{stroke:{VERMILION};stroke-width:1;opacity:.55}}.hinge{{stroke-width:2}}"
+    ".fixed{opacity:.7}.fixed .rod{stroke:currentColor;stroke-width:1.5}"
+)
+
+
+@dataclass(frozen=True)
+class Film:
+    """What a drawing looks like along a motion.
+
+    Attributes
+    ----------
+    title : str
+    instants : ndarray, shape (k,)
+        Equidistant.
+    shapes : tuple of Shape
+    numbers : tuple of ndarray, shape (k, numbers of the shape)
+        x and y of a shape's places in their order, then, of a circle, the radius.
+    """
+
+    title: str
+    instants: NDArray[np.float64]
+    shapes: tuple[Shape, ...]
+    numbers: tuple[NDArray[np.float64], ...]
+
+    @property
+    def span(self) -> float:
+        """Time from the first to the last frame."""
+        return float(self.instants[-1] - self.instants[0])
+
+    @property
+    def seconds(self) -> float:
+        """Time that it takes to see it."""
+        return min(max(self.span, SHORTEST), LONGEST)
+
+    @property
+    def pace(self) -> float:
+        """Time of the motion that passes in a second of the film."""
+        return self.span / self.seconds
+
+    def parts(self) -> Iterator[tuple[Shape, NDArray[np.float64], bool]]:
+        """Each shape with its numbers, and whether it moves."""
+        least = STEADY * max(map(np.ptp, _extents(self.shapes, self.numbers)))
+        for shape, numbers in zip(self.shapes, self.numbers, strict=True):
+            yield shape, numbers, bool(np.ptp(numbers, axis=0).max() > least)
+
+
+def film_of(simulation: Simulation, drawing: Drawing) -> Film:
+    """The film of a motion, or of its beginning where it goes through the picture too often.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        At many equidistant instants; its scene observes the trajectory.
+    drawing : Drawing
+
+    Returns
+    -------
+    Film
+        Of 180 frames at most.
+    """
+    instants = simulation.instants.astype(float)
+    numbers = drawing.numbers(instants, simulation.coordinates)
+    last = _last_frame(drawing.shapes, numbers)
+    chosen = slice(0, last + 1, math.ceil(last / FRAMES))
+    return Film(simulation.title, instants[chosen], drawing.shapes, tuple(each[chosen] for each in numbers))
+
+
+def animation(film: Film) -> str:
+    """A film as SVG that moves; it begins again when it is over.
+
+    Parameters
+    ----------
+    film : Film
+
+    Returns
+    -------
+    str
+    """
+    stage = _Stage(film, HIGHEST)
+    stage.draw_traces()
+    stage.draw(stage.group(), slice(None), moving=True)
+    stage.draw(stage.group(**STILL), slice(1), moving=False)
+    stage.draw_foot(range(len(film.instants)))
+    return stage.text()
+
+
+def strip(film: Film) -> str:
+    """A film as SVG that stands still: some positions over each other; side by side where it is tall, in a column if flat.
+
+    Parameters
+    ----------
+    film : Film
+
+    Returns
+    -------
+    str
+    """
+    frames = np.unique(np.linspace(0, len(film.instants) - 1, POSITIONS).round().astype(int))
+    width, height = map(np.ptp, _extents(film.shapes, film.numbers))
+    arrange = _row if width < TALL * height else _column if height < FLAT * width else _superposition
+    stage = arrange(film, frames)
+    stage.draw_foot(frames)
+    return stage.text()
+
+
+def _superposition(film: Film, frames: NDArray[np.int_]) -> "_Stage":
+    stage = _Stage(film, HIGHEST)
+    stage.draw_traces()
+    for frame, opacity in zip(frames, _opacities(frames), strict=True):
+        stage.draw(stage.group(opacity=f"{opacity:.2f}"), slice(frame, frame + 1), moving=True)
+    stage.draw(stage.group(**STILL), slice(1), moving=False)
+    return stage
+
+
+def _row(film: Film, frames: NDArray[np.int_]) -> "_Stage":
+    stage = _Stage(film, HIGHEST_IN_ROW, across=len(frames))
+    for place, frame in enumerate(frames):
+        stage.draw_apart(frame, stage.width * (place - (len(frames) - 1) / 2), 0)
+    return stage
+
+
+def _column(film: Film, frames: NDArray[np.int_]) -> "_Stage":
+    stage = _Stage(film, HIGHEST, down=len(frames))
+    for place, frame in enumerate(frames):
+        stage.draw_apart(frame, 0, stage.height * (place - (len(frames) - 1) / 2))
+    return stage
+
+
+class _Stage:
+    """A sheet with the scale of a film for so many pictures across and down; y is downward, as in SVG.
+
+    Attributes
+    ----------
+    width, height : float
+        What each picture may take, in pixels.
+    """
+
+    def __init__(self, film: Film, highest: float, across: int = 1, down: int = 1) -> None:
+        self.film = film
+        (left, right), (low, high) = _extents(film.shapes, film.numbers)
+        self.width = (WIDTH - 2 * MARGIN) / across
+        self.scale = min(self.width / max(right - left, 1e-300), highest / max(high - low, 1e-300))
+        self.height = max(LOWEST, self.scale * (high - low)) + (2 * MARGIN if down == 1 else 0)
+        self.foot = self.height * down
+        self.origin = (WIDTH / 2 - self.scale * (left + right) / 2, self.foot / 2 + self.scale * (low + high) / 2)
+        size = {"viewBox": f"0 0 {WIDTH:g} {self.foot + FOOT:.1f}", "width": f"{WIDTH:g}"}
+        self.root = Element("svg", {"xmlns": "http://www.w3.org/2000/svg", **size, "role": "img"})
+        SubElement(self.root, "title").text = film.title
+        SubElement(self.root, "style").text = STYLE
+
+    def group(self, **attributes: str) -> Element:
+        return SubElement(self.root, "g", attributes)
+
+    def draw(self, parent: Element, frames: slice, moving: bool) -> None:
+        """Draw what moves, or what does not, at some frames."""
+        for shape, numbers, moves in self.film.parts():
+            if moves is moving:
+                tag, attributes, columns = self._element(shape, numbers[frames], moves)
+                _animate(SubElement(parent, tag, attributes), columns, self.film.seconds)
+
+    def draw_apart(self, frame: int, x: float, y: float) -> None:
+        """Draw all of a frame, moved aside."""
+        shift = {"transform": f"translate({x:.1f},{y:.1f})"}
+        self.draw(self.group(**shift), slice(frame, frame + 1), moving=True)
+        self.draw(self.group(**STILL, **shift), slice(1), moving=False)
+
+    def draw_traces(self) -> None:
+        """The way of each body."""
+        traces = self.group()
+        for shape, numbers, moves in self.film.parts():
+            if moves and shape is Shape.POINT:
+                way = _places(self._pixels(numbers).ravel())
+                SubElement(traces, "polyline", {"class": "trace", "points": way})
+
+    def draw_foot(self, frames: Sequence[int] | NDArray[np.int_]) -> None:
+        """The scale, and the time: a line with a mark that runs along it, or with those of some instants."""
+        level = self.foot + FOOT / 2 - 8
+        self._draw_scale(MARGIN + 4, level)
+        self._draw_clock(WIDTH / 2, WIDTH - MARGIN - 4, level, frames)
+
+    def text(self) -> str:
+        """The sheet as text."""
+        return ElementTree.tostring(self.root, encoding="unicode") + "\n"
+
+    def _element(self, shape: Shape, numbers: NDArray[np.float64], moves: bool) -> tuple[str, dict, dict]:
+        """Tag, attributes and, frame by frame, further attributes of a shape."""
+        match shape:
+            case Shape.POINT:
+                mark = {"class": "body", "r": f"{BODY}"} if moves else {"class": "hinge", "r": f"{HINGE}"}
+                return "circle", mark, _columns(("cx", "cy"), self._pixels(numbers))
+            case Shape.CIRCLE:
+                pixels = np.column_stack([self._pixels(numbers[:, :2]), self.scale * abs(numbers[:, 2])])
+                return "circle", {"class": "rod"}, _columns(("cx", "cy", "r"), pixels)
+            case _:
+                return "polyline", {"class": "rod"}, {"points": [_places(row) for row in self._pixels(numbers)]}
+
+    def _draw_scale(self, start: float, level: float) -> None:
+        length = _round_length(WIDTH / 4 / self.scale)
+        end = start + self.scale * length
+        bar = self.group()
+        way = [start, level - 4, start, level + 4, start, level, end, level, end, level - 4, end, level + 4]
+        SubElement(bar, "polyline", {"points": _places(way)})
+        _write(bar, start, level + 22, f"length {length:g}", "start")
+
+    def _draw_clock(self, start: float, end: float, level: float, frames: Sequence[int] | NDArray[np.int_]) -> None:
+        clock = self.group()
+        SubElement(clock, "polyline", {"points": _places([start, level, end, level])})
+        places = [f"{start + (end - start) * frame / (len(self.film.instants) - 1):.1f}" for frame in frames]
+        mark = {"class": "body", "r": "4", "cy": f"{level:.1f}"}
+        if len(frames) == len(self.film.instants):
+            _animate(SubElement(clock, "circle", mark), {"cx": places}, self.film.seconds)
+        else:
+            for x, opacity in zip(places, _opacities(frames), strict=True):
+                SubElement(clock, "circle", {**mark, "cx": x, "opacity": f"{opacity:.2f}"})
+        for x, instant, anchor in ((start, self.film.instants[0], "start"), (end, self.film.instants[-1], "end")):
+            _write(clock, x, level + 22, f"t = {instant:.4g}", anchor)
+
+    def _pixels(self, numbers: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Pixels of places, x and y by turns."""
+        columns = numbers.shape[1]
+        return np.resize(self.origin, columns) + numbers * np.resize([self.scale, -self.scale], columns)
+
+
+def _animate(element: Element, frames: dict[str, list[str]], seconds: float) -> None:
+    """Give an element the attributes of the first frame, and let it run through the others."""
+    for name, texts in frames.items():
+        element.set(name, texts[0])
+        if len(texts) > 1:
+            run = {"dur": f"{seconds:.3g}s", "repeatCount": "indefinite"}
+            SubElement(element, "animate", {"attributeName": name, "values": ";".join(texts), **run})
+
+
+def _columns(names: Iterable[str], pixels: NDArray[np.float64]) -> dict[str, list[str]]:
+    return {name: [f"{x:.1f}" for x in column] for name, column in zip(names, pixels.T, strict=True)}
+
+
+def _opacities(frames: Sequence[int] | NDArray[np.int_]) -> NDArray[np.float64]:
+    return np.linspace(FAINTEST, 1, len(frames))
+
+
+def _write(parent: Element, x: float, y: float, text: str, anchor: str) -> None:
+    SubElement(parent, "text", {"x": f"{x:.1f}", "y": f"{y:.1f}", "text-anchor": anchor}).text = text
+
+
+def _places(pixels: Iterable[float]) -> str:
+    numbers = [f"{x:.1f}" for x in pixels]
+    return " ".join(map(",".join, zip(numbers[::2], numbers[1::2], strict=True)))
+
+
+def _round_length(longest: float) -> float:
+    """1, 2 or 5 times a power of ten, and not longer than that."""
+    power = 10.0 ** math.floor(math.log10(longest))
+    return next(digit * power for digit in (5, 2, 1) if digit * power <= longest)
+
+
+def _extents(shapes: Sequence[Shape], numbers: Sequence[NDArray[np.float64]]) -> list[NDArray[np.float64]]:
+    """Least and greatest x, least and greatest y."""
+    return [
+        np.array([min(low.min() for low, _ in sides), max(high.max() for _, high in sides)])
+        for sides in ([_sides(shape, row, axis) for shape, row in zip(shapes, numbers, strict=True)] for axis in (0, 1))
+    ]
+
+
+def _sides(shape: Shape, numbers: NDArray[np.float64], axis: int) -> tuple[NDArray, NDArray]:
+    if shape is Shape.CIRCLE:
+        return numbers[:, axis] - abs(numbers[:, 2]), numbers[:, axis] + abs(numbers[:, 2])
+    return numbers[:, axis::2], numbers[:, axis::2]
+
+
+def _last_frame(shapes: Sequence[Shape], numbers: Sequence[NDArray[np.float64]]) -> int:
+    """The last frame, or the one at which a body has gone through the picture so far often enough."""
+    places = [row[:, :2] if shape is Shape.CIRCLE else row for shape, row in zip(shapes, numbers, strict=True)]
+    xy = np.concatenate([row.reshape(len(row), -1, 2) for row in places], axis=1)
+    gone = np.cumsum(np.linalg.norm(np.diff(xy, axis=0), axis=2), axis=0).max(axis=1)
+    highest, lowest = np.maximum.accumulate(xy.max(axis=1), axis=0), np.minimum.accumulate(xy.min(axis=1), axis=0)
+    reach = (highest - lowest).max(axis=1)[1:]
+    often = np.flatnonzero(gone > ROUNDS * reach)
+    return int(often[0]) + 1 if len(often) else len(xy) - 1

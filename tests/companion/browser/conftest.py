@@ -1,0 +1,34 @@
+"""A browser for all tests, and all pages of the companion as it shows them."""
+
+import shutil
+
+import pytest
+from chromium import chromium, missing_programs
+from observation import keep_screenshot, observe
+from views import VIEWS
+
+from harness.companion.paper import REPOSITORY
+
+SCREENSHOTS = REPOSITORY / "build" / "screenshots"
+
+
+@pytest.fixture(scope="session")
+def browser(tmp_path_factory):
+    if missing := missing_programs():
+        pytest.skip(f"no page was looked at in a browser: {' and '.join(missing)} not installed")
+    with chromium(tmp_path_factory.mktemp("profile")) as driver:
+        yield driver
+
+
+@pytest.fixture(scope="session", params=VIEWS, ids=str)
+def seen(request, browser, companion, own):
+    """What is met on every page, in one of the views; screenshots are kept."""
+    view = request.param
+    folder = SCREENSHOTS / str(view).replace(" ", "-")
+    shutil.rmtree(folder, ignore_errors=True)
+    observations = []
+    for book in (companion, own):
+        for page in sorted(book.rglob("*.html")):
+            observations.append(observe(browser, page, view))
+            keep_screenshot(browser, (folder / book.name / page.relative_to(book)).with_suffix(".png"))
+    return observations

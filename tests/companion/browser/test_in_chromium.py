@@ -1,0 +1,107 @@
+"""Every page as a reader meets it: on a phone, on a desk by day and by night, and on paper."""
+
+from itertools import pairwise
+from pathlib import Path
+from urllib.parse import unquote, urldefrag, urlsplit
+
+import pytest
+from selenium.webdriver.common.keys import Keys
+from views import VIEWS
+
+pytestmark = pytest.mark.browser
+
+
+def told(seen, fault: str) -> list[str]:
+    """A kind of fault on all pages, each with its page."""
+    return [f"{each.page.name}: {found}" for each in seen for found in getattr(each, fault)]
+
+
+def local_file(address: str) -> Path:
+    return Path(unquote(urlsplit(address).path))
+
+
+def test_the_browser_has_nothing_to_complain_about(seen):
+    assert told(seen, "messages") == []
+
+
+def test_nothing_is_loaded_but_files_of_the_book(seen):
+    for each in seen:
+        book = each.page.parent.parent if each.page.parent.name == "source" else each.page.parent
+        assert [found for found in each.requests if not found.startswith((book.as_uri(), "data:"))] == []
+
+
+def test_nothing_is_wider_than_the_page(seen):
+    assert told(seen, "wider") == []
+
+
+def test_nothing_is_cut_off(seen):
+    assert told(seen, "cut_off") == []
+
+
+def test_what_scrolls_is_scrolled_by_keys_too(seen):
+    assert told(seen, "out_of_reach") == []
+
+
+def test_mathematics_is_drawn(seen):
+    assert told(seen, "flat_mathematics") == []
+    assert told(seen, "broken_mathematics") == []
+
+
+def test_pictures_are_drawn(seen):
+    assert told(seen, "empty_pictures") == []
+
+
+def test_text_stands_out_from_its_ground(seen):
+    assert told(seen, "pale") == []
+
+
+def test_assistive_technology_can_announce_everything_by_a_name(seen):
+    assert told(seen, "nameless") == []
+
+
+def test_assistive_technology_is_told_headings_in_order(seen):
+    for each in seen:
+        assert each.headings[0] == 1, each.page.name
+        assert all(below - above <= 1 for above, below in pairwise(each.headings)), each.page.name
+
+
+def test_every_link_leads_to_a_place(seen):
+    places = {each.page: set(each.names) for each in seen}
+    for each in seen:
+        for address, anchor in map(urldefrag, each.links):
+            assert local_file(address).is_file(), f"{each.page.name}: {address}"
+            assert not anchor or anchor in places[local_file(address)], f"{each.page.name}: {address}#{anchor}"
+
+
+@pytest.fixture
+def chapter(browser, companion):
+    """The chapter on the equations of motion, opened on a desk."""
+    VIEWS[1].take(browser)
+    browser.get((companion / "equations-of-motion.html").as_uri())
+    return browser
+
+
+def is_in_sight(browser, element) -> bool:
+    box = browser.execute_script("return arguments[0].getBoundingClientRect().toJSON()", element)
+    return box["width"] > 0 and 0 <= box["left"] and 0 <= box["top"] < browser.execute_script("return innerHeight")
+
+
+def test_the_first_key_brings_the_way_past_the_contents_into_sight(chapter):
+    skip = chapter.find_element("class name", "skip")
+    assert not is_in_sight(chapter, skip)
+    chapter.find_element("tag name", "body").send_keys(Keys.TAB)
+    assert chapter.switch_to.active_element == skip
+    assert is_in_sight(chapter, skip)
+
+
+def test_lines_of_maxima_unfold_and_lead_to_their_place_in_the_source(chapter):
+    folded = chapter.find_element("css selector", "#eq-7 details.lines")
+    link = folded.find_element("css selector", ".origin a")
+    assert not link.is_displayed()
+    folded.find_element("tag name", "summary").send_keys(Keys.ENTER)
+    assert link.is_displayed()
+    place = urlsplit(link.get_attribute("href")).fragment
+    link.send_keys(Keys.ENTER)
+    line = chapter.find_element("id", place)
+    assert is_in_sight(chapter, line)
+    assert chapter.execute_script("return document.querySelector('.line:target').id") == place
