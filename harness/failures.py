@@ -54,7 +54,7 @@ class Failure(Enum):
     NOT_A_PRECISION = ("{detail}", "take another one, or ask for --digits, which Maxima computes with")
     NO_CONTINUATION = ("{detail}", "ask for an earlier instant")
     NO_SUCH_FORMAT = ("no such file can be written", "give a name that ends in one of {detail}")
-    NO_END = ("the scene has no time span", "give the last instant with --until")
+    NO_END = ("the scene has no time span", "give it one, or the last instant with --until")
     NOT_AFTER_START = ("the last instant is not after the start: {detail}", "give a later one with --until")
     NO_PIVOTS = ("the Taylor engine cannot follow this motion: {detail}", "take --engine auto or robust")
     ROBUST_IS_DOUBLE = (

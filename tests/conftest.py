@@ -1,5 +1,6 @@
 """What several tests need: a place to write a scene, and a record small enough to read."""
 
+from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 
@@ -55,8 +56,11 @@ def particle_record(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 
 def pytest_terminal_summary(terminalreporter) -> None:
-    """Tell how many pairs of Maxima's own test files passed, which pytest counts as one test a file."""
+    """Tell how many pairs of Maxima's own test files passed, one test a file for pytest, and why tests were skipped."""
     properties = [dict(report.user_properties) for report in terminalreporter.getreports("passed")]
     counts = [found["maxima_tests"] for found in properties if "maxima_tests" in found]
     if counts:
         terminalreporter.write_line(f"Maxima's own tests: {sum(counts)} passed in {len(counts)} files")
+    reasons = Counter(report.longrepr[2] for report in terminalreporter.getreports("skipped"))
+    for reason, count in reasons.items():
+        terminalreporter.write_line(f"{reason} ({count} tests)")

@@ -1,4 +1,4 @@
-"""Pictures of a motion: the system drawn as it moves, where it says how it looks; coordinates and multipliers in time."""
+"""Pictures of a motion: the system drawn as it moves, where it says how it looks, and its curves."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -107,7 +107,7 @@ def follow(file: Path, scene: str | None, until: Fraction | None, settings: Sett
     Raises
     ------
     HolonomError
-        The motion cannot be followed so far.
+        The motion has no end, or cannot be followed to it.
     """
     problem = replace(motion_problem(file, Request(scene, settings=dict(settings)), limits), observe=SHOWN)
     simulation = simulate(problem, SimulationRequest(until=until, samples=SAMPLES))

@@ -187,7 +187,7 @@ def _points(count: int) -> str:
 
 
 def _rounded(value: float, digits: int = 6) -> str:
-    return f"{float(f'{value:.{digits}g}'):.15g}"
+    return f"{float(f'{float(value):.{digits}g}'):.15g}"
 
 
 def _counted(count: int, one: str, several: str = "") -> str:

@@ -1,4 +1,4 @@
-"""A system in motion, drawn as it looks: moving (SVG that animates itself, without a script), or as a strip of positions.
+"""A system in motion, drawn as it looks: as SVG that moves by itself, without a script, or as a strip of positions.
 
     film = film_of(simulation, drawing)
     animation(film), strip(film)        # SVG, in the reader's ink like all figures
@@ -16,7 +16,7 @@ from xml.etree.ElementTree import Element, SubElement
 import numpy as np
 from numpy.typing import NDArray
 
-from harness.figures.style import BLUE, INK, INK_ON_DARK, VERMILION
+from harness.figures.style import BLUE, INK_RULE, VERMILION
 from harness.motion.drawing import Drawing, Shape
 from harness.simulation.result import Simulation
 
@@ -25,17 +25,18 @@ ROUNDS = 6.0  # a film ends when a body has gone so many times through the whole
 SHORTEST, LONGEST = 4.0, 12.0  # seconds that a film takes
 POSITIONS = 9  # in a strip
 FAINTEST = 0.12  # opacity of the first of them
-TALL, FLAT = 0.45, 0.15  # width by height, height by width: below them the positions stand side by side, or in a column
+TALL = 0.45  # width by height below which the positions stand side by side
+FLAT = 0.15  # height by width below which they stand in a column
 WIDTH, HIGHEST, HIGHEST_IN_ROW, LOWEST, MARGIN, FOOT = 520.0, 400.0, 220.0, 24.0, 16.0, 48.0  # pixels
 BODY, HINGE = 5.0, 3.5  # radii, pixels
 STEADY = 1e-9  # of the picture: what moves less does not move
 STILL = {"class": "fixed"}
 STYLE = (
-    f"svg{{color:{INK};font:14px 'DejaVu Sans',sans-serif}}@media(prefers-color-scheme:dark){{svg{{color:{INK_ON_DARK}}}}}"
+    f"{INK_RULE}svg{{font:14px 'DejaVu Sans',sans-serif}}"
     "line,polyline,circle{fill:none;stroke:currentColor;stroke-width:1.5;stroke-linejoin:round;stroke-linecap:round}"
     "text{fill:currentColor}"
     f".rod{{stroke:{BLUE};stroke-width:2.5}}.body{{fill:{VERMILION};stroke:none}}"
-    f".trace{{stroke:{VERMILION};stroke-width:1;opacity:.55}}.hinge{{stroke-width:2}}"
+    f".trace{{stroke:{VERMILION};stroke-width:1;opacity:.7}}.hinge{{stroke-width:2}}"
     ".fixed{opacity:.7}.fixed .rod{stroke:currentColor;stroke-width:1.5}"
 )
 
@@ -122,7 +123,7 @@ def animation(film: Film) -> str:
 
 
 def strip(film: Film) -> str:
-    """A film as SVG that stands still: some positions over each other; side by side where it is tall, in a column if flat.
+    """A film as SVG that stands still: positions over each other, side by side if it is tall, in a column if flat.
 
     Parameters
     ----------

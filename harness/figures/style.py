@@ -61,7 +61,8 @@ SETTINGS = {
     "ytick.color": INK,
 }
 WRITING = {"svg.fonttype": "none", "svg.hashsalt": "holonom"}
-COLOUR_OF_INK = f"<style>svg{{color:{INK}}}@media(prefers-color-scheme:dark){{svg{{color:{INK_ON_DARK}}}}}</style>"
+INK_RULE = f"svg{{color:{INK}}}@media(prefers-color-scheme:dark){{svg{{color:{INK_ON_DARK}}}}}"
+COLOUR_OF_INK = f"<style>{INK_RULE}</style>"
 
 
 @contextmanager

@@ -25,7 +25,8 @@ def companion(results, tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def own(tmp_path_factory):
-    """Directory of the pages of two files, one written for the purpose, one an example."""
-    outcome, directory = made(tmp_path_factory.mktemp("own"), SMOOTH, REPOSITORY / "examples" / "weightless_cabin.mac")
+    """Directory of the pages of three files: one written for the purpose, a free motion, and one of many coordinates."""
+    examples = [REPOSITORY / "examples" / name for name in ("weightless_cabin.mac", "chain.mac")]
+    outcome, directory = made(tmp_path_factory.mktemp("own"), SMOOTH, *examples)
     assert outcome.return_value == 0
     return directory

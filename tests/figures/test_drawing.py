@@ -1,4 +1,4 @@
-"""Systems in motion, drawn: what a drawing shows satisfies the constraints, frame by frame, and is the same every time."""
+"""Systems in motion, drawn: what is drawn keeps the constraints, frame by frame, and is the same every time."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -179,3 +179,9 @@ def test_what_is_no_drawing_is_refused(pendulum, drawing, reason):
 def test_a_drawing_that_is_no_list_is_refused(pendulum):
     with pytest.raises(HolonomError, match="'drawing' must be a list"):
         motion_problem(pendulum(drawing=", drawing = point([x, y])"), Request(), Limits())
+
+
+def test_a_parameter_may_be_called_like_a_shape(pendulum):
+    file = pendulum(drawing=", drawing = [circle([x, y], g)]")
+    file.write_text(file.read_text().replace("[g", "[circle").replace(" g)]", " circle)]").replace("g*y", "circle*y"))
+    assert motion_problem(file, Request(), Limits()).drawing.shapes == (Shape.CIRCLE,)

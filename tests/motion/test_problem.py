@@ -53,3 +53,13 @@ system : holonomic_system(coordinates = [x], controls = [u], kinetic_energy = do
 pull : holonomic_scene(system, initial_state = [x = 0, dot(x) = 1])$""")
     with pytest.raises(HolonomError, match="the control u has no control law"):
         motion_problem(file, Request(), Limits())
+
+
+def test_parameter_of_an_effect_that_is_not_called_for_needs_no_value(write_scene):
+    text = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x], parameters = [c], kinetic_energy = dot(x)^2/2,
+  forces = [drag = [-c*dot(x)]])$
+glide : holonomic_scene(system, effects = {effects}, initial_state = [x = 0, dot(x) = 1])$"""
+    assert motion_problem(write_scene(text.format(effects="[kinetic_energy]")), Request(), Limits()).scene == "glide"
+    with pytest.raises(HolonomError, match="the parameter c has no value"):
+        motion_problem(write_scene(text.format(effects="all")), Request(), Limits())

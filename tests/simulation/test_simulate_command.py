@@ -107,7 +107,7 @@ def test_bad_input_is_one_sentence(options, sentence, tmp_path):
 def test_a_scene_without_an_end_is_refused(particle_scene):
     done = simulate(particle_scene)
     assert done.returncode == 2
-    assert "the scene has no time span; give the last instant with --until" in done.stderr
+    assert "the scene has no time span; give it one, or the last instant with --until" in done.stderr
     assert simulate(particle_scene, "--until", "1").returncode == 0
 
 

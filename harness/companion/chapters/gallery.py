@@ -40,7 +40,7 @@ EXHIBITS = (
         "examples/paper/paper.mac",
         (
             "The paper's example as a particle in space on a plane, of which the piece between its hinge on the ground "
-            "and the particle is drawn. The control tilts the plane ever faster, and the particle stays on it by itself.",
+            "and the particle is drawn. The plane is tilted ever faster, and the particle stays on it by itself.",
             "The multiplier is rounding noise, as the power of ten at its axis says: the motion is free, and the plane "
             "never pushes.",
         ),
@@ -100,8 +100,8 @@ EXHIBITS = (
         "examples/bead.mac",
         (
             "The rod turns evenly and flings the bead out, while the slider at its foot is shaken to and fro.",
-            "The bead hardly feels the shaking. The multiplier, the force that drives the slider, grows with the bead's "
-            "distance.",
+            "The bead hardly feels the shaking. The multiplier, the force that drives the slider, grows with the "
+            "distance of the bead.",
         ),
         scene="driven_scene",
         until=Fraction(6, 5),
@@ -153,8 +153,9 @@ EXHIBITS = (
         "heavy-bob",
         "examples/hard/heavy_bob.mac",
         (
-            "The lower mass is by far the heavier: it falls as if it were free, and the light one goes where it is pulled.",
-            "The multipliers are as small as the light mass, while the terms they come from are as large as the heavy one.",
+            "The lower mass is by far the heavier: it falls as if it were free, and pulls the light one along.",
+            "The multipliers are as small as the light mass, though the terms that they come from are as large as the "
+            "heavy one.",
         ),
     ),
     Exhibit(
@@ -186,7 +187,7 @@ EXHIBITS = (
         "swing",
         "examples/hard/swing.mac",
         (
-            "A swing on two ropes. Their hinges are together at first, so that the ropes are nearly one, and move apart.",
+            "A swing on two ropes. Their hinges are nearly together at first, the ropes nearly one, and move apart.",
             "The closer the hinges, the larger the two multipliers that have to share one force.",
         ),
     ),

@@ -16,7 +16,11 @@ def chapter(root: Path) -> Chapter:
     def page(results: Mapping[str, CaseReport]) -> Page:
         reports = list(results.values())
         return Page(
-            {"reports": reports, "best": best_gain(reports), "sweeps": [each for each in reports if each.findings.sweep]},
+            {
+                "reports": reports,
+                "best": best_gain(reports),
+                "sweeps": [each for each in reports if each.findings.sweep],
+            },
             figures={"hard-cases": drawn(lambda file: draw_stability(reports, file))},
         )
 

@@ -43,7 +43,9 @@ def observe(driver: Chrome, page: Path, view: View) -> Observation:
 
 def keep_screenshot(driver: Chrome, file: Path) -> None:
     """Write what the browser shows, the whole page from head to foot."""
-    picture = driver.execute_cdp_cmd("Page.captureScreenshot", {"captureBeyondViewport": True})
+    picture = driver.execute_cdp_cmd(
+        "Page.captureScreenshot", {"captureBeyondViewport": True, "optimizeForSpeed": True}
+    )
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_bytes(b64decode(picture["data"]))
 

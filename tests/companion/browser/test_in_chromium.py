@@ -1,4 +1,4 @@
-"""Every page as a reader meets it: on a phone, on a desk by day and by night, and on paper."""
+"""Every page as a reader meets it: on a phone in the dark, on a desk, and on paper."""
 
 from itertools import pairwise
 from pathlib import Path
@@ -6,7 +6,7 @@ from urllib.parse import unquote, urldefrag, urlsplit
 
 import pytest
 from selenium.webdriver.common.keys import Keys
-from views import VIEWS
+from views import DESK
 
 pytestmark = pytest.mark.browser
 
@@ -76,14 +76,14 @@ def test_every_link_leads_to_a_place(seen):
 @pytest.fixture
 def chapter(browser, companion):
     """The chapter on the equations of motion, opened on a desk."""
-    VIEWS[1].take(browser)
+    DESK.take(browser)
     browser.get((companion / "equations-of-motion.html").as_uri())
     return browser
 
 
 def is_in_sight(browser, element) -> bool:
     box = browser.execute_script("return arguments[0].getBoundingClientRect().toJSON()", element)
-    return box["width"] > 0 and 0 <= box["left"] and 0 <= box["top"] < browser.execute_script("return innerHeight")
+    return box["width"] > 0 and box["left"] >= 0 and 0 <= box["top"] < browser.execute_script("return innerHeight")
 
 
 def test_the_first_key_brings_the_way_past_the_contents_into_sight(chapter):
@@ -105,3 +105,33 @@ def test_lines_of_maxima_unfold_and_lead_to_their_place_in_the_source(chapter):
     line = chapter.find_element("id", place)
     assert is_in_sight(chapter, line)
     assert chapter.execute_script("return document.querySelector('.line:target').id") == place
+
+
+@pytest.fixture
+def exhibit(browser, companion):
+    """The first drawing of the gallery, on a desk."""
+    DESK.take(browser)
+    browser.get((companion / "gallery.html").as_uri())
+    return browser.find_element("css selector", "figure.film")
+
+
+def shown_pictures(figure) -> list[str]:
+    pictures = figure.find_elements("tag name", "img")
+    return [Path(each.get_attribute("src")).stem.split("-")[-1] for each in pictures if each.is_displayed()]
+
+
+def test_a_drawing_moves_until_it_is_folded_away(exhibit):
+    assert shown_pictures(exhibit) == ["moving"]
+    exhibit.find_element("tag name", "summary").click()
+    assert shown_pictures(exhibit) == ["still"]
+
+
+def test_whoever_wants_no_motion_is_shown_the_still_picture(browser, exhibit):
+    calm = [{"name": "prefers-reduced-motion", "value": "reduce"}]
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": calm})
+    assert shown_pictures(exhibit) == ["still"]
+
+
+def test_what_is_printed_stands_still(browser, exhibit):
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+    assert shown_pictures(exhibit) == ["still"]

@@ -2,7 +2,7 @@
 
 import pytest
 from observation import observe
-from views import VIEWS
+from views import DESK, VIEWS
 
 pytestmark = pytest.mark.browser
 
@@ -52,4 +52,4 @@ def test_a_planted_fault_is_found(faults_of, kind):
 def test_what_is_loaded_from_elsewhere_is_noticed(browser, tmp_path):
     page = tmp_path / "page.html"
     page.write_text(PAGE.format(fault='<img alt="far" width="9" height="9" src="http://nowhere.invalid/far.png" />'))
-    assert "http://nowhere.invalid/far.png" in observe(browser, page, VIEWS[0]).requests
+    assert "http://nowhere.invalid/far.png" in observe(browser, page, DESK).requests

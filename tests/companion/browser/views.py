@@ -27,9 +27,8 @@ class View:
         driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": self.medium, "features": colours})
 
 
-VIEWS = (
-    View("phone", 360, 740, mobile=True),
-    View("desk", 1280, 900),
-    View("desk in the dark", 1280, 900, colours="dark"),
-    View("paper", 680, 960, medium="print"),  # what A4 leaves between margins of 15 mm
-)
+# Widths and colours are independent of each other: each of both is looked at once.
+PHONE = View("phone in the dark", 360, 740, mobile=True, colours="dark")
+DESK = View("desk", 1280, 900)
+PAPER = View("paper", 680, 960, medium="print")  # what A4 leaves between margins of 15 mm
+VIEWS = (PHONE, DESK, PAPER)

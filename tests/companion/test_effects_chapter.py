@@ -1,0 +1,33 @@
+"""Foucault's pendulum in the chapter on effects: the plane of its swings goes back against the turning frame."""
+
+from pathlib import Path
+
+import pytest
+
+from harness.companion.chapters.effects import STILL, TURNING, turning_point
+from harness.confined import Limits
+from harness.motion.problem import motion_problem
+from harness.motion.request import Request
+from harness.simulation.request import SimulationRequest
+from harness.simulation.simulate import simulate
+
+FILE = Path(__file__).parents[2] / "examples" / "spherical_pendulum.mac"
+OMEGA, LENGTH, REACH = 1 / 20, 1, 3 / 5
+
+
+def turned(scene: str) -> tuple[float, float]:
+    problem = motion_problem(FILE, Request(scene), Limits())
+    return turning_point(simulate(problem, SimulationRequest(samples=1801)))
+
+
+def test_the_plane_goes_back_with_the_precession_of_its_narrow_ellipse():
+    """In space the bob starts with the speed Omega a and goes round an ellipse of half axes a and b = Omega a/w, which
+    turns at the rate 3/8 a b w/l^2 in the sense in which it is gone round (Olsson, Am. J. Phys. 46 (1978) 1118).
+    """
+    instant, angle = turned(TURNING)
+    precession = 3 / 8 * OMEGA * REACH**2 / LENGTH**2 * instant
+    assert angle == pytest.approx(-OMEGA * instant + precession, abs=0.01)
+
+
+def test_without_the_turning_frame_it_stays():
+    assert turned(STILL)[1] == pytest.approx(0, abs=1e-12)

@@ -1,0 +1,30 @@
+"""Drift of a pendulum at a coarse tolerance: every cure keeps nearer to the constraint than none, and all are drawn."""
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from harness.companion.chapters.accuracy import SWING, drifting
+from harness.figures.drift import draw_drift
+from harness.simulation.request import Drift
+
+PENDULUM = Path(__file__).parents[2] / "examples" / "pendulum.mac"
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+@pytest.fixture(scope="module")
+def motions():
+    return drifting(PENDULUM, SWING)
+
+
+@pytest.mark.parametrize("cure", [Drift.PROJECTION, Drift.BAUMGARTE, Drift.GGL])
+def test_a_cure_keeps_nearer_to_the_constraint_than_none(motions, cure):
+    assert max(motions[cure].residuals["position"]) < max(motions[Drift.NONE].residuals["position"]) / 5
+
+
+def test_every_cure_has_its_line_and_the_figure_is_the_same_each_time(motions):
+    svg = draw_drift(motions)
+    texts = {"".join(each.itertext()) for each in ElementTree.fromstring(svg).iter(f"{SVG}text")}
+    assert set(Drift) <= texts
+    assert svg == draw_drift(motions)
