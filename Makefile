@@ -21,7 +21,7 @@ companion: setup ## Make the textbook companion: build/companion/index.html
 check: setup ## Lint, then run all tests, Maxima's own rtest files among them
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/pytest -q --numprocesses auto --dist loadfile
+	$(BIN)/pytest -q --numprocesses auto --dist loadgroup
 
 setup: have-maxima have-compiler $(STAMP) ## Install what is missing: Maxima, a C compiler, and the Python packages in .venv
 

@@ -9,6 +9,7 @@ import pytest
 from harness.maxima import run_scene
 
 ScenesWriter = Callable[[str], Path]
+COMPANION = Path(__file__).with_name("companion")
 
 PARTICLE = """
 load("holonom.mac")$
@@ -53,6 +54,14 @@ def particle_record(tmp_path_factory: pytest.TempPathFactory) -> str:
     file = tmp_path_factory.mktemp("particle") / "scene.mac"
     file.write_text(PARTICLE, encoding="utf-8")
     return run_scene(file)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """On several cores: the tests of a file stay together, and so do those that read the companion, made once."""
+    for item in items:
+        group = "companion" if COMPANION in item.path.parents else item.path.stem
+        item.add_marker(pytest.mark.xdist_group(group))
 
 
 def pytest_terminal_summary(terminalreporter) -> None:

@@ -25,7 +25,7 @@ def companion(results, tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def own(tmp_path_factory):
-    """Directory of the pages of three files: one written for the purpose, a free motion, and one of many coordinates."""
+    """Directory of the pages of three files: one written for the purpose, one of free motion, one that is long."""
     examples = [REPOSITORY / "examples" / name for name in ("weightless_cabin.mac", "chain.mac")]
     outcome, directory = made(tmp_path_factory.mktemp("own"), SMOOTH, *examples)
     assert outcome.return_value == 0
