@@ -32,8 +32,7 @@ from harness.simulation.vanishing import no_gradient
 from harness.simulation.watch import Watch
 
 DRIFT = 100  # times what rounding does to a number: how far inside a block a state may miss the constraints
-FIRST_BLOCK, LONGEST_BLOCK = 32, 1024  # steps
-FIRST_DENSE_BLOCK = 128  # heyoka takes 1.3 ms to prepare the dense output of a block
+FIRST_BLOCK, LONGEST_BLOCK = 128, 1024  # steps; what surrounds a block takes as long as a few small steps
 SHRUNK = 32  # times shorter than the longest: a step that calls for a closer look; 16 occurs in quiet motions
 SHORTEST = 1e-9  # of the longest: a step that leads nowhere
 DECAYS_IN_A_RUN = 50.0  # gamma of Baumgarte's cure and Gear's, times the length of the time span
@@ -155,7 +154,7 @@ class TaylorMotion:
         HolonomError
             The motion itself ends.
         """
-        self._begin(FIRST_BLOCK)
+        self._begin()
         while self._integrator.time != until:
             self._block(until, dense=False)
         self._project()
@@ -177,32 +176,35 @@ class TaylorMotion:
         HolonomError
             As `advance`.
         """
-        self._begin(FIRST_DENSE_BLOCK)
+        self._begin()
         while self._integrator.time != until:
             for dense in self._block(until, dense=True):
                 for start, end in pairwise(dense.times):
                     yield Piece(start, end, lambda instants, dense=dense: dense(instants).T.copy())
         self._project()
 
-    def _begin(self, length: int) -> None:
-        self._length = length
+    def _begin(self) -> None:
+        self._length = FIRST_BLOCK
         self._clock = time.perf_counter(), self.time
 
     def _block(self, until: Any, dense: bool) -> Sequence[Any]:
         """Take a block of steps, and return its dense outputs where they are asked for."""
         if self._obstacle is not None:
             raise self._obstacle
-        instant, before = self._integrator.time, self._integrator.state.copy()
-        outcome, shortest, longest, steps, output, _ = self._integrator.propagate_until(
+        integrator = self._integrator
+        instant, before = integrator.time, integrator.state.copy()
+        _, shortest, longest, steps, output, _ = integrator.propagate_until(
             until, max_steps=self._length, c_output=dense
         )
-        if shortest * SHRUNK < max(self._usual, longest) or outcome == self._failed:
-            reached = until if outcome == self._failed else self._integrator.time
+        ended = integrator.time == until
+        broken_off = steps < self._length and not ended
+        if broken_off or shortest * SHRUNK < max(self._usual, longest):
+            reached = until if broken_off else integrator.time
             self._go_back(instant, before)
             return self._watched(reached, dense)
         self.steps += steps
         self._usual = max(self._usual, longest)
-        if self._integrator.time != until:
+        if not ended:
             self._prepare_next(until)
         return [output]
 
