@@ -6,8 +6,6 @@ what is left of the residuals is of second order in them.
 
 from typing import Any
 
-import numpy as np
-
 from harness.motion.heyoka_function import COMPACT_FROM, heyoka_expressions, import_heyoka
 from harness.motion.precision import Precision
 from harness.motion.problem import MotionProblem, computing
@@ -27,7 +25,8 @@ class ConstraintKeeper:
     def __init__(self, problem: MotionProblem, precision: Precision) -> None:
         self._nearest = _nearest_state(problem, precision)
         self._inputs = zeros(precision, 1 + len(problem.state))
-        self._one = precision.number("1")
+        self._found = zeros(precision, len(problem.state) + 1)
+        self._projected = self._found[:-1]
 
     def project(self, instant: Any, state: Numbers) -> None:
         """Move a state, in place, to the nearest one that keeps the constraints.
@@ -37,9 +36,8 @@ class ConstraintKeeper:
         instant : number
         state : ndarray, shape (2n,)
         """
-        self._inputs[0] = instant
-        self._inputs[1:] = state
-        self._nearest(self._inputs, outputs=state)
+        self._look(instant, state)
+        state[:] = self._projected
 
     def project_if(self, instant: Any, state: Numbers, allowed: float) -> bool:
         """Project a state if it is far from the constraints, and say so.
@@ -49,19 +47,22 @@ class ConstraintKeeper:
         instant : number
         state : ndarray, shape (2n,)
         allowed : float
-            Change of a coordinate or a velocity, relative to it where it is larger than one, that may stay undone.
+            Change of the state, as its length relative to (1 + x^2)^(1/2) of each number x, that may stay undone.
 
         Returns
         -------
         bool
         """
-        before = state.copy()
-        self.project(instant, state)
-        change = np.abs(state - before) / np.maximum(np.abs(before), self._one)
-        far = not float(np.max(change)) <= allowed
-        if not far:
-            state[:] = before
+        self._look(instant, state)
+        far = not float(self._found[-1]) <= allowed**2
+        if far:
+            state[:] = self._projected
         return far
+
+    def _look(self, instant: Any, state: Numbers) -> None:
+        self._inputs[0] = instant
+        self._inputs[1:] = state
+        self._nearest(self._inputs, outputs=self._found)
 
 
 def _nearest_state(problem: MotionProblem, precision: Precision) -> Any:
@@ -70,10 +71,12 @@ def _nearest_state(problem: MotionProblem, precision: Precision) -> Any:
     variables = {name: heyoka.expression(name) for name in ("t", *problem.state)}
     inputs = {**variables, **dict.fromkeys(problem.multipliers, heyoka.expression(precision.number("0")))}
     velocities = problem.state[len(problem.coordinates) :]
+    one = heyoka.expression(precision.number("1"))
     position = {**inputs, **_corrected(problem, "position_correction", problem.coordinates, inputs, precision)}
     both = {**position, **_corrected(problem, "velocity_correction", velocities, position, precision)}
+    squares = [(both[x] - inputs[x]) * (both[x] - inputs[x]) / (one + inputs[x] * inputs[x]) for x in problem.state]
     return heyoka.cfunc(
-        [both[name] for name in problem.state],
+        [*(both[name] for name in problem.state), heyoka.sum(squares)],
         vars=list(variables.values()),
         compact_mode=problem.projection.operations >= COMPACT_FROM,
         opt_level=0,

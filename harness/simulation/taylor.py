@@ -34,7 +34,7 @@ from harness.simulation.watch import Watch
 DRIFT = 100  # times what rounding does to a number: how far inside a block a state may miss the constraints
 FIRST_BLOCK, LONGEST_BLOCK = 128, 1024  # steps; what surrounds a block takes as long as a few small steps
 SHRUNK = 32  # times shorter than the longest: a step that calls for a closer look; 16 occurs in quiet motions
-SHORTEST = 1e-9  # of the longest: a step that leads nowhere
+SHORTEST = 1e-10  # of the longest: a step that leads nowhere
 DECAYS_IN_A_RUN = 50.0  # gamma of Baumgarte's cure and Gear's, times the length of the time span
 
 
