@@ -132,7 +132,7 @@ def casadi_cvodes(motion: Motion, problem: MotionProblem) -> Prepared:
     def at_tolerance(tolerance: float) -> Run:
         options = {"abstol": tolerance, "reltol": tolerance, "max_num_steps": MOST_STEPS}
         compiled = {"jit": True, "compiler": "shell", "jit_options": {"flags": ["-O3", "-march=native"]}}
-        with tempfile.TemporaryDirectory() as directory, contextlib.chdir(directory):  # CasADi compiles where it stands
+        with contextlib.chdir(tempfile.gettempdir()):  # CasADi compiles where it stands
             integrator = ca.integrator("motion", "cvodes", equations, begin, end, options | compiled)
         return lambda: integrator(x0=start)["xf"].full().ravel()
 
