@@ -13,7 +13,7 @@ SOURCES := $(shell find maxima harness -name '*.mac' -o -name '*.lisp' -o -name 
 paper: setup $(RECORDS) companion ## Derive and check every scene, compare the paper as printed (the default)
 	$(BIN)/holonom check $(SCENES) --json build/check.json
 	$(BIN)/holonom errata --json build/errata.json
-	@echo "The derivations are in build/examples/, the verdicts in build/check.json, the misprints in build/errata.json."
+	@echo "The derivations are in build/examples/, the verdicts in build/check.json, the misprints in build/errata.json, the textbook companion in build/companion/index.html."
 
 companion: setup ## Make the textbook companion: build/companion/index.html
 	$(BIN)/holonom companion -o build/companion
