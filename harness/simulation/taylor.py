@@ -100,13 +100,13 @@ class TaylorMotion:
         self._problem, self._chosen = problem, compact is not None
         self._program = computing(problem.motion, {f"ddot({name})" for name in problem.coordinates})
         self._failed = import_heyoka().taylor_outcome.err_nf_state
-        self.code = Code.QUICK if compact is None else Code.COMPACT if compact else Code.UNROLLED
+        code = Code.QUICK if compact is None else Code.COMPACT if compact else Code.UNROLLED
         self.steps, self._longest, self._usual = 0, 0.0, 0.0
         self._obstacle: HolonomError | None = None
         begun, number = time.perf_counter(), self.precision.number
         self._equations = self._equations_with(drift, decay)
         start = np.array([number(problem.start[name]) for name in problem.state])
-        self._integrator = self._compiled(self.code, number(problem.start["t"]), start)
+        self._set_up(code, number(problem.start["t"]), start)
         kept = drift is Drift.PROJECTION and problem.multipliers
         self._keeper = ConstraintKeeper(problem, self.precision) if kept else None
         self.compile_seconds = time.perf_counter() - begun
@@ -121,7 +121,7 @@ class TaylorMotion:
     @property
     def state(self) -> Numbers:
         """Coordinates, then velocities, at that instant: shape (2n,)."""
-        return self._integrator.state
+        return self._state
 
     @cached_property
     def watch(self) -> Watch:
@@ -185,14 +185,15 @@ class TaylorMotion:
 
     def _begin(self) -> None:
         self._length = FIRST_BLOCK
-        self._clock = time.perf_counter(), self.time
+        if not self._chosen:
+            self._clock = time.perf_counter(), self.time
 
     def _block(self, until: Any, dense: bool) -> Sequence[Any]:
         """Take a block of steps, and return its dense outputs where they are asked for."""
         if self._obstacle is not None:
             raise self._obstacle
         integrator = self._integrator
-        instant, before = integrator.time, integrator.state.copy()
+        instant, before = integrator.time, self._state.copy()
         _, shortest, longest, steps, output, _ = integrator.propagate_until(
             until, max_steps=self._length, c_output=dense
         )
@@ -255,7 +256,7 @@ class TaylorMotion:
 
     def _go_back(self, instant: Any, state: Numbers) -> None:
         self._integrator.time = instant
-        self._integrator.state[:] = state
+        self._state[:] = state
 
     def _project(self) -> None:
         if self._keeper is not None:
@@ -269,14 +270,16 @@ class TaylorMotion:
         now, (begun, instant) = time.perf_counter(), self._clock
         left = (now - begun) * float((until - self.time) / (self.time - instant))
         if pays(better, self._program.operations, left):
-            self.code, self._integrator = better, self._compiled(better, self.time, self.state)
+            self._set_up(better, self.time, self.state)
             self._clock = time.perf_counter(), self.time
             self.compile_seconds += self._clock[0] - now
 
-    def _compiled(self, code: Code, instant: Any, state: Numbers) -> Any:
-        return import_heyoka().taylor_adaptive(
+    def _set_up(self, code: Code, instant: Any, state: Numbers) -> None:
+        self.code = code
+        self._integrator = import_heyoka().taylor_adaptive(
             self._equations, state, time=instant, **self._tolerance, **code.options, **self.precision.options
         )
+        self._state = self._integrator.state  # a view: what the integrator does shows in it
 
     def _equations_with(self, drift: Drift, decay: float | None) -> Equations:
         if drift in (Drift.BAUMGARTE, Drift.GGL) and self._problem.multipliers:

@@ -73,7 +73,8 @@ def measure(directory: Path) -> None:
             settings, reasons = contest(motion, problem)
         found = {name: row_of(motion, name, settings[name], reasons[name]) for name in settings}
         rows += found.values()
-        bars += bars_of(motion, problem, found, same_settings(settings, OURS, HEYOKA), projection_share(settings))
+        ratios = (same_settings(settings, ours, HEYOKA) for ours in (OURS, UNPROJECTED))
+        bars += bars_of(motion, problem, found, *ratios)
     write_report(rows, [*bars, *general_bars(MOTIONS[0])], directory)
 
 
@@ -172,11 +173,6 @@ def same_settings(settings: Mapping[str, Sequence[Setting]], one: str, other: st
     times = [{s.tolerance: s.seconds for s in settings[name]} for name in (one, other)]
     finest = min(times[0].keys() & times[1].keys())
     return times[0][finest] / times[1][finest]
-
-
-def projection_share(settings: Mapping[str, Sequence[Setting]]) -> float:
-    """What projection adds to a run, relative to the run without."""
-    return same_settings(settings, OURS, UNPROJECTED) - 1
 
 
 def _ignoring(run: Run) -> Callable[[object], State]:
