@@ -23,7 +23,7 @@ from harness.failures import Failure, HolonomError
 from harness.maxima import run_batch
 from harness.motion.heyoka_function import dynamics, heyoka_expressions, import_heyoka
 from harness.motion.precision import GUARD_DIGITS, Precision
-from harness.motion.program import Program, read_program
+from harness.motion.program import Program, program_of
 from harness.motion.request import scene_argument
 from harness.motion.series import Continuation, MotionSeries, Numbers, SeriesRequest
 
@@ -97,7 +97,7 @@ def compute_series(file: Path, request: SeriesRequest, precision: Precision, lim
 def read_problem(text: str) -> InitialValueProblem:
     """Read what Maxima writes."""
     document = json.loads(text)
-    return InitialValueProblem(document["title"], document["start"], read_program(json.dumps(document["program"])))
+    return InitialValueProblem(document["title"], document["start"], program_of(document["program"]))
 
 
 def expand(problem: InitialValueProblem, order: int, precision: Precision) -> MotionSeries:

@@ -13,7 +13,7 @@ whose multipliers mu and nu, d = A^-1 J^T mu and e = A^-1 J^T nu, act here throu
 from fractions import Fraction
 from typing import Any
 
-from harness.motion.heyoka_function import heyoka_expressions, import_heyoka
+from harness.motion.heyoka_function import dynamics, heyoka_expressions, import_heyoka
 from harness.motion.precision import Precision
 from harness.motion.problem import MotionProblem
 from harness.motion.program import Program
@@ -37,12 +37,7 @@ def equations_of_motion(problem: MotionProblem, program: Program, precision: Pre
     list of (expression, expression)
         Each coordinate and each velocity with its rate.
     """
-    accelerations = _expressions(problem, program, precision)
-    rates = {
-        **{name: import_heyoka().expression(f"dot({name})") for name in problem.coordinates},
-        **{f"dot({name})": accelerations[f"ddot({name})"] for name in problem.coordinates},
-    }
-    return [(import_heyoka().expression(name), rates[name]) for name in problem.state]
+    return dynamics(program, _no_multipliers(problem, precision), precision.ratio)
 
 
 def stabilised_equations(
@@ -65,7 +60,7 @@ def stabilised_equations(
     """
     gamma = import_heyoka().expression(precision.ratio(Fraction(decay)))
     two = import_heyoka().expression(precision.ratio(Fraction(2)))
-    found = _expressions(problem, problem.projection, precision)
+    found = _corrections(problem, precision)
     n = len(problem.coordinates)
     position = [found[f"position_correction[{s}]"] for s in range(1, n + 1)]
     velocity = [found[f"velocity_correction[{s}]"] for s in range(1, n + 1)]
@@ -78,9 +73,13 @@ def stabilised_equations(
     return [(variable, rate + cure) for (variable, rate), cure in zip(plain, cures, strict=True)]
 
 
-def _expressions(problem: MotionProblem, program: Program, precision: Precision) -> dict[str, Any]:
+def _corrections(problem: MotionProblem, precision: Precision) -> dict[str, Any]:
     heyoka = import_heyoka()
-    zero = heyoka.expression(precision.number("0"))
     variables = {name: heyoka.expression(name) for name in problem.state}
-    unused = dict.fromkeys(problem.multipliers, zero)
-    return heyoka_expressions(program, {"t": heyoka.time, **variables, **unused}, precision.ratio)
+    inputs = {"t": heyoka.time, **variables, **_no_multipliers(problem, precision)}
+    return heyoka_expressions(problem.projection, inputs, precision.ratio)
+
+
+def _no_multipliers(problem: MotionProblem, precision: Precision) -> dict[str, Any]:
+    """Inputs of every program of a motion, which those of accelerations and projections do not use."""
+    return dict.fromkeys(problem.multipliers, import_heyoka().expression(precision.number("0")))

@@ -9,10 +9,10 @@ from harness.motion.problem import MotionProblem
 from harness.simulation.constraints import WeightedConstraints, weighted_constraints
 from harness.simulation.evaluation import Numbers, as_floats
 from harness.simulation.matrices import MotionMatrices
+from harness.simulation.vanishing import VANISHED
 
 REACH = 2.0  # steps ahead within which a singular configuration counts as near
 SMALL = 0.5  # least singular value above which none is near, however fast it falls
-VANISHED = 1e-3  # of its length at the start: what is left of a gradient that runs to zero
 
 
 class Watch:
