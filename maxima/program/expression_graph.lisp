@@ -443,6 +443,14 @@
 
 (defun $graph_numberp (term) (number-term-p (expression-term term)))
 
+;; A sum's own coefficients have no common factor, so that those of the terms tell.
+(defun $graph_common_number (terms)
+  "The number, as a term, that all of the terms have before them up to the sign; one where they differ."
+  (let ((numbers (mapcar #'(lambda (term) (abs (term-coefficient (expression-term term)))) (cdr terms))))
+    (number-term (if (and numbers (every #'(lambda (number) (= number (car numbers))) numbers))
+                     (car numbers)
+                     1))))
+
 (defun maxima-number (number)
   (if (typep number 'ratio)
       (list '(rat simp) (numerator number) (denominator number))
