@@ -8,7 +8,7 @@ SOURCES := $(shell find maxima harness -name '*.mac' -o -name '*.lisp' -o -name 
 
 .DEFAULT_GOAL := paper
 .DELETE_ON_ERROR:
-.PHONY: paper companion check bench setup pictures clean help have-maxima have-compiler have-python
+.PHONY: paper companion check bench setup pictures clean help have-maxima have-compiler have-gsl have-python
 
 paper: setup $(RECORDS) companion ## Derive and check every scene, compare the paper as printed (the default)
 	$(BIN)/holonom check $(SCENES) --json build/check.json
@@ -23,7 +23,7 @@ check: setup ## Lint, then run all tests, Maxima's own rtest files among them
 	$(BIN)/ruff format --check .
 	$(BIN)/pytest -q --numprocesses auto --dist loadgroup
 
-setup: have-maxima have-compiler $(STAMP) ## Install what is missing: Maxima, a C compiler, and the Python packages in .venv
+setup: have-maxima have-compiler have-gsl $(STAMP) ## Install what is missing: Maxima, a C compiler, GSL, and the Python packages in .venv
 
 bench: setup ## Time the motion program, the power series and simulations against their peers: tables and figures
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,motion,companion,bench]'
@@ -64,6 +64,9 @@ have-maxima:
 
 have-compiler:
 	@command -v cc >/dev/null || $(call install,gcc libc6-dev)
+
+have-gsl:
+	@command -v gsl-config >/dev/null || $(call install,libgsl-dev)
 
 # The first Python that is new enough; python3 is the last resort because it may be anything.
 PYTHON = $(shell for python in python3.11 python3.12 python3.13 python3; do \

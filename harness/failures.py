@@ -56,7 +56,16 @@ class Failure(Enum):
     NO_SUCH_FORMAT = ("no such file can be written", "give a name that ends in one of {detail}")
     NO_END = ("the scene has no time span", "give it one, or the last instant with --until")
     NOT_AFTER_START = ("the last instant is not after the start: {detail}", "give a later one with --until")
-    NO_PIVOTS = ("the Taylor engine cannot follow this motion: {detail}", "take --engine auto or robust")
+    GSL_MISSING = (
+        "the Runge-Kutta engine needs the GNU Scientific Library with its headers",
+        "install it, for instance the package `libgsl-dev` of your distribution",
+    )
+    NO_SUCH_CURE = ("the Runge-Kutta engine has no cure of drift named {detail}", "take --drift projection or none")
+    NO_PIVOTS = ("the motion program cannot be solved: {detail}", "take --engine auto or robust")
+    RUNGE_KUTTA_IS_DOUBLE = (
+        "the Runge-Kutta engine computes in double precision, not {detail}",
+        "take --engine auto or taylor for more digits",
+    )
     ROBUST_IS_DOUBLE = (
         "this takes the robust engine, which computes in double precision: {detail}",
         "leave --precision out, or make the constraints independent",

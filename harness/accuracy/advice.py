@@ -8,10 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from harness.accuracy.candidates import Group, Measurement
+from harness.accuracy.candidates import WHOLE_MOTION, Measurement
 
 ASKED_DIGITS = (3, 6, 9, 12, 15, 30)
-WHOLE_MOTION = frozenset({Group.TAYLOR, Group.SOLVER})
 FEWEST = 3  # points that a slope is drawn through
 
 

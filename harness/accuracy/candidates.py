@@ -14,9 +14,13 @@ class Group(StrEnum):
 
     SERIES = "series"
     TAYLOR = "taylor"
+    RUNGE_KUTTA = "runge-kutta"
     SOLVER = "solver"
     DRIFT = "drift"
     SOLVE = "solve"
+
+
+WHOLE_MOTION = (Group.TAYLOR, Group.RUNGE_KUTTA, Group.SOLVER)  # from the start to the end, and nothing else differs
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,7 @@ class Plan:
     tolerances : mapping of str to sequence of float
         Of the Taylor engine, by precision, least demanding first; precisions ascend.
     solver_tolerances : sequence of float
+        Of the Runge-Kutta engine, too.
     orders : sequence of int
         Of a single series.
     series_digits : int
@@ -56,4 +57,5 @@ class Plan:
     def steps(self) -> int:
         """How many candidates there are, at most."""
         ladders = sum(map(len, self.tolerances.values()))
-        return len(self.orders) + ladders + len(SOLVERS) * len(self.solver_tolerances) + len(Drift) + len(Solve)
+        solvers = (len(SOLVERS) + 1) * len(self.solver_tolerances)  # the one is the Runge-Kutta engine
+        return len(self.orders) + ladders + solvers + len(Drift) + len(Solve)

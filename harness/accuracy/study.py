@@ -14,6 +14,7 @@ from harness.accuracy.contest import measure
 from harness.accuracy.machine import Machine, this_machine
 from harness.accuracy.plan import Plan
 from harness.accuracy.reference import MORE_DIGITS, Reference, find_reference
+from harness.accuracy.runge_kutta import runge_kutta_ladder
 from harness.accuracy.series import EXACT, Expansion, double_series, expansion_of, maxima_series, series_name
 from harness.accuracy.solvers import solver_ladder
 from harness.accuracy.taylor import (
@@ -189,6 +190,7 @@ def _candidates(
         yield from double_series(expansion, plan.orders)
     for precision, tolerances in plan.tolerances.items():
         yield from taylor_ladder(problem, until, precision, tolerances)
+    yield from runge_kutta_ladder(problem, until, plan.solver_tolerances)
     yield from solver_ladder(problem, until, plan.solver_tolerances)
     yield from drift_cures(problem, until, plan.compared_tolerance)
     yield from the_two_solves(problems, until, plan.compared_tolerance)

@@ -34,13 +34,19 @@ SAMPLES_OF_A_PLOT = 1001
     show_default=True,
     help="Numbers to use.",
 )
-@click.option("--engine", type=click.Choice(["auto", "taylor", "robust"]), default="auto", show_default=True)
+@click.option(
+    "--engine",
+    type=click.Choice(["auto", "taylor", "runge-kutta", "robust"]),
+    default="auto",
+    show_default=True,
+    help="What follows the motion; auto is taylor, and robust where that fails.",
+)
 @click.option(
     "--drift",
     type=click.Choice(["projection", "baumgarte", "ggl", "none"]),
     default="projection",
     show_default=True,
-    help="What keeps the constraints, with the Taylor engine.",
+    help="What keeps the constraints; baumgarte and ggl with the Taylor engine.",
 )
 @click.option("--solve", type=click.Choice(["direct", "orthogonal"]), default="direct", show_default=True)
 @click.option("--compact/--no-compact", default=None, help="heyoka's compact mode; without it, what pays.")

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 TITLES = {
     Group.SERIES: "One series, added up at t = {instant}",
     Group.TAYLOR: "The Taylor engine, to t = {instant}",
+    Group.RUNGE_KUTTA: "The Runge-Kutta engine, to t = {instant}",
     Group.SOLVER: "Others on the same motion program, to t = {instant}",
     Group.DRIFT: "Cures of drift at equal tolerance, to t = {instant}",
     Group.SOLVE: "The two solves at equal tolerance, to t = {instant}",

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from harness.accuracy.candidates import Group, Measurement
+from harness.accuracy.candidates import WHOLE_MOTION, Group, Measurement
 from harness.figures.style import MARKERS, PALETTE, figure_style, new_figure, write_figure
 
 if TYPE_CHECKING:
@@ -83,7 +83,7 @@ def _draw(axes: "Axes", measurements: Sequence[Measurement], quantity: str) -> N
 
 
 def _in_contest(measurement: Measurement) -> bool:
-    return measurement.group in {Group.TAYLOR, Group.SOLVER}
+    return measurement.group in WHOLE_MOTION
 
 
 def _instant_of_series(study: "Study") -> float:

@@ -16,8 +16,9 @@ from harness.motion.c_source import c_source
 from harness.motion.program import Program
 
 COMPILERS = ("cc", "gcc", "clang")
-# -O2 takes longer and its code is no faster, as measured on a chain of 64 masses.
-OPTIONS = ("-std=c99", "-O1", "-march=native", "-shared", "-fPIC")
+# Not less than -O2: below it GCC leaves the upper halves of vector registers in use, and code without AVX that runs
+# afterwards waits for them again and again; GSL took 2 to 8 times as long.
+OPTIONS = ("-std=c99", "-O2", "-ffp-contract=fast", "-march=native", "-shared", "-fPIC")
 SHOWN = 200  # characters of what the compiler says
 POINTERS = (ctypes.c_void_p, ctypes.c_void_p)
 
@@ -86,12 +87,14 @@ def compile_c(program: Program) -> CFunction:
     return CFunction(program, load_c(c_source(program)))
 
 
-def load_c(source: str) -> ctypes.CDLL:
+def load_c(source: str, *options: str) -> ctypes.CDLL:
     """Compile C99 source into a shared object in a private directory, and load it.
 
     Parameters
     ----------
     source : str
+    options : str
+        What else the compiler is told: where headers and libraries are.
 
     Returns
     -------
@@ -107,7 +110,7 @@ def load_c(source: str) -> ctypes.CDLL:
     with tempfile.TemporaryDirectory(prefix="holonom-") as directory:
         source_file, library = Path(directory, "motion.c"), Path(directory, "motion.so")
         source_file.write_text(source, encoding="utf-8")
-        command = [*compiler, *OPTIONS, str(source_file), "-o", str(library), "-lm"]
+        command = [*compiler, *OPTIONS, str(source_file), "-o", str(library), *options, "-lm"]
         finished = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
         if finished.returncode != 0:
             said = " ".join(finished.stderr.split())

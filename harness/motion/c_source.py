@@ -7,7 +7,7 @@ the lanes itself in a loop over the points, GCC 12 finds none; told to look, it 
 
 import json
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
@@ -43,6 +43,10 @@ FUNCTIONS = {
     Operation.ARTANH: "atanh",
 }
 
+HELPERS = """\
+static inline double square(double x) { return x*x; }
+static inline double cube(double x) { return x*x*x; }
+static inline double sign(double x) { return (x > 0) - (x < 0); }"""
 ROOTS_AND_POWERS = {Fraction(1, 2): "sqrt", Fraction(2): "square", Fraction(3): "cube"}
 MULTIPLIED_OUT = range(4, 17)  # exponents for which a few squares and cubes are sooner done than pow
 
@@ -56,9 +60,7 @@ SOURCE = """\
 #include <stddef.h>
 #include <string.h>
 
-static inline double square(double x) {{ return x*x; }}
-static inline double cube(double x) {{ return x*x*x; }}
-static inline double sign(double x) {{ return (x > 0) - (x < 0); }}
+{helpers}
 
 /* One point: in and out hold its inputs and outputs. */
 void {name}(const double *in, double *out)
@@ -132,13 +134,14 @@ def c_source(program: Program, name: str = "motion") -> str:
     """
     if not IDENTIFIER.fullmatch(name):
         raise HolonomError(Failure.NOT_AN_IDENTIFIER, detail=name)
-    one = _statements(program, ONE, "in[{index}]", "out[{index}] = {value};")
-    many = "\n".join(
-        _statements(program, MANY, "lanes_at(in + {index}*points + i)", "put_lanes(out + {index}*points + i, {value});")
-    )
+    places = range(len(program.inputs))
+    one = scalar_statements(program, [f"in[{place}]" for place in places])
+    lanes = [f"lanes_at(in + {place}*points + i)" for place in places]
+    many = "\n".join(_statements(program, MANY, lanes, "put_lanes(out + {index}*points + i, {value});"))
     return SOURCE.format(
         title=comment_text(title_of(program)),
         table="\n".join(_table(program)),
+        helpers=HELPERS,
         name=name,
         one=indent("\n".join(one), " " * 4),
         lane_functions=_lane_functions(many),
@@ -146,6 +149,23 @@ def c_source(program: Program, name: str = "motion") -> str:
         inputs=len(program.inputs),
         outputs=len(program.outputs),
     )
+
+
+def scalar_statements(program: Program, inputs: Sequence[str]) -> Iterator[str]:
+    """The program for one point, as statements of C that fill an array ``out``.
+
+    Parameters
+    ----------
+    program : Program
+    inputs : sequence of str
+        For each input an expression of C.
+
+    Yields
+    ------
+    str
+        They need `HELPERS` and the mathematical functions.
+    """
+    return _statements(program, ONE, inputs, "out[{index}] = {value};")
 
 
 def title_of(program: Program) -> str:
@@ -165,12 +185,12 @@ def _table(program: Program) -> Iterator[str]:
             yield f"   {array}[{index}]".ljust(12) + comment_text(name)
 
 
-def _statements(program: Program, target: Target, read: str, write: str) -> Iterator[str]:
-    """The program's lines, given how an input is read and an output written."""
+def _statements(program: Program, target: Target, inputs: Sequence[str], write: str) -> Iterator[str]:
+    """The program's lines, given its inputs and how an output is written."""
     names = {}
-    for index, name in enumerate(program.inputs):
+    for index, (name, value) in enumerate(zip(program.inputs, inputs, strict=True)):
         names[name] = infix.atom(f"v{index}")
-        yield f"const {target.type} v{index} = {read.format(index=index)};"
+        yield f"const {target.type} v{index} = {value};"
     for index, (name, expression) in enumerate(program.assignments, start=len(program.inputs)):
         formula = target.arithmetic.value(expression, names)
         names[name] = infix.atom(f"v{index}")

@@ -11,12 +11,12 @@ to the end of their time spans; 16, 212 and 438 operations:
 In quadruple precision and beyond, functions do the arithmetic, and all three run alike.
 """
 
-from enum import Enum
+from enum import StrEnum
 
 from harness.motion.precision import Precision
 
 
-class Code(Enum):
+class Code(StrEnum):
     """A way to compile, with heyoka's options for it: quick code is compact and not optimised."""
 
     QUICK = "quick"

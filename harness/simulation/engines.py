@@ -1,8 +1,9 @@
 """The engines at work on one motion, one handing over to the other.
 
-The Taylor engine is the first choice. Where constraints are redundant, no order of pivots solves the equations, and the
-robust engine does all; where the configuration nears a singular one, or numbers leave their range, it takes over until
-the constraints are as independent again as they were when it did.
+The Taylor engine is the first choice, the Runge-Kutta engine one that can be asked for; both take the motion program.
+Where constraints are redundant, no order of pivots solves the equations, and the robust engine does all; where the
+configuration nears a singular one, or numbers leave their range, it takes over from the Taylor engine until the
+constraints are as independent again as they were when it did.
 """
 
 from collections.abc import Callable
@@ -17,13 +18,15 @@ from harness.motion.problem import MotionProblem
 from harness.simulation.advice import HardCase
 from harness.simulation.evaluation import Numbers, as_floats
 from harness.simulation.pieces import Piece
+from harness.simulation.program_motion import ProgramMotion, ProgramObstacle
 from harness.simulation.request import Engine, SimulationRequest
 from harness.simulation.solution import Solutions, program_solution
-from harness.simulation.taylor import DECAYS_IN_A_RUN, TaylorMotion, TaylorObstacle
+from harness.simulation.taylor import DECAYS_IN_A_RUN, TaylorMotion
 
 if TYPE_CHECKING:
     from harness.simulation.robust import RobustMotion
 
+BY_PROGRAM = (Engine.TAYLOR, Engine.RUNGE_KUTTA)
 FINE = 1e-13  # tolerance of the robust engine between two legs of a Taylor engine that nobody gave one
 Take = Callable[[Piece], None]
 
@@ -71,18 +74,21 @@ class Engines:
         self._problem, self._request, self._precision = problem, request, precision
         self._end = self._goal = end
         self.legs: list[Leg] = []
+        self._engine = Engine.TAYLOR if request.engine is Engine.AUTO else request.engine
         self._only_robust = request.engine is Engine.ROBUST or problem.obstacle is not None
-        if problem.obstacle is not None and request.engine is Engine.TAYLOR:
+        if problem.obstacle is not None and request.engine in BY_PROGRAM:
             raise HolonomError(Failure.NO_PIVOTS, detail=problem.obstacle)
         if self._only_robust and precision.name != "double":
             raise HolonomError(Failure.ROBUST_IS_DOUBLE, detail=problem.obstacle or "--engine asks for it")
-        self._current = self.robust if self._only_robust else self.taylor
+        self._current = self.robust if self._only_robust else self.by_program
         self._program_solution = None if self._only_robust else program_solution(problem, precision)
 
     @cached_property
-    def taylor(self) -> TaylorMotion:
-        """The Taylor engine."""
+    def by_program(self) -> ProgramMotion:
+        """The engine that takes the motion program."""
         request = self._request
+        if request.engine is Engine.RUNGE_KUTTA:
+            return _runge_kutta(self._problem, request, self._precision)
         decay = DECAYS_IN_A_RUN / float(self._end - self._precision.number(self._problem.start["t"]))
         return TaylorMotion(self._problem, request.tol, self._precision, request.drift, request.compact, decay)
 
@@ -110,22 +116,29 @@ class Engines:
     @property
     def steps(self) -> int:
         """Steps taken so far."""
-        return sum(self.__dict__[engine].steps for engine in ("taylor", "robust") if engine in self.__dict__)
+        return sum(engine.steps for engine in self._set_up)
 
     @property
     def compile_seconds(self) -> float:
-        """Time that heyoka took to compile the engines."""
-        return sum(self.__dict__[engine].compile_seconds for engine in ("taylor", "robust") if engine in self.__dict__)
+        """Time that the compilation of the engines took."""
+        return sum(
+            self.__dict__[engine].compile_seconds for engine in ("by_program", "robust") if engine in self.__dict__
+        )
+
+    @property
+    def _set_up(self) -> "list[ProgramMotion | RobustMotion]":
+        """The engines that have been called for so far."""
+        return [self.__dict__[engine] for engine in ("by_program", "robust") if engine in self.__dict__]
 
     @property
     def code(self) -> str:
-        """How heyoka compiled the Taylor engine; empty where there is none."""
-        return self.taylor.code.value if "taylor" in self.__dict__ else ""
+        """How heyoka compiled the Taylor engine; empty where it did nothing."""
+        return self.by_program.code if "by_program" in self.__dict__ else ""
 
     @property
     def tol(self) -> float:
         """Tolerance of the engine that began."""
-        return (self.robust if self._only_robust else self.taylor).tol
+        return (self.robust if self._only_robust else self.by_program).tol
 
     @property
     def redundant(self) -> bool:
@@ -155,7 +168,7 @@ class Engines:
         ----------
         until : number
         take : callable or None
-            Takes each piece of the motion; without it there are none, and the Taylor engine is at its fastest.
+            Takes each piece of the motion; without it there are none, and the engine is at its fastest.
 
         Raises
         ------
@@ -167,26 +180,26 @@ class Engines:
             self._robust_leg(take, self._at_the_end, *self._why_robust())
         while self.time != self._goal:
             try:
-                self._taylor_leg(take)
-            except TaylorObstacle as obstacle:
+                self._program_leg(take)
+            except ProgramObstacle as obstacle:
                 self._hand_over(obstacle, take)
 
-    def _taylor_leg(self, take: Take | None) -> None:
+    def _program_leg(self, take: Take | None) -> None:
         start = float(self.time)
         try:
             if take is None:
-                self.taylor.advance(self._goal)
+                self.by_program.advance(self._goal)
             else:
-                for piece in self.taylor.pieces(self._goal):
+                for piece in self.by_program.pieces(self._goal):
                     take(piece)
         finally:
             if float(self.time) > start:
-                self._add_leg(Leg(Engine.TAYLOR, start, float(self.time)))
+                self._add_leg(Leg(self._engine, start, float(self.time)))
 
-    def _hand_over(self, obstacle: TaylorObstacle, take: Take | None) -> None:
-        if self._request.engine is Engine.TAYLOR or self._precision.name != "double":
+    def _hand_over(self, obstacle: ProgramObstacle, take: Take | None) -> None:
+        if self._request.engine in BY_PROGRAM or self._precision.name != "double":
             raise obstacle
-        taylor, robust = self.taylor, self.robust
+        taylor, robust = self.by_program, self.robust
         robust.restart(taylor.time, taylor.state.copy())
         least = taylor.watch.least(taylor.time, taylor.state)
         self._current = robust
@@ -227,3 +240,11 @@ class Engines:
     def _robust_solution(self, instants: Numbers, states: Numbers) -> Solutions:
         found = [self.robust.solution(t, state) for t, state in zip(instants, states.T, strict=True)]
         return Solutions(*(np.array(each).T for each in zip(*found, strict=True)))
+
+
+def _runge_kutta(problem: MotionProblem, request: SimulationRequest, precision: Precision) -> ProgramMotion:
+    from harness.simulation.runge_kutta import RungeKuttaMotion
+
+    if precision.name != "double":
+        raise HolonomError(Failure.RUNGE_KUTTA_IS_DOUBLE, detail=precision.name)
+    return RungeKuttaMotion(problem, request.tol, request.drift)

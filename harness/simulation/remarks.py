@@ -25,7 +25,7 @@ def engine_text(legs: Sequence[Leg]) -> str:
         return str(legs[0].engine)
     robust = [leg for leg in legs if leg.engine is Engine.ROBUST]
     if len(robust) > LISTED:
-        return f"taylor, robust {len(robust)} times from {robust[0].start:.6g} to {robust[-1].end:.6g}"
+        return f"{legs[0].engine}, robust {len(robust)} times from {robust[0].start:.6g} to {robust[-1].end:.6g}"
     spans = {leg: f" {leg.start:.6g}..{leg.end:.6g}" for leg in robust}
     return ", ".join(f"{leg.engine}{spans.get(leg, '')}" for leg in legs)
 

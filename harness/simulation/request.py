@@ -12,6 +12,7 @@ class Engine(StrEnum):
 
     AUTO = "auto"
     TAYLOR = "taylor"
+    RUNGE_KUTTA = "runge-kutta"
     ROBUST = "robust"
 
 
@@ -42,7 +43,7 @@ class SimulationRequest:
         than double.
     engine : Engine
     drift : Drift
-        What the Taylor engine does; the robust one always projects.
+        What the Taylor engine does; the Runge-Kutta engine projects or does nothing, the robust one always projects.
     until : Fraction or None
         Last instant; None for the end of the scene's time span.
     samples : int or None

@@ -15,6 +15,7 @@ from harness.accuracy.document import study_document
 from harness.accuracy.errors import WORKING_DIGITS, relative_error
 from harness.accuracy.plan import Plan
 from harness.accuracy.reference import find_reference
+from harness.accuracy.runge_kutta import RUNGE_KUTTA, runge_kutta_ladder
 from harness.accuracy.series import double_series, expansion_of
 from harness.accuracy.solvers import SOLVERS, solver_ladder
 from harness.accuracy.study import study
@@ -85,6 +86,7 @@ def test_what_the_table_states_is_the_distance_from_the_closed_form(problems, re
     candidates = [
         *double_series(expansion_of(problem, UNTIL), SHORT.orders),
         *(c for precision, row in SHORT.tolerances.items() for c in taylor_ladder(problem, UNTIL, precision, row)),
+        *runge_kutta_ladder(problem, UNTIL, SHORT.solver_tolerances),
         *solver_ladder(problem, UNTIL, SHORT.solver_tolerances),
         *drift_cures(problem, UNTIL, 1e-10),
         *the_two_solves(problems, UNTIL, 1e-10),
@@ -110,6 +112,7 @@ def test_maxima_sums_its_own_series_to_the_truncated_closed_form(done):
 def test_every_group_is_measured(done):
     assert {m.group for m in done.measurements} == set(Group)
     assert {m.method for m in done.measurements if m.group is Group.SOLVER} == set(SOLVERS)
+    assert {m.method for m in done.measurements if m.group is Group.RUNGE_KUTTA} == {RUNGE_KUTTA}
     assert len([m for m in done.measurements if m.group is Group.DRIFT]) == len(Drift)
     assert not done.omissions
 

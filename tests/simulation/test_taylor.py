@@ -13,8 +13,9 @@ from harness.motion.problem import motion_problem
 from harness.motion.request import Request
 from harness.simulation.code import Code, better_code, pays
 from harness.simulation.constraint_keeper import ConstraintKeeper
+from harness.simulation.program_motion import ProgramObstacle
 from harness.simulation.request import Drift
-from harness.simulation.taylor import TaylorMotion, TaylorObstacle
+from harness.simulation.taylor import TaylorMotion
 
 
 def test_code_is_better_where_a_run_earns_it():
@@ -68,7 +69,7 @@ def test_an_obstacle_leaves_the_last_good_state():
     """Before a singular configuration of the linkage, where the rods' angle is a right one: the tips are at y = 0."""
     motion = TaylorMotion(problem("linkage.mac"))
     pieces = []
-    with pytest.raises(TaylorObstacle):
+    with pytest.raises(ProgramObstacle):
         pieces.extend(motion.pieces(10.0))
     assert pieces[-1].end == motion.time
     assert np.isfinite(motion.state).all()

@@ -6,7 +6,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from harness.accuracy.candidates import Group
+from harness.accuracy.candidates import WHOLE_MOTION, Group
 from harness.accuracy.plan import Plan
 from harness.accuracy.study import Study, study
 from harness.companion.chapter import Chapter, Page, Run
@@ -30,7 +30,6 @@ SHORT_PLAN = {
     "solver_tolerances": (1e-4, 1e-8, 1e-12),
     "orders": (10, 20, 40, 80),
 }
-WHOLE_MOTION = (Group.TAYLOR, Group.SOLVER)
 SWING, TOLERANCE, UNTIL, SAMPLES = "swing_scene", 1e-6, Fraction(100), 401
 
 
