@@ -22,7 +22,7 @@ from harness.simulation.pieces import Piece
 from harness.simulation.vanishing import no_gradient
 from harness.simulation.watch import Watch
 
-FIRST_BLOCK = 128  # steps; what surrounds a block takes as long as a few small steps
+FIRST_BLOCK = 256  # steps; what surrounds a block, projection above all, takes as long as ten small steps
 SHRUNK = 32  # times shorter than the longest: a step that calls for a closer look; 16 occurs in quiet motions
 SHORTEST = 1e-10  # of the longest: a step that leads nowhere
 
@@ -156,8 +156,9 @@ class ProgramMotion:
             The motion itself ends.
         """
         self._begin()
-        while self._integrator.time != until:
-            self._block(until, dense=False)
+        ended = self._integrator.time == until
+        while not ended:
+            ended, _ = self._block(until, dense=False)
         self._keep_constraints()
 
     def pieces(self, until: Any) -> Iterator[Piece]:
@@ -178,8 +179,10 @@ class ProgramMotion:
             As `advance`.
         """
         self._begin()
-        while self._integrator.time != until:
-            for dense in self._block(until, dense=True):
+        ended = self._integrator.time == until
+        while not ended:
+            ended, outputs = self._block(until, dense=True)
+            for dense in outputs:
                 for start, end in pairwise(dense.times):
                     yield Piece(start, end, _states_of(dense))
         self._keep_constraints()
@@ -193,8 +196,8 @@ class ProgramMotion:
     def _prepare_next(self, until: Any) -> None:
         """What has to be done after a block that is not the last."""
 
-    def _block(self, until: Any, dense: bool) -> list[Dense | None]:
-        """Take a block of steps, and return its dense outputs where they are asked for."""
+    def _block(self, until: Any, dense: bool) -> tuple[bool, list[Dense | None]]:
+        """Take a block of steps; whether it was the last, and its dense outputs where they are asked for."""
         if self._obstacle is not None:
             raise self._obstacle
         integrator = self._integrator
@@ -204,15 +207,17 @@ class ProgramMotion:
         )
         ended = integrator.time == until
         broken_off = steps < self._length and not ended
-        if broken_off or shortest * SHRUNK < max(self._usual, longest):
+        longest = max(self._usual, longest)
+        if broken_off or shortest * SHRUNK < longest:
             reached = until if broken_off else integrator.time
             self._go_back(instant, before)
-            return self._watched(reached, dense)
+            outputs = self._watched(reached, dense)
+            return self.time == until, outputs
         self.steps += steps
-        self._usual = max(self._usual, longest)
+        self._usual = longest
         if not ended:
             self._prepare_next(until)
-        return [output]
+        return ended, [output]
 
     def _watched(self, until: Any, dense: bool) -> list[Dense | None]:
         """The block in single steps, until it ends or the motion program is about to fail."""

@@ -16,7 +16,7 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from simulation_bars import Bar, bars_of, general_bars
+from simulation_bars import RUNGE_KUTTA, TAYLOR, Bar, Ratios, bars_of, faster_engine, general_bars, unprojected
 from simulation_motions import MOTIONS, Motion
 from simulation_peers import HEYOKA, PEERS, Prepared, Run, State
 from simulation_report import write_report
@@ -30,7 +30,9 @@ from harness.failures import HolonomError
 from harness.motion.problem import MotionProblem, motion_problem
 from harness.motion.request import Request
 from harness.motion.timing import python_batch
+from harness.simulation.program_motion import ProgramMotion
 from harness.simulation.request import Drift
+from harness.simulation.runge_kutta import RungeKuttaMotion
 from harness.simulation.taylor import TaylorMotion
 
 ERROR = 1e-9
@@ -38,7 +40,6 @@ TOLERANCES = tuple(float(f"1e-{n}") for n in range(5, 16))
 DIGITS = 20  # more than any method has; the reference has `MORE_DIGITS` on top
 PATIENCE = 5.0  # seconds of a run after which a method is given up
 REPEATED = 0.05  # seconds of a run up to which it takes many turns
-OURS, UNPROJECTED = "Holonom", "Holonom, drift: none"
 
 
 @dataclass(frozen=True)
@@ -73,8 +74,7 @@ def measure(directory: Path) -> None:
             settings, reasons = contest(motion, problem)
         found = {name: row_of(motion, name, settings[name], reasons[name]) for name in settings}
         rows += found.values()
-        ratios = (same_settings(settings, ours, HEYOKA) for ours in (OURS, UNPROJECTED))
-        bars += bars_of(motion, problem, found, *ratios)
+        bars += bars_of(motion, problem, found, ratios_of(settings, faster_engine(found)))
     write_report(rows, [*bars, *general_bars(MOTIONS[0])], directory)
 
 
@@ -83,22 +83,29 @@ def contest(motion: Motion, problem: MotionProblem) -> tuple[dict[str, list[Sett
     reference = find_reference(problem, [motion.until], DIGITS)
     settings: dict[str, list[Setting]] = {}
     reasons: dict[str, str] = {}
-    tolerances: Sequence[float] = TOLERANCES
     for name, peer in PEERS.items():
-        settings[name], reasons[name] = tighten(partial(peer, motion, problem), motion, reference, tolerances)
+        settings[name], reasons[name] = tighten(partial(peer, motion, problem), motion, reference, TOLERANCES)
         print(f"{motion.name}: {name} {reasons[name]}", file=sys.stderr)
-    tolerances = TOLERANCES[TOLERANCES.index(settings[HEYOKA][0].tolerance) :]
-    for name, drift in ((OURS, Drift.PROJECTION), (UNPROJECTED, Drift.NONE)):
-        prepare = partial(holonom, motion, problem, drift)
-        settings[name], reasons[name] = tighten(prepare, motion, reference, tolerances)
+    as_heyoka = TOLERANCES[TOLERANCES.index(settings[HEYOKA][0].tolerance) :]
+    for engine, set_up, tolerances in ((TAYLOR, unrolled, as_heyoka), (RUNGE_KUTTA, RungeKuttaMotion, TOLERANCES)):
+        for name, drift in ((engine, Drift.PROJECTION), (unprojected(engine), Drift.NONE)):
+            prepare = partial(holonom, motion, problem, partial(set_up, drift=drift))
+            settings[name], reasons[name] = tighten(prepare, motion, reference, tolerances)
     return with_turns(settings), reasons
 
 
-def holonom(motion: Motion, problem: MotionProblem, drift: Drift) -> Prepared:
+def unrolled(problem: MotionProblem, tolerance: float, drift: Drift) -> TaylorMotion:
     """The Taylor engine, its code unrolled, which is heyoka's own default."""
+    return TaylorMotion(problem, tolerance, drift=drift, compact=False)
+
+
+def holonom(
+    motion: Motion, problem: MotionProblem, set_up: Callable[[MotionProblem, float], ProgramMotion]
+) -> Prepared:
+    """One of our engines."""
 
     def at_tolerance(tolerance: float) -> Run:
-        follower = TaylorMotion(problem, tolerance, drift=drift, compact=False)
+        follower = set_up(problem, tolerance)
         begin, start, end = follower.time, np.array(follower.state), float(motion.until)
 
         def run() -> State:
@@ -166,6 +173,15 @@ def row_of(motion: Motion, name: str, settings: Sequence[Setting], reason: str) 
         return Row(motion.name, name, last.seconds, last.compile)
     share = math.log(first.error / ERROR) / math.log(first.error / last.error)
     return Row(motion.name, name, first.seconds * (last.seconds / first.seconds) ** share, last.compile)
+
+
+def ratios_of(settings: Mapping[str, Sequence[Setting]], engine: str) -> Ratios:
+    """How times at equal tolerance compare."""
+    return Ratios(
+        same_settings(settings, unprojected(TAYLOR), HEYOKA),
+        same_settings(settings, TAYLOR, HEYOKA),
+        *(same_settings(settings, each, unprojected(each)) - 1 for each in (engine, TAYLOR)),
+    )
 
 
 def same_settings(settings: Mapping[str, Sequence[Setting]], one: str, other: str) -> float:

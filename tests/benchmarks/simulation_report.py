@@ -6,7 +6,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from simulation_bars import OURS, Bar
+from simulation_bars import ENGINES, Bar, faster_engine
 
 from harness.accuracy.machine import PACKAGES, this_machine
 from harness.figures.style import MARKERS, PALETTE, figure_style, new_figure, write_figure
@@ -37,11 +37,12 @@ def write_report(rows: "Sequence[Row]", bars: Sequence[Bar], directory: Path) ->
 
 
 def table(rows: "Sequence[Row]") -> Iterator[tuple[str, ...]]:
-    """The rows as text, times as ratios to ours beside them."""
+    """The rows as text, times as ratios to our faster engine beside them."""
     yield COLUMNS
-    ours = {row.motion: row for row in rows if row.method == OURS}
+    by_motion = {name: {row.method: row for row in rows if row.motion == name} for name in {row.motion for row in rows}}
     for row in rows:
-        own = ours[row.motion]
+        named = by_motion[row.motion]
+        own = named[faster_engine(named)]
         if row.seconds is None:
             yield (row.motion, row.method, "", "", "", "", "", row.reason)
             continue
@@ -69,14 +70,14 @@ def bar_table(bars: Sequence[Bar]) -> Iterator[tuple[str, ...]]:
 def figure(rows: "Sequence[Row]", machine: str, file: Path) -> None:
     """Each method's time on each motion."""
     motions = list(dict.fromkeys(row.motion for row in rows))
-    methods = sorted(dict.fromkeys(row.method for row in rows), key=lambda method: method != OURS)
+    methods = sorted(dict.fromkeys(row.method for row in rows), key=lambda method: method not in ENGINES)
     with figure_style():
         drawing = new_figure(11, 6)
         axes = drawing.subplots()
         for index, method in enumerate(methods):
             points = [(motions.index(row.motion), row.seconds) for row in rows if row.method == method and row.seconds]
             style = {"color": PALETTE[index % len(PALETTE)], "marker": MARKERS[index // len(PALETTE) % len(MARKERS)]}
-            line = "-" if method == OURS else "none"
+            line = "-" if method in ENGINES else "none"
             axes.semilogy(*zip(*points, strict=True), linestyle=line, label=method, **style)
         axes.set(xticks=range(len(motions)), xticklabels=motions, ylabel="time / s", title=f"{TITLE}, {CAPTION}")
         axes.legend(loc="center left", bbox_to_anchor=(1, 0.5))
