@@ -1,5 +1,6 @@
 """The group of commands, with bad input explained in one sentence."""
 
+import gc
 import sys
 from typing import Any
 
@@ -44,6 +45,7 @@ def main() -> None:
         status = error.exit_code
     except click.Abort:
         status = INTERRUPTED
+    gc.freeze()  # modules need no search for garbage on the way out: it takes three times as long as all the rest
     sys.exit(status)
 
 
