@@ -14,6 +14,7 @@ from harness.motion.c_function import CFunction, load_c
 TIMER = Path(__file__).with_name("timer.c")
 ROUNDS = 9  # the shortest time counts: what disturbs a measurement makes it longer
 BATCH = 0.005  # seconds of calls in one round
+GUESSES = 3
 SHORTEST = 1e-9  # seconds; no call takes less
 Compiled = Callable[..., None]
 Batch = Callable[[int], float]  # number of calls -> seconds of one of them
@@ -70,6 +71,11 @@ def shortest_times(batches: Mapping[Key, Batch]) -> dict[Key, float]:
     dict of float
         Seconds that one call of each takes.
     """
-    calls = {key: max(1, int(BATCH / max(batch(1), batch(1), SHORTEST))) for key, batch in batches.items()}
+    calls = {key: max(1, int(BATCH / max(_first_guess(batch), SHORTEST))) for key, batch in batches.items()}
     rounds = [{key: batch(calls[key]) for key, batch in batches.items()} for _ in range(ROUNDS)]
     return {key: min(times[key] for times in rounds) for key in batches}
+
+
+def _first_guess(batch: Batch) -> float:
+    """Seconds of a call, as far as a few tell: one that is disturbed must not pass for all."""
+    return min(batch(1) for _ in range(GUESSES))

@@ -28,41 +28,24 @@ class ConstraintKeeper:
         self._found = zeros(precision, len(problem.state) + 1)
         self._projected = self._found[:-1]
 
-    def project(self, instant: Any, state: Numbers) -> None:
+    def project(self, instant: Any, state: Numbers) -> float:
         """Move a state, in place, to the nearest one that keeps the constraints.
 
         Parameters
         ----------
         instant : number
         state : ndarray, shape (2n,)
-        """
-        self._look(instant, state)
-        state[:] = self._projected
-
-    def project_if(self, instant: Any, state: Numbers, allowed: float) -> bool:
-        """Project a state if it is far from the constraints, and say so.
-
-        Parameters
-        ----------
-        instant : number
-        state : ndarray, shape (2n,)
-        allowed : float
-            Change of the state, as its length relative to (1 + x^2)^(1/2) of each number x, that may stay undone.
 
         Returns
         -------
-        bool
+        float
+            How far: the length of the change, relative to (1 + x^2)^(1/2) of each number x.
         """
-        self._look(instant, state)
-        far = not float(self._found[-1]) <= allowed**2
-        if far:
-            state[:] = self._projected
-        return far
-
-    def _look(self, instant: Any, state: Numbers) -> None:
         self._inputs[0] = instant
         self._inputs[1:] = state
         self._nearest(self._inputs, outputs=self._found)
+        state[:] = self._projected
+        return float(self._found[-1]) ** 0.5
 
 
 def _nearest_state(problem: MotionProblem, precision: Precision) -> Any:

@@ -22,7 +22,7 @@ from harness.simulation.pieces import Piece
 from harness.simulation.vanishing import no_gradient
 from harness.simulation.watch import Watch
 
-FIRST_BLOCK = 256  # steps; what surrounds a block, projection above all, takes as long as ten small steps
+FIRST_BLOCK = 128  # steps; what surrounds a block, projection above all, takes as long as some small steps
 SHRUNK = 32  # times shorter than the longest: a step that calls for a closer look; 16 occurs in quiet motions
 SHORTEST = 1e-10  # of the longest: a step that leads nowhere
 
@@ -112,6 +112,7 @@ class ProgramMotion:
     code: str = ""
     compile_seconds: float
     _integrator: Integrator
+    _first_block = FIRST_BLOCK
 
     def __init__(self, problem: MotionProblem, precision: Precision, failed: object) -> None:
         self.precision, self._failed = precision, failed
@@ -188,7 +189,7 @@ class ProgramMotion:
         self._keep_constraints()
 
     def _begin(self) -> None:
-        self._length = FIRST_BLOCK
+        self._length = self._first_block
 
     def _keep_constraints(self) -> None:
         """Project the state; nothing where the integrator does so."""
@@ -227,7 +228,7 @@ class ProgramMotion:
             if self.time == until or self._obstacle is not None:
                 break
             outputs += self._watched_step(until, dense)
-        self._length = FIRST_BLOCK
+        self._length = self._first_block
         return outputs
 
     def _watched_step(self, until: Any, dense: bool) -> list[Dense | None]:

@@ -1,8 +1,7 @@
 """The Taylor engine: heyoka's adaptive integrator on the motion program.
 
-After a block of steps the projection program tells how far the state has left the constraints, and it is projected
-where that is more than `DRIFT`; blocks grow while it is less and shrink where it is more. The last state is always
-projected.
+After a block of steps the state is projected onto the constraints; the next block is as long as the way back to them is
+short.
 """
 
 import time
@@ -17,12 +16,14 @@ from harness.motion.problem import MotionProblem, computing
 from harness.simulation.code import Code, better_code, pays
 from harness.simulation.constraint_keeper import ConstraintKeeper
 from harness.simulation.evaluation import Numbers
-from harness.simulation.program_motion import ProgramMotion
+from harness.simulation.program_motion import FIRST_BLOCK, ProgramMotion
 from harness.simulation.request import Drift
 from harness.simulation.stabilisation import Equations, equations_of_motion, stabilised_equations
 
-DRIFT = 100  # times what rounding does to a number: how far inside a block a state may miss the constraints
+DRIFT = 100  # times what rounding does to a number: how far a state may leave the constraints inside a block
+FINE, FINE_BLOCK = 1e-9, 512  # a tolerance whose steps leave the constraints so slowly that a first block may be long
 LONGEST_BLOCK = 1024  # steps
+GROWTH = 8  # from block to block, at most
 DECAYS_IN_A_RUN = 50.0  # gamma of Baumgarte's cure and Gear's, times the length of the time span
 
 
@@ -72,6 +73,7 @@ class TaylorMotion(ProgramMotion):
         self._keeper = ConstraintKeeper(problem, self.precision) if kept else None
         self.compile_seconds = time.perf_counter() - begun
         self.tol = float(self._integrator.tol)
+        self._first_block = FINE_BLOCK if self.tol <= FINE else FIRST_BLOCK
         self._allowed = max(DRIFT * 10.0**-self.precision.sure_digits, self.tol)
 
     def _begin(self) -> None:
@@ -80,11 +82,12 @@ class TaylorMotion(ProgramMotion):
             self._clock = time.perf_counter(), self.time
 
     def _prepare_next(self, until: Any) -> None:
-        """Choose the next block's length, project where drift asks for it, and compile better code where that pays."""
-        if self._keeper is None or not self._keeper.project_if(self.time, self.state, self._allowed):
-            self._length = min(2 * self._length, LONGEST_BLOCK)
+        """Project, choose the next block's length, and compile better code where that pays."""
+        if self._keeper is None:
+            self._length = LONGEST_BLOCK
         else:
-            self._length = max(1, self._length // 2)
+            drift = self._keeper.project(self.time, self.state)
+            self._length = block_within(self._allowed, self._length, drift)
         self._compile_if_it_pays(until)
 
     def _keep_constraints(self) -> None:
@@ -115,6 +118,25 @@ class TaylorMotion(ProgramMotion):
             gamma = DECAYS_IN_A_RUN / _length(self._problem) if decay is None else decay
             return stabilised_equations(self._problem, self._program, self.precision, drift, gamma)
         return equations_of_motion(self._problem, self._program, self.precision)
+
+
+def block_within(allowed: float, steps: int, drift: float) -> int:
+    """Length of a block in which a state leaves the constraints no farther than is allowed.
+
+    Parameters
+    ----------
+    allowed : float
+    steps : int
+        Of the block before.
+    drift : float
+        How far it left them there. What a velocity misses grows with the time, what a position misses with its square.
+
+    Returns
+    -------
+    int
+    """
+    growth = (allowed / drift) ** 0.5 if drift > 0 else GROWTH
+    return max(1, min(int(steps * min(growth, GROWTH)), LONGEST_BLOCK))
 
 
 def held(tol: float, precision: Precision) -> float:
