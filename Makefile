@@ -66,7 +66,8 @@ have-compiler:
 	@command -v cc >/dev/null || $(call install,gcc libc6-dev)
 
 have-gsl:
-	@command -v gsl-config >/dev/null || $(call install,libgsl-dev)
+	@command -v gsl-config >/dev/null || ( $(call install,libgsl-dev) ) || \
+	  echo "Without the GNU Scientific Library there is no Runge-Kutta engine; all the rest works." >&2
 
 # The first Python that is new enough; python3 is the last resort because it may be anything.
 PYTHON = $(shell for python in python3.11 python3.12 python3.13 python3; do \

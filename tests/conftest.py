@@ -1,5 +1,6 @@
 """What several tests need: a place to write a scene, and a record small enough to read."""
 
+import shutil
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
@@ -29,6 +30,13 @@ rise : holonomic_scene(particle,
   parameter_values = [m = 2, g = 981/100],
   initial_state    = [x = 0, dot(x) = 1/3])$
 """
+
+
+@pytest.fixture(scope="session")
+def gsl() -> None:
+    """The GNU Scientific Library, which the Runge-Kutta engine needs and nothing else does."""
+    if shutil.which("gsl-config") is None:
+        pytest.skip("the GNU Scientific Library is not installed")
 
 
 @pytest.fixture

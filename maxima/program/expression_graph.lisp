@@ -422,6 +422,14 @@
 
 (defun $graph_sum (terms) (sum-of (mapcar #'expression-term (cdr terms))))
 
+(defun $graph_terms (term)
+  "The terms of a sum, or the one term."
+  (let* ((term (expression-term term)) (node (term-node term)))
+    (cons '(mlist)
+          (if (eq (node-kind node) 'sum)
+              (multiples (term-coefficient term) (node-parts node))
+              (list term)))))
+
 (defun $graph_product (&rest factors) (product-of (mapcar #'expression-term factors)))
 
 (defun $graph_quotient (a b) (quotient-of (expression-term a) (expression-term b)))

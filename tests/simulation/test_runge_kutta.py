@@ -30,6 +30,8 @@ body : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces =
 burst : holonomic_scene(body, initial_state = [x = 1, dot(x) = 2], time_span = [0, 2])$
 """
 
+pytestmark = pytest.mark.usefixtures("gsl")
+
 
 def test_a_parabola_is_followed_to_rounding(write_scene):
     """Truth: a method of order 8 is exact for polynomials of degree 2, and the first step reaches the end."""

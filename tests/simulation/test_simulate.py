@@ -171,6 +171,7 @@ def test_a_precision_that_the_robust_engine_lacks_is_not_feigned():
 
 @pytest.mark.parametrize("scene", [("chain.mac", "swing_scene"), ("andrews.mac", None), ("pendulum.mac", None)])
 @pytest.mark.parametrize("engine", [Engine.RUNGE_KUTTA, Engine.ROBUST])
+@pytest.mark.usefixtures("gsl")
 def test_all_engines_find_the_same_motion(scene, engine):
     ours, theirs = (final(problem(*scene), engine=each) for each in (Engine.TAYLOR, engine))
     assert (ours.engine, theirs.engine) == ("taylor", engine)
