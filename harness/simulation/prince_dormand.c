@@ -17,16 +17,17 @@
 enum { COORDINATES = STATE/2 };
 
 struct follower {
-    double t, until;                /* where the motion has come, and where it goes                    */
-    double step, last;              /* the next step, zero if it is to be found; the last one          */
+    double t, *state;               /* where the motion has come                                       */
+    double until;                   /* where it goes                                                   */
+    double last;                    /* length of the last step                                         */
     double shortest, longest;       /* of the steps taken, without the one that reached `until`        */
     long most, taken;               /* steps                                                           */
-    double state[STATE];
     double *instants, *states;      /* filled with the start of each step, unless they are NULL        */
 };
 
 long evaluations;
 static double tolerance;
+static double reached = NAN, left[STATE], step;   /* where the last steps led, and how long the next would be */
 static gsl_odeiv2_step *method;
 static gsl_odeiv2_control *control;
 static gsl_odeiv2_evolve *evolution;
@@ -65,11 +66,11 @@ static double size_of(const double *x, const double *state)
    that lets next to none fail. GSL's own control leaves a step alone while the error is between half the tolerance and
    all of it; a seventh of the steps of a chain fail then. */
 static int adjust_step(void *unused, size_t size, unsigned order, const double *state, const double *errors,
-                       const double *slope, double *step)
+                       const double *slope, double *length)
 {
     (void)unused, (void)size, (void)slope;
     const double error = size_of(errors, state);
-    *step *= fmin(MOST_GROWTH, fmax(LEAST_GROWTH, MARGIN*pow(error, -1.0/order)));
+    *length *= fmin(MOST_GROWTH, fmax(LEAST_GROWTH, MARGIN*pow(error, -1.0/order)));
     return error <= 1 ? GSL_ODEIV_HADJ_NIL : GSL_ODEIV_HADJ_DEC;
 }
 
@@ -126,18 +127,19 @@ static void keep_constraints(double t, double *state)
 /* Takes the steps that are asked for; returns 0, or GSL's number for what ended them before. */
 int advance(struct follower *f)
 {
+    const int moved = f->t != reached || memcmp(f->state, left, sizeof left) != 0;
     f->taken = 0;
     f->shortest = HUGE_VAL;
     f->longest = 0;
     begin_anew();
-    if (f->step == 0) f->step = first_step(f->t, f->state);
+    if (moved) step = first_step(f->t, f->state);
     while (f->t < f->until && f->taken < f->most) {
         if (f->instants) {
             f->instants[f->taken] = f->t;
-            memcpy(f->states + f->taken*STATE, f->state, sizeof f->state);
+            memcpy(f->states + f->taken*STATE, f->state, sizeof left);
         }
         const int failure = gsl_odeiv2_evolve_apply(
-            evolution, control, method, &motion, &f->t, f->until, &f->step, f->state);
+            evolution, control, method, &motion, &f->t, f->until, &step, f->state);
         if (failure) return failure;
         f->taken++;
         f->last = evolution->last_step;
@@ -150,7 +152,9 @@ int advance(struct follower *f)
 #endif
     }
     keep_constraints(f->t, f->state);
-    if (are_finite(STATE, f->state)) return GSL_SUCCESS;
+    reached = f->t;
+    memcpy(left, f->state, sizeof left);
+    if (are_finite(STATE, left)) return GSL_SUCCESS;
     f->t = NAN;
     return GSL_FAILURE;
 }
@@ -158,10 +162,10 @@ int advance(struct follower *f)
 /* Takes a state to an instant not far from its own, in as many steps as that needs. */
 int go_between(double t, double instant, double *state)
 {
-    double step = instant - t;
+    double stride = instant - t;
     begin_anew();
     while (t < instant) {
-        const int failure = gsl_odeiv2_evolve_apply(evolution, control, method, &motion, &t, instant, &step, state);
+        const int failure = gsl_odeiv2_evolve_apply(evolution, control, method, &motion, &t, instant, &stride, state);
         if (failure) return failure;
     }
     return GSL_SUCCESS;

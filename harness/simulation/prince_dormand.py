@@ -33,10 +33,11 @@ DRIVER = Path(__file__).with_suffix(".c")
 Floats = NDArray[np.float64]
 
 
-class PrinceDormand:
+class PrinceDormand(ctypes.Structure):
     """Follows a motion in double precision, in C from the first to the last step.
 
-    It has the part of the interface of heyoka's integrators that `harness.simulation.program_motion.Integrator` names.
+    It is ``struct follower`` of `prince_dormand.c`, and has the part of the interface of heyoka's integrators that
+    `harness.simulation.program_motion.Integrator` names.
 
     Parameters
     ----------
@@ -50,7 +51,11 @@ class PrinceDormand:
     Attributes
     ----------
     time : float
+        The instant that is reached.
     state : ndarray, shape (2n,)
+        At that instant, in place.
+    last_h : float
+        Length of the last step.
     tol : float
 
     Raises
@@ -59,40 +64,31 @@ class PrinceDormand:
         There is no C compiler; the GNU Scientific Library is not installed.
     """
 
+    _fields_ = (
+        ("time", ctypes.c_double),
+        ("_state", ctypes.c_void_p),
+        *((name, ctypes.c_double) for name in ("_until", "last_h", "_shortest", "_longest")),
+        *((name, ctypes.c_long) for name in ("_most", "_taken")),
+        *((name, ctypes.c_void_p) for name in ("_instants", "_states")),
+    )
+
     def __init__(self, problem: MotionProblem, tol: float, projects: bool) -> None:
-        self.tol = tol
+        self.state, self.tol = np.array([float(problem.start[name]) for name in problem.state]), tol
+        super().__init__(float(problem.start["t"]), self.state.ctypes.data)
         library = load_c("\n".join(_source(problem, projects)), *_options_of_gsl())
         self._advance, self._go_between = library.advance, library.go_between
         self._advance.argtypes = (ctypes.c_void_p,)
         self._go_between.argtypes = (ctypes.c_double, ctypes.c_double, ctypes.c_void_p)
+        self._address = ctypes.addressof(self)
+        self._evaluations = ctypes.c_long.in_dll(library, "evaluations")
         library.begin.argtypes = (ctypes.c_double,)
         if library.begin(tol) != 0:
             raise MemoryError
-        self._follower = _follower_type(len(problem.state))()
-        self._evaluations = ctypes.c_long.in_dll(library, "evaluations")
-        self._address = ctypes.addressof(self._follower)
-        self.state = np.frombuffer(self._follower.state)
-        self.state[:] = [float(problem.start[name]) for name in problem.state]
-        self._follower.t = float(problem.start["t"])
-
-    @property
-    def time(self) -> float:
-        """The instant that is reached; a new one makes the integrator begin anew."""
-        return self._follower.t
-
-    @time.setter
-    def time(self, instant: float) -> None:
-        self._follower.t, self._follower.step = instant, 0.0
 
     @property
     def evaluations(self) -> int:
         """How often the accelerations have been evaluated."""
         return self._evaluations.value
-
-    @property
-    def last_h(self) -> float:
-        """Length of the last step."""
-        return self._follower.last
 
     def propagate_until(
         self, until: float, *, max_steps: int, c_output: bool
@@ -112,22 +108,21 @@ class PrinceDormand:
             Whether a step has failed, the shortest and the longest step without one that `until` cut short, their
             number, the states between them.
         """
-        follower = self._follower
-        follower.until, follower.most = until, max_steps
+        self._until, self._most = until, max_steps
         if c_output:
             return self._with_steps(max_steps)
         failed = self._advance(self._address) != 0
-        return failed, follower.shortest, follower.longest, follower.taken, None, None
+        return failed, self._shortest, self._longest, self._taken, None, None
 
     def _with_steps(self, most: int) -> tuple[bool, float, float, int, "Steps", None]:
-        follower, instants, states = self._follower, np.empty(most + 1), np.empty((most, len(self.state)))
-        follower.instants, follower.states = instants.ctypes.data, states.ctypes.data
+        instants, states = np.empty(most + 1), np.empty((most, len(self.state)))
+        self._instants, self._states = instants.ctypes.data, states.ctypes.data
         failed = self._advance(self._address) != 0
-        follower.instants = None
-        taken = follower.taken
-        instants[taken] = follower.t
+        self._instants = None
+        taken = self._taken
+        instants[taken] = self.time
         steps = Steps(self._go_between, instants[: taken + 1], states[:taken])
-        return failed, follower.shortest, follower.longest, taken, steps, None
+        return failed, self._shortest, self._longest, taken, steps, None
 
 
 class Steps:
@@ -154,14 +149,6 @@ class Steps:
             if self._go_between(begin, instant, state.ctypes.data) != 0:
                 raise HolonomError(Failure.NO_WAY_ON, detail=f"{begin:.10g}, where a step between two others fails")
         return found
-
-
-def _follower_type(size: int) -> type[ctypes.Structure]:
-    """``struct follower`` of `prince_dormand.c`."""
-    numbers = [(name, ctypes.c_double) for name in ("t", "until", "step", "last", "shortest", "longest")]
-    counts = [(name, ctypes.c_long) for name in ("most", "taken")]
-    arrays = [("state", ctypes.c_double * size), ("instants", ctypes.c_void_p), ("states", ctypes.c_void_p)]
-    return type("Follower", (ctypes.Structure,), {"_fields_": [*numbers, *counts, *arrays]})
 
 
 def _source(problem: MotionProblem, projects: bool) -> Iterator[str]:
