@@ -121,9 +121,7 @@ class Engines:
     @property
     def compile_seconds(self) -> float:
         """Time that the compilation of the engines took."""
-        return sum(
-            self.__dict__[engine].compile_seconds for engine in ("by_program", "robust") if engine in self.__dict__
-        )
+        return sum(engine.compile_seconds for engine in self._set_up)
 
     @property
     def _set_up(self) -> "list[ProgramMotion | RobustMotion]":
