@@ -91,7 +91,7 @@ class PrinceDormand(ctypes.Structure):
         return self._evaluations.value
 
     def propagate_until(
-        self, until: float, *, max_steps: int, c_output: bool
+        self, until: float, max_steps: int, *, c_output: bool = False
     ) -> tuple[bool, float, float, int, "Steps | None", None]:
         """Take steps: to an instant, or so many, or until one fails.
 

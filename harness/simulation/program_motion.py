@@ -71,7 +71,7 @@ class Integrator(Protocol):
     tol: Any
 
     def propagate_until(
-        self, until: Any, *, max_steps: int, c_output: bool
+        self, until: Any, max_steps: int, *, c_output: bool = False
     ) -> tuple[Any, Any, Any, int, Dense | None, None]:
         """Take steps: to an instant, or so many, or until one fails.
 
@@ -157,7 +157,7 @@ class ProgramMotion:
             The motion itself ends.
         """
         self._begin()
-        ended = self._integrator.time == until
+        ended = False
         while not ended:
             ended, _ = self._block(until, dense=False)
         self._keep_constraints()
@@ -203,9 +203,9 @@ class ProgramMotion:
             raise self._obstacle
         integrator = self._integrator
         instant, before = integrator.time, self.state.copy()
-        _, shortest, longest, steps, output, _ = integrator.propagate_until(
-            until, max_steps=self._length, c_output=dense
-        )
+        take = integrator.propagate_until  # by position: heyoka takes a microsecond for a keyword
+        block = take(until, self._length, c_output=True) if dense else take(until, self._length)
+        _, shortest, longest, steps, output, _ = block
         ended = integrator.time == until
         broken_off = steps < self._length and not ended
         longest = max(self._usual, longest)
@@ -233,7 +233,7 @@ class ProgramMotion:
 
     def _watched_step(self, until: Any, dense: bool) -> list[Dense | None]:
         instant, before = self.time, self.state.copy()
-        outcome, _, step, _, output, _ = self._integrator.propagate_until(until, max_steps=1, c_output=dense)
+        outcome, _, step, _, output, _ = self._integrator.propagate_until(until, 1, c_output=dense)
         if outcome == self._failed:
             self._go_back(instant, before)
             reason = f"numbers leave the range of {self.precision.name} precision"

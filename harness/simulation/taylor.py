@@ -77,7 +77,7 @@ class TaylorMotion(ProgramMotion):
         self._allowed = max(DRIFT * 10.0**-self.precision.sure_digits, self.tol)
 
     def _begin(self) -> None:
-        super()._begin()
+        self._length = self._first_block
         if not self._chosen:
             self._clock = time.perf_counter(), self.time
 
