@@ -43,7 +43,7 @@ class ConstraintKeeper:
         """
         self._inputs[0] = instant
         self._inputs[1:] = state
-        self._nearest(self._inputs, outputs=self._found)
+        self._nearest(self._inputs, self._found)
         state[:] = self._projected
         return float(self._found[-1]) ** 0.5
 
