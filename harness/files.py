@@ -34,6 +34,29 @@ def write_whole(path: Path, content: str | bytes) -> None:
         raise HolonomError(Failure.UNWRITABLE, path, error.strerror or str(error)) from None
 
 
+def write_files(directory: Path, files: Mapping[str, str]) -> None:
+    """Write files into a directory, each whole or not at all; what else the directory holds stays.
+
+    Parameters
+    ----------
+    directory : Path
+        It is made where it is missing.
+    files : mapping of str to str
+        The text of each file, by its name.
+
+    Raises
+    ------
+    HolonomError
+        The directory cannot be made or written to.
+    """
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise HolonomError(Failure.UNWRITABLE, directory, error.strerror or str(error)) from None
+    for name, text in files.items():
+        write_whole(directory / name, text)
+
+
 def write_whole_directory(path: Path, files: Mapping[str, str]) -> None:
     """Write a directory so that nobody ever sees half of it.
 

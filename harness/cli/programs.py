@@ -9,13 +9,28 @@ import click
 from harness.cli.group import holonom
 from harness.cli.options import STANDARD_OUTPUT, asks_one_scene, json_text, publish, runs_scenes, writes_json
 from harness.confined import Limits
+from harness.failures import Failure, HolonomError
 
 
 @holonom.command()
 @asks_one_scene
 @click.option("--solve", type=click.Choice(["direct", "orthogonal"]), default="direct", show_default=True)
 @click.option("--to", "form", type=click.Choice(["c", "python", "json"]), default="json", show_default=True)
-@click.option("-o", "--output", metavar="FILE", type=click.Path(path_type=Path), default=STANDARD_OUTPUT)
+@click.option("--name", help="With c: what every public name begins with; without it, the file's name.")
+@click.option(
+    "--parameters",
+    metavar="NAME,...",
+    callback=lambda ctx, parameter, text: tuple(text.split(",")) if text else (),
+    help="With c: parameters that stay open although the scene gives them values.",
+)
+@click.option(
+    "-o",
+    "--output",
+    metavar="FILE|DIR",
+    type=click.Path(path_type=Path),
+    default=STANDARD_OUTPUT,
+    help="Where it goes; c takes a directory.",
+)
 @runs_scenes
 def program(
     scene_file: Path,
@@ -23,15 +38,34 @@ def program(
     settings: Sequence[str],
     solve: str,
     form: str,
+    name: str | None,
+    parameters: tuple[str, ...],
     output: Path,
     limits: Limits,
 ) -> int:
-    """Write the motion program of a SCENE, for those who carry it elsewhere."""
+    """Write the motion program of a SCENE, for those who carry it elsewhere.
+
+    As json or python it has the scene's values, and controls as inputs. As c it is a library in C11: accelerations and
+    multipliers, the control law, residuals and Jacobian of the constraints, projection. Controls, and parameters
+    without a value or named by --parameters, are inputs there.
+    """
     from harness.motion.program import Solve
     from harness.motion.request import Form, Request, program_text, read_settings
 
     request = Request(scene, Solve(solve), read_settings(settings))
-    publish(program_text(scene_file, request, Form(form), limits), output)
+    if form != "c":
+        if name or parameters:
+            raise click.UsageError("--name and --parameters go with --to c")
+        publish(program_text(scene_file, request, Form(form), limits), output)
+        return 0
+    from harness.files import write_files
+    from harness.motion.c_library import c_library, default_name
+    from harness.motion.model import scene_model
+
+    if output == STANDARD_OUTPUT:
+        raise HolonomError(Failure.NOT_A_DIRECTORY)
+    model = scene_model(scene_file, request, parameters, limits)
+    write_files(output, c_library(model, name or default_name(scene_file)))
     return 0
 
 

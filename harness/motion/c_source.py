@@ -1,7 +1,7 @@
 """A motion program as C99 source, for one point and for many.
 
 The names of the program are replaced by v0, v1, ...; which input and output is which stands in the opening comment.
-Many points are taken eight at a time, as lanes of one vector, where the compiler knows GNU C's vectors. Left to find
+Many points are taken several at a time, as lanes of one vector, where the compiler knows GNU C's vectors. Left to find
 the lanes itself in a loop over the points, GCC 12 finds none; told to look, it takes four times as long to compile.
 """
 
@@ -18,7 +18,7 @@ from harness.failures import Failure, HolonomError
 from harness.motion import infix
 from harness.motion.arithmetic import Arithmetic
 from harness.motion.infix import Formula
-from harness.motion.program import Constant, Operation, Program
+from harness.motion.program import Constant, Operation, Program, names_in
 
 IDENTIFIER = re.compile(r"[A-Za-z]\w*", re.ASCII)
 
@@ -58,7 +58,6 @@ SOURCE = """\
 
 #include <math.h>
 #include <stddef.h>
-#include <string.h>
 
 {helpers}
 
@@ -68,22 +67,7 @@ void {name}(const double *in, double *out)
 {one}
 }}
 
-#ifdef __GNUC__
-typedef double lanes __attribute__((vector_size(64)));
-#define LANE(x, k) (x)[k]
-#else
-typedef double lanes;
-#define LANE(x, k) (x)
-#endif
-enum {{ LANES = sizeof(lanes)/sizeof(double) }};
-
-#define EACH_LANE(x, value) lanes x; for (int k = 0; k < LANES; k++) LANE(x, k) = (value); return x
-static inline lanes lanes_of(double number) {{ EACH_LANE(y, number); }}
-static inline lanes lanes_at(const double *from) {{ lanes x; memcpy(&x, from, sizeof x); return x; }}
-static inline void put_lanes(double *to, lanes x) {{ memcpy(to, &x, sizeof x); }}
-static inline lanes lanes_square(lanes x) {{ return x*x; }}
-static inline lanes lanes_cube(lanes x) {{ return x*x*x; }}
-{lane_functions}
+{lanes}
 /* Many points: in[k*points + i] is input k of point i, out[k*points + i] output k. */
 void {name}_batch(size_t points, const double *in, double *out)
 {{
@@ -98,6 +82,33 @@ void {name}_batch(size_t points, const double *in, double *out)
         for (size_t k = 0; k < {outputs}; k++) out[k*points + i] = results[k];
     }}
 }}
+"""
+LANES = """\
+#include <string.h>
+
+#ifdef __GNUC__
+#pragma GCC diagnostic ignored "-Wpsabi" /* no lanes are passed from here to code compiled otherwise */
+#if defined __AVX512F__
+#define WIDTH 64
+#elif defined __AVX__
+#define WIDTH 32
+#else
+#define WIDTH 16
+#endif
+typedef double lanes __attribute__((vector_size(WIDTH))); /* as wide as the registers */
+#define LANE(x, k) (x)[k]
+#else
+typedef double lanes;
+#define LANE(x, k) (x)
+#endif
+enum { LANES = sizeof(lanes)/sizeof(double) };
+
+#define EACH_LANE(x, value) lanes x; for (int k = 0; k < LANES; k++) LANE(x, k) = (value); return x
+static inline lanes lanes_of(double number) { EACH_LANE(y, number); }
+static inline lanes lanes_at(const double *from) { lanes x; memcpy(&x, from, sizeof x); return x; }
+static inline void put_lanes(double *to, lanes x) { memcpy(to, &x, sizeof x); }
+static inline lanes lanes_square(lanes x) { return x*x; }
+static inline lanes lanes_cube(lanes x) { return x*x*x; }
 """
 LANE_FUNCTIONS = {
     1: "static inline lanes lanes_{0}(lanes a) {{ EACH_LANE(y, {0}(LANE(a, k))); }}",
@@ -137,14 +148,15 @@ def c_source(program: Program, name: str = "motion") -> str:
     places = range(len(program.inputs))
     one = scalar_statements(program, [f"in[{place}]" for place in places])
     lanes = [f"lanes_at(in + {place}*points + i)" for place in places]
-    many = "\n".join(_statements(program, MANY, lanes, "put_lanes(out + {index}*points + i, {value});"))
+    results = [f"put_lanes(out + {place}*points + i, {{value}});" for place in range(len(program.outputs))]
+    many = "\n".join(statements(program, MANY, lanes, results))
     return SOURCE.format(
         title=comment_text(title_of(program)),
         table="\n".join(_table(program)),
         helpers=HELPERS,
         name=name,
         one=indent("\n".join(one), " " * 4),
-        lane_functions=_lane_functions(many),
+        lanes=lanes_support(many),
         many=indent(many, " " * 8),
         inputs=len(program.inputs),
         outputs=len(program.outputs),
@@ -165,7 +177,7 @@ def scalar_statements(program: Program, inputs: Sequence[str]) -> Iterator[str]:
     str
         They need `HELPERS` and the mathematical functions.
     """
-    return _statements(program, ONE, inputs, "out[{index}] = {value};")
+    return statements(program, ONE, inputs, [f"out[{place}] = {{value}};" for place in range(len(program.outputs))])
 
 
 def title_of(program: Program) -> str:
@@ -185,25 +197,45 @@ def _table(program: Program) -> Iterator[str]:
             yield f"   {array}[{index}]".ljust(12) + comment_text(name)
 
 
-def _statements(program: Program, target: Target, inputs: Sequence[str], write: str) -> Iterator[str]:
-    """The program's lines, given its inputs and how an output is written."""
+def statements(program: Program, target: Target, inputs: Sequence[str], writes: Sequence[str]) -> Iterator[str]:
+    """The program as statements of C.
+
+    Parameters
+    ----------
+    program : Program
+    target : Target
+        `ONE` point, or `MANY` in lanes.
+    inputs : sequence of str
+        For each input an expression of C; those that the program does not use are not read.
+    writes : sequence of str
+        For each output the statement that puts ``{value}`` where it belongs.
+
+    Yields
+    ------
+    str
+    """
+    used = set().union(*(names_in(expression) for _, expression in program.assignments))
+    used |= set().union(*map(names_in, program.outputs.values()))
     names = {}
     for index, (name, value) in enumerate(zip(program.inputs, inputs, strict=True)):
         names[name] = infix.atom(f"v{index}")
-        yield f"const {target.type} v{index} = {value};"
+        if name in used:
+            yield f"const {target.type} v{index} = {value};"
     for index, (name, expression) in enumerate(program.assignments, start=len(program.inputs)):
         formula = target.arithmetic.value(expression, names)
         names[name] = infix.atom(f"v{index}")
         yield f"const {target.type} v{index} = {formula.text};"
-    for index, value in enumerate(program.outputs.values()):
-        yield write.format(index=index, value=target.arithmetic.atom(value, names).text)
+    for value, write in zip(program.outputs.values(), writes, strict=True):
+        yield write.format(value=target.arithmetic.atom(value, names).text)
 
 
-def _lane_functions(statements: str) -> str:
-    """Definitions of the functions that the statements call lane by lane."""
+def lanes_support(text: str) -> str:
+    """What statements for `MANY` need before them: the type, and the functions that they call lane by lane."""
     arities = {name: 2 if name in ("pow", "atan2") else 1 for name in (*FUNCTIONS.values(), "pow")}
-    called = set(re.findall(r"\blanes_(\w+)\(", statements))
-    return "".join(LANE_FUNCTIONS[arity].format(name) + "\n" for name, arity in arities.items() if name in called)
+    called = set(re.findall(r"\blanes_(\w+)\(", text))
+    return LANES + "".join(
+        LANE_FUNCTIONS[arity].format(name) + "\n" for name, arity in arities.items() if name in called
+    )
 
 
 def _scalar(value: Fraction | float) -> Formula:

@@ -1,7 +1,7 @@
 """The motion program of a scene, asked of Maxima, and the forms it can be taken away in."""
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
@@ -9,8 +9,7 @@ from pathlib import Path
 from harness.confined import Limits
 from harness.failures import Failure, HolonomError
 from harness.maxima import run_batch
-from harness.motion.c_source import c_source
-from harness.motion.program import Program, Solve, read_program
+from harness.motion.program import Solve, read_program
 from harness.motion.python_source import python_source
 
 SCENE_NAME = re.compile(r"[^\W\d]\w*")
@@ -18,14 +17,10 @@ SETTING = re.compile(r"([^\W\d]\w*)=(-?\d+(?:\.\d+)?(?:e-?\d+)?(?:/\d+)?)", re.I
 
 
 class Form(StrEnum):
-    """What `holonom program` writes."""
+    """What `holonom program` writes as one text."""
 
-    C = "c"
     PYTHON = "python"
     JSON = "json"
-
-
-SOURCES: Mapping[Form, Callable[[Program], str]] = {Form.C: c_source, Form.PYTHON: python_source}
 
 
 @dataclass(frozen=True)
@@ -94,7 +89,7 @@ def program_text(file: Path, request: Request, form: Form, limits: Limits) -> st
     """
     document = program_document(file, request, limits)
     program = read_program(document)
-    return document if form is Form.JSON else SOURCES[form](program)
+    return document if form is Form.JSON else python_source(program)
 
 
 def program_document(file: Path, request: Request, limits: Limits) -> str:
