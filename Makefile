@@ -2,13 +2,14 @@
 
 BIN     := .venv/bin
 STAMP   := .venv/installed
+TEST    := $(BIN)/pytest -q --numprocesses auto --dist loadgroup
 SCENES  := $(filter-out %/printed.mac examples/hard/%,$(shell find examples -name '*.mac' | sort))
 RECORDS := $(SCENES:%.mac=build/%.json)
 SOURCES := $(shell find maxima harness -name '*.mac' -o -name '*.lisp' -o -name '*.py')
 
 .DEFAULT_GOAL := paper
 .DELETE_ON_ERROR:
-.PHONY: paper companion check bench setup pictures clean help have-maxima have-compiler have-gsl have-python
+.PHONY: paper companion check check-long bench setup pictures clean help have-maxima have-compiler have-gsl have-python
 
 paper: setup $(RECORDS) companion ## Derive and check every scene, compare the paper as printed (the default)
 	$(BIN)/holonom check $(SCENES) --json build/check.json
@@ -18,10 +19,13 @@ paper: setup $(RECORDS) companion ## Derive and check every scene, compare the p
 companion: setup ## Make the textbook companion: build/companion/index.html
 	$(BIN)/holonom companion -o build/companion
 
-check: setup ## Lint, then run all tests, Maxima's own rtest files among them
+check: setup ## Lint, then run the tests, Maxima's own rtest files among them
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/pytest -q --numprocesses auto --dist loadgroup
+	$(TEST) -m "not long"
+
+check-long: setup ## Run the tests that take too long for every change
+	$(TEST) -m long || [ $$? = 5 ]    # 5: there are none
 
 setup: have-maxima have-compiler have-gsl $(STAMP) ## Install what is missing: Maxima, a C compiler, GSL, and the Python packages in .venv
 
@@ -36,7 +40,7 @@ bench: setup ## Time the motion program, the power series and simulations agains
 
 pictures: setup ## Draw the README's pictures again
 	$(BIN)/holonom errata --svg examples/paper/errata.svg > /dev/null
-	$(BIN)/python -m harness.figures.radius examples/paper/radius.svg
+	$(BIN)/python -m holonom.figures.radius examples/paper/radius.svg
 	$(BIN)/holonom stability --plot examples/hard/stability.svg > /dev/null
 
 clean: ## Remove all that make made
@@ -44,7 +48,7 @@ clean: ## Remove all that make made
 	find harness tests -name __pycache__ -prune -exec rm -rf {} +
 
 help: ## List the targets
-	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 10
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
 
 # The derivation of one scene: the record as JSON, and beside it its equations as text.
 build/%.json: %.mac $(SOURCES) | setup

@@ -1,4 +1,4 @@
-"""Holonom's harness: runs the Maxima derivation, reads its record, checks it, shows it."""
+"""Holonom: runs the Maxima derivation, reads its record, checks it, shows it."""
 
 import os
 

@@ -1,6 +1,6 @@
-"""``python -m harness``: the same commands as ``holonom``."""
+"""``python -m holonom``: the same commands as ``holonom``."""
 
-from harness.cli import main
+from .cli import main
 
 if __name__ == "__main__":
     main()

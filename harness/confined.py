@@ -11,7 +11,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from harness.failures import Failure
+from .failures import Failure
 
 MIB = 1024 * 1024
 PAGE = os.sysconf("SC_PAGE_SIZE")

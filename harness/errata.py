@@ -7,8 +7,8 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
-from harness.mathjson import Tree
-from harness.maxima import run_batch
+from .mathjson import Tree
+from .maxima import run_batch
 
 PRINTED = Path(__file__).resolve().parents[1] / "examples" / "paper" / "printed.mac"
 
@@ -34,7 +34,7 @@ class PrintedEquation:
     remark : str or None
         What there is to say about the transcription.
     printed_tree, difference_tree, corrected_tree : Tree or None
-        The same equations as trees that `harness.typeset` sets in type, in their own order; None where there is none.
+        The same equations as trees that `holonom.typeset` sets in type, in their own order; None where there is none.
     """
 
     number: str

@@ -90,7 +90,7 @@ class Failure(Enum):
 
 
 class HolonomError(Exception):
-    """The one exception of the harness.
+    """The one exception of the package.
 
     Parameters
     ----------

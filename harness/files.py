@@ -5,7 +5,7 @@ import shutil
 from collections.abc import Mapping
 from pathlib import Path
 
-from harness.failures import Failure, HolonomError
+from .failures import Failure, HolonomError
 
 
 def write_whole(path: Path, content: str | bytes) -> None:

@@ -10,11 +10,11 @@ from pathlib import Path
 
 from sympy import Expr
 
-from harness.confined import Limits
-from harness.failures import Failure, HolonomError
-from harness.mathjson import to_sympy
-from harness.maxima import run_batch
-from harness.motion.request import scene_argument
+from .confined import Limits
+from .failures import Failure, HolonomError
+from .mathjson import to_sympy
+from .maxima import run_batch
+from .program.request import scene_argument
 
 Law = Mapping[str, Expr]
 
@@ -127,7 +127,7 @@ def free_motion(file: Path, scene: str | None, settings: Mapping[str, str], limi
     Raises
     ------
     HolonomError
-        As `harness.maxima.run_batch`; the file has no such scene.
+        As `holonom.maxima.run_batch`; the file has no such scene.
 
     References
     ----------

@@ -22,7 +22,7 @@ from typing import Any
 import sympy
 from sympy import Expr, Float, Indexed, IndexedBase, Integer, Rational, S, Symbol
 
-from harness.failures import Failure, HolonomError
+from .failures import Failure, HolonomError
 
 Tree = int | str | dict | list
 

@@ -15,8 +15,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from harness.confined import MIB, PAGE, LimitExceeded, Limits, run_confined
-from harness.failures import Failure, HolonomError
+from .confined import MIB, PAGE, LimitExceeded, Limits, run_confined
+from .failures import Failure, HolonomError
 
 LIBRARY = Path(__file__).resolve().parents[1] / "maxima"
 HEADLESS = Path(__file__).with_name("headless.lisp")

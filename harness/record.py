@@ -1,7 +1,7 @@
 """The derivation record: what Maxima derived from one scene file, typed and frozen.
 
-This is the only module that knows the record's wire format. The shape is checked against `record.schema.json`, the
-expressions by `harness.mathjson`; what is read is data, and nothing in it is evaluated as code.
+This is the only module that knows the record's wire format. The shape is checked against `schemas/record.json`, the
+expressions by `holonom.mathjson`; what is read is data, and nothing in it is evaluated as code.
 """
 
 import json
@@ -14,10 +14,10 @@ from typing import Any, TypeVar
 import jsonschema
 from sympy import Expr
 
-from harness.failures import Failure, HolonomError
-from harness.mathjson import Tree, to_sympy
+from .failures import Failure, HolonomError
+from .mathjson import Tree, to_sympy
 
-SCHEMA = Path(__file__).with_name("record.schema.json")
+SCHEMA = Path(__file__).with_name("schemas") / "record.json"
 NAMED_QUANTITIES = (
     "coordinates",
     "velocities",

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from harness.maxima import run_scene
+from holonom.maxima import run_scene
 
 ScenesWriter = Callable[[str], Path]
 COMPANION = Path(__file__).with_name("companion")

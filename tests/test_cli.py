@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-HOLONOM = [sys.executable, "-m", "harness"]
+HOLONOM = [sys.executable, "-m", "holonom"]
 
 
 def holonom(*arguments: str | Path, **options) -> subprocess.CompletedProcess[str]:
@@ -20,7 +20,7 @@ def test_help_is_quick():
     started = time.monotonic()
     assert "derive" in holonom("--help").stdout
     assert time.monotonic() - started < 1
-    imported = [sys.executable, "-c", "import harness.cli, sys; print({'sympy', 'rich'} & sys.modules.keys())"]
+    imported = [sys.executable, "-c", "import holonom.cli, sys; print({'sympy', 'rich'} & sys.modules.keys())"]
     assert subprocess.run(imported, capture_output=True, text=True, check=True).stdout == "set()\n"
 
 
@@ -60,9 +60,9 @@ def test_a_disagreement_is_reported_and_leaves_with_one(particle_record, monkeyp
     wrong = json.loads(particle_record)
     multipliers = next(e for e in wrong["derivations"][0]["equations"] if e["name"] == "multipliers")
     multipliers["relations"][0]["right"] = ["Multiply", 2, multipliers["relations"][0]["right"]]
-    monkeypatch.setattr("harness.maxima.run_scene", lambda *_: json.dumps(wrong))
+    monkeypatch.setattr("holonom.maxima.run_scene", lambda *_: json.dumps(wrong))
     monkeypatch.setattr("sys.argv", ["holonom", "check", str(particle_scene)])
-    from harness.cli import main
+    from holonom.cli import main
 
     with pytest.raises(SystemExit) as left:
         main()

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from harness.confined import LimitExceeded, Limits, run_confined
-from harness.failures import Failure
+from holonom.confined import LimitExceeded, Limits, run_confined
+from holonom.failures import Failure
 
 LIMITS = Limits(seconds=5, memory_mib=200, output_mib=1, file_mib=1)
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from harness.errata import PRINTED, PrintedEquation, errata
-from harness.maxima import run_batch
+from holonom.errata import PRINTED, PrintedEquation, errata
+from holonom.maxima import run_batch
 
 MISPRINTS = [
     ("7", "constraints, differentiated twice"),

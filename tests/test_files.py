@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from harness.failures import Failure, HolonomError
-from harness.files import write_whole
+from holonom.failures import Failure, HolonomError
+from holonom.files import write_whole
 
 
 def test_replaces_what_was_there_and_leaves_nothing_else(tmp_path):

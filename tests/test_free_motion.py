@@ -10,15 +10,15 @@ import pytest
 import sympy
 from sympy import Function, Symbol, cos, exp, symbols
 
-from harness.confined import Limits
-from harness.failures import HolonomError
-from harness.free_motion import free_motion
-from harness.maxima import run_scene
-from harness.motion.numpy_function import NumpyFunction
-from harness.motion.program import read_program
-from harness.motion.request import Request, program_document
-from harness.motion.series import SeriesRequest, compute_series
-from harness.record import read_record
+from holonom.confined import Limits
+from holonom.failures import HolonomError
+from holonom.free_motion import free_motion
+from holonom.maxima import run_scene
+from holonom.program.motion_program import read_program
+from holonom.program.numpy_function import NumpyFunction
+from holonom.program.request import Request, program_document
+from holonom.record import read_record
+from holonom.series.power_series import SeriesRequest, compute_series
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 t = Symbol("t", real=True)
@@ -163,7 +163,7 @@ def test_long_condition_is_refused_in_one_sentence():
 
 
 def test_json_has_the_stated_shape(capsys, monkeypatch):
-    from harness.cli import main
+    from holonom.cli import main
 
     monkeypatch.setattr("sys.argv", ["holonom", "free", str(EXAMPLES / "paper/paper.mac"), "--json", "-"])
     with pytest.raises(SystemExit, match="0"):

@@ -3,7 +3,7 @@
 import re
 from collections import Counter
 
-from harness.maxima import LIBRARY
+from holonom.maxima import LIBRARY
 
 DEFINITION = re.compile(r"^(\w+)\([^()]*\)\s*:=", re.MULTILINE)
 LISP_DEFINITION = re.compile(r"^\(def(?:un|macro) (\S+)", re.MULTILINE)

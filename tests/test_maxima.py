@@ -5,9 +5,9 @@ import time
 
 import pytest
 
-from harness.confined import Limits
-from harness.failures import Failure, HolonomError
-from harness.maxima import count_statements, run_batch, run_rtest, run_scene
+from holonom.confined import Limits
+from holonom.failures import Failure, HolonomError
+from holonom.maxima import count_statements, run_batch, run_rtest, run_scene
 
 SHORT = Limits(seconds=3, memory_mib=512, output_mib=1)
 

@@ -5,8 +5,8 @@ import json
 import pytest
 from sympy import Rational, Symbol
 
-from harness.failures import Failure, HolonomError
-from harness.record import read_record
+from holonom.failures import Failure, HolonomError
+from holonom.record import read_record
 
 z, u = Symbol("z", real=True), Symbol("u", real=True)
 

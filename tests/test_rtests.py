@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from harness.failures import HolonomError
-from harness.maxima import run_rtest
+from holonom.failures import HolonomError
+from holonom.maxima import run_rtest
 
 RTESTS = sorted(Path(__file__).with_name("maxima").glob("rtest_*.mac"))
 

@@ -3,8 +3,21 @@
 Modules are imported inside the commands: ``holonom --help`` waits for no SymPy.
 """
 
-from harness.cli import accuracy, companion, derivation, free_motion, programs, series, simulation, stability
-from harness.cli.group import holonom, main
+from . import (
+    companion,
+    derivation,
+    free_motion,
+    programs,
+    series,
+    simulation,
+)
+from . import (
+    hard_cases as stability,
+)
+from . import (
+    work_precision as accuracy,
+)
+from .group import holonom, main
 
 __all__ = [
     "accuracy",

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import click
 
-from harness.cli.group import holonom
-from harness.cli.options import runs_scenes, takes_settings
-from harness.confined import Limits
-from harness.failures import Failure, HolonomError
+from ..confined import Limits
+from ..failures import Failure, HolonomError
+from .group import holonom
+from .options import runs_scenes, takes_settings
 
 EXTRAS = ("jinja2", "latex2mathml", "matplotlib", "heyoka")
 
@@ -30,11 +30,11 @@ EXTRAS = ("jinja2", "latex2mathml", "matplotlib", "heyoka")
 def companion(scenes: Sequence[Path], directory: Path, settings: Sequence[str], limits: Limits) -> int:
     """Make the textbook companion of the paper, or of the SCENEs given, as pages for a browser."""
     require_extras()
-    from harness.companion.book import make_book
-    from harness.companion.own_scenes import book_of_scenes
-    from harness.companion.paper import book_of_the_paper
-    from harness.console.progress import progress
-    from harness.motion.request import read_settings
+    from ..companion.book import make_book
+    from ..companion.own_scenes import book_of_scenes
+    from ..companion.paper import book_of_the_paper
+    from ..program.request import read_settings
+    from .tables.progress import progress
 
     given = tuple(read_settings(settings).items())
     if given and not scenes:

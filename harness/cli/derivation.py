@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from harness.cli.group import holonom
-from harness.cli.options import STANDARD_OUTPUT, json_text, publish, runs_scenes, takes_settings, writes_json
-from harness.confined import Limits
+from ..confined import Limits
+from .group import holonom
+from .options import STANDARD_OUTPUT, json_text, publish, runs_scenes, takes_settings, writes_json
 
 if TYPE_CHECKING:
-    from harness.crosscheck import CheckReport
-    from harness.record import Record
+    from ..crosscheck import CheckReport
+    from ..record import Record
 
 DISAGREEMENT = 1
 
@@ -28,11 +28,11 @@ DISAGREEMENT = 1
 @runs_scenes
 def derive(scene: Path, settings: Sequence[str], json_file: Path | None, tex_file: Path | None, limits: Limits) -> int:
     """Derive the equations of a SCENE, under the paper's numbers."""
-    from harness.console.derivation import show_record
-    from harness.console.text import make_console
-    from harness.maxima import run_scene
-    from harness.motion.request import read_settings
-    from harness.record import read_record
+    from ..maxima import run_scene
+    from ..program.request import read_settings
+    from ..record import read_record
+    from .tables.derivation import show_record
+    from .tables.text import make_console
 
     text = run_scene(scene, limits, read_settings(settings))
     record = read_record(text)
@@ -50,12 +50,12 @@ def derive(scene: Path, settings: Sequence[str], json_file: Path | None, tex_fil
 @runs_scenes
 def check(scenes: Sequence[Path], settings: Sequence[str], json_file: Path | None, limits: Limits) -> int:
     """Derive each SCENE and compare every equation with an independent SymPy evaluation."""
-    from harness.console.derivation import show_report
-    from harness.console.text import make_console
-    from harness.crosscheck import check_record
-    from harness.maxima import run_scene
-    from harness.motion.request import read_settings
-    from harness.record import read_record
+    from ..crosscheck import check_record
+    from ..maxima import run_scene
+    from ..program.request import read_settings
+    from ..record import read_record
+    from .tables.derivation import show_report
+    from .tables.text import make_console
 
     given = read_settings(settings)
     reports = [(str(scene), check_record(read_record(run_scene(scene, limits, given)))) for scene in scenes]
@@ -73,9 +73,9 @@ def check(scenes: Sequence[Path], settings: Sequence[str], json_file: Path | Non
 @click.option("--svg", "svg_file", metavar="FILE", type=click.Path(path_type=Path), help="Also draw the table.")
 def errata(json_file: Path | None, svg_file: Path | None) -> int:
     """Compare every equation that the paper prints with the derived one."""
-    from harness.console.errata import draw_errata, show_errata
-    from harness.console.text import make_console
-    from harness.errata import errata as compare
+    from ..errata import errata as compare
+    from .tables.errata import draw_errata, show_errata
+    from .tables.text import make_console
 
     equations = compare()
     publish(json_text({"equations": [asdict(equation) for equation in equations]}), json_file)
@@ -88,7 +88,7 @@ def errata(json_file: Path | None, svg_file: Path | None) -> int:
 
 def _publish_document(record: "Record", tex_file: Path | None) -> None:
     if tex_file is not None:
-        from harness.typeset.document import tex_document
+        from ..typeset.document import tex_document
 
         publish(tex_document(record), tex_file)
 

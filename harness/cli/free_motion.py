@@ -4,12 +4,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from harness.cli.group import holonom
-from harness.cli.options import STANDARD_OUTPUT, asks_one_scene, json_text, publish, runs_scenes, writes_json
-from harness.confined import Limits
+from ..confined import Limits
+from .group import holonom
+from .options import STANDARD_OUTPUT, asks_one_scene, json_text, publish, runs_scenes, writes_json
 
 if TYPE_CHECKING:
-    from harness.free_motion import FreeMotion
+    from ..free_motion import FreeMotion
 
 
 @holonom.command()
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 @runs_scenes
 def free(scene_file: Path, scene: str | None, settings: Sequence[str], json_file: Path | None, limits: Limits) -> int:
     """Find when the motion of a SCENE is free: under its law, under which laws, under which for one trajectory."""
-    from harness.console.free_motion import show_free_motion
-    from harness.console.text import make_console
-    from harness.free_motion import free_motion
-    from harness.motion.request import read_settings
+    from ..free_motion import free_motion
+    from ..program.request import read_settings
+    from .tables.free_motion import show_free_motion
+    from .tables.text import make_console
 
     found = free_motion(scene_file, scene, read_settings(settings), limits)
     publish(json_text(_free_motion_document(found)), json_file)
@@ -31,7 +31,7 @@ def free(scene_file: Path, scene: str | None, settings: Sequence[str], json_file
 
 
 def _free_motion_document(found: "FreeMotion") -> dict[str, Any]:
-    from harness.console.text import formula
+    from .tables.text import formula
 
     def law_text(law: Mapping[str, Any]) -> dict[str, str]:
         return {control: formula(value) for control, value in law.items()}

@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from harness.failures import HolonomError
+from ..failures import HolonomError
 
 BAD_INPUT = 2
 INTERRUPTED = 130

@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from harness.confined import Limits
+from ..confined import Limits
 
 STANDARD_OUTPUT = Path("-")
 
@@ -84,6 +84,6 @@ def publish(text: str, file: Path | None) -> None:
     if file == STANDARD_OUTPUT:
         click.echo(text, nl=False)
     elif file is not None:
-        from harness.files import write_whole
+        from ..files import write_whole
 
         write_whole(file, text)

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import click
 
-from harness.cli.group import holonom
-from harness.cli.options import STANDARD_OUTPUT, asks_one_scene, json_text, publish, runs_scenes, writes_json
-from harness.confined import Limits
-from harness.failures import Failure, HolonomError
+from ..confined import Limits
+from ..failures import Failure, HolonomError
+from .group import holonom
+from .options import STANDARD_OUTPUT, asks_one_scene, json_text, publish, runs_scenes, writes_json
 
 
 @holonom.command()
@@ -49,8 +49,8 @@ def program(
     multipliers, the control law, residuals and Jacobian of the constraints, projection. Controls, and parameters
     without a value or named by --parameters, are inputs there.
     """
-    from harness.motion.program import Solve
-    from harness.motion.request import Form, Request, program_text, read_settings
+    from ..program.motion_program import Solve
+    from ..program.request import Form, Request, program_text, read_settings
 
     request = Request(scene, Solve(solve), read_settings(settings))
     if form != "c":
@@ -58,9 +58,9 @@ def program(
             raise click.UsageError("--name and --parameters go with --to c")
         publish(program_text(scene_file, request, Form(form), limits), output)
         return 0
-    from harness.files import write_files
-    from harness.motion.c_library import c_library, default_name
-    from harness.motion.model import scene_model
+    from ..files import write_files
+    from ..program.c_library import c_library, default_name
+    from ..program.model import scene_model
 
     if output == STANDARD_OUTPUT:
         raise HolonomError(Failure.NOT_A_DIRECTORY)
@@ -83,11 +83,11 @@ def effects(
     limits: Limits,
 ) -> int:
     """Show which terms and effects a SCENE has and what each costs, in operations and in measured time."""
-    from harness.console.costs import show_costs
-    from harness.console.text import make_console
-    from harness.motion.effects import measure_costs, read_costs
-    from harness.motion.program import Solve
-    from harness.motion.request import Request, effects_document, read_settings
+    from ..program.effects import measure_costs, read_costs
+    from ..program.motion_program import Solve
+    from ..program.request import Request, effects_document, read_settings
+    from .tables.costs import show_costs
+    from .tables.text import make_console
 
     request = Request(scene, Solve(solve), read_settings(settings))
     costs = measure_costs(read_costs(effects_document(scene_file, request, limits)))

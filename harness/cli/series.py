@@ -6,8 +6,9 @@ from pathlib import Path
 
 import click
 
-from harness.cli.group import holonom
-from harness.cli.options import (
+from ..confined import Limits
+from .group import holonom
+from .options import (
     STANDARD_OUTPUT,
     asks_one_scene,
     json_text,
@@ -16,7 +17,6 @@ from harness.cli.options import (
     runs_scenes,
     writes_json,
 )
-from harness.confined import Limits
 
 
 @holonom.command()
@@ -47,12 +47,19 @@ def series(
     limits: Limits,
 ) -> int:
     """Expand the initial motion of a SCENE in power series, and say how far they hold."""
-    from harness.console.series import show_series
-    from harness.console.text import make_console
-    from harness.motion import heyoka_series
-    from harness.motion.precision import read_precision
-    from harness.motion.request import read_settings
-    from harness.motion.series import AUTOMATIC, EXACT, SeriesRequest, compute_series, series_document, values_at
+    from ..program.precision import read_precision
+    from ..program.request import read_settings
+    from ..series import heyoka_series
+    from ..series.power_series import (
+        AUTOMATIC,
+        EXACT,
+        SeriesRequest,
+        compute_series,
+        series_document,
+        values_at,
+    )
+    from .tables.series import show_series
+    from .tables.text import make_console
 
     if sum([exact, digits is not None, precision is not None]) > 1:
         raise click.UsageError("--exact, --digits and --precision exclude one another")

@@ -8,8 +8,10 @@ from threading import Thread
 
 import click
 
-from harness.cli.group import holonom
-from harness.cli.options import (
+from ..confined import Limits
+from ..failures import HolonomError
+from .group import holonom
+from .options import (
     STANDARD_OUTPUT,
     asks_one_scene,
     json_text,
@@ -18,8 +20,6 @@ from harness.cli.options import (
     runs_scenes,
     writes_json,
 )
-from harness.confined import Limits
-from harness.failures import HolonomError
 
 SAMPLES_OF_A_PLOT = 1001
 
@@ -84,26 +84,26 @@ def simulate(
     limits: Limits,
 ) -> int:
     """Follow the motion of a SCENE in numbers, and say how well it was followed."""
-    from harness.motion.problem import problem_document, read_problem
-    from harness.motion.program import Solve
-    from harness.motion.request import Request, read_settings
+    from ..program.motion_problem import problem_document, read_problem
+    from ..program.motion_program import Solve
+    from ..program.request import Request, read_settings
 
     request, digits = Request(scene, Solve(solve), read_settings(settings)), _digits_of(precision)
     with _imported_meanwhile():
         document = problem_document(scene_file, request, limits, digits)
     problem = read_problem(document)
-    from harness.console.simulation import motion_progress, show_simulation
-    from harness.simulation.document import report_document, simulation_document
-    from harness.simulation.output import require_formats, write_files
-    from harness.simulation.request import FINAL_STATE_ALONE, Drift, Engine, SimulationRequest
-    from harness.simulation.simulate import simulate as follow
+    from ..simulation.document import report_document, simulation_document
+    from ..simulation.output import require_formats, write_files
+    from ..simulation.request import FINAL_STATE_ALONE, Engine, SimulationRequest, Stabilization
+    from ..simulation.simulate import simulate as follow
+    from .tables.simulation import motion_progress, show_simulation
 
     require_formats(output, plot_file)
     if final and output is None and plot_file is None:
         samples = FINAL_STATE_ALONE
     elif samples is None and plot_file is not None:
         samples = SAMPLES_OF_A_PLOT
-    wanted = SimulationRequest(tol, precision, Engine(engine), Drift(drift), until, samples, compact)
+    wanted = SimulationRequest(tol, precision, Engine(engine), Stabilization(drift), until, samples, compact)
     with motion_progress(problem.title) as progress:
         simulation = follow(problem, wanted, progress)
     write_files(simulation, output, plot_file)
@@ -116,11 +116,11 @@ def simulate(
 
 def _digits_of(precision: str) -> int:
     """Decimal digits that the initial state is to have."""
-    from harness.motion.problem import DOUBLE_DIGITS
+    from ..program.motion_problem import DOUBLE_DIGITS
 
     if precision == "double":
         return DOUBLE_DIGITS  # without waiting for heyoka
-    from harness.motion.precision import read_precision
+    from ..program.precision import read_precision
 
     return read_precision(precision).digits
 
@@ -140,7 +140,7 @@ def _import_what_follows() -> None:
     with suppress(ImportError, HolonomError):  # what is missing is told when it is needed
         import jsonschema  # noqa: F401
 
-        import harness.simulation.simulate  # noqa: F401
-        from harness.simulation.evaluation import wake_compiler
+        from ..simulation import simulate  # noqa: F401
+        from ..simulation.evaluation import wake_compiler
 
         wake_compiler()

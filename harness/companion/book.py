@@ -7,20 +7,11 @@ from pathlib import Path
 from string import ascii_uppercase
 from typing import Any
 
-from harness.companion.chapter import Chapter, Page, Run
-from harness.companion.pages import (
-    STYLE,
-    Contents,
-    Entry,
-    Part,
-    chapter_page,
-    index_page,
-    source_name,
-    source_page,
-)
-from harness.companion.runs import Derived, Study, perform
-from harness.failures import Failure, HolonomError
-from harness.files import write_whole_directory
+from ..failures import Failure, HolonomError
+from ..files import write_whole_directory
+from .chapter import Chapter, Page, Run
+from .pages import STYLE, Contents, Entry, Part, chapter_page, index_page, source_name, source_page
+from .runs import Derived, Study, perform
 
 APPENDICES = "Appendices"  # title of the part whose chapters have letters
 GENERATOR = '<meta name="generator" content="Holonom companion" />'

@@ -5,13 +5,13 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from harness.companion.excerpts import Excerpt
-from harness.companion.runs import Derived
-from harness.companion.steps import step
-from harness.companion.words import words
-from harness.crosscheck import EquationVerdict
-from harness.errata import PrintedEquation
-from harness.record import Equation, Scene
+from ..crosscheck import EquationVerdict
+from ..errata import PrintedEquation
+from ..record import Equation, Scene
+from .excerpts import Excerpt
+from .explanations import words
+from .runs import Derived
+from .steps import step
 
 MISSING = "(missing)"  # what the report calls an equation that is not there
 

@@ -6,8 +6,8 @@ import sympy
 from markupsafe import Markup
 from sympy import Expr, IndexedBase, Symbol
 
-from harness.companion.mathematics import display
-from harness.record import System
+from ..record import System
+from .mathematics import display
 
 
 def description(system: System) -> list[Markup]:

@@ -4,8 +4,8 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from harness.failures import Failure, HolonomError
-from harness.maxima import statement_ends
+from ..failures import Failure, HolonomError
+from ..maxima import statement_ends
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import sympy
 from sympy import Expr, Symbol
 
-from harness.mathjson import Tree, to_sympy
+from ..mathjson import Tree, to_sympy
 
 
 def under(law: Mapping[str, Expr], expression: Expr) -> Expr:

@@ -5,12 +5,12 @@ import re
 from markupsafe import Markup, escape
 from sympy import Expr, Symbol, sympify
 
-from harness.errata import PrintedEquation
-from harness.mathjson import Tree, from_sympy
-from harness.record import Equation, Relation
-from harness.typeset.equations import latex_equation
-from harness.typeset.latex import CORRECTION, MISPRINT, latex, latex_marked, latex_relation, latex_tree
-from harness.typeset.mathml import inline_mathml, mathml
+from ..errata import PrintedEquation
+from ..mathjson import Tree, from_sympy
+from ..record import Equation, Relation
+from ..typeset.equations import latex_equation
+from ..typeset.latex import CORRECTION, MISPRINT, latex, latex_marked, latex_relation, latex_tree
+from ..typeset.mathml import inline_mathml, mathml
 
 WIDTH = 62  # digits that fit in a card on a desk; a phone scrolls the card
 NOTHING = {

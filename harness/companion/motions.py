@@ -6,24 +6,16 @@ from fractions import Fraction
 from functools import partial
 from pathlib import Path
 
-from harness.companion.chapter import Run
-from harness.companion.runs import (
-    DEFAULT_LIMITS,
-    NO_SETTINGS,
-    Refusal,
-    Settings,
-    drawn,
-    names_of_scenes,
-    or_refusal,
-)
-from harness.confined import Limits
-from harness.figures.drawing import animation, film_of, strip
-from harness.figures.motion import draw_motion
-from harness.motion.problem import motion_problem
-from harness.motion.request import Request
-from harness.simulation.request import SimulationRequest
-from harness.simulation.result import Report
-from harness.simulation.simulate import simulate
+from ..confined import Limits
+from ..figures.drawing import animation, film_of, strip
+from ..figures.motion import draw_motion
+from ..program.motion_problem import motion_problem
+from ..program.request import Request
+from ..simulation.request import SimulationRequest
+from ..simulation.result import Report
+from ..simulation.simulate import simulate
+from .chapter import Run
+from .runs import DEFAULT_LIMITS, NO_SETTINGS, Refusal, Settings, drawn, names_of_scenes, or_refusal
 
 SAMPLES = 1801
 SHOWN = ("trajectory", "multipliers")

@@ -4,11 +4,11 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from harness.companion.book import Book
-from harness.companion.own import equations, free_motion, initial_motion, motion, system
-from harness.companion.paper import REPOSITORY
-from harness.companion.runs import Settings, study
-from harness.confined import Limits
+from ..confined import Limits
+from .book import Book
+from .own import equations, free_motion, initial_motion, motion, system
+from .paper import REPOSITORY
+from .runs import Settings, study
 
 CHAPTERS = (system, equations, free_motion, initial_motion, motion)
 

@@ -10,10 +10,10 @@ from xml.etree import ElementTree
 import jinja2
 from markupsafe import Markup, escape
 
-from harness.companion import mathematics
-from harness.companion.chapter import Chapter
-from harness.companion.excerpts import Excerpt
-from harness.motion.series import number
+from ..series.power_series import number
+from . import mathematics
+from .chapter import Chapter
+from .excerpts import Excerpt
 
 TEMPLATES = Path(__file__).with_name("templates")
 LONGEST_COEFFICIENT = 12  # characters of an exact number in a table

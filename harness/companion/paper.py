@@ -2,9 +2,8 @@
 
 from pathlib import Path
 
-from harness.companion.book import APPENDICES, Book
-from harness.companion.chapters import (
-    accuracy,
+from .book import APPENDICES, Book
+from .chapters import (
     effects,
     equations_of_motion,
     free_motion,
@@ -20,6 +19,9 @@ from harness.companion.chapters import (
     universal_controls,
     worked_example,
     your_own_system,
+)
+from .chapters import (
+    work_precision as accuracy,
 )
 
 REPOSITORY = Path(__file__).resolve().parents[2]

@@ -13,19 +13,19 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-from harness.companion.chapter import Run
-from harness.confined import Limits
-from harness.crosscheck import CheckReport, check_record
-from harness.errata import errata
-from harness.failures import HolonomError
-from harness.free_motion import FreeMotion, free_motion
-from harness.maxima import run_batch, run_scene
-from harness.motion.problem import motion_problem
-from harness.motion.request import Request
-from harness.motion.series import MotionSeries, SeriesRequest, compute_series
-from harness.record import Record, read_record
-from harness.simulation.request import SimulationRequest
-from harness.simulation.result import Simulation
+from ..confined import Limits
+from ..crosscheck import CheckReport, check_record
+from ..errata import errata
+from ..failures import HolonomError
+from ..free_motion import FreeMotion, free_motion
+from ..maxima import run_batch, run_scene
+from ..program.motion_problem import motion_problem
+from ..program.request import Request
+from ..record import Record, read_record
+from ..series.power_series import MotionSeries, SeriesRequest, compute_series
+from ..simulation.request import SimulationRequest
+from ..simulation.result import Simulation
+from .chapter import Run
 
 WORKERS = 2
 Settings = tuple[tuple[str, str], ...]
@@ -170,7 +170,7 @@ def _series(file: Path, scene: str | None, order: int, settings: Settings, limit
 
 
 def _simulate(file: Path, scene: str | None, until: Fraction | None, samples: int | None) -> Simulation:
-    from harness.simulation.simulate import simulate
+    from ..simulation.simulate import simulate
 
     problem = motion_problem(file, Request(scene), DEFAULT_LIMITS)
     return simulate(problem, SimulationRequest(until=until, samples=samples))

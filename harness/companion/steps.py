@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from harness.companion.excerpts import Excerpt, excerpt
+from .excerpts import Excerpt, excerpt
 
 STEPS = {
     "1": {"maxima/system.mac": ("constraint_jacobian",), "maxima/derivation/derive.mac": ("equals_zero",)},

@@ -4,7 +4,7 @@ The record is Maxima's word. What is compared with it is made here, by SymPy, fr
 description only; the two meet in the comparison and nowhere before.
 """
 
-from harness.crosscheck.check import check_record
-from harness.crosscheck.report import CheckReport, EquationVerdict, Verdict
+from .check import check_record
+from .report import CheckReport, EquationVerdict, Verdict
 
 __all__ = ["CheckReport", "EquationVerdict", "Verdict", "check_record"]

@@ -7,15 +7,15 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from math import factorial
 from typing import TypeVar
 
-from harness.crosscheck import derivation, initial_motion, lagranges_method
-from harness.crosscheck.claims import NotComparable
-from harness.crosscheck.derivation import DerivationClaims
-from harness.crosscheck.independent import IndependentEquations
-from harness.crosscheck.initial_motion import SceneClaims
-from harness.crosscheck.report import CheckReport, EquationVerdict, Verdict
-from harness.crosscheck.system import MechanicalSystem, described_system
-from harness.crosscheck.verdict import Comparison, judge
-from harness.record import Derivation, Equation, Record, Relation
+from ..record import Derivation, Equation, Record, Relation
+from . import derivation, initial_motion, lagranges_method
+from .claims import NotComparable
+from .derivation import DerivationClaims
+from .independent import IndependentEquations
+from .initial_motion import SceneClaims
+from .report import CheckReport, EquationVerdict, Verdict
+from .system import MechanicalSystem, described_system
+from .verdict import Comparison, judge
 
 STATED = ("1", "2", "3a", "3", "6", "7")
 """Equations that every derivation holds."""

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import sympy as sp
 
-from harness.crosscheck.verdict import Pair
-from harness.record import Relation
+from ..record import Relation
+from .verdict import Pair
 
 Entries = Mapping[tuple[int, ...], sp.Expr]
 """Entries of an indexed quantity, by their indices, which count from one."""

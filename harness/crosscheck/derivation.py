@@ -14,19 +14,12 @@ from itertools import combinations_with_replacement, product
 
 import sympy as sp
 
-from harness.crosscheck.claims import (
-    Entries,
-    NotComparable,
-    entries_of,
-    require_names,
-    residual_pairs,
-    solved_for,
-)
-from harness.crosscheck.independent import IndependentEquations
-from harness.crosscheck.linear import LinearEquations
-from harness.crosscheck.system import MechanicalSystem
-from harness.crosscheck.verdict import Comparison, Pair
-from harness.record import Equation, Relation
+from ..record import Equation, Relation
+from .claims import Entries, NotComparable, entries_of, require_names, residual_pairs, solved_for
+from .independent import IndependentEquations
+from .linear import LinearEquations
+from .system import MechanicalSystem
+from .verdict import Comparison, Pair
 
 Relations = Sequence[Relation]
 Solution = Mapping[sp.Symbol, sp.Expr]

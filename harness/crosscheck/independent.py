@@ -16,8 +16,8 @@ from functools import cached_property
 
 import sympy as sp
 
-from harness.crosscheck.linear import LinearEquations
-from harness.crosscheck.system import MechanicalSystem
+from .linear import LinearEquations
+from .system import MechanicalSystem
 
 
 @dataclass(frozen=True)

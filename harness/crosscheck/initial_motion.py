@@ -13,12 +13,12 @@ from functools import cached_property
 
 import sympy as sp
 
-from harness.crosscheck.claims import NotComparable, entries_of, require_names, solved_for
-from harness.crosscheck.derivation import DerivationClaims
-from harness.crosscheck.independent import IndependentEquations
-from harness.crosscheck.system import MechanicalSystem, history, initial
-from harness.crosscheck.verdict import Comparison, Pair
-from harness.record import Relation, Scene
+from ..record import Relation, Scene
+from .claims import NotComparable, entries_of, require_names, solved_for
+from .derivation import DerivationClaims
+from .independent import IndependentEquations
+from .system import MechanicalSystem, history, initial
+from .verdict import Comparison, Pair
 
 Relations = Sequence[Relation]
 Definitions = Mapping[sp.Symbol, sp.Expr]

@@ -12,10 +12,10 @@ from collections.abc import Mapping
 import sympy as sp
 from sympy.physics.mechanics import LagrangesMethod, Point, ReferenceFrame, dynamicsymbols
 
-from harness.crosscheck.independent import IndependentEquations
-from harness.crosscheck.linear import LinearEquations
-from harness.crosscheck.system import MechanicalSystem, dotted
-from harness.crosscheck.verdict import Comparison, Pair
+from .independent import IndependentEquations
+from .linear import LinearEquations
+from .system import MechanicalSystem, dotted
+from .verdict import Comparison, Pair
 
 NUMBER = "2"
 NAME = "Lagrange's equations (SymPy LagrangesMethod)"

@@ -15,7 +15,7 @@ from itertools import pairwise
 
 import sympy as sp
 
-from harness.record import Effect, System
+from ..record import Effect, System
 
 
 def dotted(dots: str, symbol: sp.Symbol) -> sp.Symbol:

@@ -15,10 +15,10 @@ from typing import NamedTuple
 import sympy as sp
 from mpmath import mp
 
-from harness.crosscheck.linear import LinearEquations
-from harness.crosscheck.normal_form import is_identically_zero
-from harness.crosscheck.points import IrregularPoint, Valuation, random_point
-from harness.crosscheck.report import Verdict
+from .linear import LinearEquations
+from .normal_form import is_identically_zero
+from .points import IrregularPoint, Valuation, random_point
+from .report import Verdict
 
 DIGITS = 50
 """Digits to which two values must agree, relative to the larger of them and of one."""

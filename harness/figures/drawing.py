@@ -16,9 +16,9 @@ from xml.etree.ElementTree import Element, SubElement
 import numpy as np
 from numpy.typing import NDArray
 
-from harness.figures.style import BLUE, INK_RULE, VERMILION
-from harness.motion.drawing import Drawing, Shape
-from harness.simulation.result import Simulation
+from ..program.drawing import Drawing, Shape
+from ..simulation.result import Simulation
+from .style import BLUE, INK_RULE, VERMILION
 
 FRAMES = 180  # at most
 ROUNDS = 6.0  # a film ends when a body has gone so many times through the whole picture

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from harness.figures.style import LINES, PALETTE, figure_style, new_figure, svg_text
-from harness.simulation.request import Drift
-from harness.simulation.result import Simulation
+from ..simulation.request import Stabilization
+from ..simulation.result import Simulation
+from .style import LINES, PALETTE, figure_style, new_figure, svg_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 WIDTH, HEIGHT = 9.0, 6.5  # inches
 
 
-def draw_drift(motions: Mapping[Drift, Simulation]) -> str:
+def draw_drift(motions: Mapping[Stabilization, Simulation]) -> str:
     """Draw the residuals of the constraints, and the error of the energy, against the time.
 
     Parameters
     ----------
-    motions : mapping of Drift to Simulation
+    motions : mapping of Stabilization to Simulation
         One motion under each cure, with its residuals and its energy.
 
     Returns

@@ -2,8 +2,8 @@
 
 from typing import TYPE_CHECKING
 
-from harness.figures.style import BLUE, VERMILION, figure_style, new_figure, svg_text
-from harness.simulation.result import Simulation
+from ..simulation.result import Simulation
+from .style import BLUE, VERMILION, figure_style, new_figure, svg_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

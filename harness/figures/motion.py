@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from harness.figures.style import LINES, PALETTE, figure_style, new_figure, write_figure
-from harness.simulation.result import Simulation
+from ..simulation.result import Simulation
+from .style import LINES, PALETTE, figure_style, new_figure, write_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from harness.figures.style import INK, LINES, PALETTE, figure_style, new_figure, svg_text
-from harness.motion.radius import Radius
+from ..series.radius import Radius
+from .style import INK, LINES, PALETTE, figure_style, new_figure, svg_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from harness.confined import Limits
-from harness.figures.style import BLUE, GREEN, INK, VERMILION, figure_style, new_figure, write_figure
-from harness.motion.radius import ENTIRE, Radius
-from harness.motion.series import SeriesRequest, compute_series
+from ..confined import Limits
+from ..series.power_series import SeriesRequest, compute_series
+from ..series.radius import ENTIRE, Radius
+from .style import BLUE, GREEN, INK, VERMILION, figure_style, new_figure, write_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,7 +43,7 @@ def draw_radius(file: Path) -> None:
     Raises
     ------
     HolonomError
-        As `harness.motion.series.compute_series`; Matplotlib is not installed; the file cannot be written.
+        As `holonom.series.power_series.compute_series`; Matplotlib is not installed; the file cannot be written.
     """
     with figure_style():
         figure = new_figure(10, 4.2)

@@ -22,8 +22,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
 
-from harness.failures import Failure, HolonomError
-from harness.files import write_whole
+from ..failures import Failure, HolonomError
+from ..files import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from harness.simulation.result import Report, Simulation
+from .result import Report, Simulation
 
 
 def simulation_document(simulation: Simulation) -> dict[str, Any]:

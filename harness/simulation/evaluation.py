@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from harness.motion.heyoka_function import COMPACT_FROM, heyoka_expressions, import_heyoka
-from harness.motion.precision import Precision
-from harness.motion.program import Program
+from ..program.heyoka_function import COMPACT_FROM, heyoka_expressions, import_heyoka
+from ..program.motion_program import Program
+from ..program.precision import Precision
 
 Numbers = NDArray[Any]  # floats in double precision, heyoka's own numbers beyond
 Evaluation = Callable[[Numbers], Numbers]

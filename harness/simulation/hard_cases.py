@@ -9,10 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from harness.simulation.advice import HardCase
-from harness.simulation.balance import condition
-from harness.simulation.constraints import factored_constraints, rank_of, weighted_constraints
-from harness.simulation.matrices import Matrices, MotionMatrices, Vector
+from .advice import HardCase
+from .constraints.factorization import factored_constraints, rank_of, weighted_constraints
+from .diagnostics import condition
+from .matrices import Matrices, MotionMatrices, Vector
 
 ILL_CONDITIONED, DEPENDENT = 1e8, 1e20  # condition of G: half of a double's digits lost, and none left
 UNEQUAL_MASSES = 1e8  # ratio of the entries on A's diagonal: half of a double's digits

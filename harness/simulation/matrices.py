@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from harness.motion.precision import read_precision
-from harness.motion.problem import MotionProblem
-from harness.simulation.evaluation import evaluation
+from ..program.motion_problem import MotionProblem
+from ..program.precision import read_precision
+from .evaluation import evaluation
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]

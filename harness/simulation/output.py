@@ -11,10 +11,10 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
-from harness.failures import Failure, HolonomError
-from harness.files import write_whole
-from harness.simulation.document import published_list
-from harness.simulation.result import Simulation
+from ..failures import Failure, HolonomError
+from ..files import write_whole
+from .document import published_list
+from .result import Simulation
 
 Columns = Mapping[str, NDArray[np.float64] | NDArray[np.str_]]
 
@@ -53,7 +53,7 @@ def write_files(simulation: Simulation, samples: Path | None, figure: Path | Non
     if samples is not None:
         write_samples(simulation, samples)
     if figure is not None:
-        from harness.figures.motion import draw_motion
+        from ..figures.motion import draw_motion
 
         draw_motion(simulation, figure)
 

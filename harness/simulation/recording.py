@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from harness.simulation.balance import EnergyBalance
-from harness.simulation.evaluation import Numbers
-from harness.simulation.pieces import Piece
+from .diagnostics import EnergyBalance
+from .engines.dense_output import Piece
+from .evaluation import Numbers
 
 
 class Recording:

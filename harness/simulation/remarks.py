@@ -2,9 +2,9 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from harness.simulation.advice import HardCase, advice
-from harness.simulation.engines import Leg
-from harness.simulation.request import Engine
+from .advice import HardCase, advice
+from .engines.switching import Leg
+from .request import Engine
 
 LISTED = 3  # legs of the robust engine that are told one by one
 

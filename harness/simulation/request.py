@@ -16,7 +16,7 @@ class Engine(StrEnum):
     ROBUST = "robust"
 
 
-class Drift(StrEnum):
+class Stabilization(StrEnum):
     """What keeps the constraints, which the accelerations alone let go: rounding makes f grow with the time.
 
     ``PROJECTION`` moves the state to the nearest one, in the mass metric, that keeps them; ``BAUMGARTE`` adds damped
@@ -42,7 +42,7 @@ class SimulationRequest:
         ``double``, ``extended``, ``quadruple``, or a number of decimal digits. Only the Taylor engine knows others
         than double.
     engine : Engine
-    drift : Drift
+    drift : Stabilization
         What the Taylor engine does; the Runge-Kutta engine projects or does nothing, the robust one always projects.
     until : Fraction or None
         Last instant; None for the end of the scene's time span.
@@ -56,7 +56,7 @@ class SimulationRequest:
     tol: float | None = None
     precision: str | int = "double"
     engine: Engine = Engine.AUTO
-    drift: Drift = Drift.PROJECTION
+    drift: Stabilization = Stabilization.PROJECTION
     until: Fraction | None = None
     samples: int | None = None
     compact: bool | None = None

@@ -23,16 +23,16 @@ class Report:
         Empty where the scene does not observe them.
     residuals : mapping of str to float
         ``position``, ``velocity`` and ``acceleration``: how far the final state is from the constraints, as
-        `harness.simulation.balance` defines it.
+        `holonom.simulation.diagnostics` defines it.
     energy_error : float
-        Energy gained beyond what the forces and the controls did as work, as `harness.simulation.balance` defines it.
+        Energy gained beyond what the forces and the controls did as work, see `holonom.simulation.diagnostics`.
     condition : float
         Condition number of G = J A^-1 J^T at the end, each constraint scaled to unit length.
     steps : int
     engine : str
         ``taylor``, ``robust``, or who worked when: ``taylor, robust 0.31..0.35, taylor``.
     code : str
-        How heyoka compiled the Taylor engine in the end, see `harness.simulation.code`; empty where it did nothing.
+        How heyoka compiled the Taylor engine in the end (`Code`); empty where it did nothing.
     precision : str
     digits : int
         Decimal digits that tell its numbers apart.

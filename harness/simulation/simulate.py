@@ -8,22 +8,22 @@ from typing import Any
 
 import numpy as np
 
-from harness.failures import Failure, HolonomError
-from harness.motion.precision import Precision, read_precision
-from harness.motion.problem import MotionProblem
-from harness.simulation.advice import HardCase
-from harness.simulation.balance import EnergyBalance, condition, residuals
-from harness.simulation.engines import Engines
-from harness.simulation.evaluation import Numbers, as_floats
-from harness.simulation.hard_cases import Instant, dependence, hard_cases
-from harness.simulation.matrices import MotionMatrices, Vector, start_of
-from harness.simulation.pieces import Piece
-from harness.simulation.recording import Recording
-from harness.simulation.remarks import engine_text, remarks
-from harness.simulation.request import FINAL_STATE_ALONE, SimulationRequest
-from harness.simulation.result import Report, Samples, Simulation
-from harness.simulation.solution import Solutions
-from harness.simulation.vanishing import require_gradient, shortly_before, vanishing_instants
+from ..failures import Failure, HolonomError
+from ..program.motion_problem import MotionProblem
+from ..program.precision import Precision, read_precision
+from .advice import HardCase
+from .constraints.vanishing import require_gradient, shortly_before, vanishing_instants
+from .diagnostics import EnergyBalance, condition, residuals
+from .engines.dense_output import Piece
+from .engines.switching import Engines
+from .evaluation import Numbers, as_floats
+from .hard_cases import Instant, dependence, hard_cases
+from .matrices import MotionMatrices, Vector, start_of
+from .recording import Recording
+from .remarks import engine_text, remarks
+from .request import FINAL_STATE_ALONE, SimulationRequest
+from .result import Report, Samples, Simulation
+from .solution import Solutions
 
 Progress = Callable[[float], None]
 

@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from harness.motion.precision import Precision
-from harness.motion.problem import MotionProblem
-from harness.simulation.evaluation import Numbers, evaluation, zeros
+from ..program.motion_problem import MotionProblem
+from ..program.precision import Precision
+from .evaluation import Numbers, evaluation, zeros
 
 
 class Solutions(NamedTuple):

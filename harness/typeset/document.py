@@ -5,11 +5,11 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from sympy import Expr, Symbol
 
-from harness.mathjson import from_sympy
-from harness.record import Derivation, Equation, Record, Relation, Scene, System
-from harness.typeset.equations import blocks
-from harness.typeset.latex import latex
-from harness.typeset.quantities import letter_box, spelled_out
+from ..mathjson import from_sympy
+from ..record import Derivation, Equation, Record, Relation, Scene, System
+from .equations import blocks
+from .latex import latex
+from .quantities import letter_box, spelled_out
 
 WIDTH = 70  # digits of the article's typeface beside the number of an equation
 PREAMBLE = r"""\documentclass[11pt]{article}

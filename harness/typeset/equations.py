@@ -6,11 +6,11 @@ from math import inf
 
 from sympy import Indexed
 
-from harness.record import Equation, Relation
-from harness.typeset.boxes import EQUALS, Box, aligned
-from harness.typeset.formula import formula_box, is_long, relation_lines, relation_rows
-from harness.typeset.presentation import presented
-from harness.typeset.quantities import letter_box
+from ..record import Equation, Relation
+from .boxes import EQUALS, Box, aligned
+from .formula import formula_box, is_long, relation_lines, relation_rows
+from .presentation import presented
+from .quantities import letter_box
 
 COLUMN_GAP = 2  # digits
 

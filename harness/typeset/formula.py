@@ -1,7 +1,7 @@
 """A formula as a box: on one line where there is room for it, else broken where a typesetter would break it.
 
 Sums are broken before a sign, products before a factor, everything else in what it holds; terms and factors keep the
-order of the tree. Trees are those of `harness.mathjson`, and what the paper's equations need beyond them:
+order of the tree. Trees are those of `holonom.mathjson`, and what the paper's equations need beyond them:
 
     ["Equal", left, right], ["List", item, ...]
     ["Subscript", "f", "beta"], ["Subscript", "A_inverse", "l", "s"], ["Subscript", "christoffel", "k", "m", "s"]
@@ -17,9 +17,9 @@ from dataclasses import dataclass
 from itertools import groupby
 from math import inf
 
-from harness.failures import Failure, HolonomError
-from harness.mathjson import Tree
-from harness.typeset.boxes import (
+from ..failures import Failure, HolonomError
+from ..mathjson import Tree
+from .boxes import (
     CLOSING,
     COMMA,
     CROSS,
@@ -46,7 +46,7 @@ from harness.typeset.boxes import (
     stacked,
     word,
 )
-from harness.typeset.quantities import indexed_box, name_box
+from .quantities import indexed_box, name_box
 
 NARROWEST = 14  # digits below which nothing is pressed
 TALLEST = 10  # lines that brackets reach over at most

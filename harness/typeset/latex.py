@@ -4,11 +4,11 @@ from math import inf
 
 from sympy import Expr
 
-from harness.mathjson import Tree
-from harness.record import Relation
-from harness.typeset.formula import formula_box, relation_box
-from harness.typeset.marks import marked
-from harness.typeset.presentation import presented
+from ..mathjson import Tree
+from ..record import Relation
+from .formula import formula_box, relation_box
+from .marks import marked
+from .presentation import presented
 
 MISPRINT, CORRECTION = "misprint", "correction"  # colours that a document defines
 
@@ -43,7 +43,7 @@ def latex_relation(relation: Relation, width: float = inf) -> str:
 
 
 def latex_tree(tree: Tree, width: float = inf) -> str:
-    """Typeset an equation of the errata, terms and factors in its own order; `harness.typeset.formula` lists trees."""
+    """Typeset an equation of the errata, terms and factors in its own order; `holonom.typeset.formula` lists trees."""
     return formula_box(tree, width).latex
 
 

@@ -1,6 +1,6 @@
 """What an equation has that another has not: marks on the smallest parts that differ."""
 
-from harness.mathjson import Tree
+from ..mathjson import Tree
 
 IN_ANY_ORDER = {"Add", "Multiply"}
 QUANTITIES = {"Subscript", "Dot", "Ddot", "Dddot", "Partial"}  # marked whole

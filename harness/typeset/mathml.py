@@ -8,7 +8,7 @@ from itertools import pairwise
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
-from harness.failures import Failure, HolonomError
+from ..failures import Failure, HolonomError
 
 NAMESPACE = "http://www.w3.org/1998/Math/MathML"
 COLOURS = ("misprint", "correction")
@@ -26,7 +26,7 @@ def mathml(latex: str, alt: str = "") -> str:
     Parameters
     ----------
     latex : str
-        LaTeX for math mode, as `harness.typeset.latex` makes it.
+        LaTeX for math mode, as `holonom.typeset.latex` makes it.
     alt : str
         What to say where the formula cannot be shown; without it, the LaTeX on one line.
 

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import sympy
 from sympy import Add, Expr, Float, Indexed, Integer, Mul, Number, Pow, Rational, S, Symbol
 
-from harness.failures import Failure, HolonomError
-from harness.mathjson import CONSTANT_NAMES, HEADS, Tree
+from ..failures import Failure, HolonomError
+from ..mathjson import CONSTANT_NAMES, HEADS, Tree
 
 TIME = Symbol("t", real=True)
 READING_ORDER = (Number, sympy.NumberSymbol, Symbol, Indexed, sympy.Function, Pow, Add)  # of factors

@@ -7,19 +7,7 @@ from functools import cache
 from sympy.core.alphabets import greeks
 from sympy.printing.latex import tex_greek_dictionary
 
-from harness.typeset.boxes import (
-    COMMA,
-    SEMICOLON,
-    Box,
-    above,
-    below,
-    beside,
-    bracketed,
-    digits,
-    dotted,
-    separated,
-    word,
-)
+from .boxes import COMMA, SEMICOLON, Box, above, below, beside, bracketed, digits, dotted, separated, word
 
 RATE = re.compile(r"(d{1,3})ot\((.+)\)(\w*)")
 UNDERSCORE = r"\_"  # of a name that is nothing else

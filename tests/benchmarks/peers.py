@@ -14,11 +14,11 @@ import chain
 import sympy as sp
 from charged import charged
 
-from harness.confined import Limits
-from harness.mathjson import from_sympy
-from harness.maxima import run_batch
-from harness.motion.program import Program, count_operations, read_program
-from harness.motion.request import Request, program_document
+from holonom.confined import Limits
+from holonom.mathjson import from_sympy
+from holonom.maxima import run_batch
+from holonom.program.motion_program import Program, count_operations, read_program
+from holonom.program.request import Request, program_document
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "chain.mac"
 

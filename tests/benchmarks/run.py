@@ -22,11 +22,11 @@ from numpy.typing import NDArray
 from peers import PEERS
 from timing import TooLong, many_points, time_limit
 
-from harness.failures import Failure, HolonomError
-from harness.motion.c_function import CFunction, compile_c, load_c
-from harness.motion.heyoka_function import heyoka_function
-from harness.motion.program import Program, count_operations
-from harness.motion.timing import Timer
+from holonom.failures import Failure, HolonomError
+from holonom.program.c_function import CFunction, compile_c, load_c
+from holonom.program.heyoka_function import heyoka_function
+from holonom.program.motion_program import Program, count_operations
+from holonom.program.timing import Timer
 
 LINKS = (1, 2, 4, 8, 16, 32, 64)
 SECONDS = 30.0  # a peer that takes longer is not asked for a longer chain

@@ -17,7 +17,7 @@ from pathlib import Path
 from series_peers import METHODS, Expansion, Method, exact
 from timing import TooLong, time_limit
 
-from harness.figures.style import INK, MARKERS, PALETTE, figure_style, new_figure, write_figure
+from holonom.figures.style import INK, MARKERS, PALETTE, figure_style, new_figure, write_figure
 
 ORDERS = (5, 10, 20, 40, 80, 160)
 SECONDS = 20.0

@@ -21,12 +21,12 @@ from typing import Any
 
 import numpy as np
 
-from harness.confined import Limits
-from harness.maxima import run_batch
-from harness.motion.heyoka_function import import_heyoka
-from harness.motion.heyoka_series import OFTEN, InitialValueProblem, expanding_integrator, read_problem
-from harness.motion.precision import read_precision
-from harness.motion.series import SeriesRequest, compute_series
+from holonom.confined import Limits
+from holonom.maxima import run_batch
+from holonom.program.heyoka_function import import_heyoka
+from holonom.program.precision import read_precision
+from holonom.series.heyoka_series import OFTEN, InitialValueProblem, expanding_integrator, read_problem
+from holonom.series.power_series import SeriesRequest, compute_series
 
 PAPER = Path(__file__).parents[2] / "examples" / "paper" / "paper.mac"
 START = ((3, 10), (1, 1), (2, 1), (1, 2), (-1, 3))  # u, q1, q2, dot(q1), dot(q2)

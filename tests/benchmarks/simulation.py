@@ -22,19 +22,19 @@ from simulation_motions import MOTIONS, Motion
 from simulation_peers import HEYOKA, PEERS, Prepared, Run, State
 from simulation_report import write_report
 
-from harness.accuracy.compilation import without_caches
-from harness.accuracy.contest import times_in_turns
-from harness.accuracy.errors import numbers_of, relative_error
-from harness.accuracy.reference import Reference, find_reference
-from harness.confined import Limits
-from harness.failures import HolonomError
-from harness.motion.problem import MotionProblem, motion_problem
-from harness.motion.request import Request
-from harness.motion.timing import Batch, python_batch
-from harness.simulation.program_motion import ProgramMotion
-from harness.simulation.request import Drift
-from harness.simulation.runge_kutta import RungeKuttaMotion
-from harness.simulation.taylor import TaylorMotion
+from holonom.benchmark.work_precision.compilation import without_caches
+from holonom.benchmark.work_precision.contest import times_in_turns
+from holonom.benchmark.work_precision.errors import numbers_of, relative_error
+from holonom.benchmark.work_precision.reference import Reference, find_reference
+from holonom.confined import Limits
+from holonom.failures import HolonomError
+from holonom.program.motion_problem import MotionProblem, motion_problem
+from holonom.program.request import Request
+from holonom.program.timing import Batch, python_batch
+from holonom.simulation.engines.program_motion import ProgramMotion
+from holonom.simulation.engines.runge_kutta import RungeKuttaMotion
+from holonom.simulation.engines.taylor import TaylorMotion
+from holonom.simulation.request import Stabilization
 
 ERROR = 1e-9
 TOLERANCES = tuple(float(f"1e-{n}") for n in range(5, 16))
@@ -91,13 +91,13 @@ def contest(motion: Motion, problem: MotionProblem) -> tuple[dict[str, list[Sett
         print(f"{motion.name}: {name} {reasons[name]}", file=sys.stderr)
     as_heyoka = TOLERANCES[TOLERANCES.index(settings[HEYOKA][0].tolerance) :]
     for engine, set_up, tolerances in ((TAYLOR, unrolled, as_heyoka), (RUNGE_KUTTA, RungeKuttaMotion, TOLERANCES)):
-        for name, drift in ((engine, Drift.PROJECTION), (unprojected(engine), Drift.NONE)):
+        for name, drift in ((engine, Stabilization.PROJECTION), (unprojected(engine), Stabilization.NONE)):
             prepare = partial(holonom, motion, problem, partial(set_up, drift=drift))
             settings[name], reasons[name] = tighten(prepare, motion, reference, tolerances)
     return with_turns(settings), reasons
 
 
-def unrolled(problem: MotionProblem, tolerance: float, drift: Drift) -> TaylorMotion:
+def unrolled(problem: MotionProblem, tolerance: float, drift: Stabilization) -> TaylorMotion:
     """The Taylor engine, its code unrolled, which is heyoka's own default."""
     return TaylorMotion(problem, tolerance, drift=drift, compact=False)
 

@@ -14,15 +14,15 @@ import mpmath
 from simulation_motions import Motion, paper_in_mpmath
 from simulation_peers import DOP853, HEYOKA, OLDER_SCIPY, SOLVE_IVP, SUNDIALS, start_of
 
-from harness.accuracy.errors import State, relative_error
-from harness.accuracy.reference import find_reference
-from harness.accuracy.taylor import prepare_taylor
-from harness.confined import Limits
-from harness.motion.problem import MotionProblem, motion_problem
-from harness.motion.request import Request
-from harness.motion.timing import python_batch, shortest_times
-from harness.simulation.request import Drift, Engine, SimulationRequest
-from harness.simulation.simulate import simulate
+from holonom.benchmark.work_precision.errors import State, relative_error
+from holonom.benchmark.work_precision.reference import find_reference
+from holonom.benchmark.work_precision.taylor import prepare_taylor
+from holonom.confined import Limits
+from holonom.program.motion_problem import MotionProblem, motion_problem
+from holonom.program.request import Request
+from holonom.program.timing import python_batch, shortest_times
+from holonom.simulation.request import Engine, SimulationRequest, Stabilization
+from holonom.simulation.simulate import simulate
 
 if TYPE_CHECKING:
     from simulation import Row
@@ -114,7 +114,7 @@ def general_bars(paper: Motion) -> Iterator[Bar]:
     """Many digits on the paper's example, and what `holonom --help` takes."""
     problem = motion_problem(paper.file, Request(paper.scene), Limits(), 80)
     true = find_reference(problem, [paper.until], int(OUR_DIGITS)).states[paper.until]
-    ours = prepare_taylor(problem, paper.until, OUR_DIGITS, OUR_TOLERANCE, Drift.PROJECTION)
+    ours = prepare_taylor(problem, paper.until, OUR_DIGITS, OUR_TOLERANCE, Stabilization.PROJECTION)
     seconds = shortest_times({0: python_batch(lambda _: ours.run(), ())})[0]
     begun = time.perf_counter()
     theirs = _odefun(problem, paper)

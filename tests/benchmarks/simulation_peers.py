@@ -19,10 +19,10 @@ from scipy.integrate._ivp import dop853_coefficients as dop853
 from simulation_algebra import DESCRIPTIONS
 from simulation_motions import Motion
 
-from harness.accuracy.right_hand_side import RightHandSide
-from harness.accuracy.solvers import SOLVERS, Solver
-from harness.failures import Failure, HolonomError
-from harness.motion.problem import MotionProblem
+from holonom.benchmark.work_precision.right_hand_side import RightHandSide
+from holonom.benchmark.work_precision.solvers import SOLVERS, Solver
+from holonom.failures import Failure, HolonomError
+from holonom.program.motion_problem import MotionProblem
 
 HERE = Path(__file__).parent
 COMPILER = ("cc", "-std=c99", "-O3", "-march=native", "-ffp-contract=fast", "-shared", "-fPIC")

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from simulation_bars import ENGINES, Bar, faster_engine
 
-from harness.accuracy.machine import PACKAGES, this_machine
-from harness.figures.style import MARKERS, PALETTE, figure_style, new_figure, write_figure
+from holonom.benchmark.work_precision.machine import PACKAGES, this_machine
+from holonom.figures.style import MARKERS, PALETTE, figure_style, new_figure, write_figure
 
 if TYPE_CHECKING:
     from simulation import Row

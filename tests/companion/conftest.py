@@ -3,10 +3,10 @@
 import pytest
 from own_system import SMOOTH, made
 
-from harness.companion.book import pages
-from harness.companion.paper import REPOSITORY, book_of_the_paper
-from harness.companion.runs import perform
-from harness.files import write_whole_directory
+from holonom.companion.book import pages
+from holonom.companion.paper import REPOSITORY, book_of_the_paper
+from holonom.companion.runs import perform
+from holonom.files import write_whole_directory
 
 
 @pytest.fixture(scope="session")

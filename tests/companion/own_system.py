@@ -2,7 +2,7 @@
 
 from click.testing import CliRunner
 
-from harness.cli import holonom
+from holonom.cli import holonom
 
 OWN = """load("holonom.mac")$
 

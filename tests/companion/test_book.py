@@ -5,9 +5,9 @@ from itertools import pairwise
 import pages
 import pytest
 
-from harness.companion import runs
-from harness.companion.examples import PAPER
-from harness.companion.paper import REPOSITORY, book_of_the_paper
+from holonom.companion import runs
+from holonom.companion.examples import PAPER
+from holonom.companion.paper import REPOSITORY, book_of_the_paper
 
 CARDS = {
     "the-system": ("1",),

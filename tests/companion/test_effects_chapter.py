@@ -4,12 +4,12 @@ from pathlib import Path
 
 import pytest
 
-from harness.companion.chapters.effects import STILL, TURNING, turning_point
-from harness.confined import Limits
-from harness.motion.problem import motion_problem
-from harness.motion.request import Request
-from harness.simulation.request import SimulationRequest
-from harness.simulation.simulate import simulate
+from holonom.companion.chapters.effects import STILL, TURNING, turning_point
+from holonom.confined import Limits
+from holonom.program.motion_problem import motion_problem
+from holonom.program.request import Request
+from holonom.simulation.request import SimulationRequest
+from holonom.simulation.simulate import simulate
 
 FILE = Path(__file__).parents[2] / "examples" / "spherical_pendulum.mac"
 OMEGA, LENGTH, REACH = 1 / 20, 1, 3 / 5

@@ -2,10 +2,10 @@
 
 import pytest
 
-from harness.companion.excerpts import excerpt
-from harness.companion.paper import REPOSITORY
-from harness.companion.steps import STEPS, step
-from harness.failures import Failure, HolonomError
+from holonom.companion.excerpts import excerpt
+from holonom.companion.paper import REPOSITORY
+from holonom.companion.steps import STEPS, step
+from holonom.failures import Failure, HolonomError
 
 TEXT = """/* The head. */
 

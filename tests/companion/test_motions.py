@@ -4,9 +4,9 @@ import pages
 import pytest
 from click.testing import CliRunner
 
-from harness.cli import holonom
-from harness.companion.chapters.gallery import EXHIBITS
-from harness.companion.paper import REPOSITORY
+from holonom.cli import holonom
+from holonom.companion.chapters.gallery import EXHIBITS
+from holonom.companion.paper import REPOSITORY
 
 OWN = """load("holonom.mac")$
 system : holonomic_system(coordinates = [x, y], controls = [u],

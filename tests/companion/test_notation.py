@@ -4,10 +4,10 @@ from dataclasses import fields
 
 import pytest
 
-from harness.companion.chapters.notation import SYMBOLS
-from harness.companion.paper import REPOSITORY
-from harness.companion.steps import STEPS
-from harness.record import Scene, System
+from holonom.companion.chapters.notation import SYMBOLS
+from holonom.companion.paper import REPOSITORY
+from holonom.companion.steps import STEPS
+from holonom.record import Scene, System
 
 RECORD = {"system": {each.name for each in fields(System)}, "scene": {each.name for each in fields(Scene)}}
 FILES = [path.relative_to(REPOSITORY) for path in sorted((REPOSITORY / "maxima").rglob("*.mac"))]

@@ -3,7 +3,7 @@
 import pages
 from own_system import SMOOTH, made
 
-from harness.companion.book import GENERATOR
+from holonom.companion.book import GENERATOR
 
 ROUGH = """rough_scene : holonomic_scene(system, title = "Rough",
   control_law = [u = 1 + t^(7/2)], parameter_values = [k = 2], initial_state = [x = 1, y = 1, dot(x) = 0, dot(y) = 0])$

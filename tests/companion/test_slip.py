@@ -4,9 +4,9 @@ import shutil
 
 import pytest
 
-from harness.companion.chapters import equations_of_motion
-from harness.companion.paper import REPOSITORY
-from harness.companion.runs import perform
+from holonom.companion.chapters import equations_of_motion
+from holonom.companion.paper import REPOSITORY
+from holonom.companion.runs import perform
 
 RIGHT = '"2 d^2f/dq_s du_r dot(q_s) dot(u_r)" = 2*inner(v,'
 WRONG = RIGHT.replace("= 2*", "= -2*")

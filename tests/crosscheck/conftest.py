@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from harness.maxima import run_scene
-from harness.record import Record, read_record
+from holonom.maxima import run_scene
+from holonom.record import Record, read_record
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 

@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from harness.crosscheck.system import MechanicalSystem
+from holonom.crosscheck.system import MechanicalSystem
 
 
 def symbols(names: str) -> list[sp.Symbol]:

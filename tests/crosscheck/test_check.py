@@ -5,8 +5,8 @@ import dataclasses
 import pytest
 import sympy as sp
 
-from harness.crosscheck import EquationVerdict, Verdict, check_record
-from harness.record import Equation, Record, Relation
+from holonom.crosscheck import EquationVerdict, Verdict, check_record
+from holonom.record import Equation, Record, Relation
 
 
 def test_every_equation_of_an_example_is_proved(example_record: Record) -> None:

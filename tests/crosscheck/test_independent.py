@@ -5,9 +5,9 @@ import sympy as sp
 from mpmath import mp
 from systems import paper_example, pendulum, symbols
 
-from harness.crosscheck.independent import IndependentEquations
-from harness.crosscheck.points import Valuation, random_point
-from harness.crosscheck.system import MechanicalSystem
+from holonom.crosscheck.independent import IndependentEquations
+from holonom.crosscheck.points import Valuation, random_point
+from holonom.crosscheck.system import MechanicalSystem
 
 Q1, Q2, V1, V2, U, DU, DDU = symbols("q1 q2 dot(q1) dot(q2) u dot(u) ddot(u)")
 X, Y, VX, VY, M, G = symbols("x y dot(x) dot(y) m g")

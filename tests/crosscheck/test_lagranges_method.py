@@ -5,11 +5,11 @@ import dataclasses
 import pytest
 from systems import charge_in_crossed_fields, paper_example, pendulum
 
-from harness.crosscheck.independent import IndependentEquations
-from harness.crosscheck.lagranges_method import compare
-from harness.crosscheck.report import Verdict
-from harness.crosscheck.system import MechanicalSystem
-from harness.crosscheck.verdict import judge
+from holonom.crosscheck.independent import IndependentEquations
+from holonom.crosscheck.lagranges_method import compare
+from holonom.crosscheck.report import Verdict
+from holonom.crosscheck.system import MechanicalSystem
+from holonom.crosscheck.verdict import judge
 
 
 @pytest.mark.parametrize(

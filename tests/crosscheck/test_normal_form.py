@@ -5,7 +5,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from harness.crosscheck.normal_form import is_identically_zero
+from holonom.crosscheck.normal_form import is_identically_zero
 
 X, Y = sp.symbols("x y", real=True)
 

@@ -13,9 +13,9 @@ from pathlib import Path
 from hypothesis import HealthCheck, Phase, example, given, settings
 from hypothesis import strategies as st
 
-from harness.crosscheck import Verdict, check_record
-from harness.maxima import run_scene
-from harness.record import read_record
+from holonom.crosscheck import Verdict, check_record
+from holonom.maxima import run_scene
+from holonom.record import read_record
 
 SYSTEMS = 10
 """Each is a run of Maxima."""

@@ -3,9 +3,9 @@
 import sympy as sp
 from systems import symbols
 
-from harness.crosscheck.linear import LinearEquations
-from harness.crosscheck.report import Verdict
-from harness.crosscheck.verdict import DIGITS, POINTS, Comparison, Pair, judge
+from holonom.crosscheck.linear import LinearEquations
+from holonom.crosscheck.report import Verdict
+from holonom.crosscheck.verdict import DIGITS, POINTS, Comparison, Pair, judge
 
 X, Y, Z = symbols("x y z")
 

@@ -7,8 +7,8 @@ import pytest
 import sympy
 from sympy import Expr, Symbol, cos, cosh, exp, sin
 
-from harness.maxima import run_scene
-from harness.record import Equation, Record, read_record
+from holonom.maxima import run_scene
+from holonom.record import Equation, Record, read_record
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

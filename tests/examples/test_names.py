@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from harness.crosscheck import check_record
-from harness.maxima import LIBRARY, run_batch, run_scene
-from harness.record import read_record
+from holonom.crosscheck import check_record
+from holonom.maxima import LIBRARY, run_batch, run_scene
+from holonom.record import read_record
 
 BOUND = re.compile(r"\bblock\(\s*\[([^\]]*)\]|^\w+\(([\w, \[\]]*)\)\s*:=|lambda\(\[([^\]]*)\]", re.MULTILINE)
 NAME = re.compile(r"[A-Za-z]\w*")

@@ -7,15 +7,15 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from harness.confined import Limits
-from harness.failures import HolonomError
-from harness.figures.drawing import FRAMES, POSITIONS, animation, film_of, strip
-from harness.motion.drawing import Shape
-from harness.motion.problem import MotionProblem, motion_problem
-from harness.motion.request import Request
-from harness.simulation.request import SimulationRequest
-from harness.simulation.result import Simulation
-from harness.simulation.simulate import simulate
+from holonom.confined import Limits
+from holonom.failures import HolonomError
+from holonom.figures.drawing import FRAMES, POSITIONS, animation, film_of, strip
+from holonom.program.drawing import Shape
+from holonom.program.motion_problem import MotionProblem, motion_problem
+from holonom.program.request import Request
+from holonom.simulation.request import SimulationRequest
+from holonom.simulation.result import Simulation
+from holonom.simulation.simulate import simulate
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SCENES = sorted(file for file in EXAMPLES.rglob("*.mac") if file.name != "printed.mac")

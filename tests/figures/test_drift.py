@@ -5,9 +5,9 @@ from xml.etree import ElementTree
 
 import pytest
 
-from harness.companion.chapters.accuracy import SWING, drifting
-from harness.figures.drift import draw_drift
-from harness.simulation.request import Drift
+from holonom.companion.chapters.work_precision import SWING, drifting
+from holonom.figures.drift import draw_drift
+from holonom.simulation.request import Stabilization
 
 PENDULUM = Path(__file__).parents[2] / "examples" / "pendulum.mac"
 SVG = "{http://www.w3.org/2000/svg}"
@@ -18,13 +18,13 @@ def motions():
     return drifting(PENDULUM, SWING)
 
 
-@pytest.mark.parametrize("cure", [Drift.PROJECTION, Drift.BAUMGARTE, Drift.GGL])
+@pytest.mark.parametrize("cure", [Stabilization.PROJECTION, Stabilization.BAUMGARTE, Stabilization.GGL])
 def test_a_cure_keeps_nearer_to_the_constraint_than_none(motions, cure):
-    assert max(motions[cure].residuals["position"]) < max(motions[Drift.NONE].residuals["position"]) / 5
+    assert max(motions[cure].residuals["position"]) < max(motions[Stabilization.NONE].residuals["position"]) / 5
 
 
 def test_every_cure_has_its_line_and_the_figure_is_the_same_each_time(motions):
     svg = draw_drift(motions)
     texts = {"".join(each.itertext()) for each in ElementTree.fromstring(svg).iter(f"{SVG}text")}
-    assert set(Drift) <= texts
+    assert set(Stabilization) <= texts
     assert svg == draw_drift(motions)

@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from harness.figures import radius
+from holonom.figures import radius
 
 SVG = "{http://www.w3.org/2000/svg}"
 

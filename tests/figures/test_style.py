@@ -5,8 +5,8 @@ from xml.etree import ElementTree
 import matplotlib
 import pytest
 
-from harness.failures import HolonomError
-from harness.figures.style import INK, PALETTE, figure_style, new_figure, write_figure
+from holonom.failures import HolonomError
+from holonom.figures.style import INK, PALETTE, figure_style, new_figure, write_figure
 
 SVG = "{http://www.w3.org/2000/svg}"
 

@@ -8,11 +8,11 @@ import pytest
 from problems import problem
 from pyarrow import parquet
 
-from harness.failures import HolonomError
-from harness.simulation.output import write_samples
-from harness.simulation.request import SimulationRequest
-from harness.simulation.result import Simulation
-from harness.simulation.simulate import simulate
+from holonom.failures import HolonomError
+from holonom.simulation.output import write_samples
+from holonom.simulation.request import SimulationRequest
+from holonom.simulation.result import Simulation
+from holonom.simulation.simulate import simulate
 
 
 @pytest.fixture(scope="module")

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from problems import problem
 
-from harness.confined import Limits
-from harness.failures import Failure, HolonomError
-from harness.motion.problem import MotionProblem, motion_problem
-from harness.motion.request import Request
-from harness.simulation.request import Drift, Engine, SimulationRequest
-from harness.simulation.result import Report, Simulation
-from harness.simulation.simulate import simulate
+from holonom.confined import Limits
+from holonom.failures import Failure, HolonomError
+from holonom.program.motion_problem import MotionProblem, motion_problem
+from holonom.program.request import Request
+from holonom.simulation.request import Engine, SimulationRequest, Stabilization
+from holonom.simulation.result import Report, Simulation
+from holonom.simulation.simulate import simulate
 
 # Test Set for IVP Solvers, car axis, t = 3, as its file R/ex_reference.R prints it: positions, velocities, multipliers.
 CAR_AXIS_POSITIONS = [
@@ -204,19 +204,19 @@ def test_energy_is_balanced_by_the_work_of_the_control():
 def test_projection_keeps_the_constraints_that_nothing_else_keeps():
     """Over ten thousand swings rounding adds up, unless the state is projected."""
     motion = problem("pendulum.mac", "swing_scene")
-    left = {drift: final(motion, drift=drift, until=Fraction(20000)).residuals["position"] for drift in Drift}
-    assert left[Drift.PROJECTION] < 1e-15
-    assert left[Drift.NONE] > 1e-13
+    left = {drift: final(motion, drift=drift, until=Fraction(20000)).residuals["position"] for drift in Stabilization}
+    assert left[Stabilization.PROJECTION] < 1e-15
+    assert left[Stabilization.NONE] > 1e-13
 
 
 def test_the_cures_in_the_equations_let_an_error_die_out():
     """Truth: a position that misses its constraint by 1e-6 is back after many decay times, with both cures."""
     motion = problem("pendulum.mac", "swing_scene")
     astray = MotionProblem(**{**vars(motion), "start": {**motion.start, "y": str(float(motion.start["y"]) - 1e-6)}})
-    left = {drift: final(astray, drift=drift).residuals["position"] for drift in Drift}
-    assert left[Drift.NONE] > 1e-7
-    assert left[Drift.BAUMGARTE] < 1e-13
-    assert left[Drift.GGL] < 1e-13
+    left = {drift: final(astray, drift=drift).residuals["position"] for drift in Stabilization}
+    assert left[Stabilization.NONE] > 1e-7
+    assert left[Stabilization.BAUMGARTE] < 1e-13
+    assert left[Stabilization.GGL] < 1e-13
 
 
 def test_quadruple_precision_agrees_with_fifty_digits():

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-SIMULATE = [sys.executable, "-m", "harness", "simulate"]
+SIMULATE = [sys.executable, "-m", "holonom", "simulate"]
 PENDULUM = EXAMPLES / "pendulum.mac"
 
 
@@ -36,7 +36,7 @@ def test_the_final_state_is_one_document():
 
 def test_a_simulation_waits_for_no_sympy():
     asked = ["simulate", str(PENDULUM), "--final", "--json", "-"]
-    script = f"import sys; from harness.cli import holonom; holonom({asked}, standalone_mode=False); "
+    script = f"import sys; from holonom.cli import holonom; holonom({asked}, standalone_mode=False); "
     done = subprocess.run(
         [
             sys.executable,

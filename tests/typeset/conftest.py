@@ -2,7 +2,7 @@
 
 import pytest
 
-from harness.errata import PrintedEquation, errata
+from holonom.errata import PrintedEquation, errata
 
 
 @pytest.fixture(scope="session")

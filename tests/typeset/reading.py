@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
-from harness.typeset.mathml import inline_mathml
+from holonom.typeset.mathml import inline_mathml
 
 FUNCTIONS = {"sin": math.sin, "cos": math.cos, "tan": math.tan, "ln": math.log}
 

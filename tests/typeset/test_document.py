@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from harness.maxima import run_scene
-from harness.record import read_record
-from harness.typeset.document import tex_document
+from holonom.maxima import run_scene
+from holonom.record import read_record
+from holonom.typeset.document import tex_document
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 HARD_TO_TYPESET = r"""
@@ -68,7 +68,7 @@ def test_the_mass_matrix_is_a_matrix(particle_record):
 
 def test_derive_writes_the_document(particle_scene, tmp_path):
     file = tmp_path / "particle.tex"
-    command = [sys.executable, "-m", "harness", "derive", str(particle_scene), "--tex", str(file)]
+    command = [sys.executable, "-m", "holonom", "derive", str(particle_scene), "--tex", str(file)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120)
     assert (done.returncode, done.stderr) == (0, "")
     assert file.read_text(encoding="utf-8") == document(particle_scene)
@@ -77,7 +77,7 @@ def test_derive_writes_the_document(particle_scene, tmp_path):
 
 def test_derive_says_where_the_document_cannot_be_written(particle_scene, tmp_path):
     file = tmp_path / "no such directory" / "particle.tex"
-    command = [sys.executable, "-m", "harness", "derive", str(particle_scene), "--tex", str(file)]
+    command = [sys.executable, "-m", "holonom", "derive", str(particle_scene), "--tex", str(file)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120)
     assert (done.returncode, done.stdout) == (2, "")
     assert "cannot be written" in done.stderr

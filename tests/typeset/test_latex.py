@@ -9,12 +9,12 @@ import pytest
 from reading import letter, sides
 from sympy import Float, Function, Indexed, IndexedBase, Rational, Symbol, cos, exp, lambdify, sin, sqrt, symbols
 
-from harness.failures import HolonomError
-from harness.maxima import run_scene
-from harness.record import Record, Relation, read_record
-from harness.typeset.formula import formula_box
-from harness.typeset.latex import latex, latex_relation, latex_tree
-from harness.typeset.presentation import presented
+from holonom.failures import HolonomError
+from holonom.maxima import run_scene
+from holonom.record import Record, Relation, read_record
+from holonom.typeset.formula import formula_box
+from holonom.typeset.latex import latex, latex_relation, latex_tree
+from holonom.typeset.presentation import presented
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 x, y, q1, u, t, m = symbols("x y q1 u t m", real=True)

@@ -2,9 +2,9 @@
 
 import pytest
 
-from harness.mathjson import Tree
-from harness.typeset.latex import latex_marked, latex_tree
-from harness.typeset.marks import marked
+from holonom.mathjson import Tree
+from holonom.typeset.latex import latex_marked, latex_tree
+from holonom.typeset.marks import marked
 
 Q_S, U_RHO = ["Subscript", "q", "s"], ["Subscript", "u", "rho"]
 

@@ -5,8 +5,8 @@ from xml.etree.ElementTree import Element
 
 import pytest
 
-from harness.typeset.latex import CORRECTION, latex_marked, latex_tree
-from harness.typeset.mathml import inline_mathml, mathml
+from holonom.typeset.latex import CORRECTION, latex_marked, latex_tree
+from holonom.typeset.mathml import inline_mathml, mathml
 
 # https://w3c.github.io/mathml-core: elements and attributes that a browser acts upon
 CORE = {

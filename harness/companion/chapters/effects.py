@@ -6,17 +6,17 @@ from typing import Any
 
 import numpy as np
 
-from harness.accuracy.machine import this_machine
-from harness.companion.chapter import Chapter, Page, Run
-from harness.companion.examples import SPHERICAL_PENDULUM
-from harness.companion.excerpts import excerpt
-from harness.companion.runs import derived, simulation
-from harness.confined import Limits
-from harness.figures.effects import draw_with_and_without
-from harness.motion.effects import MeasuredCosts, measure_costs, read_costs
-from harness.motion.request import Request, effects_document
-from harness.record import Record
-from harness.simulation.result import Simulation
+from ...benchmark.work_precision.machine import this_machine
+from ...confined import Limits
+from ...figures.effects import draw_with_and_without
+from ...program.effects import MeasuredCosts, measure_costs, read_costs
+from ...program.request import Request, effects_document
+from ...record import Record
+from ...simulation.result import Simulation
+from ..chapter import Chapter, Page, Run
+from ..examples import SPHERICAL_PENDULUM
+from ..excerpts import excerpt
+from ..runs import derived, simulation
 
 SPARING, LAVISH = "swinging_scene", "shaken_scene"
 TURNING, STILL = "foucault_scene", "still_scene"

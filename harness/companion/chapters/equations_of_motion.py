@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from harness.companion.cards import derivation_cards, files_of, missing, named_equations
-from harness.companion.chapter import Chapter, Page
-from harness.companion.examples import BEAD, BOB, PAPER, PENDULUM
-from harness.companion.runs import derived, printed
+from ..cards import derivation_cards, files_of, missing, named_equations
+from ..chapter import Chapter, Page
+from ..examples import BEAD, BOB, PAPER, PENDULUM
+from ..runs import derived, printed
 
 NUMBERS = ("2", "3a", "3", "4", "5", "6", "7", "8", "9")
 

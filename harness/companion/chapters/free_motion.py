@@ -4,12 +4,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from harness.companion.cards import Card, anchor, derivation_cards, files_of, named_equations, scene_cards
-from harness.companion.chapter import Chapter, Page
-from harness.companion.examples import BOB, CABIN, FREE_SCENE, INITIAL_SCENE, PAPER, PENDULUM
-from harness.companion.runs import derived, free, printed
-from harness.companion.words import words
-from harness.errata import PrintedEquation
+from ...errata import PrintedEquation
+from ..cards import Card, anchor, derivation_cards, files_of, named_equations, scene_cards
+from ..chapter import Chapter, Page
+from ..examples import BOB, CABIN, FREE_SCENE, INITIAL_SCENE, PAPER, PENDULUM
+from ..explanations import words
+from ..runs import derived, free, printed
 
 PARABOLIC_FLIGHT = "parabolic_flight_scene"
 LIFT = "lift_scene"

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 
-from harness.companion.chapter import Chapter, Page
-from harness.companion.motions import Motion, figures_of, motion
+from ..chapter import Chapter, Page
+from ..motions import Motion, figures_of, motion
 
 
 @dataclass(frozen=True)

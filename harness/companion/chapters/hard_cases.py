@@ -3,11 +3,11 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from harness.companion.chapter import Chapter, Page, Run
-from harness.companion.runs import drawn
-from harness.figures.stability import draw_stability
-from harness.stability.case import CaseReport, Extent
-from harness.stability.register import REGISTER, examine
+from ...benchmark.hard_cases.case import CaseReport, Extent
+from ...benchmark.hard_cases.register import REGISTER, examine
+from ...figures.hard_cases import draw_stability
+from ..chapter import Chapter, Page, Run
+from ..runs import drawn
 
 
 def chapter(root: Path) -> Chapter:

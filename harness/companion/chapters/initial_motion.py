@@ -8,12 +8,12 @@ from typing import Any
 import mpmath
 from sympy import Expr, Symbol
 
-from harness.companion.cards import derivation_cards, files_of, named_equations, scene_cards, scene_named
-from harness.companion.chapter import Chapter, Page
-from harness.companion.examples import BOB, BOB_SCENE, INITIAL_SCENE, PAPER
-from harness.companion.runs import derived, printed, series
-from harness.motion.series import MotionSeries, Numbers, number, numbers
-from harness.record import Equation, Scene
+from ...record import Equation, Scene
+from ...series.power_series import MotionSeries, Numbers, number, numbers
+from ..cards import derivation_cards, files_of, named_equations, scene_cards, scene_named
+from ..chapter import Chapter, Page
+from ..examples import BOB, BOB_SCENE, INITIAL_SCENE, PAPER
+from ..runs import derived, printed, series
 
 LOW_ORDER, HIGH_ORDER = 3, 40
 INSTANT = Fraction(1, 10)

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from itertools import takewhile
 from pathlib import Path
 
-from harness.companion.cards import anchor, anchors
-from harness.companion.chapter import Chapter, Page
-from harness.companion.runs import printed
-from harness.errata import PrintedEquation
+from ...errata import PrintedEquation
+from ..cards import anchor, anchors
+from ..chapter import Chapter, Page
+from ..runs import printed
 
 PAGES = {
     "equations-of-motion": ("2", "3", "4", "5", "6", "7", "8", "9"),

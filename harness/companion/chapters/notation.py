@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from harness.companion.chapter import Chapter, Page
+from ..chapter import Chapter, Page
 
 NOTATION_FILE = "maxima/notation.mac"
 

@@ -4,11 +4,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from harness.companion.chapter import Chapter, Page
-from harness.companion.description import description
-from harness.companion.examples import PRESCRIBED_TENSION
-from harness.companion.excerpts import excerpt
-from harness.companion.runs import derived, free, series
+from ..chapter import Chapter, Page
+from ..description import description
+from ..examples import PRESCRIBED_TENSION
+from ..excerpts import excerpt
+from ..runs import derived, free, series
 
 SOURCE = "maxima/free_motion/prescribed_reactions.mac"
 FUNCTIONS = ("released_system", "controls_under_reactions")

@@ -9,15 +9,15 @@ import mpmath
 import sympy
 from sympy import Expr, Symbol
 
-from harness.companion.cards import named_equations, scene_named
-from harness.companion.chapter import Chapter, Page
-from harness.companion.examples import FREE_SCENE, INITIAL_SCENE, PAPER, PENDULUM
-from harness.companion.expressions import zeros
-from harness.companion.runs import Derived, derived, figure, series, simulation
-from harness.figures.partial_sums import draw_partial_sums
-from harness.figures.radius import draw_radius
-from harness.motion.series import MotionSeries, number, numbers
-from harness.simulation.result import Simulation
+from ...figures.partial_sums import draw_partial_sums
+from ...figures.radius import draw_radius
+from ...series.power_series import MotionSeries, number, numbers
+from ...simulation.result import Simulation
+from ..cards import named_equations, scene_named
+from ..chapter import Chapter, Page
+from ..examples import FREE_SCENE, INITIAL_SCENE, PAPER, PENDULUM
+from ..expressions import zeros
+from ..runs import Derived, derived, figure, series, simulation
 
 ORDER = 80
 COORDINATE = "q3"

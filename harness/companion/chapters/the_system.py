@@ -3,12 +3,12 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-from harness.companion.cards import derivation_cards, files_of
-from harness.companion.chapter import Chapter, Page
-from harness.companion.description import description
-from harness.companion.examples import CABIN, FREE_SCENE, LINKAGE, PAPER, PENDULUM
-from harness.companion.excerpts import excerpt
-from harness.companion.runs import Derived, derived
+from ..cards import derivation_cards, files_of
+from ..chapter import Chapter, Page
+from ..description import description
+from ..examples import CABIN, FREE_SCENE, LINKAGE, PAPER, PENDULUM
+from ..excerpts import excerpt
+from ..runs import Derived, derived
 
 
 def chapter(root: Path) -> Chapter:

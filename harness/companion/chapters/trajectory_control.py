@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from harness.companion.chapter import Chapter, Page
-from harness.companion.examples import BEAD, BOB, CABIN, INITIAL_SCENE, PAPER, PENDULUM, SPHERICAL_PENDULUM
-from harness.companion.excerpts import excerpt
-from harness.companion.runs import derived, free
+from ..chapter import Chapter, Page
+from ..examples import BEAD, BOB, CABIN, INITIAL_SCENE, PAPER, PENDULUM, SPHERICAL_PENDULUM
+from ..excerpts import excerpt
+from ..runs import derived, free
 
 SOURCE = "maxima/free_motion/trajectory.mac"
 FUNCTIONS = ("trajectory_control", "obstacle_to_trajectory_law", "integrated_motion", "law_along")

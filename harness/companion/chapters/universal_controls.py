@@ -4,11 +4,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from harness.companion.chapter import Chapter, Page
-from harness.companion.examples import BEAD, CABIN, INITIAL_SCENE, PAPER, PENDULUM, SPHERICAL_PENDULUM
-from harness.companion.excerpts import excerpt
-from harness.companion.runs import derived, free
-from harness.free_motion import FreeMotion
+from ...free_motion import FreeMotion
+from ..chapter import Chapter, Page
+from ..examples import BEAD, CABIN, INITIAL_SCENE, PAPER, PENDULUM, SPHERICAL_PENDULUM
+from ..excerpts import excerpt
+from ..runs import derived, free
 
 SOURCE = "maxima/free_motion/universal.mac"
 FUNCTIONS = ("universal_controls", "separated_conditions", "solved_laws", "linear_law")

@@ -8,17 +8,17 @@ from typing import Any
 
 import sympy
 
-from harness.companion.cards import Card, Instance, anchors, files_of, named_equations, scene_named, verdicts_on
-from harness.companion.chapter import Chapter, Page
-from harness.companion.examples import FREE_SCENE, INITIAL_SCENE, PAPER
-from harness.companion.excerpts import excerpt
-from harness.companion.expressions import right_side, under, zeros
-from harness.companion.runs import Derived, derived, free, printed
-from harness.companion.steps import step
-from harness.companion.words import words
-from harness.errata import PrintedEquation
-from harness.mathjson import from_sympy
-from harness.record import Equation, Relation
+from ...errata import PrintedEquation
+from ...mathjson import from_sympy
+from ...record import Equation, Relation
+from ..cards import Card, Instance, anchors, files_of, named_equations, scene_named, verdicts_on
+from ..chapter import Chapter, Page
+from ..examples import FREE_SCENE, INITIAL_SCENE, PAPER
+from ..excerpts import excerpt
+from ..explanations import words
+from ..expressions import right_side, under, zeros
+from ..runs import Derived, derived, free, printed
+from ..steps import step
 
 FIRST_NUMBER = "14"
 

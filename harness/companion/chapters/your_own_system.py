@@ -5,12 +5,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from harness.companion.chapter import Chapter, Page, Run
-from harness.companion.examples import PENDULUM
-from harness.companion.excerpts import excerpt
-from harness.companion.runs import derived
-from harness.failures import HolonomError
-from harness.maxima import run_scene
+from ...failures import HolonomError
+from ...maxima import run_scene
+from ..chapter import Chapter, Page, Run
+from ..examples import PENDULUM
+from ..excerpts import excerpt
+from ..runs import derived
 
 SCENE = "swing_scene"
 FITTING, CONTRADICTING = "y = -cos(%pi/13)", "y = -1"

@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-from harness.companion.cards import derivation_cards, files_of, missing
-from harness.companion.chapter import Chapter, Page, Run
-from harness.companion.paper import REPOSITORY
-from harness.companion.runs import Study
+from ..cards import derivation_cards, files_of, missing
+from ..chapter import Chapter, Page, Run
+from ..paper import REPOSITORY
+from ..runs import Study
 
 NUMBERS = ("2", "3a", "3", "4", "5", "6", "7", "8", "9", "11")
 

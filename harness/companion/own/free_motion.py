@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-from harness.companion.cards import derivation_cards, files_of
-from harness.companion.chapter import Chapter, Page, Run
-from harness.companion.own.scenes import scene_cards_of
-from harness.companion.paper import REPOSITORY
-from harness.companion.runs import Study
+from ..cards import derivation_cards, files_of
+from ..chapter import Chapter, Page, Run
+from ..paper import REPOSITORY
+from ..runs import Study
+from .scenes import scene_cards_of
 
 
 def chapter(prefix: str, file: Path, study: Run) -> Chapter:

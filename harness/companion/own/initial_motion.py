@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-from harness.companion.cards import files_of
-from harness.companion.chapter import Chapter, Page, Run
-from harness.companion.own.scenes import scene_cards_of
-from harness.companion.runs import Study
+from ..cards import files_of
+from ..chapter import Chapter, Page, Run
+from ..runs import Study
+from .scenes import scene_cards_of
 
 NUMBERS = ("12", "13", "18", "19")
 

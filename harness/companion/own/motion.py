@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from harness.companion.chapter import Chapter, Page, Run
-from harness.companion.motions import Motion, figures_of, motions
+from ..chapter import Chapter, Page, Run
+from ..motions import Motion, figures_of, motions
 
 
 def chapter(prefix: str, file: Path, study: Run) -> Chapter:

@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 
-from harness.companion.cards import Card, scene_cards
-from harness.companion.paper import REPOSITORY
-from harness.companion.runs import Study
+from ..cards import Card, scene_cards
+from ..paper import REPOSITORY
+from ..runs import Study
 
 
 def scene_cards_of(found: Study, numbers: Sequence[str], scene: str) -> list[Card]:

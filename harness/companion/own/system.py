@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-from harness.companion.cards import derivation_cards, files_of
-from harness.companion.chapter import Chapter, Page, Run
-from harness.companion.description import description
-from harness.companion.paper import REPOSITORY
-from harness.companion.runs import Study
+from ..cards import derivation_cards, files_of
+from ..chapter import Chapter, Page, Run
+from ..description import description
+from ..paper import REPOSITORY
+from ..runs import Study
 
 
 def chapter(prefix: str, file: Path, study: Run) -> Chapter:

@@ -7,7 +7,7 @@ from chromium import chromium, missing_programs
 from observation import keep_screenshot, observe
 from views import VIEWS
 
-from harness.companion.paper import REPOSITORY
+from holonom.companion.paper import REPOSITORY
 
 SCREENSHOTS = REPOSITORY / "build" / "screenshots"
 

@@ -1,0 +1,1 @@
+"""The benchmarks: what accuracy costs in time, and what is hard to compute."""

@@ -1,0 +1,87 @@
+"""A heavy bob on a light chain, the masses as 1 to 10^12: the light one moves by the difference of two large reactions.
+
+The truth is, of the accelerations, the equations of two masses on two rods, written down by hand and solved with many
+more digits; of the motion, that the heavy bob falls freely to within 1e-12 while the light mass bends out of its way.
+"""
+
+from itertools import product
+
+import mpmath
+import numpy as np
+from mpmath import mp, mpf, sqrt
+
+from ...simulation.advice import HardCase
+from ...simulation.matrices import Vector
+from .case import Case, Extent, Findings, found, ours, theirs
+from .digits import digits_kept
+from .scenes import problem, simulated
+from .solves import DIRECT, ORTHOGONAL, PIVOTED, TEXTBOOK, SolveAt, every_solve
+
+FILE = "hard/heavy_bob.mac"
+DIGITS = 60  # of the truth
+NEEDED = 12.0  # digits of the accelerations
+UNTIL, NEEDED_PLACES = 0.3, 10.0
+LIGHT, HEAVY, GRAVITY = mpf("1e-6"), mpf("1e6"), mpf("9.81")
+DIRECTIONS, BENDS, RATES = (
+    (-0.6, -1.4),
+    (1.0, 1e-3),
+    (0.5, -2.0),
+)  # of the upper rod, of the lower against it; rad, rad/s
+
+
+def examine(extent: Extent) -> Findings:
+    """Digits of the accelerations by each solve, against sixty-digit ones."""
+    digits = {name: worst(solve) for name, solve in every_solve(FILE).items()}
+    motion = simulated(problem(FILE), UNTIL)
+    return found(
+        theirs(TEXTBOOK, "accelerations", digits[TEXTBOOK], NEEDED),
+        theirs(DIRECT, "accelerations", digits[DIRECT], NEEDED),
+        ours(ORTHOGONAL, "accelerations", digits[ORTHOGONAL], NEEDED),
+        ours(PIVOTED, "accelerations", digits[PIVOTED], NEEDED),
+        ours(
+            motion.engine, f"places at t = {UNTIL}", digits_kept(motion.coordinates, falling(mpf(UNTIL))), NEEDED_PLACES
+        ),
+    )
+
+
+def worst(solve: SolveAt) -> float:
+    """Fewest digits that a solve keeps of the accelerations, over states of the chain."""
+    states = [hanging(*at) for at in product(DIRECTIONS, BENDS)]
+    return min(digits_kept(solve(0.0, state).accelerations, certified_accelerations(state)) for state in states)
+
+
+def falling(t: mpf) -> list[mpf]:
+    """Places of both masses, the heavy one in free fall from (1, -1), the light one at the bend of the rods."""
+    drop = 1 + GRAVITY * t**2 / 2
+    half = (1 + drop**2) / 4  # square of half of the way from the hinge to the bob
+    bend = sqrt((1 - half) / (4 * half))
+    return [mpf(1) / 2 + bend * drop, bend - drop / 2, mpf(1), -drop]
+
+
+def hanging(direction: float, bend: float) -> Vector:
+    """Places and velocities of both masses, the rods turning at their rates."""
+    upper, lower = np.exp(1j * direction), np.exp(1j * (direction + bend))
+    places = np.array([upper, upper + lower])
+    velocities = 1j * np.array([RATES[0] * upper, RATES[0] * upper + RATES[1] * lower])
+    return np.concatenate([places.view(float), velocities.view(float)])
+
+
+def certified_accelerations(state: Vector) -> list[mpf]:
+    """Accelerations x1, y1, x2, y2 from the bordered equations of two masses on two rods."""
+    with mp.workdps(DIGITS):
+        x1, y1, x2, y2, vx1, vy1, vx2, vy2 = map(mpf, map(float, state))
+        mass = mpmath.diag([LIGHT, LIGHT, HEAVY, HEAVY])
+        jacobian = mpmath.matrix([[x1, y1, 0, 0], [x1 - x2, y1 - y2, x2 - x1, y2 - y1]])
+        bordered = mpmath.zeros(6)
+        bordered[:4, :4], bordered[:4, 4:], bordered[4:, :4] = mass, -jacobian.T, jacobian
+        squares = [vx1**2 + vy1**2, (vx2 - vx1) ** 2 + (vy2 - vy1) ** 2]
+        sides = [0, -LIGHT * GRAVITY, 0, -HEAVY * GRAVITY, -squares[0], -squares[1]]
+        return list(mpmath.lu_solve(bordered, mpmath.matrix(sides)))[:4]
+
+
+CASE = Case(
+    name="mass ratio of 1e12",
+    kind=HardCase.MASS_RATIO,
+    truth="two masses on two rods, by hand with 60 digits; the heavy one in free fall",
+    examine=examine,
+)

@@ -1,0 +1,106 @@
+"""The scenes of the register, and their motions, simulated as a user would."""
+
+import re
+from collections.abc import Mapping
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from ...confined import Limits
+from ...program.motion_problem import MotionProblem, motion_problem
+from ...program.motion_program import Solve
+from ...program.request import Request
+from ...simulation.matrices import Vector
+from ...simulation.request import FINAL_STATE_ALONE, SimulationRequest
+from ...simulation.simulate import simulate
+
+ENGINES = re.compile("taylor|robust")
+EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
+
+
+class Arrived(NamedTuple):
+    """Where a simulated motion ends, and what the engine says of it.
+
+    Attributes
+    ----------
+    engine : str
+    state : ndarray, shape (2n,)
+        Coordinates, then velocities.
+    coordinates, constraint_forces : ndarray, shape (n,)
+        No constraint forces where the scene does not observe them.
+    multipliers : ndarray, shape (g,)
+    residual : float
+        Of the constraints.
+    energy_error : float
+        Its size.
+    remarks : tuple of str
+    """
+
+    engine: str
+    state: Vector
+    coordinates: Vector
+    constraint_forces: Vector
+    multipliers: Vector
+    residual: float
+    energy_error: float
+    remarks: tuple[str, ...]
+
+
+@cache
+def problem(file: str, scene: str | None = None, solve: Solve = Solve.DIRECT) -> MotionProblem:
+    """The motion of a scene among the examples.
+
+    Parameters
+    ----------
+    file : str
+        Relative to the examples.
+    scene : str, optional
+        Without it, the last one.
+    solve : Solve
+
+    Returns
+    -------
+    MotionProblem
+    """
+    return motion_problem(EXAMPLES / file, Request(scene, solve), Limits())
+
+
+def simulated(motion: MotionProblem, until: float, **asked: object) -> Arrived:
+    """Follow a motion with the default engine.
+
+    Parameters
+    ----------
+    motion : MotionProblem
+    until : float
+    **asked
+        What else a `SimulationRequest` takes.
+
+    Returns
+    -------
+    Arrived
+
+    Raises
+    ------
+    HolonomError
+        The motion cannot be followed so far.
+    """
+    simulation = simulate(motion, SimulationRequest(until=Fraction(until), samples=FINAL_STATE_ALONE, **asked))
+    report = simulation.report
+    coordinates, velocities = _numbers(report.coordinates), _numbers(report.velocities)
+    return Arrived(
+        ", ".join(dict.fromkeys(ENGINES.findall(report.engine))),
+        np.concatenate([coordinates, velocities]),
+        coordinates,
+        _numbers({name: forces[-1] for name, forces in simulation.constraint_forces.items()}),
+        _numbers(report.multipliers),
+        report.residuals["position"],
+        abs(report.energy_error),
+        report.remarks,
+    )
+
+
+def _numbers(values: Mapping[str, float]) -> Vector:
+    return np.array([float(value) for value in values.values()])

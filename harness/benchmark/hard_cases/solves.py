@@ -1,0 +1,84 @@
+"""Accelerations and multipliers at one state, by every solve on offer and by the textbook's formula.
+
+A a - J^T lambda = h,   J a = -c.
+"""
+
+from collections.abc import Callable, Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from ...program.motion_problem import MotionProblem
+from ...program.motion_program import Solve
+from ...program.numpy_function import NumpyFunction
+from ...simulation.constraints.factorization import factored_constraints, rank_of, weighted_constraints
+from ...simulation.matrices import Matrices, MotionMatrices, Vector
+from .scenes import problem
+
+TEXTBOOK, DIRECT, ORTHOGONAL, PIVOTED = "textbook formula", "direct", "orthogonal", "LAPACK, pivoted"
+
+
+class Solution(NamedTuple):
+    """Accelerations a, shape (n,), and multipliers lambda, shape (g,)."""
+
+    accelerations: Vector
+    multipliers: Vector
+
+
+SolveAt = Callable[[float, Vector], Solution]
+
+
+def every_solve(file: str, scene: str | None = None) -> Mapping[str, SolveAt]:
+    """Each way to solve a scene's equations of motion.
+
+    Parameters
+    ----------
+    file : str
+        Relative to the examples.
+    scene : str, optional
+        Without it, the last one.
+
+    Returns
+    -------
+    mapping of str to callable
+        Each takes the instant and the state of shape (2n,), coordinates and then velocities.
+    """
+    matrices = MotionMatrices(problem(file, scene))
+    return {
+        TEXTBOOK: lambda t, state: textbook(matrices(t, state)),
+        DIRECT: programmed(problem(file, scene)),
+        ORTHOGONAL: programmed(problem(file, scene, Solve.ORTHOGONAL)),
+        PIVOTED: lambda t, state: pivoted(matrices(t, state)),
+    }
+
+
+def textbook(matrices: Matrices) -> Solution:
+    """As it is printed: lambda = -G^-1 (c + J A^-1 h), a = A^-1 (h + J^T lambda), G = J A^-1 J^T."""
+    J = matrices.jacobian
+    try:
+        inverse_mass = np.linalg.inv(matrices.mass)
+        inverse_of_G = np.linalg.inv(J @ inverse_mass @ J.T)
+    except np.linalg.LinAlgError:
+        return Solution(np.full(J.shape[1], np.nan), np.full(J.shape[0], np.nan))
+    multipliers = -inverse_of_G @ (matrices.curvature + J @ inverse_mass @ matrices.force)
+    return Solution(inverse_mass @ (matrices.force + J.T @ multipliers), multipliers)
+
+
+def pivoted(matrices: Matrices) -> Solution:
+    """As the robust engine solves."""
+    weighted = weighted_constraints(matrices.mass, matrices.jacobian)
+    factored = factored_constraints(weighted, rank_of(weighted.singular_values()))
+    sides = matrices.force, matrices.curvature
+    return Solution(factored.accelerations(*sides), factored.multipliers(*sides))
+
+
+def programmed(motion: MotionProblem) -> SolveAt:
+    """As the motion program solves."""
+    evaluate, n = NumpyFunction(motion.motion), len(motion.coordinates)
+    unused = np.zeros(len(motion.multipliers))
+
+    def solve(t: float, state: Vector) -> Solution:
+        values = evaluate([t, *state, *unused])
+        return Solution(values[:n], values[n : n + len(unused)])
+
+    return solve

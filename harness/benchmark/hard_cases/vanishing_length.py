@@ -1,0 +1,50 @@
+"""A pendulum drawn in to its hinge: where its length is zero the motion has to stop, with time, place and reason."""
+
+import re
+from collections.abc import Iterator
+from math import nan
+
+from mpmath import mpf
+
+from ...failures import HolonomError
+from ...simulation.advice import HardCase, advice
+from .case import Case, Extent, Findings, Result, found, ours, required
+from .digits import digits_kept
+from .scenes import problem, simulated
+
+FILE, SCENES, UNTIL = "hard/vanishing_length.mac", ("straight_scene", "whirling_scene"), 2
+VANISHES = mpf(1)  # the instant at which the length is zero
+NEEDED = 6.0  # digits of that instant
+INSTANT = re.compile(r"t = (\d+\.?\d*)")
+ENGINE = "taylor"
+
+
+def examine(extent: Extent) -> Findings:
+    """Whether the runs stop, and when, where and why they say that they do."""
+    return found(*(result for scene in SCENES for result in results_of(scene)))
+
+
+def results_of(scene: str) -> Iterator[Result]:
+    """What the refusal to follow a scene says."""
+    said = refusal(scene)
+    instants = [float(instant) for instant in INSTANT.findall(said)] or [nan]
+    yield ours(ENGINE, f"instant of the stop, {scene}", digits_kept(instants, [VANISHES]), NEEDED)
+    yield required(ENGINE, "constraint named", "the constraint of lambda1" in said)
+    yield required(ENGINE, "reason given", advice(HardCase.VANISHING_LENGTH) in said)
+
+
+def refusal(scene: str) -> str:
+    """The sentence with which a run stops; empty where it does not."""
+    try:
+        simulated(problem(FILE, scene), UNTIL)
+    except HolonomError as error:
+        return str(error)
+    return ""
+
+
+CASE = Case(
+    name="controlled length through zero",
+    kind=HardCase.VANISHING_LENGTH,
+    truth="the length 1 - t is zero at t = 1",
+    examine=examine,
+)

@@ -1,0 +1,95 @@
+"""Plain advice from a table of measurements: the cheapest method for so many digits, and the price of one more."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from .candidates import WHOLE_MOTION, Measurement
+
+ASKED_DIGITS = (3, 6, 9, 12, 15, 30)
+FEWEST = 3  # points that a slope is drawn through
+
+
+@dataclass(frozen=True)
+class Advice:
+    """The cheapest way to so many digits; None where no method gets there."""
+
+    digits: int
+    cheapest: Measurement | None
+
+
+@dataclass(frozen=True)
+class Price:
+    """What one more digit costs.
+
+    Attributes
+    ----------
+    method : str
+    factor : float
+        By which the time grows.
+    first_digits, last_digits : float
+        Between which that was found.
+    """
+
+    method: str
+    factor: float
+    first_digits: float
+    last_digits: float
+
+
+def cheapest_methods(measurements: Sequence[Measurement]) -> Iterator[Advice]:
+    """The shortest run to the end of the motion that keeps 3, 6, 9, 12, 15, 30 digits.
+
+    Parameters
+    ----------
+    measurements : sequence of Measurement
+
+    Yields
+    ------
+    Advice
+    """
+    whole = [m for m in measurements if m.group in WHOLE_MOTION]
+    for digits in ASKED_DIGITS:
+        enough = [m for m in whole if m.error <= 10.0**-digits]
+        yield Advice(digits, min(enough, key=lambda m: m.seconds, default=None))
+
+
+def prices(measurements: Sequence[Measurement]) -> Iterator[Price]:
+    """By how much each method's time grows with every digit: least squares through log(time) against digits.
+
+    Runs whose error no longer falls with the tolerance, at the rounding errors of their numbers, are left out.
+
+    Parameters
+    ----------
+    measurements : sequence of Measurement
+
+    Yields
+    ------
+    Price
+        Of each method with enough settings.
+    """
+    for method in dict.fromkeys(m.method for m in measurements if m.group in WHOLE_MOTION):
+        falling = _falling([m for m in measurements if m.method == method and m.group in WHOLE_MOTION])
+        if len(falling) >= FEWEST:
+            digits, slope = line_of(falling)
+            yield Price(method, math.exp(slope), min(digits), max(digits))
+
+
+def line_of(measurements: Sequence[Measurement]) -> tuple[list[float], float]:
+    """Digits kept, and the slope of log(time) against them."""
+    digits = [-math.log10(m.error) for m in measurements]
+    slope, _ = np.polyfit(digits, [math.log(m.seconds) for m in measurements], 1)
+    return digits, float(slope)
+
+
+def _falling(measurements: Sequence[Measurement]) -> list[Measurement]:
+    """Those whose error is smaller than that of any before."""
+    kept: list[Measurement] = []
+    for m in measurements:
+        if 0 < m.error < (kept[-1].error if kept else math.inf):
+            kept.append(m)
+    return kept

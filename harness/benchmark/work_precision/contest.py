@@ -1,0 +1,119 @@
+"""Candidates measured side by side: each is run for its error, then all take turns for their times.
+
+A first run pays for much that the next one finds in place; it counts only where it is too long to be repeated.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from ...failures import HolonomError
+from ...program.timing import Batch, python_batch, shortest_times
+from .candidates import Candidate, Measurement, Omission, Prepared
+from .errors import relative_error
+
+if TYPE_CHECKING:
+    from .reference import Reference
+
+PATIENCE = 2.0  # seconds of a run after which a method is asked for no more
+REPEATED = 0.02  # seconds of a run up to which it is repeated: what disturbs a longer one matters less
+PASSES = 3
+
+Key = TypeVar("Key")
+Result = Measurement | Omission
+
+
+def measure(candidates: Iterable[Candidate], reference: Reference, advance: Callable[[], None]) -> list[Result]:
+    """Measure errors and times.
+
+    Parameters
+    ----------
+    candidates : iterable of Candidate
+        The settings of a method one after the other, from the least to the most demanding.
+    reference : Reference
+    advance : callable
+        Called after each candidate.
+
+    Returns
+    -------
+    list of Measurement or Omission
+        In the order of the candidates.
+    """
+    results: list[Result] = []
+    repeated: dict[int, Prepared] = {}
+    impatient: set[str] = set()
+    for candidate in candidates:
+        if candidate.method in impatient:
+            results.append(_omission(candidate, f"the setting before it took more than {PATIENCE:g} s"))
+        else:
+            result, prepared = _first_run(candidate, reference)
+            if isinstance(result, Measurement) and result.seconds > PATIENCE:
+                impatient.add(candidate.method)
+            elif isinstance(result, Measurement) and result.seconds < REPEATED:
+                repeated[len(results)] = prepared
+            results.append(result)
+        advance()
+    return _with_shortest_times(results, repeated)
+
+
+def times_in_turns(batches: Mapping[Key, Batch]) -> dict[Key, float]:
+    """Seconds of short runs: the shortest of several passes over all of them.
+
+    Parameters
+    ----------
+    batches : mapping of Batch
+
+    Returns
+    -------
+    dict of float
+    """
+    passes = [shortest_times(batches) for _ in range(PASSES)]
+    return {key: min(times[key] for times in passes) for key in batches}
+
+
+def _first_run(candidate: Candidate, reference: Reference) -> tuple[Result, Prepared | None]:
+    begun = time.perf_counter()
+    try:
+        prepared = candidate.prepare()
+        ready = time.perf_counter()
+        outcome = prepared.run()
+        seconds = time.perf_counter() - ready
+        if seconds < PATIENCE:
+            seconds = min(seconds, python_batch(_run(prepared), ())(1))
+    except HolonomError as refusal:
+        return _omission(candidate, str(refusal)), None
+    error = relative_error(prepared.state(outcome), reference.states[candidate.instant])
+    if not reference.can_tell(error):
+        return _omission(candidate, f"its error, {error:.1g}, is none that the reference can tell"), None
+    return (
+        Measurement(
+            group=candidate.group,
+            method=candidate.method,
+            setting=candidate.setting,
+            instant=candidate.instant,
+            error=error,
+            seconds=seconds,
+            preparation_seconds=ready - begun,
+            operations=prepared.operations(),
+        ),
+        prepared,
+    )
+
+
+def _with_shortest_times(results: list[Result], repeated: dict[int, Prepared]) -> list[Result]:
+    shortest = times_in_turns({index: python_batch(_run(prepared), ()) for index, prepared in repeated.items()})
+    return [
+        replace(result, seconds=min(result.seconds, shortest[index])) if index in shortest else result
+        for index, result in enumerate(results)
+    ]
+
+
+def _run(prepared: Prepared) -> Callable[[Any], Any]:
+    return lambda _: prepared.run()
+
+
+def _omission(candidate: Candidate, reason: str) -> Omission:
+    return Omission(candidate.method, candidate.setting, reason)

@@ -1,0 +1,99 @@
+"""The motion that all methods are measured against: a run with many more digits, confirmed by a second one.
+
+The two runs differ in the digits that they compute with and in the order of their expansions, which follows from the
+tolerance; neither projects.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from ...program.precision import read_precision
+from ...simulation.engines.taylor import TaylorMotion
+from ...simulation.request import Stabilization
+from .errors import State, relative_error
+from .taylor import order_of_step, state_of
+
+if TYPE_CHECKING:
+    from ...program.motion_problem import MotionProblem
+
+MORE_DIGITS = 30  # than the most precise run that is measured
+CONFIRMING_DIGITS = 18  # more than it, in the second run
+SURER = 10  # times an error must exceed what the two runs differ by
+
+
+@dataclass(frozen=True)
+class Reference:
+    """States of the motion, known to many digits.
+
+    Attributes
+    ----------
+    states : mapping of Fraction to sequence of mpf
+        Coordinates and velocities at each instant asked for.
+    digits, confirming_digits : int
+        Of the two runs.
+    order, confirming_order : int
+        Of their expansions.
+    difference : float
+        The largest relative difference of the two.
+    """
+
+    states: Mapping[Fraction, State]
+    digits: int
+    confirming_digits: int
+    order: int
+    confirming_order: int
+    difference: float
+
+    def can_tell(self, error: float) -> bool:
+        """Whether an error is larger than what the reference may be wrong by."""
+        return error > SURER * self.difference
+
+
+def find_reference(problem: MotionProblem, instants: Sequence[Fraction], digits: int) -> Reference:
+    """Follow a motion twice, with more digits than any method that is to be measured.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        Its start has `MORE_DIGITS` more than `digits`, at least.
+    instants : sequence of Fraction
+        In their order.
+    digits : int
+        Of the most precise method.
+
+    Returns
+    -------
+    Reference
+
+    Raises
+    ------
+    HolonomError
+        As `holonom.simulation.engines.taylor.TaylorMotion`.
+    """
+    fine, coarse = digits + MORE_DIGITS, digits + CONFIRMING_DIGITS
+    states, confirming = (_states(problem, instants, d) for d in (fine, coarse))
+    return Reference(
+        states=states,
+        digits=fine,
+        confirming_digits=coarse,
+        order=order_of_step(_tolerance(fine)),
+        confirming_order=order_of_step(_tolerance(coarse)),
+        difference=max(relative_error(confirming[instant], states[instant]) for instant in instants),
+    )
+
+
+def _states(problem: MotionProblem, instants: Sequence[Fraction], digits: int) -> dict[Fraction, State]:
+    numbers, states = read_precision(str(digits)), {}
+    motion = TaylorMotion(problem, _tolerance(digits), numbers, Stabilization.NONE)
+    for instant in instants:
+        motion.advance(numbers.ratio(instant))
+        states[instant] = state_of(numbers, motion.state)
+    return states
+
+
+def _tolerance(digits: int) -> float:
+    return 10.0**-digits

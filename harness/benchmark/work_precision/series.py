@@ -1,0 +1,177 @@
+"""A single expansion about the start, added up at one instant inside its radius: what each further order costs.
+
+Maxima times its own expansions, exact and to a number of digits, without the derivation of the program; the double
+precision ones are heyoka's.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import mpmath
+
+from ...maxima import run_batch
+from ...program.motion_problem import MotionProblem
+from ...program.precision import read_precision
+from ...program.request import Request, scene_argument
+from ...series.heyoka_series import InitialValueProblem, expand, expanding_integrator
+from ...series.power_series import number, numbers
+from .candidates import Candidate, Group, Measurement, Prepared
+from .errors import WORKING_DIGITS, State, relative_error
+from .operations import expansion_operations
+from .right_hand_side import acceleration_program
+
+if TYPE_CHECKING:
+    from ...confined import Limits
+    from .reference import Reference
+
+EXACT = "exact"
+ORDER_OF_RADIUS = 40  # of the expansion that the radius is estimated from
+INSIDE = 0.5  # share of the radius at which the series are added up
+ENTIRE = 1  # unit of time: where they are added up if no radius is known
+
+
+@dataclass(frozen=True)
+class Expansion:
+    """What is expanded, and where it is added up.
+
+    Attributes
+    ----------
+    problem : InitialValueProblem
+        Its program computes the accelerations alone.
+    instant : Fraction
+    """
+
+    problem: InitialValueProblem
+    instant: Fraction
+
+
+def initial_value_problem(problem: MotionProblem) -> InitialValueProblem:
+    """The accelerations of a motion as a program of t, q, dot q."""
+    program = acceleration_program(problem)
+    return InitialValueProblem(problem.title, problem.start, replace(program, inputs=("t", *problem.state)))
+
+
+def expansion_of(problem: MotionProblem, until: Fraction) -> Expansion:
+    """Choose the instant: half the radius of convergence after the start, not beyond the end of the motion.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        Without an obstacle.
+    until : Fraction
+        The last instant.
+
+    Returns
+    -------
+    Expansion
+
+    Raises
+    ------
+    HolonomError
+        The motion cannot be expanded.
+    """
+    ivp = initial_value_problem(problem)
+    radius = expand(ivp, ORDER_OF_RADIUS, read_precision("double")).radius
+    step = ENTIRE if radius.estimate is None else INSIDE * radius.estimate
+    begin = Fraction(problem.start["t"])
+    return Expansion(ivp, begin + min(Fraction(f"{step:.2g}"), until - begin))
+
+
+def double_series(expansion: Expansion, orders: Sequence[int]) -> Iterator[Candidate]:
+    """Expansions in double precision."""
+    for order in orders:
+        prepare = partial(_prepare_double, expansion, order)
+        yield Candidate(Group.SERIES, "series, double", f"order {order}", expansion.instant, prepare)
+
+
+def maxima_series(
+    file: Path,
+    request: Request,
+    limits: Limits,
+    expansion: Expansion,
+    orders: Sequence[int],
+    digits: int | str,
+    reference: Reference,
+) -> Iterator[Measurement]:
+    """Maxima's expansions, timed by Maxima.
+
+    Parameters
+    ----------
+    file : Path
+        The scene file.
+    request : Request
+    limits : Limits
+    expansion : Expansion
+    orders : sequence of int
+        Ascending.
+    digits : int or str
+        Significant digits, or ``exact``.
+    reference : Reference
+
+    Yields
+    ------
+    Measurement
+        Its operations are those of one expansion; rounded coefficients take at least two.
+
+    Raises
+    ------
+    HolonomError
+        As `holonom.maxima.run_batch`; there are no exact coefficients.
+    """
+    asked = "'exact" if digits == EXACT else str(digits)
+    arguments = f"{scene_argument(request.scene)}, {list(orders)}, {asked}"
+    call = f"lambda([file], write_series_costs(file, {arguments}))"
+    for entry in json.loads(run_batch(file, call, limits, request.settings)):
+        with mpmath.workdps(WORKING_DIGITS):
+            rows = [numbers(texts) for texts in entry["coordinates"].values()]
+            found = _added_up(rows, _step(expansion))
+        yield Measurement(
+            group=Group.SERIES,
+            method=series_name(digits),
+            setting=f"order {entry['order']}",
+            instant=expansion.instant,
+            error=relative_error(found, reference.states[expansion.instant]),
+            seconds=float(entry["seconds"]),
+            preparation_seconds=None,
+            operations=expansion_operations(expansion.problem.program, entry["order"]),
+        )
+
+
+def series_name(digits: int | str) -> str:
+    """Name of the method, given the digits of its coefficients."""
+    return f"series, {digits}" if digits == EXACT else f"series, {digits} digits"
+
+
+def _prepare_double(expansion: Expansion, order: int) -> Prepared:
+    problem = expansion.problem
+    integrator = expanding_integrator(problem, order, read_precision("double"))
+    begin, start, n = integrator.time, integrator.state.copy(), len(problem.coordinates)
+
+    def run() -> Any:
+        integrator.time = begin
+        integrator.state[:] = start
+        integrator.step(write_tc=True)
+        return integrator.tc[:n, : order + 1]
+
+    def state(coefficients: Any) -> State:
+        with mpmath.workdps(WORKING_DIGITS):
+            return _added_up([list(map(mpmath.mpf, map(float, row))) for row in coefficients], _step(expansion))
+
+    return Prepared(run, state, lambda: expansion_operations(problem.program, order))
+
+
+def _step(expansion: Expansion) -> mpmath.mpf:
+    return number(str(expansion.instant)) - number(expansion.problem.start["t"])
+
+
+def _added_up(rows: Sequence[Sequence[mpmath.mpf]], step: mpmath.mpf) -> State:
+    """Coordinates and velocities from the coefficients of the coordinates."""
+    rates = [[n * c for n, c in enumerate(row)][1:] for row in rows]
+    return [mpmath.polyval(row[::-1], step) for row in (*rows, *rates)]

@@ -1,0 +1,189 @@
+"""The whole study of one scene: every method, every setting, one reference, one document."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from pathlib import Path
+
+from ...confined import Limits
+from ...failures import Failure, HolonomError
+from ...program.motion_problem import MotionProblem, motion_problem
+from ...program.motion_program import Solve
+from ...program.precision import read_precision
+from ...program.request import Request
+from ...simulation.engines.taylor import TaylorMotion
+from ...simulation.request import Stabilization
+from ...simulation.simulate import last_instant
+from .advice import Advice, Price, cheapest_methods, prices
+from .candidates import Candidate, Measurement, Omission
+from .compilation import without_caches
+from .contest import measure
+from .machine import Machine, this_machine
+from .plan import Plan
+from .reference import MORE_DIGITS, Reference, find_reference
+from .runge_kutta import runge_kutta_ladder
+from .series import EXACT, Expansion, double_series, expansion_of, maxima_series, series_name
+from .solvers import solver_ladder
+from .taylor import drift_cures, operations_of_a_step, solve_name, taylor_ladder, taylor_name, the_two_solves
+
+SECONDS_OF_MANY_DIGITS = 5e-8  # of an operation on numbers of 50 to 130 digits, measured on the pendulum and Andrews
+
+
+@dataclass(frozen=True)
+class Study:
+    """What accuracy costs for one scene.
+
+    Attributes
+    ----------
+    scene, title : str
+    until : Fraction
+        End of the motion.
+    machine : Machine
+    reference : Reference
+    measurements : tuple of Measurement
+    omissions : tuple of Omission
+    advice : tuple of Advice
+    prices : tuple of Price
+    """
+
+    scene: str
+    title: str
+    until: Fraction
+    machine: Machine
+    reference: Reference
+    measurements: tuple[Measurement, ...]
+    omissions: tuple[Omission, ...]
+    advice: tuple[Advice, ...]
+    prices: tuple[Price, ...]
+
+
+def study(
+    file: Path, request: Request, limits: Limits, plan: Plan, advance: Callable[[], None] = lambda: None
+) -> Study:
+    """Measure what accuracy costs in time and in operations.
+
+    Parameters
+    ----------
+    file : Path
+        The scene file.
+    request : Request
+        Its solve is the one of all comparisons but that of the two solves.
+    limits : Limits
+        What Maxima may take.
+    plan : Plan
+    advance : callable
+        Called `plan.steps` times at most.
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    HolonomError
+        As `holonom.program.motion_problem.motion_problem`; the scene has no motion program or names no end.
+    """
+    problems, unsolved = _problems(file, request, limits, plan)
+    problem, until = problems[0], _end_of(problems[0], plan)
+    plan, beyond = _within_reach(plan, problem, until)
+    expansion, unexpanded = _expansion(problem, until)
+    instants = sorted({until, expansion.instant} if expansion else {until})
+    reference = find_reference(problem, instants, plan.most_digits)
+    series, unexpandable = _series(file, request, limits, expansion, plan, reference)
+    with without_caches():
+        results = measure(_candidates(problems, until, expansion, plan), reference, advance)
+    measurements = [*series, *(r for r in results if isinstance(r, Measurement))]
+    omissions = [*unsolved, *unexpanded, *unexpandable, *beyond, *(r for r in results if isinstance(r, Omission))]
+    return Study(
+        scene=problem.scene,
+        title=problem.title,
+        until=until,
+        machine=this_machine(),
+        reference=reference,
+        measurements=tuple(measurements),
+        omissions=tuple(omissions),
+        advice=tuple(cheapest_methods(measurements)),
+        prices=tuple(prices(measurements)),
+    )
+
+
+def _problems(file: Path, request: Request, limits: Limits, plan: Plan) -> tuple[list[MotionProblem], list[Omission]]:
+    """The problem with the solve that is asked for, then with the other one where that solves it."""
+    digits = plan.most_digits + MORE_DIGITS
+    problem = motion_problem(file, request, limits, digits)
+    if problem.obstacle is not None:
+        raise HolonomError(Failure.NO_MOTION_PROGRAM, file, problem.obstacle)
+    other = next(solve for solve in Solve if solve is not request.solve)
+    by_other = motion_problem(file, replace(request, solve=other), limits, digits)
+    if by_other.obstacle is not None:
+        return [problem], [Omission(solve_name(other), "all tolerances", by_other.obstacle)]
+    return [problem, by_other], []
+
+
+def _end_of(problem: MotionProblem, plan: Plan) -> Fraction:
+    """The last instant, exactly; refused where a simulation refuses it."""
+    last_instant(problem, plan.until, read_precision("double"))
+    return Fraction(problem.time_span[1]) if plan.until is None else plan.until
+
+
+def _within_reach(plan: Plan, problem: MotionProblem, until: Fraction) -> tuple[Plan, list[Omission]]:
+    """The plan without the precisions whose reference would take too long."""
+    rehearsal = TaylorMotion(problem, drift=Stabilization.NONE)
+    rehearsal.advance(float(until))
+    tolerances, beyond = dict(plan.tolerances), []
+    for precision in reversed(plan.tolerances):
+        digits = read_precision(precision).digits + MORE_DIGITS
+        operations = rehearsal.steps * operations_of_a_step(problem, 10.0**-digits)
+        seconds = SECONDS_OF_MANY_DIGITS * operations
+        if seconds <= plan.longest_reference or len(tolerances) == 1:
+            break
+        tolerances.pop(precision)
+        reason = f"its reference would take about {seconds:.2g} s, more than {plan.longest_reference:g} s"
+        beyond.append(Omission(taylor_name(precision), "all tolerances", reason))
+    return replace(plan, tolerances=tolerances), beyond
+
+
+def _expansion(problem: MotionProblem, until: Fraction) -> tuple[Expansion | None, list[Omission]]:
+    try:
+        return expansion_of(problem, until), []
+    except HolonomError as refusal:
+        return None, [Omission("series", "all orders", str(refusal))]
+
+
+def _series(
+    file: Path, request: Request, limits: Limits, expansion: Expansion | None, plan: Plan, reference: Reference
+) -> tuple[list[Measurement], list[Omission]]:
+    """Maxima's series, as far as there are any."""
+    measurements, omissions = [], []
+    for digits in (EXACT, plan.series_digits) if expansion else ():
+        try:
+            found = list(maxima_series(file, request, limits, expansion, plan.orders, digits, reference))
+        except HolonomError as refusal:
+            omissions.append(Omission(series_name(digits), "all orders", str(refusal)))
+            continue
+        for m in found:
+            if reference.can_tell(m.error):
+                measurements.append(m)
+            else:
+                omissions.append(Omission(m.method, m.setting, "its error is less than the reference can tell"))
+        omissions += [
+            Omission(series_name(digits), f"order {order}", "the order before it took too long")
+            for order in plan.orders[len(found) :]
+        ]
+    return measurements, omissions
+
+
+def _candidates(
+    problems: Sequence[MotionProblem], until: Fraction, expansion: Expansion | None, plan: Plan
+) -> Iterator[Candidate]:
+    problem = problems[0]
+    if expansion:
+        yield from double_series(expansion, plan.orders)
+    for precision, tolerances in plan.tolerances.items():
+        yield from taylor_ladder(problem, until, precision, tolerances)
+    yield from runge_kutta_ladder(problem, until, plan.solver_tolerances)
+    yield from solver_ladder(problem, until, plan.solver_tolerances)
+    yield from drift_cures(problem, until, plan.compared_tolerance)
+    yield from the_two_solves(problems, until, plan.compared_tolerance)

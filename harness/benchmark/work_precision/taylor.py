@@ -1,0 +1,116 @@
+"""The Taylor engine at work for a measurement: every run starts anew, compiled once."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...program.motion_problem import MotionProblem
+from ...program.motion_program import Solve
+from ...program.precision import Precision, read_precision
+from ...simulation.engines.taylor import TaylorMotion
+from ...simulation.request import Stabilization
+from .candidates import Candidate, Group, Prepared
+from .errors import State, numbers_of
+from .operations import expansion_operations
+from .right_hand_side import acceleration_program
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from fractions import Fraction
+
+LARGEST_UNROLLED = 130  # operations of a motion program whose fastest code compiles in about a second
+HARDWARE = ("double", "extended")  # numbers for which the way of compiling matters
+
+
+def taylor_ladder(
+    problem: MotionProblem, until: Fraction, precision: str, tolerances: Sequence[float]
+) -> Iterator[Candidate]:
+    """The Taylor engine in one precision, tolerance by tolerance.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        Without an obstacle.
+    until : Fraction
+    precision : str
+        As `holonom.program.precision.read_precision` takes it.
+    tolerances : sequence of float
+
+    Yields
+    ------
+    Candidate
+    """
+    for tol in tolerances:
+        prepare = partial(prepare_taylor, problem, until, precision, tol, Stabilization.PROJECTION)
+        yield Candidate(Group.TAYLOR, taylor_name(precision), f"tol {tol:g}", until, prepare)
+
+
+def taylor_name(precision: str) -> str:
+    """Name of the method, given its precision."""
+    return f"Taylor, {precision} digits" if precision.isdecimal() else f"Taylor, {precision}"
+
+
+def solve_name(solve: Solve) -> str:
+    """Name of the Taylor engine on the program of one solve."""
+    return f"solve: {solve}"
+
+
+def drift_cures(problem: MotionProblem, until: Fraction, tol: float) -> Iterator[Candidate]:
+    """The cures of drift at one tolerance, in double precision; arguments as of `taylor_ladder`."""
+    for drift in Stabilization:
+        prepare = partial(prepare_taylor, problem, until, "double", tol, drift)
+        yield Candidate(Group.DRIFT, f"drift: {drift}", f"tol {tol:g}", until, prepare)
+
+
+def the_two_solves(problems: Sequence[MotionProblem], until: Fraction, tol: float) -> Iterator[Candidate]:
+    """The same motion by each of its programs at one tolerance, in double precision."""
+    for problem in problems:
+        prepare = partial(prepare_taylor, problem, until, "double", tol, Stabilization.PROJECTION)
+        yield Candidate(Group.SOLVE, solve_name(problem.motion.solve), f"tol {tol:g}", until, prepare)
+
+
+def prepare_taylor(
+    problem: MotionProblem, until: Fraction, precision: str, tol: float, drift: Stabilization
+) -> Prepared:
+    """Compile the Taylor engine for one precision and tolerance."""
+    numbers = read_precision(precision)
+    motion = TaylorMotion(problem, tol, numbers, drift, compact=_compact(problem, precision))
+    begin, start, last = motion.time, np.array(motion.state), numbers.ratio(until)
+    runs = 0
+
+    def run() -> Any:
+        nonlocal runs
+        runs += 1
+        motion.restart(begin, start)
+        motion.advance(last)
+        return motion.state
+
+    def operations() -> int:
+        return motion.steps // runs * operations_of_a_step(problem, motion.tol)
+
+    return Prepared(run, partial(state_of, numbers), operations)
+
+
+def operations_of_a_step(problem: MotionProblem, tol: float) -> int:
+    """Operations of the expansion that a step takes; the cures of drift are not counted."""
+    return expansion_operations(acceleration_program(problem), order_of_step(tol))
+
+
+def order_of_step(tol: float) -> int:
+    """Order to which heyoka expands for a tolerance (Jorba & Zou, Experimental Mathematics 14 (2005) 99)."""
+    return math.ceil(1 - math.log(tol) / 2)
+
+
+def state_of(numbers: Precision, values: Any) -> State:
+    """A state in numbers of some precision, digit by digit."""
+    return numbers_of(map(numbers.text, values))
+
+
+def _compact(problem: MotionProblem, precision: str) -> bool | None:
+    """Whether compact code is compiled, once and for all; the engine's own choice beyond hardware numbers."""
+    return problem.motion.operations > LARGEST_UNROLLED if precision in HARDWARE else None

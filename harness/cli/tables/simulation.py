@@ -1,0 +1,62 @@
+"""A simulation on the console: the end of the motion, and how well it was followed to there."""
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ...simulation.result import Simulation
+
+
+@contextmanager
+def motion_progress(title: str) -> Iterator[Callable[[float], None] | None]:
+    """Show a progress bar while the block runs, on standard error if that is a terminal.
+
+    Parameters
+    ----------
+    title : str
+
+    Yields
+    ------
+    callable or None
+        Takes the fraction that is done; None in a pipe, where nothing is shown.
+    """
+    if not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import Progress
+
+    with Progress(console=Console(stderr=True), transient=True) as shown:
+        task = shown.add_task(title, total=1.0)
+        yield lambda fraction: shown.update(task, completed=fraction)
+
+
+def show_simulation(simulation: "Simulation") -> None:
+    """Print the end of a motion, and the report."""
+    from rich.table import Table
+
+    from ...simulation.document import report_document
+    from .text import make_console
+
+    console, report, document = make_console(), simulation.report, report_document(simulation.report)
+    console.print(f"{simulation.scene}: {simulation.title}, at t = {document['t']}", soft_wrap=True, markup=False)
+    table = Table("", "", show_header=False)
+    for group in ("coordinates", "velocities", "multipliers"):
+        for name, value in document[group].items():
+            table.add_row(name, str(value))
+        table.add_section()
+    console.print(table)
+    for line in _quality(report):
+        console.print(line, soft_wrap=True, markup=False)
+
+
+def _quality(report: Any) -> Iterator[str]:
+    left = ", ".join(f"{name} {value:.1e}" for name, value in report.residuals.items())
+    yield f"residuals of the constraints: {left}; condition number of G: {report.condition:.3g}"
+    yield f"energy error: {report.energy_error:.1e}"
+    yield f"{report.steps} steps by {report.engine}, in {report.precision} precision at tolerance {report.tol:.1e}"
+    code = f" {report.code} code" if report.code else ""
+    yield f"{report.compile_seconds:.3f} s to compile{code}, {report.run_seconds:.3g} s to run"
+    yield from report.remarks

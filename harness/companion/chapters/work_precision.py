@@ -1,0 +1,87 @@
+"""What accuracy costs in time, and what keeps a motion on its constraints."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from ...benchmark.work_precision.candidates import WHOLE_MOTION, Group
+from ...benchmark.work_precision.plan import Plan
+from ...benchmark.work_precision.study import Study, study
+from ...confined import Limits
+from ...figures.drift import draw_drift
+from ...figures.work_precision import draw_study
+from ...program.motion_problem import motion_problem
+from ...program.request import Request
+from ...simulation.request import SimulationRequest, Stabilization
+from ...simulation.result import Simulation
+from ...simulation.simulate import simulate
+from ..chapter import Chapter, Page, Run
+from ..examples import INITIAL_SCENE, PAPER, PENDULUM
+from ..runs import drawn
+
+SHORT_PLAN = {
+    "tolerances": {
+        "double": (1e-4, 1e-8, 1e-12, 1e-16),
+        "quadruple": (1e-16, 1e-24, 1e-32),
+        "50": (1e-30, 1e-40, 1e-50),
+    },
+    "solver_tolerances": (1e-4, 1e-8, 1e-12),
+    "orders": (10, 20, 40, 80),
+}
+SWING, TOLERANCE, UNTIL, SAMPLES = "swing_scene", 1e-6, Fraction(100), 401
+
+
+def chapter(root: Path) -> Chapter:
+    """The chapter, with the systems under a root."""
+
+    def page(results: Mapping[str, Any]) -> Page:
+        measured, motions = results["study"], results["drift"]
+        return Page(
+            {
+                "study": measured,
+                "rows": [each for each in measured.measurements if each.group in WHOLE_MOTION],
+                "series": [each for each in measured.measurements if each.group is Group.SERIES],
+                "solves": [each for each in measured.measurements if each.group is Group.SOLVE],
+                "tolerance": TOLERANCE,
+                "worst": {
+                    cure: {
+                        "constraints": max(found.residuals["position"]),
+                        "energy": max(abs(found.energy["energy_error"])),
+                    }
+                    for cure, found in motions.items()
+                },
+                "pendulum": motions[Stabilization.NONE],
+            },
+            figures={
+                "accuracy": drawn(lambda file: draw_study(measured, file)),
+                "drift": draw_drift(motions),
+            },
+        )
+
+    return Chapter(
+        slug="accuracy",
+        title="What accuracy costs in time",
+        aim="How many digits which method keeps, what each further one takes, and how constraints are kept.",
+        template="accuracy.html",
+        runs={
+            "study": Run(short_study, (root / PAPER, INITIAL_SCENE)),
+            "drift": Run(drifting, (root / PENDULUM, SWING)),
+        },
+        page=page,
+    )
+
+
+def short_study(file: Path, scene: str) -> Study:
+    """The study of `holonom accuracy`, with fewer settings."""
+    return study(file, Request(scene), Limits(), Plan(**SHORT_PLAN))
+
+
+def drifting(file: Path, scene: str) -> dict[Stabilization, Simulation]:
+    """A motion at a coarse tolerance, under each cure of drift."""
+    problem = replace(motion_problem(file, Request(scene), Limits()), observe=("trajectory", "energy", "residuals"))
+    return {
+        cure: simulate(problem, SimulationRequest(tol=TOLERANCE, drift=cure, until=UNTIL, samples=SAMPLES))
+        for cure in Stabilization
+    }

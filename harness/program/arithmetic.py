@@ -1,0 +1,75 @@
+"""One walk over expressions for every target: numbers, C text, Python syntax trees, heyoka expressions.
+
+A target is an arithmetic, that is what a number, a constant and each operation become in it.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Generic, TypeVar
+
+from .motion_program import Atom, Call, Constant, Expression, Name, Operation, Program
+
+Value = TypeVar("Value")
+
+
+@dataclass(frozen=True)
+class Arithmetic(Generic[Value]):
+    """What the parts of an expression become.
+
+    Attributes
+    ----------
+    number : callable
+        Takes a Fraction.
+    constants : mapping of Constant
+    power : callable
+        Takes the base's value and a rational exponent.
+    operations : mapping of Operation to callable
+        Each takes the values of the arguments. ``POWER`` is the one with an exponent that is no number.
+    """
+
+    number: Callable[[Fraction], Value]
+    constants: Mapping[Constant, Value]
+    power: Callable[[Value, Fraction], Value]
+    operations: Mapping[Operation, Callable[..., Value]]
+
+    def value(self, expression: Expression, names: Mapping[str, Value]) -> Value:
+        """What an expression becomes, given what its names have become."""
+        match expression:
+            case Call(Operation.POWER, (base, Fraction() as exponent)):
+                return self.power(self.value(base, names), exponent)
+            case Call(operation, arguments):
+                return self.operations[operation](*(self.value(argument, names) for argument in arguments))
+            case atom:
+                return self.atom(atom, names)
+
+    def atom(self, atom: Atom, names: Mapping[str, Value]) -> Value:
+        """What a name, a number or a constant becomes."""
+        match atom:
+            case Name(text):
+                return names[text]
+            case Constant():
+                return self.constants[atom]
+            case number:
+                return self.number(number)
+
+
+def run_program(program: Program, inputs: Mapping[str, Value], arithmetic: Arithmetic[Value]) -> dict[str, Value]:
+    """Carry a program out, assignment by assignment.
+
+    Parameters
+    ----------
+    program : Program
+    inputs : mapping
+        A value for each of the program's inputs.
+    arithmetic : Arithmetic
+
+    Returns
+    -------
+    dict
+        Value of each output, in the program's order.
+    """
+    names = dict(inputs)
+    for name, expression in program.assignments:
+        names[name] = arithmetic.value(expression, names)
+    return {output: arithmetic.atom(atom, names) for output, atom in program.outputs.items()}

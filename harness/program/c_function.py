@@ -1,0 +1,131 @@
+"""A motion program compiled by the system's C compiler."""
+
+import ctypes
+import os
+import shlex
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..failures import Failure, HolonomError
+from .c_source import c_source
+from .motion_program import Program
+
+COMPILERS = ("cc", "gcc", "clang")
+# Not less than -O2: below it GCC leaves the upper halves of vector registers in use, and code without AVX that runs
+# afterwards waits for them again and again; GSL took 2 to 8 times as long.
+OPTIONS = ("-std=c99", "-O2", "-ffp-contract=fast", "-march=native", "-shared", "-fPIC")
+SHOWN = 200  # characters of what the compiler says
+POINTERS = (ctypes.c_void_p, ctypes.c_void_p)
+
+
+class CFunction:
+    """A motion program in a shared object.
+
+    Parameters
+    ----------
+    program : Program
+    library : ctypes.CDLL
+        Holds ``motion`` and ``motion_batch``.
+    """
+
+    def __init__(self, program: Program, library: ctypes.CDLL) -> None:
+        self.inputs = program.inputs
+        self.outputs = tuple(program.outputs)
+        self.one, self.many = library.motion, library.motion_batch
+        self.one.argtypes, self.one.restype = POINTERS, None
+        self.many.argtypes, self.many.restype = (ctypes.c_size_t, *POINTERS), None
+
+    def __call__(self, inputs: ArrayLike) -> NDArray[np.float64]:
+        """Evaluate the program.
+
+        Parameters
+        ----------
+        inputs : array_like, shape (inputs,) or (inputs, points)
+
+        Returns
+        -------
+        ndarray, shape (outputs,) or (outputs, points)
+            Where the program's pivots vanish, infinities and nans.
+
+        Raises
+        ------
+        ValueError
+            The inputs have another shape.
+        """
+        given = np.ascontiguousarray(inputs, dtype=float)
+        if given.ndim not in (1, 2) or len(given) != len(self.inputs):
+            raise ValueError(f"shape ({len(self.inputs)},) or ({len(self.inputs)}, points) needed, not {given.shape}")
+        result = np.empty((len(self.outputs), *given.shape[1:]))
+        if given.ndim == 1:
+            self.one(given.ctypes.data, result.ctypes.data)
+        else:
+            self.many(given.shape[1], given.ctypes.data, result.ctypes.data)
+        return result
+
+
+def compile_c(program: Program) -> CFunction:
+    """Compile a program with the system's C compiler and load it.
+
+    Parameters
+    ----------
+    program : Program
+
+    Returns
+    -------
+    CFunction
+
+    Raises
+    ------
+    HolonomError
+        There is no C compiler, or it refuses the source.
+    """
+    return CFunction(program, load_c(c_source(program)))
+
+
+def load_c(source: str, *options: str) -> ctypes.CDLL:
+    """Compile C99 source into a shared object in a private directory, and load it.
+
+    Parameters
+    ----------
+    source : str
+    options : str
+        What else the compiler is told: where headers and libraries are.
+
+    Returns
+    -------
+    ctypes.CDLL
+        It stays usable when the directory is gone.
+
+    Raises
+    ------
+    HolonomError
+        As `compile_c`.
+    """
+    compiler = _compiler()
+    with tempfile.TemporaryDirectory(prefix="holonom-") as directory:
+        source_file, library = Path(directory, "motion.c"), Path(directory, "motion.so")
+        source_file.write_text(source, encoding="utf-8")
+        command = [*compiler, *OPTIONS, str(source_file), "-o", str(library), *options, "-lm"]
+        finished = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
+        if finished.returncode != 0:
+            said = " ".join(finished.stderr.split())
+            raise HolonomError(Failure.COMPILER_REFUSED, detail=said[:SHOWN])
+        return ctypes.CDLL(str(library))
+
+
+def _compiler() -> list[str]:
+    """The compiler's command: what CC says, or the first that is installed."""
+    if named := os.environ.get("CC"):
+        command = shlex.split(named)
+        found = shutil.which(command[0])
+    else:
+        command = [""]
+        found = next(filter(None, map(shutil.which, COMPILERS)), None)
+    if found is None:
+        raise HolonomError(Failure.COMPILER_MISSING)
+    return [found, *command[1:]]

@@ -1,0 +1,403 @@
+"""A scene's model as a library in C11: a source, a header, a CMakeLists.txt and a driver of ten lines.
+
+Every public name begins with the library's, so that several of them link into one program. Vectors are arrays whose
+indices the header enumerates; ``u`` holds the controls, then their rates, then their second rates.
+"""
+
+import re
+import unicodedata
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from textwrap import fill, indent
+
+from ..failures import Failure, HolonomError
+from .c_source import HELPERS, IDENTIFIER, MANY, ONE, comment_text, lanes_support, statements, title_of
+from .model import Model
+from .motion_problem import computing
+from .motion_program import Program
+
+UNKNOWN = "NAN"  # what has no value
+
+HEADER = """\
+/* {title}
+
+{explanation}
+*/
+
+#ifndef {NAME}_H
+#define {NAME}_H
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {{
+#endif
+
+{enumerations}
+
+/* Names, each list ended by NULL. */
+extern const char *const {name}_coordinates[];
+extern const char *const {name}_multipliers[];
+extern const char *const {name}_controls[];
+extern const char *const {name}_parameters[];
+
+/* The scene's start: instant, coordinates, velocities; NAN where they depend on a parameter without value. */
+void {name}_start(double *t, double *q, double *v);
+
+/* The scene's values of the parameters; NAN for those to which it gives none. */
+void {name}_values(double *p);
+
+/* The control law with its rates: {law}. Other controls are left as they are. */
+void {name}_law(double t, const double *p, double *u);
+
+/* Accelerations a and multipliers lambda; infinite or NAN where a pivot vanishes. */
+void {name}_motion(double t, const double *q, const double *v, const double *u, const double *p,
+    double *a, double *lambda);
+
+/* The same for many points: number k of point i stands at [k*points + i]. */
+void {name}_motion_batch(size_t points, const double *t, const double *q, const double *v, const double *u,
+    const double *p, double *a, double *lambda);
+
+/* Residuals f of the constraints and their rates df/dt. */
+void {name}_residual(double t, const double *q, const double *v, const double *u, const double *p,
+    double *f, double *rate);
+
+/* Constraint Jacobian df/dq, row by row: J[beta*{NAME}_COORDINATES + s]. */
+void {name}_jacobian(double t, const double *q, const double *v, const double *u, const double *p, double *J);
+
+/* Project a state in place onto position and velocity constraints, in the mass metric. Returns 0; or 1 where Newton's
+   method does not converge, and then the state is left as it was. */
+int {name}_project(double t, double *q, double *v, const double *u, const double *p);
+
+#ifdef __cplusplus
+}}
+#endif
+
+#endif
+"""
+
+SOURCE = """\
+/* {title} */
+
+#include "{name}.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+{helpers}
+
+{names}
+
+void {name}_start(double *t, double *q, double *v)
+{{
+{start}
+}}
+
+void {name}_values(double *p)
+{{
+{values}
+}}
+
+void {name}_law(double t, const double *p, double *u)
+{{
+{law}
+}}
+
+/* {operations} operations */
+void {name}_motion(double t, const double *q, const double *v, const double *u, const double *p,
+    double *a, double *lambda)
+{{
+{motion}
+}}
+
+{lanes}
+void {name}_motion_batch(size_t points, const double *t, const double *q, const double *v, const double *u,
+    const double *p, double *a, double *lambda)
+{{
+    size_t i = 0;
+    for (; i + LANES <= points; i += LANES) {{
+{many}
+    }}
+    for (; i < points; i++) {{
+        double qi[{n} + 1], vi[{n} + 1], ui[3*{m} + 1], pi[{k} + 1], ai[{n} + 1], li[{g} + 1];
+        for (int j = 0; j < {n}; j++) qi[j] = q[j*points + i], vi[j] = v[j*points + i];
+        for (int j = 0; j < 3*{m}; j++) ui[j] = u[j*points + i];
+        for (int j = 0; j < {k}; j++) pi[j] = p[j*points + i];
+        {name}_motion(t[i], qi, vi, ui, pi, ai, li);
+        for (int j = 0; j < {n}; j++) a[j*points + i] = ai[j];
+        for (int j = 0; j < {g}; j++) lambda[j*points + i] = li[j];
+    }}
+}}
+
+void {name}_residual(double t, const double *q, const double *v, const double *u, const double *p,
+    double *f, double *rate)
+{{
+{residual}
+}}
+
+void {name}_jacobian(double t, const double *q, const double *v, const double *u, const double *p, double *J)
+{{
+{jacobian}
+}}
+
+static void corrections(double t, const double *q, const double *v, const double *u, const double *p,
+    double *dq, double *dv)
+{{
+{corrections}
+}}
+
+static double size_of(const double *x)
+{{
+    double squares = 0;
+    for (int s = 0; s < {n}; s++) squares += x[s]*x[s];
+    return sqrt(squares);
+}}
+
+int {name}_project(double t, double *q, double *v, const double *u, const double *p)
+{{
+    double x[{n}], dq[{n}], dv[{n}], step = INFINITY;
+    memcpy(x, q, sizeof x);
+    corrections(t, x, v, u, p, dq, dv);
+    for (double next = size_of(dq); next < step/2; next = size_of(dq)) {{ /* until steps are rounding */
+        step = next;
+        for (int s = 0; s < {n}; s++) x[s] += dq[s];
+        corrections(t, x, v, u, p, dq, dv);
+    }}
+    if (!(step <= sqrt(DBL_EPSILON)*size_of(x)) || !isfinite(size_of(dv))) return 1;
+    for (int s = 0; s < {n}; s++) q[s] = x[s], v[s] += dv[s];
+    return 0;
+}}
+"""
+
+DRIVER = """\
+#include <stdio.h>
+#include "{name}.h"
+
+int main(void)
+{{
+    double t, q[{NAME}_COORDINATES], v[{NAME}_COORDINATES], a[{NAME}_COORDINATES];
+    double lambda[{NAME}_MULTIPLIERS + 1], p[{NAME}_PARAMETERS + 1], u[3*{NAME}_CONTROLS + 1] = {{0}};
+    {name}_start(&t, q, v);
+    {name}_values(p);
+    {name}_law(t, p, u);
+    {name}_motion(t, q, v, u, p, a, lambda);
+    for (int s = 0; s < {NAME}_COORDINATES; s++) printf("ddot(%s) = %.17g\\n", {name}_coordinates[s], a[s]);
+    for (int b = 0; b < {NAME}_MULTIPLIERS; b++) printf("%s = %.17g\\n", {name}_multipliers[b], lambda[b]);
+    return 0;
+}}
+"""
+
+CMAKE = """\
+cmake_minimum_required(VERSION 3.13)
+project({name} C)
+
+set(CMAKE_C_STANDARD 11)
+add_library({name} {name}.c)
+target_include_directories({name} PUBLIC ${{CMAKE_CURRENT_SOURCE_DIR}})
+if(UNIX)
+  target_link_libraries({name} PUBLIC m)
+endif()
+
+add_executable({name}_driver {name}_driver.c)
+target_link_libraries({name}_driver PRIVATE {name})
+"""
+
+
+def c_library(model: Model, name: str) -> dict[str, str]:
+    """Write a model as a library in C11.
+
+    Parameters
+    ----------
+    model : Model
+    name : str
+        The library's, with which every public name begins.
+
+    Returns
+    -------
+    dict of str to str
+        The text of each file by its name: NAME.h, NAME.c, NAME_driver.c, CMakeLists.txt.
+
+    Raises
+    ------
+    HolonomError
+        The name cannot name a C function.
+    """
+    if not IDENTIFIER.fullmatch(name):
+        raise HolonomError(Failure.NOT_AN_IDENTIFIER, detail=name)
+    written = {"name": name, "NAME": name.upper(), "title": comment_text(f"{model.system}: {model.title}")}
+    return {
+        f"{name}.h": HEADER.format(
+            **written,
+            explanation=comment_text_of(explanation(model)),
+            enumerations="\n".join(_enumerations(model, name.upper())),
+            law=comment_text(", ".join(model.under_law) or "the scene has none"),
+        ),
+        f"{name}.c": _source(model, written),
+        f"{name}_driver.c": DRIVER.format(**written),
+        "CMakeLists.txt": CMAKE.format(**written),
+    }
+
+
+def default_name(scene_file: Path) -> str:
+    """The name of a scene file as one for C."""
+    name = identifiers([scene_file.stem])[0]
+    return name if IDENTIFIER.fullmatch(name) else f"scene_{name}"
+
+
+def explanation(model: Model) -> str:
+    """What is an input and what is not, in a paragraph."""
+    inputs = [
+        f"the controls {', '.join(model.controls)}, each with its rate and second rate" if model.controls else "",
+        f"the parameters {', '.join(model.parameters)}" if model.parameters else "",
+    ]
+    given = " and ".join(filter(None, inputs)) or "none"
+    return f"{title_of(model.motion)}. Inputs beside t, q and v: {given}. All else has the scene's values."
+
+
+def comment_text_of(paragraph: str) -> str:
+    """A paragraph as lines of a comment."""
+    return fill(comment_text(paragraph), 112, initial_indent="   ", subsequent_indent="   ")
+
+
+def _enumerations(model: Model, prefix: str) -> Iterator[str]:
+    groups = {
+        "COORDINATE": model.coordinates,
+        "MULTIPLIER": model.multipliers,
+        "CONTROL": model.controls,
+        "PARAMETER": model.parameters,
+    }
+    for group, names in groups.items():
+        members = [f"{prefix}_{group}_{identifier}" for identifier in identifiers(names)]
+        yield f"enum {{ {', '.join([*members, f'{prefix}_{group}S'])} }};"
+
+
+def identifiers(names: Sequence[str]) -> list[str]:
+    """Names as ends of C identifiers, each another: letters keep their case, what C does not know becomes ``_``."""
+    found: list[str] = []
+    for name in names:
+        plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
+        identifier = re.sub(r"\W", "_", plain)
+        while identifier in found or not identifier:
+            identifier += "_"
+        found.append(identifier)
+    return found
+
+
+def _source(model: Model, written: Mapping[str, str]) -> str:
+    many = "\n".join(
+        statements(
+            model.motion,
+            MANY,
+            [f"lanes_at({place})" for place in _places(model, "{array} + {index}*points + i", "t + i")],
+            [f"put_lanes({place}, {{value}});" for place in _results(model, "{array} + {index}*points + i")],
+        )
+    )
+    one = partial(_function, inputs=_places(model, "{array}[{index}]", "t"))
+    corrections = {
+        f"{kind}_correction[{s}]": f"{array}[{s - 1}]"
+        for kind, array in (("position", "dq"), ("velocity", "dv"))
+        for s in range(1, len(model.coordinates) + 1)
+    }
+    return SOURCE.format(
+        **written,
+        helpers=HELPERS,
+        names="\n".join(_names(model, written["name"])),
+        start=_body(_start(model), "t q v"),
+        values=_body((f"p[{i}] = {model.values.get(p, UNKNOWN)};" for i, p in enumerate(model.parameters)), "p"),
+        law=_law(model),
+        operations=model.motion.operations,
+        motion=one(model.motion, _results(model, "{array}[{index}]"), "t q v u p a lambda"),
+        lanes=lanes_support(many),
+        many=indent(many, " " * 8),
+        n=len(model.coordinates),
+        m=len(model.controls),
+        k=len(model.parameters),
+        g=len(model.multipliers),
+        residual=_residual(model, one),
+        jacobian=_jacobian(model, one),
+        corrections=one(model.projection, [corrections[name] for name in model.projection.outputs], "t q v u p dq dv"),
+    )
+
+
+def _function(program: Program, results: Iterable[str], parameters: str, inputs: Sequence[str]) -> str:
+    """Body of a function that computes a program's outputs into the places given."""
+    return _body(statements(program, ONE, inputs, [f"{place} = {{value}};" for place in results]), parameters)
+
+
+def _body(lines: Iterable[str], parameters: str) -> str:
+    """Statements, after those that make compilers accept a parameter without use."""
+    text = "\n".join(lines)
+    unused = [name for name in parameters.split() if not re.search(rf"\b{name}\b", text)]
+    return indent("\n".join([*(f"(void)({name});" for name in unused), text]), " " * 4).rstrip()
+
+
+def _places(model: Model, item: str, instant: str) -> list[str]:
+    """Where the inputs of the model's programs stand, in their order."""
+    lengths = {"q": len(model.coordinates), "v": len(model.coordinates), "u": 3 * len(model.controls)}
+    lengths["p"] = len(model.parameters)
+    return [instant, *(item.format(array=array, index=i) for array, length in lengths.items() for i in range(length))]
+
+
+def _results(model: Model, item: str) -> list[str]:
+    """Where the outputs of the motion program go, in their order."""
+    lengths = {"a": len(model.coordinates), "lambda": len(model.multipliers)}
+    return [item.format(array=array, index=i) for array, length in lengths.items() for i in range(length)]
+
+
+def _names(model: Model, name: str) -> Iterator[str]:
+    for group in ("coordinates", "multipliers", "controls", "parameters"):
+        members = ", ".join([*map(c_string, getattr(model, group)), "NULL"])
+        yield f"const char *const {name}_{group}[] = {{{members}}};"
+
+
+def c_string(text: str) -> str:
+    """A string literal of C that holds the text as UTF-8."""
+    plain = "".join(
+        chr(byte) if 32 <= byte < 127 and byte not in b'"\\?' else f"\\{byte:03o}" for byte in text.encode()
+    )
+    return f'"{plain}"'
+
+
+def _start(model: Model) -> Iterator[str]:
+    def value(name: str) -> str:
+        return UNKNOWN if model.start is None else model.start[name]
+
+    yield f"*t = {value('t')};"
+    yield from (f"q[{s}] = {value(name)};" for s, name in enumerate(model.coordinates))
+    yield from (f"v[{s}] = {value(f'dot({name})')};" for s, name in enumerate(model.coordinates))
+
+
+def _law(model: Model) -> str:
+    if model.law is None:
+        return _body((), "t p u")
+    inputs = ["t", *(f"p[{index}]" for index in range(len(model.parameters)))]
+    histories = ("{}", "dot({})", "ddot({})")
+    indices = {
+        history.format(name): f"u[{k * len(model.controls) + index}]"
+        for index, name in enumerate(model.controls)
+        for k, history in enumerate(histories)
+    }
+    return _function(model.law, [indices[name] for name in model.law.outputs], "t p u", inputs)
+
+
+def _residual(model: Model, function: Callable[..., str]) -> str:
+    parameters = "t q v u p f rate"
+    if model.constraints is None:
+        return _body((), parameters)
+    g = range(1, len(model.multipliers) + 1)
+    places = {f"residual[{b}]": f"f[{b - 1}]" for b in g} | {f"residual_rate[{b}]": f"rate[{b - 1}]" for b in g}
+    program = computing(model.constraints, places)
+    return function(program, [places[name] for name in program.outputs], parameters)
+
+
+def _jacobian(model: Model, function: Callable[..., str]) -> str:
+    parameters = "t q v u p J"
+    if model.constraints is None:
+        return _body((), parameters)
+    n, g = len(model.coordinates), len(model.multipliers)
+    places = {f"J[{b},{s}]": f"J[{(b - 1) * n + s - 1}]" for b in range(1, g + 1) for s in range(1, n + 1)}
+    program = computing(model.constraints, places)
+    zeros = [f"    {place} = 0;" for name, place in places.items() if name not in program.outputs]
+    return "\n".join([function(program, [places[name] for name in program.outputs], parameters), *zeros])

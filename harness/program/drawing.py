@@ -1,0 +1,59 @@
+"""How a system looks: shapes in a plane, their numbers a program of the time and the coordinates.
+
+`maxima/drawing.mac` says which shapes there are, and what they are made of.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .motion_program import Program
+from .numpy_function import NumpyFunction
+
+
+class Shape(StrEnum):
+    """A shape of a drawing."""
+
+    POINT = "point"
+    SEGMENT = "segment"
+    POLYLINE = "polyline"
+    CIRCLE = "circle"
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """How a system looks.
+
+    Attributes
+    ----------
+    shapes : tuple of Shape
+    program : Program
+        Of t, the coordinates and more; ``drawing[i,k]`` is the k-th number of the i-th shape, indices from 1.
+    """
+
+    shapes: tuple[Shape, ...]
+    program: Program
+
+    def numbers(self, instants: NDArray, coordinates: Mapping[str, NDArray]) -> list[NDArray[np.float64]]:
+        """The numbers of each shape along a motion.
+
+        Parameters
+        ----------
+        instants : ndarray, shape (k,)
+        coordinates : mapping of str to ndarray of shape (k,)
+
+        Returns
+        -------
+        list of ndarray, shape (k, numbers of the shape)
+            x and y of its places in their order, then, of a circle, the radius.
+        """
+        known = {"t": instants, **coordinates}
+        given = [np.asarray(known.get(name, 0.0), dtype=float) for name in self.program.inputs]
+        found = dict(zip(self.program.outputs, NumpyFunction(self.program)(given), strict=True))
+        return [
+            np.column_stack([values for name, values in found.items() if name.startswith(f"drawing[{place},")])
+            for place in range(1, len(self.shapes) + 1)
+        ]

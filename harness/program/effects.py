@@ -1,0 +1,234 @@
+"""What a scene pays for: the terms of (3) and (7) and the effects, with the operations and the time that each takes.
+
+A term costs what a program of that term alone takes. An effect costs what the scene's program takes more than the one
+without it; left out, what it would take more with it. A cost may be negative: without an effect another order of
+elimination may be needed.
+"""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cache
+from itertools import count
+from pathlib import Path
+
+import jsonschema
+import numpy as np
+
+from ..failures import Failure, HolonomError
+from .c_function import compile_c
+from .motion_program import Program, program_of
+from .numpy_function import NumpyFunction
+from .timing import Batch, Timer, python_batch, shortest_times
+
+SCHEMA = Path(__file__).parents[1] / "schemas" / "effects.json"
+SHOWN = 60  # characters of what is wrong that a refusal shows
+GOLDEN = 0.6180339887498949  # its multiples are spread evenly over the fractions and satisfy no short relation
+ATTEMPTS = 50  # points tried in search of one where the program's values are finite
+
+
+class Status(StrEnum):
+    """Whether a scene has a term or an effect, and if not, why."""
+
+    PRESENT = "present"
+    ABSENT_BY_CHOICE = "absent by choice"
+    ABSENT_BY_STRUCTURE = "absent by structure"
+
+
+class Measure(StrEnum):
+    """What the programs were compiled to before their times were measured."""
+
+    C = "C"
+    NUMPY = "NumPy"
+
+
+@dataclass(frozen=True)
+class Term:
+    """A term of one of the paper's equations.
+
+    Attributes
+    ----------
+    equation, name : str
+    program : Program or None
+        It computes the term for every s, or beta; None where the term is identically zero.
+    """
+
+    equation: str
+    name: str
+    program: Program | None
+
+
+@dataclass(frozen=True)
+class Effect:
+    """An effect of the system.
+
+    Attributes
+    ----------
+    name : str
+    called : bool
+        Whether the scene calls for it.
+    otherwise : Program or None
+        The program of the scene that differs in this effect alone; None where that scene cannot be solved.
+    """
+
+    name: str
+    called: bool
+    otherwise: Program | None
+
+
+@dataclass(frozen=True)
+class Costs:
+    """The programs by which a scene's costs are found."""
+
+    program: Program
+    terms: tuple[Term, ...]
+    effects: tuple[Effect, ...]
+
+
+@dataclass(frozen=True)
+class TermCost:
+    """What a term costs: nothing where it is absent."""
+
+    equation: str
+    term: str
+    status: Status
+    operations: int
+    seconds: float
+
+
+@dataclass(frozen=True)
+class EffectCost:
+    """What an effect adds, or would add; None where nothing can be solved without it, or with it."""
+
+    name: str
+    status: Status
+    operations: int | None
+    seconds: float | None
+
+
+@dataclass(frozen=True)
+class MeasuredCosts:
+    """What a scene pays for, in operations and in time for one evaluation."""
+
+    scene: str | None
+    operations: int
+    seconds_per_evaluation: float
+    measured_in: Measure
+    terms: tuple[TermCost, ...]
+    effects: tuple[EffectCost, ...]
+
+
+def read_costs(text: str) -> Costs:
+    """Read the document of what a scene pays for.
+
+    Parameters
+    ----------
+    text : str
+        JSON, as Maxima writes it.
+
+    Returns
+    -------
+    Costs
+
+    Raises
+    ------
+    HolonomError
+        The text is not such a document, or one of its programs is none.
+    """
+    try:
+        document = json.loads(text)
+        _validator().validate(document)
+    except (ValueError, RecursionError) as error:
+        raise HolonomError(Failure.NOT_COSTS, detail=str(error)) from None
+    except jsonschema.ValidationError as error:
+        raise HolonomError(Failure.NOT_COSTS, detail=f"{error.json_path}: {error.message[:SHOWN]}") from None
+    return Costs(
+        program_of(document["program"]),
+        tuple(Term(t["equation"], t["term"], _program_if_any(t["program"])) for t in document["terms"]),
+        tuple(Effect(e["name"], e["called"], _program_if_any(e["otherwise"])) for e in document["effects"]),
+    )
+
+
+def measure_costs(costs: Costs) -> MeasuredCosts:
+    """Count the operations of a scene's programs and measure their times, at one regular point.
+
+    Parameters
+    ----------
+    costs : Costs
+
+    Returns
+    -------
+    MeasuredCosts
+        Times are those of compiled C, or of NumPy where there is no C compiler.
+
+    Raises
+    ------
+    HolonomError
+        The C compiler refuses a program.
+    """
+    programs = [costs.program, *(part.program for part in costs.terms if part.program is not None)]
+    programs += [effect.otherwise for effect in costs.effects if effect.otherwise is not None]
+    point = _regular_point(costs.program, dict.fromkeys(name for program in programs for name in program.inputs))
+    measured_in, batches = _batches(programs, point)
+    seconds = shortest_times(dict(zip(map(id, programs), batches, strict=True)))
+    return MeasuredCosts(
+        costs.program.scene,
+        costs.program.operations,
+        seconds[id(costs.program)],
+        measured_in,
+        tuple(_term_cost(term, seconds) for term in costs.terms),
+        tuple(_effect_cost(effect, costs.program, seconds) for effect in costs.effects),
+    )
+
+
+def _term_cost(term: Term, seconds: Mapping[int, float]) -> TermCost:
+    if term.program is None:
+        return TermCost(term.equation, term.name, Status.ABSENT_BY_STRUCTURE, 0, 0.0)
+    return TermCost(term.equation, term.name, Status.PRESENT, term.program.operations, seconds[id(term.program)])
+
+
+def _effect_cost(effect: Effect, whole: Program, seconds: Mapping[int, float]) -> EffectCost:
+    status = Status.PRESENT if effect.called else Status.ABSENT_BY_CHOICE
+    if effect.otherwise is None:
+        return EffectCost(effect.name, status, None, None)
+    more, less = (whole, effect.otherwise) if effect.called else (effect.otherwise, whole)
+    return EffectCost(effect.name, status, more.operations - less.operations, seconds[id(more)] - seconds[id(less)])
+
+
+def _batches(programs: Sequence[Program], point: Mapping[str, float]) -> tuple[Measure, list[Batch]]:
+    given = [np.array([point[name] for name in program.inputs]) for program in programs]
+    try:
+        timer = Timer()
+    except HolonomError as error:
+        if error.failure is not Failure.COMPILER_MISSING:
+            raise
+        return Measure.NUMPY, list(map(python_batch, map(NumpyFunction, programs), given))
+    with ThreadPoolExecutor() as compilers:
+        return Measure.C, list(map(timer.evaluation, compilers.map(compile_c, programs), given))
+
+
+def _regular_point(program: Program, names: Mapping[str, None]) -> dict[str, float]:
+    """The first point of a sequence without symmetry where the program's values are finite."""
+    evaluate = NumpyFunction(program)
+    for point in _points(names):
+        with np.errstate(all="ignore"):
+            if np.all(np.isfinite(evaluate([point[name] for name in program.inputs]))):
+                break
+    return point
+
+
+def _points(names: Mapping[str, None]) -> Iterator[dict[str, float]]:
+    places = count(1)
+    for _ in range(ATTEMPTS):
+        yield {name: 0.5 + GOLDEN * place % 1 for name, place in zip(names, places, strict=False)}
+
+
+def _program_if_any(document: object) -> Program | None:
+    return None if document is None else program_of(document)
+
+
+@cache
+def _validator() -> jsonschema.Draft202012Validator:
+    return jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8")))

@@ -1,0 +1,226 @@
+"""A motion program in heyoka: its expressions, functions compiled from them, the dynamics for its integrators.
+
+A value used twice is one expression object used twice, so that heyoka finds again what the program shares.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from fractions import Fraction
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..failures import Failure, HolonomError
+from .arithmetic import Arithmetic, run_program
+from .motion_program import Constant, Operation, Program
+
+if TYPE_CHECKING:
+    from heyoka import expression
+
+# Operations from which heyoka's compact mode is taken. Measured on chains: at 2000 both modes compile in the same time
+# and compact code is a quarter slower; at 4000 it compiles in 60 % of the time and is as fast.
+COMPACT_FROM = 3000
+
+FUNCTIONS = {
+    Operation.SQRT: "sqrt",
+    Operation.EXP: "exp",
+    Operation.LN: "log",
+    Operation.SIN: "sin",
+    Operation.COS: "cos",
+    Operation.TAN: "tan",
+    Operation.SINH: "sinh",
+    Operation.COSH: "cosh",
+    Operation.TANH: "tanh",
+    Operation.ARCSIN: "asin",
+    Operation.ARCCOS: "acos",
+    Operation.ARCTAN: "atan",
+    Operation.ARCTAN2: "atan2",
+    Operation.ARSINH: "asinh",
+    Operation.ARCOSH: "acosh",
+    Operation.ARTANH: "atanh",
+}
+
+
+class HeyokaFunction:
+    """A motion program compiled by heyoka, in double precision.
+
+    Parameters
+    ----------
+    program : Program
+    compact : bool
+        Whether to compile in heyoka's compact mode.
+    """
+
+    def __init__(self, program: Program, compact: bool) -> None:
+        heyoka = import_heyoka()
+        self.inputs = program.inputs
+        self.outputs = tuple(program.outputs)
+        variables = _variables(program)
+        results = heyoka_expressions(program, variables)
+        self._run = heyoka.cfunc(list(results.values()), vars=list(variables.values()), compact_mode=compact)
+
+    def __call__(self, inputs: ArrayLike) -> NDArray[np.float64]:
+        """Evaluate the program.
+
+        Parameters
+        ----------
+        inputs : array_like, shape (inputs,) or (inputs, points)
+
+        Returns
+        -------
+        ndarray, shape (outputs,) or (outputs, points)
+            Where the program's pivots vanish, infinities and nans.
+        """
+        return self._run(np.ascontiguousarray(inputs, dtype=float))
+
+
+def heyoka_function(program: Program) -> HeyokaFunction:
+    """Compile a program with heyoka.
+
+    Parameters
+    ----------
+    program : Program
+
+    Returns
+    -------
+    HeyokaFunction
+
+    Raises
+    ------
+    HolonomError
+        heyoka is not installed.
+    """
+    return HeyokaFunction(program, compact=program.operations >= COMPACT_FROM)
+
+
+def heyoka_expressions(
+    program: Program, inputs: Mapping[str, expression], number: Callable[[Fraction], object] = float
+) -> dict[str, expression]:
+    """Translate a program into heyoka's expressions, one to one.
+
+    Parameters
+    ----------
+    program : Program
+    inputs : mapping of str to expression
+        What to put for each input: a variable, heyoka's time, a parameter, a control law.
+    number : callable
+        Takes a Fraction to one of heyoka's numbers; `float` is for double precision.
+
+    Returns
+    -------
+    dict of str to expression
+        Each output of the program.
+
+    Raises
+    ------
+    HolonomError
+        heyoka is not installed; an input is missing.
+    """
+    if missing := [name for name in program.inputs if name not in inputs]:
+        raise HolonomError(Failure.INPUT_MISSING, detail=missing[0])
+    return run_program(program, inputs, _arithmetic(import_heyoka(), number))
+
+
+def dynamics(
+    program: Program, given: Mapping[str, expression], number: Callable[[Fraction], object] = float
+) -> list[tuple[expression, expression]]:
+    """First-order equations of motion for heyoka's integrators.
+
+    Parameters
+    ----------
+    program : Program
+        Its outputs hold the accelerations.
+    given : mapping of str to expression
+        Controls, their rates and accelerations as functions of `heyoka.time`, and parameters: all inputs other than
+        time, coordinates and velocities.
+    number : callable
+        As for `heyoka_expressions`.
+
+    Returns
+    -------
+    list of (expression, expression)
+        Each coordinate and its velocity, then each velocity and its acceleration.
+
+    Raises
+    ------
+    HolonomError
+        As `heyoka_expressions`.
+    """
+    variables = _variables(program)
+    coordinates = [name for name in program.inputs if f"ddot({name})" in program.outputs]
+    velocities = [f"dot({name})" for name in coordinates]
+    state = {name: variables[name] for name in (*coordinates, *velocities)}
+    results = heyoka_expressions(program, {"t": import_heyoka().time, **state, **given}, number)
+    return [(state[q], state[v]) for q, v in zip(coordinates, velocities, strict=True)] + [
+        (state[f"dot({q})"], results[f"ddot({q})"]) for q in coordinates
+    ]
+
+
+def _variables(program: Program) -> dict[str, expression]:
+    """A heyoka variable for each input."""
+    return {name: import_heyoka().expression(name) for name in program.inputs}
+
+
+def _arithmetic(heyoka: ModuleType, number: Callable[[Fraction], object]) -> Arithmetic[expression]:
+    def constant(value: Fraction) -> expression:
+        return heyoka.expression(number(value))
+
+    def power(base: expression, exponent: Fraction) -> expression:
+        return base ** constant(exponent)
+
+    def sign(x: expression) -> expression:
+        zero, one = constant(Fraction(0)), constant(Fraction(1))
+        return heyoka.select(heyoka.gt(x, zero), one, heyoka.select(heyoka.lt(x, zero), -one, zero))
+
+    def absolute(x: expression) -> expression:
+        return heyoka.select(heyoka.lt(x, constant(Fraction(0))), -x, x)
+
+    return Arithmetic(
+        number=constant,
+        constants={Constant.PI: heyoka.pi, Constant.E: heyoka.exp(constant(Fraction(1)))},
+        power=power,
+        operations={
+            **{operation: getattr(heyoka, function) for operation, function in FUNCTIONS.items()},
+            Operation.ADD: lambda *terms: heyoka.sum(list(terms)),
+            Operation.MULTIPLY: lambda *factors: heyoka.prod(list(factors)),
+            Operation.SUBTRACT: lambda a, b: a - b,
+            Operation.DIVIDE: lambda a, b: a / b,
+            Operation.NEGATE: lambda a: -a,
+            Operation.POWER: lambda base, exponent: base**exponent,
+            Operation.ABS: absolute,
+            Operation.SIGN: sign,
+        },
+    )
+
+
+def import_heyoka() -> ModuleType:
+    """Import heyoka, or say that it is missing.
+
+    heyoka imports SymPy where it finds it, which takes four times as long as heyoka itself; nothing here needs both.
+    """
+    if (imported := sys.modules.get("heyoka")) is not None:
+        return imported
+    try:
+        with _hidden("sympy"):
+            import heyoka
+    except ImportError:
+        raise HolonomError(Failure.EXTRA_MISSING, detail="heyoka") from None
+    return heyoka
+
+
+@contextmanager
+def _hidden(module: str) -> Iterator[None]:
+    """Hide a module from imports inside the block, unless it is imported already."""
+    if module in sys.modules:
+        yield
+        return
+    sys.modules[module] = None
+    try:
+        yield
+    finally:
+        del sys.modules[module]

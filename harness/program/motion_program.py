@@ -1,0 +1,312 @@
+"""The motion program: a straight-line program for accelerations and multipliers, as typed, frozen objects.
+
+One JSON document from Maxima:
+
+    inputs        names, in the order of every function made of the program: t, coordinates, velocities, controls,
+                  control rates, control accelerations, parameters
+    assignments   [name, expression], each of the inputs and the names before it
+    outputs       name -> a name or a number
+
+An expression is a MathJSON tree. It is kept as written, unlike in `holonom.mathjson`, where SymPy sorts and collects
+terms: its operations are what the program costs, and their order decides the last bits of the numbers.
+"""
+
+import json
+import re
+from collections.abc import Mapping, Set
+from dataclasses import dataclass
+from enum import StrEnum
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..failures import Failure, HolonomError
+
+if TYPE_CHECKING:
+    from jsonschema import Draft202012Validator
+
+SCHEMA = Path(__file__).parents[1] / "schemas" / "program.json"
+DEEPEST = 100  # levels of an expression: Maxima names what is deeper, and Python's recursion limit stays far away
+LONGEST_NUMBER = 4000  # characters of a number's digits; Python reads 4300
+SHOWN = 60  # characters of a refused fragment that its refusal shows
+DECIMAL = re.compile(r"-?\d+(\.\d*)?([eE][+-]?\d{1,4})?")
+
+
+class Operation(StrEnum):
+    """What a program can do; the value is the head of the MathJSON tree."""
+
+    ADD = "Add"
+    MULTIPLY = "Multiply"
+    SUBTRACT = "Subtract"
+    DIVIDE = "Divide"
+    POWER = "Power"
+    NEGATE = "Negate"
+    SQRT = "Sqrt"
+    EXP = "Exp"
+    LN = "Ln"
+    ABS = "Abs"
+    SIGN = "Sign"
+    SIN = "Sin"
+    COS = "Cos"
+    TAN = "Tan"
+    SINH = "Sinh"
+    COSH = "Cosh"
+    TANH = "Tanh"
+    ARCSIN = "Arcsin"
+    ARCCOS = "Arccos"
+    ARCTAN = "Arctan"
+    ARCTAN2 = "Arctan2"
+    ARSINH = "Arsinh"
+    ARCOSH = "Arcosh"
+    ARTANH = "Artanh"
+
+
+OPERATIONS = frozenset(Operation)
+VARIADIC = frozenset({Operation.ADD, Operation.MULTIPLY})
+BINARY = frozenset({Operation.SUBTRACT, Operation.DIVIDE, Operation.POWER, Operation.ARCTAN2})
+
+
+class Constant(StrEnum):
+    """A number with a name."""
+
+    PI = "Pi"
+    E = "ExponentialE"
+
+
+CONSTANTS = frozenset(Constant)
+
+
+class Solve(StrEnum):
+    """How the program solves for the multipliers."""
+
+    DIRECT = "direct"
+    ORTHOGONAL = "orthogonal"
+
+
+@dataclass(frozen=True, slots=True)
+class Name:
+    """The value of an input or of an assignment."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """An operation on its arguments."""
+
+    operation: Operation
+    arguments: tuple["Expression", ...]
+
+
+Atom = Name | Fraction | Constant
+Expression = Atom | Call
+
+
+@dataclass(frozen=True)
+class Program:
+    """A motion program.
+
+    Attributes
+    ----------
+    scene : str or None
+        Name of the scene it was written for; None for a system alone.
+    solve : Solve
+    method : str
+        Which factorisation the solve uses, for instance ``bordered`` or ``schur``.
+    operations : int
+        What it costs, as Maxima counted.
+    inputs : tuple of str
+    assignments : tuple of (str, Expression)
+        In the order in which they can be computed.
+    outputs : mapping of str to Atom
+    """
+
+    scene: str | None
+    solve: Solve
+    method: str
+    operations: int
+    inputs: tuple[str, ...]
+    assignments: tuple[tuple[str, Expression], ...]
+    outputs: Mapping[str, Atom]
+
+
+def read_program(text: str) -> Program:
+    """Read the document of a motion program.
+
+    Parameters
+    ----------
+    text : str
+        JSON, as Maxima writes it.
+
+    Returns
+    -------
+    Program
+
+    Raises
+    ------
+    HolonomError
+        The text is not such a document; names a value that nothing before it computes; computes one twice.
+    """
+    try:
+        document = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise _refusal(str(error)) from None
+    return program_of(document)
+
+
+def program_of(document: Any) -> Program:
+    """Read a motion program that is part of a larger document.
+
+    Parameters
+    ----------
+    document : Any
+        What JSON gives for a program.
+
+    Returns
+    -------
+    Program
+
+    Raises
+    ------
+    HolonomError
+        As `read_program`.
+    """
+    from jsonschema import ValidationError
+
+    try:
+        _validator().validate(document)
+    except RecursionError as error:
+        raise _refusal(str(error)) from None
+    except ValidationError as error:
+        raise _refusal(f"{error.json_path}: {_shown(error.message)}") from None
+    program = Program(
+        scene=document["scene"],
+        solve=Solve(document["solve"]),
+        method=document["method"],
+        operations=document["operations"],
+        inputs=tuple(document["inputs"]),
+        assignments=tuple((name, _expression(tree, DEEPEST)) for name, tree in document["assignments"]),
+        outputs={name: _atom(tree) for name, tree in document["outputs"].items()},
+    )
+    _require_straight_line(program)
+    return program
+
+
+def count_operations(program: Program) -> int:
+    """Count what a program costs, independently of the number it carries.
+
+    Every +, -, multiplication, division, power, root and function call counts one: a sum or product of k terms k - 1.
+
+    Parameters
+    ----------
+    program : Program
+
+    Returns
+    -------
+    int
+    """
+    return sum(operations_in(expression) for _, expression in program.assignments)
+
+
+def operations_in(expression: Expression) -> int:
+    """Operations in one expression, counted as `count_operations` says."""
+    match expression:
+        case Call(operation, arguments):
+            own = len(arguments) - 1 if operation in VARIADIC else 1
+            return own + sum(map(operations_in, arguments))
+        case _:
+            return 0
+
+
+def names_in(expression: Expression) -> Set[str]:
+    """Names of the values that an expression is made of."""
+    match expression:
+        case Name(text):
+            return {text}
+        case Call(_, arguments):
+            return set().union(*map(names_in, arguments))
+        case _:
+            return set()
+
+
+@cache
+def _validator() -> "Draft202012Validator":
+    from jsonschema import Draft202012Validator
+
+    return Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8")))
+
+
+def _expression(tree: object, levels: int) -> Expression:
+    match tree:
+        case ["Rational", *_]:
+            return _atom(tree)
+        case [str(head), *arguments] if levels and _takes(head, len(arguments)):
+            return Call(Operation(head), tuple(_expression(argument, levels - 1) for argument in arguments))
+        case _:
+            return _atom(tree)
+
+
+def _takes(head: str, arguments: int) -> bool:
+    """Whether there is an operation of that head with so many arguments."""
+    if head not in OPERATIONS:
+        return False
+    if head in VARIADIC:
+        return arguments >= 1
+    return arguments == (2 if head in BINARY else 1)
+
+
+def _atom(tree: object) -> Atom:
+    match tree:
+        case "ImaginaryUnit" | "True" | "False":
+            raise _refusal(f"{tree} is no real number")
+        case str():
+            return Constant(tree) if tree in CONSTANTS else Name(tree)
+        case ["Rational", numerator, denominator] if _number(denominator):
+            return _within_double(_number(numerator) / _number(denominator))
+        case _:
+            return _within_double(_number(tree))
+
+
+def _number(tree: object) -> Fraction:
+    match tree:
+        case bool():
+            raise _refusal(f"{tree} is not a number")
+        case int():
+            return Fraction(tree)
+        case {"num": str(digits), **rest} if not rest and len(digits) < LONGEST_NUMBER and DECIMAL.fullmatch(digits):
+            return Fraction(digits)
+        case _:
+            raise _refusal(f"{_shown(str(tree))} is not an expression that a program can hold")
+
+
+def _within_double(number: Fraction) -> Fraction:
+    try:
+        float(number)
+    except OverflowError:
+        raise _refusal("a number in it is larger than a double can be") from None
+    return number
+
+
+def _require_straight_line(program: Program) -> None:
+    known = set(program.inputs)
+    for name, expression in program.assignments:
+        _require_known(names_in(expression), known)
+        if name in known:
+            raise _refusal(f"{name} is computed twice")
+        known.add(name)
+    for value in program.outputs.values():
+        _require_known(names_in(value), known)
+
+
+def _require_known(names: Set[str], known: Set[str]) -> None:
+    if unknown := sorted(names - known):
+        raise _refusal(f"{unknown[0]} is used before it is computed")
+
+
+def _refusal(detail: str) -> HolonomError:
+    return HolonomError(Failure.NOT_A_PROGRAM, detail=detail)
+
+
+def _shown(text: str) -> str:
+    return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."

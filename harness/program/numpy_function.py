@@ -1,0 +1,174 @@
+"""A motion program as a NumPy function over arrays of points.
+
+The program becomes a Python syntax tree, node by node, and the tree a function: no text of the document is ever read
+as code, and its names are replaced. Carrying the program out ufunc by ufunc takes six times as long for one point
+(measured on a chain of 64 masses). A variable is taken again once its value is no longer needed, and large arrays are
+cut into blocks that stay in the cache: each takes a third of the time off.
+"""
+
+import ast
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from functools import partial
+from math import e, pi
+from types import CodeType, FunctionType
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .arithmetic import Arithmetic
+from .motion_program import Constant, Name, Operation, Program, names_in
+
+BLOCK = 4096  # points carried through the program at a time; the fastest of 256, 1024, 4096 and 16384 as measured
+
+UFUNCS = {
+    Operation.SQRT: np.sqrt,
+    Operation.EXP: np.exp,
+    Operation.LN: np.log,
+    Operation.ABS: np.abs,
+    Operation.SIGN: np.sign,
+    Operation.SIN: np.sin,
+    Operation.COS: np.cos,
+    Operation.TAN: np.tan,
+    Operation.SINH: np.sinh,
+    Operation.COSH: np.cosh,
+    Operation.TANH: np.tanh,
+    Operation.ARCSIN: np.arcsin,
+    Operation.ARCCOS: np.arccos,
+    Operation.ARCTAN: np.arctan,
+    Operation.ARCTAN2: np.arctan2,
+    Operation.ARSINH: np.arcsinh,
+    Operation.ARCOSH: np.arccosh,
+    Operation.ARTANH: np.arctanh,
+}
+UFUNC_NAMES = {ufunc.__name__: ufunc for ufunc in (*UFUNCS.values(), np.square, np.power)}
+
+
+class NumpyFunction:
+    """A motion program over arrays.
+
+    Parameters
+    ----------
+    program : Program
+    """
+
+    def __init__(self, program: Program) -> None:
+        self.inputs = program.inputs
+        self.outputs = tuple(program.outputs)
+        self._run = _compiled(program)
+
+    def __call__(self, inputs: Sequence[ArrayLike]) -> NDArray[np.float64]:
+        """Evaluate the program at each point.
+
+        Parameters
+        ----------
+        inputs : sequence of array_like
+            One array or number for each input of the program; they are broadcast against each other to the shape of
+            the points.
+
+        Returns
+        -------
+        ndarray, shape (outputs, *points)
+            Where the program's pivots vanish, infinities and nans.
+        """
+        arrays = np.broadcast_arrays(*(np.asarray(values, dtype=float) for values in inputs))
+        result = np.empty((len(self.outputs), *arrays[0].shape))
+        points, columns = [array.reshape(-1) for array in arrays], result.reshape(len(self.outputs), -1)
+        with np.errstate(all="ignore"):
+            for start in range(0, columns.shape[1], BLOCK):
+                block = slice(start, start + BLOCK)
+                for row, values in zip(columns, self._run([array[block] for array in points]), strict=True):
+                    row[block] = values
+        return result
+
+
+def _compiled(program: Program) -> Callable[[Sequence[NDArray[np.float64]]], tuple[ArrayLike, ...]]:
+    body = list(_statements(program))
+    parameters = ast.arguments(posonlyargs=[], args=[ast.arg("inputs")], kwonlyargs=[], kw_defaults=[], defaults=[])
+    function = ast.FunctionDef(name="motion", args=parameters, body=body, decorator_list=[])
+    module = compile(ast.fix_missing_locations(ast.Module([function], [])), "<motion program>", "exec")
+    code = next(constant for constant in module.co_consts if isinstance(constant, CodeType))
+    return FunctionType(code, UFUNC_NAMES)
+
+
+def _statements(program: Program) -> Iterator[ast.stmt]:
+    """Assignments to few variables, v0, v1, ...: each is taken again after the last use of its value."""
+    variables = {name: f"v{index}" for index, name in enumerate(program.inputs)}
+    yield ast.Assign([ast.Tuple([_store(v) for v in variables.values()], ast.Store())], _load("inputs"))
+    last_use, free, taken = _last_uses(program), [], len(variables)
+    for index, (name, expression) in enumerate(program.assignments):
+        used = names_in(expression)
+        tree = SYNTAX.value(expression, {known: _load(variables[known]) for known in used})
+        free += [variables[known] for known in sorted(used) if last_use[known] == index]
+        if not free:
+            free.append(f"v{taken}")
+            taken += 1
+        variables[name] = free.pop()
+        yield ast.Assign([_store(variables[name])], tree)
+    loads = {name: _load(variable) for name, variable in variables.items()}
+    yield ast.Return(ast.Tuple([SYNTAX.atom(value, loads) for value in program.outputs.values()], ast.Load()))
+
+
+def _last_uses(program: Program) -> Mapping[str, int]:
+    """Index of the assignment that uses a value last; past the end for what the outputs use."""
+    uses = {used: index for index, (_, expression) in enumerate(program.assignments) for used in names_in(expression)}
+    kept = {value.text: len(program.assignments) for value in program.outputs.values() if isinstance(value, Name)}
+    return uses | kept
+
+
+def _load(name: str) -> ast.expr:
+    return ast.Name(name, ast.Load())
+
+
+def _store(name: str) -> ast.expr:
+    return ast.Name(name, ast.Store())
+
+
+def _number(value: Fraction | float) -> ast.expr:
+    return ast.Constant(float(value))
+
+
+def _call(ufunc: np.ufunc, *arguments: ast.expr) -> ast.expr:
+    return ast.Call(_load(ufunc.__name__), list(arguments), [])
+
+
+def _chained(operator: ast.operator, *arguments: ast.expr) -> ast.expr:
+    """Pairs of pairs: a sum of thousands of terms is a tree of a dozen levels, which Python compiles."""
+    if len(arguments) == 1:
+        return arguments[0]
+    middle = len(arguments) - len(arguments) // 2
+    return ast.BinOp(_chained(operator, *arguments[:middle]), operator, _chained(operator, *arguments[middle:]))
+
+
+def _negative(argument: ast.expr) -> ast.expr:
+    return ast.UnaryOp(ast.USub(), argument)
+
+
+def _power(base: ast.expr, exponent: Fraction) -> ast.expr:
+    if exponent < 0:
+        return ast.BinOp(_number(1.0), ast.Div(), _power(base, -exponent))
+    match exponent:
+        case 1:
+            return base
+        case 2:
+            return _call(np.square, base)
+        case _ if exponent == Fraction(1, 2):
+            return _call(np.sqrt, base)
+        case _:
+            return _call(np.power, base, _number(exponent))
+
+
+SYNTAX = Arithmetic(
+    number=_number,
+    constants={Constant.PI: _number(pi), Constant.E: _number(e)},
+    power=_power,
+    operations={
+        **{operation: partial(_call, ufunc) for operation, ufunc in UFUNCS.items()},
+        Operation.ADD: partial(_chained, ast.Add()),
+        Operation.MULTIPLY: partial(_chained, ast.Mult()),
+        Operation.SUBTRACT: partial(_chained, ast.Sub()),
+        Operation.DIVIDE: partial(_chained, ast.Div()),
+        Operation.NEGATE: _negative,
+        Operation.POWER: partial(_call, np.power),
+    },
+)

@@ -1,0 +1,137 @@
+"""The floating-point numbers that heyoka computes with: double, extended, quadruple, or of any number of digits."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import mpmath
+import numpy as np
+
+from ..failures import Failure, HolonomError
+from .heyoka_function import import_heyoka
+
+GUARD_DIGITS = 10  # given and computed with beyond the digits asked for
+MOST_DIGITS = 5000  # what heyoka compiles in about a second; twice as many take four times as long
+EXPONENTS_OF_REAL = 2**61  # of MPFR's numbers
+
+
+@dataclass(frozen=True)
+class Precision:
+    """Floating-point numbers of one size.
+
+    Attributes
+    ----------
+    name : str
+        ``double``, ``extended``, ``quadruple`` or ``heyoka(D)``.
+    digits : int
+        Decimal digits that a number is written with.
+    sure_digits : int
+        Decimal digits that a rounded number keeps.
+    highest_order : int
+        Of an expansion: its tolerance, exp(-2*order), is one of the numbers.
+    number : callable
+        From decimal digits to a number.
+    text : callable
+        From a number to decimal digits.
+    options : mapping of str to object
+        What heyoka's integrators are told about the numbers.
+    """
+
+    name: str
+    digits: int
+    sure_digits: int
+    highest_order: int
+    number: Callable[[str], Any]
+    text: Callable[[Any], str]
+    options: Mapping[str, Any]
+
+    def ratio(self, value: Fraction) -> Any:
+        """The number nearest to a rational one."""
+        return self.number(str(value.numerator)) / self.number(str(value.denominator))
+
+
+def read_precision(text: str) -> Precision:
+    """The numbers that an option asks for.
+
+    Parameters
+    ----------
+    text : str
+        ``double``, ``extended``, ``quadruple``, or a whole number of decimal digits.
+
+    Returns
+    -------
+    Precision
+
+    Raises
+    ------
+    HolonomError
+        heyoka is not installed; it or this machine has no such numbers.
+    """
+    if text in HARDWARE:
+        return HARDWARE[text]()
+    if not text.isdecimal() or len(text) > len(str(MOST_DIGITS)) or not 1 <= int(text) <= MOST_DIGITS:
+        raise HolonomError(
+            Failure.NOT_A_PRECISION,
+            detail=f"{text} is no precision: double, extended, quadruple, or from 1 to {MOST_DIGITS} digits",
+        )
+    return _of_digits(int(text))
+
+
+def _double() -> Precision:
+    return _binary("double", 53, 1074, float, _scientific(17), {"fp_type": float})
+
+
+def _extended() -> Precision:
+    if np.finfo(np.longdouble).nmant != 63:
+        raise HolonomError(Failure.NOT_A_PRECISION, detail="this machine has no extended precision")
+    return _binary("extended", 64, 16445, np.longdouble, _scientific(21), {"fp_type": np.longdouble})
+
+
+def _quadruple() -> Precision:
+    real128 = import_heyoka().real128
+    return _binary("quadruple", 113, 16494, real128, str, {"fp_type": real128})
+
+
+def _of_digits(digits: int) -> Precision:
+    heyoka = import_heyoka()
+    bits = _bits(digits + GUARD_DIGITS)
+
+    def number(text: str) -> Any:
+        return heyoka.real(text, bits)
+
+    def rounded(x: Any) -> str:
+        with mpmath.workprec(bits):
+            return mpmath.nstr(mpmath.mpf(str(x)), digits, strip_zeros=False)
+
+    options = {"fp_type": heyoka.real, "prec": bits}
+    return Precision(f"heyoka({digits})", digits, digits, _highest_order(EXPONENTS_OF_REAL), number, rounded, options)
+
+
+HARDWARE = {"double": _double, "extended": _extended, "quadruple": _quadruple}
+
+
+def _binary(
+    name: str,
+    bits: int,
+    exponents: int,
+    number: Callable[[str], Any],
+    text: Callable[[Any], str],
+    options: Mapping[str, Any],
+) -> Precision:
+    """Numbers whose significand has so many bits, the smallest of them 2^-exponents."""
+    digits, sure_digits = math.ceil(bits * math.log10(2)) + 1, math.floor((bits - 1) * math.log10(2))
+    return Precision(name, digits, sure_digits, _highest_order(exponents), number, text, options)
+
+
+def _highest_order(exponents: int) -> int:
+    return int(exponents * math.log(2) / 2)
+
+
+def _bits(digits: int) -> int:
+    return math.ceil(digits * math.log2(10))
+
+
+def _scientific(digits: int) -> Callable[[Any], str]:
+    return lambda x: np.format_float_scientific(x, precision=digits - 1, unique=False)

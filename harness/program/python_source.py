@@ -1,0 +1,134 @@
+"""A motion program as Python source that asks for nothing but the numbers it is given.
+
+One text serves floats (math), symbols (sympy) and many digits (mpmath): the module whose functions it calls is an
+argument, and rational numbers are written as fractions, which all three read exactly.
+"""
+
+from collections.abc import Iterator
+from fractions import Fraction
+from functools import partial
+
+from ..failures import Failure, HolonomError
+from . import infix
+from .arithmetic import Arithmetic
+from .c_source import IDENTIFIER, comment_text, title_of
+from .infix import Formula, Rank
+from .motion_program import Constant, Operation, Program
+
+FUNCTIONS = {
+    Operation.SQRT: "functions.sqrt",
+    Operation.EXP: "functions.exp",
+    Operation.LN: "functions.log",
+    Operation.ABS: "abs",
+    Operation.SIGN: "sign",
+    Operation.SIN: "functions.sin",
+    Operation.COS: "functions.cos",
+    Operation.TAN: "functions.tan",
+    Operation.SINH: "functions.sinh",
+    Operation.COSH: "functions.cosh",
+    Operation.TANH: "functions.tanh",
+    Operation.ARCSIN: "functions.asin",
+    Operation.ARCCOS: "functions.acos",
+    Operation.ARCTAN: "functions.atan",
+    Operation.ARCTAN2: "functions.atan2",
+    Operation.ARSINH: "functions.asinh",
+    Operation.ARCOSH: "functions.acosh",
+    Operation.ARTANH: "functions.atanh",
+}
+
+SOURCE = '''\
+"""{title}."""
+
+import math
+from fractions import Fraction
+
+INPUTS = (
+{inputs}
+)
+OUTPUTS = (
+{outputs}
+)
+
+
+def {name}(values, functions=math):
+    """Take the values of INPUTS, return those of OUTPUTS; functions is math, sympy or mpmath."""
+    sign = getattr(functions, "sign", lambda x: (x > 0) - (x < 0))
+    ({variables}) = values
+{body}
+    return [{results}]
+'''
+
+
+def python_source(program: Program, name: str = "motion") -> str:
+    """Write a program as Python.
+
+    Parameters
+    ----------
+    program : Program
+    name : str
+        Name of the function.
+
+    Returns
+    -------
+    str
+        A module that needs the standard library alone.
+
+    Raises
+    ------
+    HolonomError
+        The name cannot name a function.
+    """
+    if not IDENTIFIER.fullmatch(name):
+        raise HolonomError(Failure.NOT_AN_IDENTIFIER, detail=name)
+    variables = {known: infix.atom(f"v{index}") for index, known in enumerate(_names(program))}
+    return SOURCE.format(
+        title=comment_text(title_of(program)),
+        inputs=_listed(program.inputs),
+        outputs=_listed(tuple(program.outputs)),
+        name=name,
+        variables=" ".join(f"{variables[known].text}," for known in program.inputs),
+        body="\n".join(
+            f"    {variables[known].text} = {PYTHON.value(expression, variables).text}"
+            for known, expression in program.assignments
+        ),
+        results=", ".join(PYTHON.atom(value, variables).text for value in program.outputs.values()),
+    )
+
+
+def _names(program: Program) -> Iterator[str]:
+    yield from program.inputs
+    yield from (name for name, _ in program.assignments)
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return "\n".join(f'    "{comment_text(name)}",' for name in names)
+
+
+def _number(value: Fraction) -> Formula:
+    if value.denominator == 1:
+        return infix.signed(str(value.numerator))
+    return infix.atom(f"Fraction({value.numerator}, {value.denominator})")
+
+
+def _power(base: Formula, exponent: Fraction) -> Formula:
+    return _to_the(base, _number(exponent))
+
+
+def _to_the(base: Formula, exponent: Formula) -> Formula:
+    return Formula(f"{base.within(Rank.ATOM)}**{exponent.within(Rank.SIGNED)}", Rank.POWER)
+
+
+PYTHON = Arithmetic(
+    number=_number,
+    constants={Constant.PI: infix.atom("functions.pi"), Constant.E: infix.atom("functions.exp(1)")},
+    power=_power,
+    operations={
+        **{operation: partial(infix.call, function) for operation, function in FUNCTIONS.items()},
+        Operation.ADD: infix.add,
+        Operation.MULTIPLY: infix.multiply,
+        Operation.SUBTRACT: infix.subtract,
+        Operation.DIVIDE: infix.divide,
+        Operation.NEGATE: infix.negate,
+        Operation.POWER: _to_the,
+    },
+)

@@ -1,0 +1,160 @@
+"""The motion program of a scene, asked of Maxima, and the forms it can be taken away in."""
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from pathlib import Path
+
+from ..confined import Limits
+from ..failures import Failure, HolonomError
+from ..maxima import run_batch
+from .motion_program import Solve, read_program
+from .python_source import python_source
+
+SCENE_NAME = re.compile(r"[^\W\d]\w*")
+SETTING = re.compile(r"([^\W\d]\w*)=(-?\d+(?:\.\d+)?(?:e-?\d+)?(?:/\d+)?)", re.IGNORECASE)
+
+
+class Form(StrEnum):
+    """What `holonom program` writes as one text."""
+
+    PYTHON = "python"
+    JSON = "json"
+
+
+@dataclass(frozen=True)
+class Request:
+    """Which motion program of a scene file.
+
+    Parameters
+    ----------
+    scene : str or None
+        Name of the scene; None for the last one, or for the system where there is none.
+    solve : Solve
+    settings : mapping of str to str
+        Numbers in Maxima's notation, for what the file leaves open and for parameters.
+    """
+
+    scene: str | None = None
+    solve: Solve = Solve.DIRECT
+    settings: Mapping[str, str] = field(default_factory=dict)
+
+
+def read_settings(texts: Iterable[str]) -> dict[str, str]:
+    """Read settings as they stand on a command line.
+
+    Parameters
+    ----------
+    texts : iterable of str
+        Each ``NAME=VALUE``, the value an integer, a decimal or a quotient of integers.
+
+    Returns
+    -------
+    dict of str to str
+
+    Raises
+    ------
+    HolonomError
+        One of them is not of that form.
+    """
+    settings = {}
+    for text in texts:
+        if (found := SETTING.fullmatch(text)) is None:
+            raise HolonomError(Failure.NOT_A_SETTING, detail=text)
+        settings[found[1]] = found[2]
+    return settings
+
+
+def program_text(file: Path, request: Request, form: Form, limits: Limits) -> str:
+    """Write the motion program of a scene file in one of its forms.
+
+    Parameters
+    ----------
+    file : Path
+        The scene file.
+    request : Request
+    form : Form
+    limits : Limits
+        What Maxima may take.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    HolonomError
+        As `program_document`.
+    """
+    document = program_document(file, request, limits)
+    program = read_program(document)
+    return document if form is Form.JSON else python_source(program)
+
+
+def program_document(file: Path, request: Request, limits: Limits) -> str:
+    """The document of a scene file's motion program, as Maxima writes it.
+
+    Parameters
+    ----------
+    file : Path
+        The scene file.
+    request : Request
+    limits : Limits
+        What Maxima may take.
+
+    Returns
+    -------
+    str
+        JSON text, for `read_program`.
+
+    Raises
+    ------
+    HolonomError
+        As `holonom.maxima.run_batch`; the request's scene has a name that no scene can have.
+    """
+    return _document("write_program", file, request, limits)
+
+
+def effects_document(file: Path, request: Request, limits: Limits) -> str:
+    """The document of what a scene pays for, as Maxima writes it.
+
+    Parameters
+    ----------
+    file : Path
+        The scene file.
+    request : Request
+    limits : Limits
+        What Maxima may take.
+
+    Returns
+    -------
+    str
+        JSON text, for `holonom.program.effects.read_costs`.
+
+    Raises
+    ------
+    HolonomError
+        As `program_document`.
+    """
+    return _document("write_effects", file, request, limits)
+
+
+def _document(writer: str, file: Path, request: Request, limits: Limits) -> str:
+    call = f"lambda([file], {writer}(file, {scene_argument(request.scene)}, '{request.solve}))"
+    return run_batch(file, call, limits, request.settings)
+
+
+def scene_argument(scene: str | None) -> str:
+    """Return the name of a scene as an argument of a Maxima function; without a name, false.
+
+    Raises
+    ------
+    HolonomError
+        No scene can have that name.
+    """
+    if scene is None:
+        return "false"
+    if not SCENE_NAME.fullmatch(scene):
+        raise HolonomError(Failure.NOT_A_SCENE_NAME, detail=scene)
+    return f"'{scene}"

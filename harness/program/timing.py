@@ -1,0 +1,81 @@
+"""Times of one evaluation at one point, of compiled programs and of functions of Python."""
+
+import ctypes
+import time
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .c_function import CFunction, load_c
+
+TIMER = Path(__file__).with_name("timer.c")
+ROUNDS = 9  # the shortest time counts: what disturbs a measurement makes it longer
+BATCH = 0.005  # seconds of calls in one round
+GUESSES = 3
+SHORTEST = 1e-9  # seconds; no call takes less
+Compiled = Callable[..., None]
+Batch = Callable[[int], float]  # number of calls -> seconds of one of them
+
+Key = TypeVar("Key")
+
+
+class Timer:
+    """Measures compiled functions without Python between the calls."""
+
+    def __init__(self) -> None:
+        self._seconds = load_c(TIMER.read_text(encoding="utf-8")).seconds_a_call
+        self._seconds.argtypes = (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_long)
+        self._seconds.restype = ctypes.c_double
+
+    def one_point(self, function: Compiled, point: NDArray[np.float64], outputs: int) -> float:
+        """Seconds for one call of ``function(in, out)``."""
+        return shortest_times({0: self.batch(function, point, outputs)})[0]
+
+    def batch(self, function: Compiled, point: NDArray[np.float64], outputs: int) -> Batch:
+        """A batch of calls of ``function(in, out)``."""
+        result = np.empty(outputs)
+        address = ctypes.cast(function, ctypes.c_void_p)
+        return lambda calls: self._seconds(address, point.ctypes.data, result.ctypes.data, calls)
+
+    def evaluation(self, function: CFunction, point: NDArray[np.float64]) -> Batch:
+        """A batch of evaluations of a compiled program at a point."""
+        return self.batch(function.one, point, len(function.outputs))
+
+
+def python_batch(function: Callable[[Sequence[float]], object], point: Sequence[float]) -> Batch:
+    """A batch of calls of a function of Python."""
+
+    def seconds(calls: int) -> float:
+        start = time.perf_counter()
+        for _ in range(calls):
+            function(point)
+        return (time.perf_counter() - start) / calls
+
+    return seconds
+
+
+def shortest_times(batches: Mapping[Key, Batch]) -> dict[Key, float]:
+    """Measure several functions side by side.
+
+    The functions take turns, so that what slows the machine down for a while slows all of them.
+
+    Parameters
+    ----------
+    batches : mapping of Batch
+
+    Returns
+    -------
+    dict of float
+        Seconds that one call of each takes.
+    """
+    calls = {key: max(1, int(BATCH / max(_first_guess(batch), SHORTEST))) for key, batch in batches.items()}
+    rounds = [{key: batch(calls[key]) for key, batch in batches.items()} for _ in range(ROUNDS)]
+    return {key: min(times[key] for times in rounds) for key in batches}
+
+
+def _first_guess(batch: Batch) -> float:
+    """Seconds of a call, as far as a few tell: one that is disturbed must not pass for all."""
+    return min(batch(1) for _ in range(GUESSES))

@@ -1,0 +1,1 @@
+"""The initial motion as power series: coefficients, continuation, radius of convergence."""

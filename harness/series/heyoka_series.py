@@ -1,0 +1,267 @@
+"""The initial motion of a scene as power series, and its continuation, by heyoka's Taylor integrators.
+
+An integrator expands its state at every step, to an order that its tolerance decides: the order is asked for in those
+terms, and the coefficients of the first step are taken. Multipliers and constraint forces are no state; each is the
+rate of an additional one, which starts from zero.
+
+A continuation is what the integrators are for: step by step, each step's tolerance the precision of the numbers.
+"""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import mpmath
+import numpy as np
+
+from ..confined import Limits
+from ..failures import Failure, HolonomError
+from ..maxima import run_batch
+from ..program.heyoka_function import dynamics, heyoka_expressions, import_heyoka
+from ..program.motion_program import Program, program_of
+from ..program.precision import GUARD_DIGITS, Precision
+from ..program.request import scene_argument
+from .power_series import Continuation, MotionSeries, Numbers, SeriesRequest
+
+MOST_STEPS = 10**6  # of a continuation
+ONCE, OFTEN = 0, 3  # LLVM's levels of optimisation: compiled in a tenth of the time, and run in half
+
+
+@dataclass(frozen=True)
+class InitialValueProblem:
+    """A motion as a program of (t, q, dot q) alone, and where it starts.
+
+    Attributes
+    ----------
+    title : str
+    start : mapping of str to str
+        The time, coordinates and velocities, as decimal digits.
+    program : Program
+    """
+
+    title: str
+    start: Mapping[str, str]
+    program: Program
+
+    @property
+    def coordinates(self) -> list[str]:
+        """Names of the coordinates."""
+        return [name for name in self.program.inputs if f"ddot({name})" in self.program.outputs]
+
+    @property
+    def state(self) -> list[str]:
+        """Names of the coordinates, then of the velocities."""
+        return [*self.coordinates, *(f"dot({name})" for name in self.coordinates)]
+
+    @property
+    def reactions(self) -> list[str]:
+        """Names of what is no state: multipliers and constraint forces."""
+        return [name for name in self.program.outputs if not name.startswith("ddot(")]
+
+
+def compute_series(file: Path, request: SeriesRequest, precision: Precision, limits: Limits) -> MotionSeries:
+    """Expand a scene's motion with heyoka, and continue it where that is asked for.
+
+    Parameters
+    ----------
+    file : Path
+        The scene file.
+    request : SeriesRequest
+        Its digits do not matter.
+    precision : Precision
+    limits : Limits
+        What Maxima may take to write the motion program.
+
+    Returns
+    -------
+    MotionSeries
+
+    Raises
+    ------
+    HolonomError
+        As `holonom.maxima.run_batch`, `expand` and `continue_motion`.
+    """
+    arguments = f"{scene_argument(request.scene)}, {request.order}, {precision.digits + GUARD_DIGITS}"
+    call = f"lambda([file], write_initial_value_problem(file, {arguments}))"
+    problem = read_problem(run_batch(file, call, limits, request.settings))
+    motion = expand(problem, request.order, precision)
+    if request.until is None:
+        return motion
+    return replace(motion, continuation=continue_motion(problem, request.until, precision))
+
+
+def read_problem(text: str) -> InitialValueProblem:
+    """Read what Maxima writes."""
+    document = json.loads(text)
+    return InitialValueProblem(document["title"], document["start"], program_of(document["program"]))
+
+
+def expand(problem: InitialValueProblem, order: int, precision: Precision) -> MotionSeries:
+    """Expand a motion in power series.
+
+    Parameters
+    ----------
+    problem : InitialValueProblem
+    order : int
+        2 or more.
+    precision : Precision
+
+    Returns
+    -------
+    MotionSeries
+
+    Raises
+    ------
+    HolonomError
+        heyoka is not installed; the order is too high, or a coefficient is too large for the numbers.
+    """
+    integrator = expanding_integrator(problem, order, precision)
+    integrator.step(write_tc=True)
+    coefficients = integrator.tc
+    if not np.all(np.isfinite(coefficients)):
+        raise HolonomError(
+            Failure.ORDER_TOO_HIGH, detail=f"the coefficients leave the range of {precision.name} or are singular"
+        )
+    coordinates = zip(problem.coordinates, coefficients, strict=False)
+    rates = zip(problem.reactions, map(_rate, coefficients[len(problem.state) :]), strict=True)
+    reactions = {name: _texts(row, precision) for name, row in rates}
+    return MotionSeries(
+        scene=problem.program.scene or "",
+        title=problem.title,
+        order=order,
+        t0=problem.start["t"],
+        arithmetic=precision.name,
+        coordinates={name: _texts(row[: order + 1], precision) for name, row in coordinates},
+        multipliers={name: row for name, row in reactions.items() if not name.startswith("Lambda")},
+        constraint_forces={name: row for name, row in reactions.items() if name.startswith("Lambda")},
+    )
+
+
+def continue_motion(problem: InitialValueProblem, until: Fraction, precision: Precision) -> Continuation:
+    """Follow a motion step by step.
+
+    Parameters
+    ----------
+    problem : InitialValueProblem
+    until : Fraction
+        The last instant.
+    precision : Precision
+
+    Returns
+    -------
+    Continuation
+
+    Raises
+    ------
+    HolonomError
+        heyoka is not installed; the steps shrink to nothing, or there are more than `MOST_STEPS`.
+    """
+    integrator = continuing_integrator(problem, precision)
+    last, states = precision.ratio(until), [(integrator.time, integrator.state.copy())]
+    shortest = abs(last - integrator.time) * precision.number(f"1e-{precision.sure_digits}")
+
+    def keep_state(following: Any) -> bool:
+        states.append((following.time, following.state.copy()))
+        return abs(following.last_h) > shortest or following.time == last
+
+    outcome, *_ = integrator.propagate_until(last, callback=keep_state, max_steps=MOST_STEPS)
+    if outcome != import_heyoka().taylor_outcome.time_limit:
+        _refuse_to_continue(float(integrator.time), len(states))
+    instants, values = zip(*states, strict=True)
+    rows = [(name, _texts(row, precision)) for name, row in zip(problem.state, zip(*values, strict=True), strict=True)]
+    n = len(problem.coordinates)
+    return Continuation(precision.sure_digits, _texts(instants, precision), dict(rows[:n]), dict(rows[n:]))
+
+
+def expanding_integrator(problem: InitialValueProblem, order: int, precision: Precision, effort: int = ONCE) -> Any:
+    """Set up heyoka's integrator for one expansion; its state ends with the integrals of multipliers and forces.
+
+    Parameters
+    ----------
+    problem : InitialValueProblem
+    order : int
+        The coefficients of the multipliers reach it; those of the state go one further.
+    precision : Precision
+    effort : int
+        ``ONCE`` for one expansion, ``OFTEN`` for many.
+
+    Returns
+    -------
+    heyoka.taylor_adaptive_dbl, _ldbl, _f128 or _real
+
+    Raises
+    ------
+    HolonomError
+        heyoka is not installed; the order is too high.
+    """
+    if order > precision.highest_order:
+        raise HolonomError(
+            Failure.ORDER_TOO_HIGH, detail=f"in {precision.name} heyoka reaches order {precision.highest_order}"
+        )
+    heyoka = import_heyoka()
+    variables = {"t": heyoka.time, **{name: heyoka.expression(name) for name in problem.state}}
+    values = heyoka_expressions(problem.program, variables, precision.ratio)
+    integrals = [(heyoka.expression(f"integral of {name}"), values[name]) for name in problem.reactions]
+    return _integrator(
+        heyoka,
+        problem,
+        precision,
+        integrals,
+        tol=precision.number(mpmath.nstr(mpmath.exp(-2 * order) * (1 + mpmath.mpf(1e-9)), 15)),
+        opt_level=effort,
+    )
+
+
+def continuing_integrator(problem: InitialValueProblem, precision: Precision) -> Any:
+    """Set up heyoka's integrator of a motion, its tolerance the precision of the numbers.
+
+    Parameters
+    ----------
+    problem : InitialValueProblem
+    precision : Precision
+
+    Returns
+    -------
+    heyoka.taylor_adaptive_dbl, _ldbl, _f128 or _real
+
+    Raises
+    ------
+    HolonomError
+        heyoka is not installed.
+    """
+    return _integrator(import_heyoka(), problem, precision, [])
+
+
+def _integrator(
+    heyoka: ModuleType, problem: InitialValueProblem, precision: Precision, integrals: Sequence[tuple], **options: Any
+) -> Any:
+    start = [precision.number(problem.start[name]) for name in problem.state]
+    return heyoka.taylor_adaptive(
+        [*dynamics(problem.program, {}, precision.ratio), *integrals],
+        np.array(start + [precision.number("0")] * len(integrals)),
+        time=precision.number(problem.start["t"]),
+        compact_mode=True,  # the other mode's code grows with the square of the order: 30 s to compile at order 160
+        **precision.options,
+        **options,
+    )
+
+
+def _rate(coefficients: Sequence[Any]) -> list[Any]:
+    """Coefficients of the derivative."""
+    return [coefficients[n] * n for n in range(1, len(coefficients))]
+
+
+def _texts(row: Sequence[Any], precision: Precision) -> Numbers:
+    return tuple(map(precision.text, row))
+
+
+def _refuse_to_continue(instant: float, states: int) -> None:
+    many = states > MOST_STEPS
+    reason = f"it arrived after {MOST_STEPS} steps" if many else "its radius of convergence shrinks to nothing"
+    raise HolonomError(
+        Failure.NO_CONTINUATION, detail=f"the motion cannot be continued beyond t = {instant:.10g}, where {reason}"
+    )

@@ -1,0 +1,298 @@
+"""The initial motion of a scene as power series, asked of Maxima, and what follows from their coefficients.
+
+Coefficients are kept as text: exact numbers as p/q, rounded ones as decimal digits. They become mpmath's numbers, of
+as many digits, where something is computed from them.
+"""
+
+import json
+import math
+import sys
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import mpmath
+
+from ..confined import Limits
+from ..failures import Failure, HolonomError
+from ..maxima import run_batch
+from ..program.request import scene_argument
+from .radius import Radius, estimate_radius, truncation_error
+
+EXACT = "exact"
+AUTOMATIC = "automatic"
+WORKING_DIGITS = 50  # for what is computed from exact coefficients
+MORE_DIGITS = 10  # than the coefficients have, for what is computed from rounded ones
+
+Numbers = tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class SeriesRequest:
+    """Which power series of a scene file.
+
+    Parameters
+    ----------
+    order : int
+        Highest power of t - t0.
+    scene : str or None
+        Name of the scene; None for the last one.
+    digits : int or str
+        Significant decimal digits, ``exact``, or ``automatic``: exact where that is possible.
+    until : Fraction or None
+        Instant to which the motion is continued by further expansions.
+    settings : mapping of str to str
+        Numbers for what the file leaves open and for parameters.
+    """
+
+    order: int
+    scene: str | None = None
+    digits: int | str = AUTOMATIC
+    until: Fraction | None = None
+    settings: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Continuation:
+    """States of a motion at the instants where it was expanded anew, the last at the instant asked for."""
+
+    digits: int
+    instants: Numbers
+    coordinates: Mapping[str, Numbers]
+    velocities: Mapping[str, Numbers]
+
+
+@dataclass(frozen=True)
+class MotionSeries:
+    """The power series of one motion about its initial instant.
+
+    Attributes
+    ----------
+    scene, title : str
+    order : int
+    t0 : str
+    arithmetic : str
+        ``exact``, ``bigfloat(D)``, ``double``, ``extended``, ``quadruple`` or ``heyoka(D)``.
+    coordinates, multipliers, constraint_forces : mapping of str to tuple of str
+        Coefficients of (t - t0)^0 ... (t - t0)^order, by name.
+    continuation : Continuation or None
+    """
+
+    scene: str
+    title: str
+    order: int
+    t0: str
+    arithmetic: str
+    coordinates: Mapping[str, Numbers]
+    multipliers: Mapping[str, Numbers]
+    constraint_forces: Mapping[str, Numbers]
+    continuation: Continuation | None = None
+
+    @property
+    def digits(self) -> int:
+        """Decimal digits to compute with."""
+        inside = self.arithmetic.partition("(")[2].rstrip(")")
+        return int(inside) + MORE_DIGITS if inside else WORKING_DIGITS
+
+    @cached_property
+    def radius(self) -> Radius:
+        """Radius of convergence about t0."""
+        with mpmath.workdps(self.digits):
+            return estimate_radius([numbers(series) for _, series in self.all_series()])
+
+    def all_series(self) -> Iterator[tuple[str, Numbers]]:
+        """Name and coefficients of each series."""
+        for group in (self.coordinates, self.multipliers, self.constraint_forces):
+            yield from group.items()
+
+
+@dataclass(frozen=True)
+class Values:
+    """What the series add up to at an instant, and the size of what is left out of the sums."""
+
+    time: Fraction
+    values: Mapping[str, mpmath.mpf]
+    truncation_error: float
+
+
+def compute_series(file: Path, request: SeriesRequest, limits: Limits) -> MotionSeries:
+    """Expand a scene's motion in Maxima.
+
+    Parameters
+    ----------
+    file : Path
+        The scene file.
+    request : SeriesRequest
+    limits : Limits
+        What Maxima may take.
+
+    Returns
+    -------
+    MotionSeries
+
+    Raises
+    ------
+    HolonomError
+        As `holonom.maxima.run_batch`: among others, the control law is not analytic at t0, or G is singular there.
+    """
+    until = "false" if request.until is None else str(request.until)
+    arguments = f"{scene_argument(request.scene)}, {request.order}, {_digits_argument(request.digits)}, {until}"
+    return read_series(run_batch(file, f"lambda([file], write_series(file, {arguments}))", limits, request.settings))
+
+
+def read_series(text: str) -> MotionSeries:
+    """Read what Maxima writes.
+
+    Parameters
+    ----------
+    text : str
+        JSON document.
+
+    Returns
+    -------
+    MotionSeries
+
+    Raises
+    ------
+    HolonomError
+        It is no such document.
+    """
+    try:
+        document = json.loads(text)
+        continuation = document["continuation"]
+        return MotionSeries(
+            scene=document["scene"],
+            title=document["title"],
+            order=document["order"],
+            t0=document["t0"],
+            arithmetic=document["arithmetic"],
+            coordinates=_series(document["coordinates"]),
+            multipliers=_series(document["multipliers"]),
+            constraint_forces=_series(document["constraint_forces"]),
+            continuation=None if continuation is None else _continuation(continuation),
+        )
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        raise HolonomError(Failure.NOT_A_SERIES, detail=str(error)) from None
+
+
+def values_at(motion: MotionSeries, time: Fraction) -> Values:
+    """Add the series up at an instant.
+
+    Parameters
+    ----------
+    motion : MotionSeries
+    time : Fraction
+        The instant, inside the radius of convergence.
+
+    Returns
+    -------
+    Values
+
+    Raises
+    ------
+    HolonomError
+        The instant is not inside the radius of convergence; or that is unknown and the terms do not fall.
+    """
+    with mpmath.workdps(motion.digits):
+        step = mpmath.mpf(time.numerator) / time.denominator - number(motion.t0)
+        _require_inside(motion, time, float(abs(step)))
+        series = {name: numbers(texts) for name, texts in motion.all_series()}
+        left_out = max(truncation_error(c, motion.radius, float(step)) for c in series.values())
+        if math.isinf(left_out):
+            raise HolonomError(
+                Failure.BEYOND_RADIUS,
+                detail=f"the terms of the series about t = {motion.t0} do not fall at t = {float(time):g}; "
+                f"its radius of convergence is {motion.radius.remark}",
+            )
+        sums = {name: mpmath.polyval(coefficients[::-1], step) for name, coefficients in series.items()}
+        return Values(time, sums, left_out)
+
+
+def series_document(motion: MotionSeries, values: Values | None = None) -> dict[str, Any]:
+    """What `holonom series --json` writes."""
+    radius = motion.radius
+    t0 = float(number(motion.t0))
+    document = {
+        "scene": motion.scene,
+        "order": motion.order,
+        "t0": _published(motion, motion.t0),
+        "arithmetic": motion.arithmetic,
+        "coordinates": _published_series(motion, motion.coordinates),
+        "multipliers": _published_series(motion, motion.multipliers),
+        "constraint_forces": _published_series(motion, motion.constraint_forces),
+        "radius_of_convergence": {
+            "estimate": radius.estimate,
+            "uncertainty": radius.uncertainty,
+            "singularities": [[t0 + z.real, z.imag] for z in radius.singularities],
+            "remark": radius.remark,
+        },
+    }
+    if values is not None:
+        document["at"] = {
+            "t": str(values.time),
+            "values": {name: mpmath.nstr(value, motion.digits) for name, value in values.values.items()},
+            "truncation_error": values.truncation_error,
+        }
+    if motion.continuation is not None:
+        document["continuation"] = vars(motion.continuation)
+    return document
+
+
+def number(text: str) -> mpmath.mpf:
+    """The value of p/q or of decimal digits, rounded to the digits that mpmath works with."""
+    numerator, _, denominator = text.partition("/")
+    return _decimal(numerator) / _decimal(denominator or "1")
+
+
+def numbers(texts: Numbers) -> list[mpmath.mpf]:
+    """The values of several."""
+    return [number(text) for text in texts]
+
+
+def _decimal(text: str) -> mpmath.mpf:
+    """Of an integer longer than Python reads, the first digits, which are more than mpmath keeps."""
+    kept = mpmath.mp.dps + MORE_DIGITS + 1
+    if len(text) <= sys.int_info.default_max_str_digits or not text.lstrip("-").isdigit():
+        return mpmath.mpf(text)
+    return mpmath.mpf(text[:kept]) * mpmath.mpf(10) ** (len(text) - kept)
+
+
+def _digits_argument(digits: int | str) -> str:
+    return str(digits) if isinstance(digits, int) else f"'{digits}"
+
+
+def _series(group: Mapping[str, Any]) -> dict[str, Numbers]:
+    return {name: tuple(map(str, coefficients)) for name, coefficients in group.items()}
+
+
+def _continuation(document: Mapping[str, Any]) -> Continuation:
+    return Continuation(
+        digits=document["digits"],
+        instants=tuple(document["instants"]),
+        coordinates=_series(document["coordinates"]),
+        velocities=_series(document["velocities"]),
+    )
+
+
+def _require_inside(motion: MotionSeries, time: Fraction, distance: float) -> None:
+    radius = motion.radius
+    if radius.estimate is None or distance < radius.estimate - radius.uncertainty:
+        return
+    nearest = ", ".join(f"{float(number(motion.t0)) + z.real:.6g}{z.imag:+.6g}i" for z in radius.singularities)
+    reason = f"its nearest singularities are at {nearest}" if nearest else radius.remark
+    raise HolonomError(
+        Failure.BEYOND_RADIUS,
+        detail=f"the series about t = {motion.t0} does not converge at t = {float(time):g}: its radius of convergence "
+        f"is {radius.estimate:.6g}, known to {radius.uncertainty:.1g}; {reason}",
+    )
+
+
+def _published(motion: MotionSeries, text: str) -> str | float:
+    return float(text) if motion.arithmetic == "double" else text
+
+
+def _published_series(motion: MotionSeries, group: Mapping[str, Numbers]) -> dict[str, list[str | float]]:
+    return {name: [_published(motion, text) for text in coefficients] for name, coefficients in group.items()}

@@ -1,0 +1,75 @@
+"""The projection program at work: the nearest state that keeps the constraints, and how far away it is.
+
+One step of Newton's method for the position, then one for the velocity at the new position, compiled into one function:
+what is left of the residuals is of second order in them.
+"""
+
+from typing import Any
+
+from ...program.heyoka_function import COMPACT_FROM, heyoka_expressions, import_heyoka
+from ...program.motion_problem import MotionProblem, computing
+from ...program.precision import Precision
+from ..evaluation import Numbers, zeros
+
+
+class ProgramProjection:
+    """Projects states in the mass metric, by the pivots of the motion program.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        Without an obstacle.
+    precision : Precision
+    """
+
+    def __init__(self, problem: MotionProblem, precision: Precision) -> None:
+        self._nearest = _nearest_state(problem, precision)
+        self._inputs = zeros(precision, 1 + len(problem.state))
+        self._found = zeros(precision, len(problem.state) + 1)
+        self._projected = self._found[:-1]
+
+    def project(self, instant: Any, state: Numbers) -> float:
+        """Move a state, in place, to the nearest one that keeps the constraints.
+
+        Parameters
+        ----------
+        instant : number
+        state : ndarray, shape (2n,)
+
+        Returns
+        -------
+        float
+            How far: the length of the change, relative to (1 + x^2)^(1/2) of each number x.
+        """
+        self._inputs[0] = instant
+        self._inputs[1:] = state
+        self._nearest(self._inputs, self._found)
+        state[:] = self._projected
+        return float(self._found[-1]) ** 0.5
+
+
+def _nearest_state(problem: MotionProblem, precision: Precision) -> Any:
+    """Function of t and the state to the projected state, compiled by heyoka."""
+    heyoka = import_heyoka()
+    variables = {name: heyoka.expression(name) for name in ("t", *problem.state)}
+    inputs = {**variables, **dict.fromkeys(problem.multipliers, heyoka.expression(precision.number("0")))}
+    velocities = problem.state[len(problem.coordinates) :]
+    one = heyoka.expression(precision.number("1"))
+    position = {**inputs, **_corrected(problem, "position_correction", problem.coordinates, inputs, precision)}
+    both = {**position, **_corrected(problem, "velocity_correction", velocities, position, precision)}
+    squares = [(both[x] - inputs[x]) * (both[x] - inputs[x]) / (one + inputs[x] * inputs[x]) for x in problem.state]
+    return heyoka.cfunc(
+        [*(both[name] for name in problem.state), heyoka.sum(squares)],
+        vars=list(variables.values()),
+        compact_mode=problem.projection.operations >= COMPACT_FROM,
+        opt_level=0,
+        **precision.options,
+    )
+
+
+def _corrected(
+    problem: MotionProblem, correction: str, names: tuple[str, ...], inputs: dict[str, Any], precision: Precision
+) -> dict[str, Any]:
+    outputs = [f"{correction}[{index}]" for index in range(1, len(names) + 1)]
+    found = heyoka_expressions(computing(problem.projection, set(outputs)), inputs, precision.ratio)
+    return {name: inputs[name] + found[output] for name, output in zip(names, outputs, strict=True)}

@@ -1,0 +1,85 @@
+"""The equations of motion for heyoka's integrators, as they are or with a cure for drift in them.
+
+The projection program gives the least d and e, in the mass metric, with J d = -f and J e = -df/dt. With them
+
+    Baumgarte:  d/dt q = v,            d/dt v = a + 2 gamma e + gamma^2 d,
+    GGL:        d/dt q = v + gamma d,  d/dt v = a + gamma e,
+
+where f obeys f'' + 2 gamma f' + gamma^2 f = 0 in the first, and f and df/dt die out like exp(-gamma t) in the second.
+Baumgarte, Comput. Methods Appl. Mech. Eng. 1 (1972) 1; Gear, Gupta & Leimkuhler, J. Comput. Appl. Math. 12 (1985) 77,
+whose multipliers mu and nu, d = A^-1 J^T mu and e = A^-1 J^T nu, act here through a rate instead of for ever.
+"""
+
+from fractions import Fraction
+from typing import Any
+
+from ...program.heyoka_function import dynamics, heyoka_expressions, import_heyoka
+from ...program.motion_problem import MotionProblem
+from ...program.motion_program import Program
+from ...program.precision import Precision
+from ..request import Stabilization
+
+Equations = list[tuple[Any, Any]]
+
+
+def equations_of_motion(problem: MotionProblem, program: Program, precision: Precision) -> Equations:
+    """The first-order equations as they are.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+    program : Program
+        Gives the accelerations.
+    precision : Precision
+
+    Returns
+    -------
+    list of (expression, expression)
+        Each coordinate and each velocity with its rate.
+    """
+    return dynamics(program, _no_multipliers(problem, precision), precision.ratio)
+
+
+def stabilized_equations(
+    problem: MotionProblem, program: Program, precision: Precision, drift: Stabilization, decay: float
+) -> Equations:
+    """The first-order equations with Baumgarte's cure or Gear's, Gupta's and Leimkuhler's.
+
+    Parameters
+    ----------
+    problem, program, precision
+        As for `equations_of_motion`.
+    drift : Stabilization
+        ``BAUMGARTE`` or ``GGL``.
+    decay : float
+        gamma, per unit of time.
+
+    Returns
+    -------
+    list of (expression, expression)
+    """
+    gamma = import_heyoka().expression(precision.ratio(Fraction(decay)))
+    two = import_heyoka().expression(precision.ratio(Fraction(2)))
+    found = _corrections(problem, precision)
+    n = len(problem.coordinates)
+    position = [found[f"position_correction[{s}]"] for s in range(1, n + 1)]
+    velocity = [found[f"velocity_correction[{s}]"] for s in range(1, n + 1)]
+    if drift is Stabilization.BAUMGARTE:
+        pull = [two * gamma * e + gamma * gamma * d for d, e in zip(position, velocity, strict=True)]
+        cures = [import_heyoka().expression(precision.number("0"))] * n + pull
+    else:
+        cures = [gamma * d for d in (*position, *velocity)]
+    plain = equations_of_motion(problem, program, precision)
+    return [(variable, rate + cure) for (variable, rate), cure in zip(plain, cures, strict=True)]
+
+
+def _corrections(problem: MotionProblem, precision: Precision) -> dict[str, Any]:
+    heyoka = import_heyoka()
+    variables = {name: heyoka.expression(name) for name in problem.state}
+    inputs = {"t": heyoka.time, **variables, **_no_multipliers(problem, precision)}
+    return heyoka_expressions(problem.projection, inputs, precision.ratio)
+
+
+def _no_multipliers(problem: MotionProblem, precision: Precision) -> dict[str, Any]:
+    """Inputs of every program of a motion, which those of accelerations and projections do not use."""
+    return dict.fromkeys(problem.multipliers, import_heyoka().expression(precision.number("0")))

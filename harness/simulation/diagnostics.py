@@ -1,0 +1,181 @@
+"""How well a motion was followed: what is left of the constraints, the condition of G, and the balance of energy.
+
+A residual is measured along its constraint's gradient: |f_beta| / |df_beta/dq| is, to first order, how far the
+coordinates are from the constraint. The largest of them is taken relative to the largest coordinate where that is more
+than one; likewise for the velocities with df/dt, and for the accelerations with J a + c.
+
+The energy function changes at the rate that `MotionProblem.energy` calls power. Energy that was gained beyond the
+integral of the power is an error of the motion (Goldstein, Poole & Safko, section 2.7).
+"""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss
+
+from ..program.motion_problem import MotionProblem, computing
+from ..program.motion_program import names_in
+from ..program.precision import Precision, read_precision
+from .constraints.factorization import weighted_constraints
+from .engines.dense_output import Piece
+from .evaluation import Numbers, evaluation, zeros
+from .matrices import Matrices, Matrix, Vector
+
+POINTS, WEIGHTS = leggauss(6)  # exact to order 12 over a piece; a step of either engine is that smooth
+PROBES = (0.3127, -0.7411, 1.2713)  # seeds of states at which power that vanishes identically is told from other power
+
+
+def residuals(at: Matrices, state: Vector, accelerations: Vector) -> Mapping[str, float]:
+    """What is left of the constraints at a state.
+
+    Parameters
+    ----------
+    at : Matrices
+        At the state.
+    state : ndarray, shape (2n,)
+    accelerations : ndarray, shape (n,)
+
+    Returns
+    -------
+    mapping of str to float
+        ``position``, ``velocity``, ``acceleration``.
+    """
+    n = len(accelerations)
+    left = {
+        "position": (at.residual, state[:n]),
+        "velocity": (at.residual_rate, state[n:]),
+        "acceleration": (at.jacobian @ accelerations + at.curvature, accelerations),
+    }
+    return {name: _scaled(residual, at.jacobian, moved) for name, (residual, moved) in left.items()}
+
+
+def condition(at: Matrices) -> float:
+    """Condition number of G = J A^-1 J^T, each constraint scaled to length one in the mass metric.
+
+    Parameters
+    ----------
+    at : Matrices
+
+    Returns
+    -------
+    float
+        Infinite where constraints depend on one another.
+
+    Raises
+    ------
+    HolonomError
+        A is singular along a direction that the constraints leave free.
+    """
+    values = weighted_constraints(at.mass, at.jacobian).singular_values()
+    with np.errstate(divide="ignore"):
+        return float((values.max(initial=1.0) / values.min(initial=np.inf)) ** 2) if values.size else 1.0
+
+
+class EnergyBalance:
+    """Energy of a motion, and the power that goes into it.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+    multipliers : callable
+        Takes instants, shape (k,), and states, shape (2n, k), to multipliers, shape (g, k). It is called only where
+        constraints move, and do work.
+    precision : Precision or str
+
+    Attributes
+    ----------
+    conservative : bool
+        Whether the power vanishes identically: then there is nothing to integrate.
+    """
+
+    def __init__(
+        self,
+        problem: MotionProblem,
+        multipliers: Callable[[Numbers, Numbers], Numbers],
+        precision: Precision | str = "double",
+    ) -> None:
+        self._precision = read_precision(precision) if isinstance(precision, str) else precision
+        self._evaluate = evaluation(problem.energy, self._precision)
+        self._rows = {name: row for row, name in enumerate(problem.energy.outputs)}
+        self._g, self._multipliers = len(problem.multipliers), multipliers
+        self._moving = _constraints_move(problem)
+        self.conservative = not self._moving and self._without_power(2 * len(problem.coordinates))
+
+    def energy(self, instants: Numbers, states: Numbers) -> Numbers:
+        """The energy function at states of the motion.
+
+        Parameters
+        ----------
+        instants : ndarray, shape (k,)
+        states : ndarray, shape (2n, k)
+
+        Returns
+        -------
+        ndarray, shape (k,)
+        """
+        return self._output("energy", instants, states, self._no_multipliers(len(instants)))
+
+    def power(self, instants: Numbers, states: Numbers) -> Numbers:
+        """Power of what is not conservative and of the controls, at states of the motion.
+
+        Parameters
+        ----------
+        instants : ndarray, shape (k,)
+        states : ndarray, shape (2n, k)
+
+        Returns
+        -------
+        ndarray, shape (k,)
+        """
+        reactions = self._multipliers(instants, states) if self._moving else self._no_multipliers(len(instants))
+        return self._output("power", instants, states, reactions)
+
+    def work(self, piece: Piece) -> Any:
+        """Integral of the power over a piece of the motion.
+
+        Parameters
+        ----------
+        piece : Piece
+
+        Returns
+        -------
+        number
+        """
+        if self.conservative:
+            return self._precision.number("0")
+        half = (piece.end - piece.start) / 2
+        instants = piece.start + half * (1 + self._numbers(POINTS))
+        return half * (self._numbers(WEIGHTS) * self.power(instants, piece.states(instants))).sum()
+
+    def _output(self, name: str, instants: Numbers, states: Numbers, multipliers: Numbers) -> Numbers:
+        inputs = np.concatenate([np.reshape(instants, (1, -1)), states, multipliers])
+        return self._evaluate(np.ascontiguousarray(inputs))[self._rows[name]]
+
+    def _no_multipliers(self, points: int) -> Numbers:
+        return zeros(self._precision, self._g, points)
+
+    def _numbers(self, values: Vector) -> Numbers:
+        return np.array([self._precision.number(repr(float(value))) for value in values])
+
+    def _without_power(self, size: int) -> bool:
+        """Constraints at rest do no work; whether anything else does shows at any state."""
+        states = self._numbers(np.outer(np.arange(1, size + 1), PROBES).ravel() % 1).reshape(size, -1)
+        instants = self._numbers(np.array(PROBES))
+        return not any(self._output("power", instants, states, self._no_multipliers(len(PROBES))))
+
+
+def _constraints_move(problem: MotionProblem) -> bool:
+    """Whether a constraint contains the time, be it through a control."""
+    residuals_alone = {name for name in problem.matrices.outputs if name.startswith("residual[")}
+    program = computing(problem.matrices, residuals_alone)
+    parts = (*(expression for _, expression in program.assignments), *program.outputs.values())
+    return any("t" in names_in(part) for part in parts)
+
+
+def _scaled(residual: Vector, jacobian: Matrix, moved: Vector) -> float:
+    gradients = np.max(np.abs(jacobian), axis=1, initial=0.0)
+    peaks = np.where(gradients > 0, gradients, 1.0)
+    lengths = np.maximum(1.0, np.linalg.norm(jacobian / peaks[:, None], axis=1))
+    left = np.max(np.abs(residual) / peaks / lengths, initial=0.0)
+    return float(left / max(1.0, float(np.max(np.abs(moved), initial=0.0))))

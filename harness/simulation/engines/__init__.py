@@ -1,0 +1,1 @@
+"""The engines that follow a motion, behind one protocol."""

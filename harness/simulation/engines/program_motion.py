@@ -1,0 +1,266 @@
+"""A motion on its motion program: what the engines that take the program's fixed pivots have in common.
+
+An integrator takes its steps in blocks, without Python in between. A block whose steps have shrunk suddenly is taken
+back and repeated step by step, under watch: steps shrink in proportion to the distance of a singularity, and a singular
+configuration of the constraints is one for the fixed pivots of the motion program, although the motion itself goes
+through it.
+"""
+
+from collections.abc import Callable, Iterator
+from functools import cached_property
+from itertools import pairwise
+from typing import Any, Protocol
+
+from numpy.typing import NDArray
+
+from ...failures import Failure, HolonomError
+from ...program.motion_problem import MotionProblem
+from ...program.precision import Precision
+from ..advice import HardCase
+from ..constraints.vanishing import no_gradient
+from ..constraints.watch import Watch
+from ..evaluation import Numbers
+from .dense_output import Piece
+
+FIRST_BLOCK = 128  # steps; what surrounds a block, projection above all, takes as long as some small steps
+SHRUNK = 32  # times shorter than the longest: a step that calls for a closer look; 16 occurs in quiet motions
+SHORTEST = 1e-10  # of the longest: a step that leads nowhere
+
+
+class ProgramObstacle(HolonomError):
+    """The motion program fails ahead, while pivots may lead on.
+
+    Parameters
+    ----------
+    t : float
+        The instant that is reached.
+    case : HardCase
+    reason : str
+        A clause about that instant.
+    """
+
+    def __init__(self, t: float, case: HardCase, reason: str) -> None:
+        super().__init__(Failure.NO_WAY_ON, detail=f"{t:.10g}, where {reason}")
+        self.case, self.reason = case, reason
+
+
+class Dense(Protocol):
+    """Steps, and the states between them."""
+
+    times: NDArray[Any]
+
+    def __call__(self, instants: NDArray[Any]) -> NDArray[Any]:
+        """The states at instants, shape (k, 2n)."""
+
+
+class Integrator(Protocol):
+    """What takes the steps, as heyoka's integrators do.
+
+    Attributes
+    ----------
+    time, last_h : number
+        The instant that is reached; the length of the last step.
+    state : ndarray, shape (2n,)
+        At that instant, in place.
+    tol : number
+    """
+
+    time: Any
+    last_h: Any
+    state: Numbers
+    tol: Any
+
+    def propagate_until(
+        self, until: Any, max_steps: int, *, c_output: bool = False
+    ) -> tuple[Any, Any, Any, int, Dense | None, None]:
+        """Take steps: to an instant, or so many, or until one fails.
+
+        Returns
+        -------
+        (outcome, shortest, longest, steps, dense, None)
+            A step that the last instant cut short is neither the shortest nor the longest.
+        """
+
+
+class ProgramMotion:
+    """A motion followed on its motion program.
+
+    An engine provides the integrator, and says what is done between the blocks.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        Without an obstacle.
+    precision : Precision
+    failed : object
+        The outcome of the integrator's steps where the last one led to no numbers.
+
+    Attributes
+    ----------
+    precision : Precision
+    steps : int
+    state : ndarray, shape (2n,)
+        Coordinates, then velocities, at the instant that is reached.
+    tol : float
+    code : str
+        How heyoka has compiled the integrator; empty where it has not.
+    compile_seconds : float
+    """
+
+    state: Numbers
+    tol: float
+    code: str = ""
+    compile_seconds: float
+    _integrator: Integrator
+    _first_block = FIRST_BLOCK
+
+    def __init__(self, problem: MotionProblem, precision: Precision, failed: object) -> None:
+        self.precision, self._failed = precision, failed
+        self.steps, self._longest, self._usual = 0, 0.0, 0.0
+        self._problem = problem
+        self._obstacle: HolonomError | None = None
+
+    @property
+    def time(self) -> Any:
+        """The instant that is reached, a number of the precision."""
+        return self._integrator.time
+
+    @cached_property
+    def watch(self) -> Watch:
+        """What looks at the constraints where steps shrink."""
+        return Watch(self._problem)
+
+    def restart(self, instant: Any, state: Numbers) -> None:
+        """Go on from another instant and state.
+
+        Parameters
+        ----------
+        instant : number
+        state : array_like, shape (2n,)
+        """
+        self._go_back(instant, state)
+        self._usual, self._obstacle = 0.0, None
+
+    def advance(self, until: Any) -> None:
+        """Follow the motion to an instant.
+
+        Parameters
+        ----------
+        until : number
+            In the numbers of the precision.
+
+        Raises
+        ------
+        ProgramObstacle
+            The motion program fails ahead; time and state are those before it does.
+        HolonomError
+            The motion itself ends.
+        """
+        self._begin()
+        ended = False
+        while not ended:
+            ended, _ = self._block(until, dense=False)
+        self._keep_constraints()
+
+    def pieces(self, until: Any) -> Iterator[Piece]:
+        """Follow the motion to an instant, with its states between the steps.
+
+        Parameters
+        ----------
+        until : number
+
+        Yields
+        ------
+        Piece
+            One for each step.
+
+        Raises
+        ------
+        HolonomError
+            As `advance`.
+        """
+        self._begin()
+        ended = self._integrator.time == until
+        while not ended:
+            ended, outputs = self._block(until, dense=True)
+            for dense in outputs:
+                for start, end in pairwise(dense.times):
+                    yield Piece(start, end, _states_of(dense))
+        self._keep_constraints()
+
+    def _begin(self) -> None:
+        self._length = self._first_block
+
+    def _keep_constraints(self) -> None:
+        """Project the state; nothing where the integrator does so."""
+
+    def _prepare_next(self, until: Any) -> None:
+        """What has to be done after a block that is not the last."""
+
+    def _block(self, until: Any, dense: bool) -> tuple[bool, list[Dense | None]]:
+        """Take a block of steps; whether it was the last, and its dense outputs where they are asked for."""
+        if self._obstacle is not None:
+            raise self._obstacle
+        integrator = self._integrator
+        instant, before = integrator.time, self.state.copy()
+        take = integrator.propagate_until  # by position: heyoka takes a microsecond for a keyword
+        block = take(until, self._length, c_output=True) if dense else take(until, self._length)
+        _, shortest, longest, steps, output, _ = block
+        ended = integrator.time == until
+        broken_off = steps < self._length and not ended
+        longest = max(self._usual, longest)
+        if broken_off or shortest * SHRUNK < longest:
+            reached = until if broken_off else integrator.time
+            self._go_back(instant, before)
+            outputs = self._watched(reached, dense)
+            return self.time == until, outputs
+        self.steps += steps
+        self._usual = longest
+        if not ended:
+            self._prepare_next(until)
+        return ended, [output]
+
+    def _watched(self, until: Any, dense: bool) -> list[Dense | None]:
+        """The block in single steps, until it ends or the motion program is about to fail."""
+        self.watch.begin(self.time, self.state)
+        outputs = []
+        for _ in range(self._length):
+            if self.time == until or self._obstacle is not None:
+                break
+            outputs += self._watched_step(until, dense)
+        self._length = self._first_block
+        return outputs
+
+    def _watched_step(self, until: Any, dense: bool) -> list[Dense | None]:
+        instant, before = self.time, self.state.copy()
+        outcome, _, step, _, output, _ = self._integrator.propagate_until(until, 1, c_output=dense)
+        if outcome == self._failed:
+            self._go_back(instant, before)
+            reason = f"numbers leave the range of {self.precision.name} precision"
+            self._obstacle = ProgramObstacle(float(instant), HardCase.OVERFLOW, reason)
+            return []
+        self.steps += 1
+        self._keep_constraints()
+        self._longest, self._usual = max(self._longest, self._usual, step), step or self._usual
+        self._obstacle = self._found_ahead(until)
+        return [output]
+
+    def _found_ahead(self, until: Any) -> HolonomError | None:
+        """What the constraints' directions, the gradients and the length of the last step say about the next ones."""
+        t = float(self.time)
+        if self.watch.singular_ahead(t, self.state):
+            return ProgramObstacle(t, HardCase.SINGULAR_PASSAGE, "the configuration nears a singular one")
+        if self.time == until or abs(self._integrator.last_h) >= SHORTEST * self._longest:
+            return None
+        vanished = self.watch.vanished(t, self.state)
+        if vanished is None:
+            return HolonomError(Failure.NO_WAY_ON, detail=f"{t:.10g}, where steps become too short")
+        return no_gradient(t, vanished)
+
+    def _go_back(self, instant: Any, state: Numbers) -> None:
+        self._integrator.time = instant
+        self.state[:] = state
+
+
+def _states_of(dense: Dense) -> Callable[[NDArray[Any]], NDArray[Any]]:
+    return lambda instants: dense(instants).T.copy()

@@ -1,0 +1,328 @@
+"""The robust engine: SciPy's integrators, pivoted linear algebra in the right-hand side, projection after each step.
+
+It works where the motion program's fixed pivots fail. Redundant constraints: the rank of J is found at states that
+keep the constraints and held between them, where rounding or a stage off the constraints would raise it. Singular
+configurations: the least singular value that counts is watched; where it runs to zero, one arc spans the place where
+it vanishes (`singular_passage`), and all steps before end at half of the way to it.
+
+DOP853 takes the steps, of order 8. Where they stay at the boundary of its stability (`stiffness`)
+Radau's method takes over, of order 5 and stable for stiff motions.
+"""
+
+import time
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from scipy.integrate import DOP853, OdeSolver, Radau
+from scipy.optimize import minimize_scalar
+
+from ...failures import Failure, HolonomError
+from ...program.motion_problem import MotionProblem
+from ..constraints.factorization import (
+    EPSILON,
+    dependent_constraints,
+    factored_constraints,
+    rank_of,
+    weighted_constraints,
+)
+from ..constraints.projection import InconsistentConstraints, settle
+from ..constraints.singularity import least_of, probed, singular_values_at, vanishing
+from ..matrices import Matrix, MotionMatrices, Vector, start_of
+from .dense_output import Piece
+from .singular_passage import NODES, Arc, arc_over
+from .stiffness import StiffnessWatch
+
+TOLERANCE = 1e-11
+TIGHTEST = 100 * EPSILON  # relative tolerance that SciPy's integrators hold
+SHORTEST = 1e-8  # of the longest step so far: a step that leads nowhere
+REACH = 5.0  # steps ahead within which a singular configuration calls for an arc over it
+ARC_ERROR = 1e-12  # relative error of an arc's coordinates that will do at any tolerance
+OFF_BRANCH = 1e-7  # relative distance from the constraints at the end of an arc that is not rounding
+LONGER = (1.0, 1.5, 2.25)  # lengths of an arc that are tried, in terms of one that reaches as far behind as before
+CLEAR = 0.5  # least singular value at the end of an arc, in terms of the one at its start
+SHORTER = 0.7  # after an arc was refused, the way to the singular configuration at which the next one is tried
+CLOSEST = 1e-7  # such a way, relative to the time or to one, at which the search for an arc is given up
+PLACE = 1e-6  # share of an arc to which the place of the singular configuration is found
+UNTRUSTED = 1e-6  # relative singular values in which no digits are left
+NEARLY_SINGULAR = 1e-3  # relative singular values that are left out where a motion starts from such a configuration
+FIRST_ARCS = 1.0 / 2.0 ** np.arange(12)  # lengths of arcs away from a singular configuration, as ways of coordinates
+
+
+class Solution(NamedTuple):
+    """What the equations of motion determine at a state.
+
+    Attributes
+    ----------
+    accelerations : ndarray, shape (n,)
+    multipliers : ndarray, shape (g,)
+        The least of all that give the constraint forces.
+    constraint_forces : ndarray, shape (n,)
+        J^T lambda, unique.
+    """
+
+    accelerations: Vector
+    multipliers: Vector
+    constraint_forces: Vector
+
+
+class RobustMotion:
+    """A motion followed by the robust engine.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+    tol : float or None
+        Tolerance of a step, relative and absolute.
+
+    Attributes
+    ----------
+    time : float
+    state : ndarray, shape (2n,)
+        Coordinates, then velocities.
+    steps : int
+    tol : float
+    compile_seconds : float
+    rank : int
+        How many of the constraints are independent.
+    stiff : bool
+        Whether the motion was found to be stiff.
+    """
+
+    def __init__(self, problem: MotionProblem, tol: float | None = None) -> None:
+        clock = time.perf_counter()
+        self.matrices = MotionMatrices(problem)
+        self.compile_seconds = time.perf_counter() - clock
+        self.n, self.steps, self.tol = len(problem.coordinates), 0, max(tol or TOLERANCE, TIGHTEST)
+        self.stiff, self._stiffness = False, StiffnessWatch()
+        self._multipliers, self._places, self._arcs = problem.multipliers, [], []
+        self.restart(*start_of(problem))
+
+    def restart(self, instant: float, state: Vector) -> None:
+        """Go on from another instant and state.
+
+        Parameters
+        ----------
+        instant : float
+        state : ndarray, shape (2n,)
+        """
+        self._arc: Arc | None = None
+        self.rank, until_singular = probed(self.matrices, instant, state)
+        if until_singular == 0:
+            self.time, self.state = instant, state
+            self._arc = self._arc_away()
+        else:
+            self._begin(instant, state, None)
+            self._vanishing = instant + until_singular
+
+    def advance(self, until: float) -> None:
+        """Follow the motion to an instant.
+
+        Parameters
+        ----------
+        until : float
+
+        Raises
+        ------
+        HolonomError
+            The motion cannot be followed so far.
+        """
+        for _ in self.pieces(until):
+            pass
+
+    def pieces(self, until: float) -> Iterator[Piece]:
+        """Follow the motion to an instant, step by step.
+
+        Parameters
+        ----------
+        until : float
+
+        Yields
+        ------
+        Piece
+            Its states are to be asked for before the next step.
+
+        Raises
+        ------
+        HolonomError
+            The motion cannot be followed so far.
+        """
+        while self.time < until:
+            yield self._along_arc(until) if self._arc or self._arc_found() else self._step(until)
+            self.steps += 1
+
+    @property
+    def singular_ahead(self) -> bool:
+        """Whether a singular configuration is in reach of the next steps, or being passed."""
+        return self._arc is not None or self._vanishing - self.time <= REACH * self._solver.h_abs
+
+    @property
+    def passages(self) -> list[float]:
+        """Instants at which the motion went through a singular configuration."""
+        return [instant for instant in self._places if instant <= self.time]
+
+    def solution(self, t: float, state: Vector) -> Solution:
+        """Accelerations, multipliers and constraint forces at a state that keeps the constraints.
+
+        Parameters
+        ----------
+        t : float
+        state : ndarray, shape (2n,)
+
+        Returns
+        -------
+        Solution
+        """
+        at = self.matrices(t, state)
+        weighted = weighted_constraints(at.mass, at.jacobian)
+        rank = min(self.rank, rank_of(weighted.singular_values(), UNTRUSTED))
+        factored = factored_constraints(weighted, rank)
+        arc = next((arc for arc in self._arcs if arc.start < t < arc.end), None)
+        if arc is None:
+            accelerations = factored.accelerations(at.force, at.curvature)
+            multipliers = factored.multipliers(at.force, at.curvature)
+        else:
+            accelerations = arc.accelerations(t)
+            multipliers = factored.multipliers_of(at.mass @ accelerations - at.force)
+        return Solution(accelerations, multipliers, at.jacobian.T @ multipliers)
+
+    @property
+    def dependent(self) -> tuple[str, ...]:
+        """Multipliers of the constraints that depend on one another."""
+        at = self.matrices(self.time, self.state)
+        involved = dependent_constraints(weighted_constraints(at.mass, at.jacobian), self.rank)
+        return tuple(self._multipliers[beta] for beta in involved)
+
+    # ---- steps ----
+
+    def _step(self, until: float) -> Piece:
+        """One step of SciPy's integrator, at most half of the way to a singular configuration."""
+        start, solver, length = self.time, self._solver, self._solver.h_abs
+        solver.t_bound, solver.status = min(until, (start + self._vanishing) / 2), "running"
+        solver.step()
+        self._longest = max(self._longest, solver.h_abs)
+        if solver.status == "failed" or solver.h_abs < SHORTEST * self._longest:
+            raise HolonomError(Failure.NO_WAY_ON, detail=f"{start:.10g}, where steps become too short")
+        if solver.status == "finished":
+            solver.h_abs = max(solver.h_abs, length)
+        self.stiff = self.stiff or self._stiffness.stiff(solver)
+        self._move(solver.t, solver.y)
+        if self.stiff and isinstance(solver, DOP853):
+            self._begin(self.time, self.state, None)
+        return Piece(start, self.time, lambda instants: self._projected(instants, solver.dense_output()(instants)))
+
+    def _projected(self, instants: Vector, states: Matrix) -> Matrix:
+        """States between two steps, on the constraints."""
+        kept = [settle(self.matrices, t, state, self.rank)[0] for t, state in zip(instants, states.T, strict=True)]
+        return np.reshape(kept, (-1, 2 * self.n)).T
+
+    def _rates(self, t: float, state: Vector) -> Vector:
+        at = self.matrices(t, state)
+        if not at.finite:
+            return np.full_like(state, np.nan)
+        factored = factored_constraints(weighted_constraints(at.mass, at.jacobian), self.rank)
+        return np.concatenate([state[self.n :], factored.accelerations(at.force, at.curvature)])
+
+    def _begin(self, t: float, state: Vector, length: float | None) -> None:
+        kept, _, self._least = self._kept(t, state)
+        integrator = Radau if self.stiff else DOP853
+        self._solver: OdeSolver = integrator(
+            self._rates, t, kept, np.inf, rtol=self.tol, atol=self.tol, first_step=length
+        )
+        self.time, self.state, self._vanishing, self._refused = t, kept, np.inf, np.inf
+        self._longest = self._solver.h_abs
+
+    def _move(self, t: float, state: Vector) -> None:
+        """Project what a step gave, and go on from there."""
+        before, last = self.time, self._least
+        self.state, accelerations, self._least = self._kept(t, state)
+        self._solver.y, self._solver.f = self.state, np.concatenate([self.state[self.n :], accelerations])
+        self.time, self._vanishing = t, vanishing(before, last, t, self._least)
+
+    def _kept(self, t: float, state: Vector) -> tuple[Vector, Vector, float]:
+        """The nearest state that keeps the constraints, its accelerations, and the least singular value there."""
+        try:
+            kept, factored = settle(self.matrices, t, state, self.rank)
+        except InconsistentConstraints:
+            self._require_rank(t, singular_values_at(self.matrices, t, state))
+            raise
+        at, values = self.matrices(t, kept), factored.weighted.singular_values()
+        self._require_rank(t, values)
+        return kept, factored.accelerations(at.force, at.curvature), least_of(values, self.rank)
+
+    def _require_rank(self, t: float, singular_values: Vector) -> None:
+        """No constraint that depended on the others at the start may come to count."""
+        if rank_of(singular_values, UNTRUSTED) > self.rank:
+            raise HolonomError(Failure.NO_WAY_ON, detail=f"{t:.10g}, a singular configuration that it starts from")
+
+    # ---- singular configurations ----
+
+    def _arc_found(self) -> bool:
+        """Look for an arc over the singular configuration ahead, if there is one in reach."""
+        ahead = self._vanishing - self.time
+        if ahead > min(REACH * self._solver.h_abs, SHORTER * self._refused):
+            return False
+        self._arc, self._refused = self._arc_over(ahead), ahead
+        if self._arc is None and ahead < CLOSEST * max(1.0, abs(self.time)):
+            raise HolonomError(Failure.NO_WAY_ON, detail=f"{self.time + ahead:.10g}, a singular configuration")
+        return self._arc is not None
+
+    def _arc_over(self, ahead: float) -> Arc | None:
+        """An arc whose end is clear of the singular configuration; None where there is none of that length."""
+        guess = np.tile(self._solver.f[self.n :], (NODES, 1))
+        for longer in LONGER:
+            arc = arc_over(self._accelerations, self.time, self.time + 2 * longer * ahead, self.state, guess)
+            if arc is None or not self._trusted(arc):
+                return None
+            if self._kept(arc.end, arc.last)[2] > CLEAR * self._least:
+                return self._taken(arc, self._place(arc))
+        return None
+
+    def _arc_away(self) -> Arc:
+        """An arc from a singular configuration, along the branch that the velocities point to."""
+        rank = rank_of(singular_values_at(self.matrices, self.time, self.state), NEARLY_SINGULAR)
+        state, factored = settle(self.matrices, self.time, self.state, rank)
+        at = self.matrices(self.time, state)
+        guess = np.tile(factored.accelerations(at.force, at.curvature), (NODES, 1))
+        for length in FIRST_ARCS / np.max(np.abs(state[self.n :])):
+            arc = arc_over(self._accelerations, self.time, self.time + length, state, guess)
+            if arc is not None and self._trusted(arc):
+                return self._taken(arc, self.time)
+        raise HolonomError(Failure.NO_WAY_ON, detail=f"{self.time:.10g}, a singular configuration that it starts from")
+
+    def _place(self, arc: Arc) -> float:
+        """The instant of an arc at which the least singular value that counts vanishes."""
+
+        def least(t: float) -> float:
+            return least_of(singular_values_at(self.matrices, t, arc(np.array([t]))[:, 0]), self.rank)
+
+        tolerance = PLACE * (arc.end - arc.start)
+        return minimize_scalar(least, bounds=(arc.start, arc.end), method="bounded", options={"xatol": tolerance}).x
+
+    def _taken(self, arc: Arc, place: float) -> Arc:
+        self._arcs.append(arc)
+        self._places.append(float(place))
+        return arc
+
+    def _trusted(self, arc: Arc) -> bool:
+        """Whether the arc is as smooth as the tolerance asks, and ends on the constraints."""
+        if arc.error > max(self.tol, ARC_ERROR):
+            return False
+        try:
+            kept = self._kept(arc.end, arc.last)[0]
+        except InconsistentConstraints:
+            return False
+        return bool(np.max(np.abs(kept - arc.last)) <= OFF_BRANCH * max(1.0, np.max(np.abs(kept))))
+
+    def _accelerations(self, t: float, state: Vector) -> Vector:
+        return self._kept(t, state)[1]
+
+    def _along_arc(self, until: float) -> Piece:
+        """Along the arc, to its end or to the instant asked for."""
+        start, arc = self.time, self._arc
+        if until < arc.end:
+            self.time, self.state = until, arc(np.array([until]))[:, 0]
+        else:
+            self._arc = None
+            self._begin(arc.end, arc.last, None)
+        return Piece(start, self.time, arc)

@@ -1,0 +1,122 @@
+"""Over a singular configuration: Gauss's collocation across it, on projected states.
+
+Where the constraints lose rank, branches of motion meet, and the equations of motion say nothing; a step that
+evaluates them near there amplifies its own errors and may leave on the wrong branch. The motion itself is analytic
+through it. So one long step spans the singular configuration: a polynomial whose second derivative is the
+acceleration at Gauss's nodes on both sides of it, none of them near it (Hairer, Lubich & Wanner, Geometric Numerical
+Integration, section II.1.4). At each node the state is projected onto the constraints, which keeps it on the branch
+that the polynomial runs along. The polynomial is found by iteration from the extrapolated motion; how fast its
+Legendre coefficients decay tells its error, and an arc over what is no analytic motion is refused.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from ..constraints.factorization import EPSILON
+from ..constraints.projection import InconsistentConstraints
+from ..matrices import Matrix, Vector
+
+NODES = 16
+POINTS, WEIGHTS = legendre.leggauss(NODES)
+# Values at the nodes to coefficients of Legendre's polynomials; Gauss's rule is exact for the products needed.
+TO_COEFFICIENTS = (np.arange(NODES)[:, None] + 0.5) * WEIGHTS * legendre.legvander(POINTS, NODES - 1).T
+TAIL = 2  # coefficients whose size is taken for the error of the polynomial
+ITERATIONS = 50
+ROUNDING = 4 * EPSILON  # relative change of the coordinates that is none
+CONTRACTION = 0.5  # a change at least that large beside the last one is rounding where it is small, else divergence
+SMALL = 1e-9
+WARMING_UP = 3  # iterations that need not contract
+
+Accelerations = Callable[[float, Vector], Vector]
+
+
+@dataclass(frozen=True)
+class Arc:
+    """A polynomial motion between two instants.
+
+    Attributes
+    ----------
+    start, end : float
+    coordinates, velocities : ndarray, shapes (NODES + 2, n) and (NODES + 1, n)
+        Coefficients of Legendre's polynomials over the arc.
+    """
+
+    start: float
+    end: float
+    coordinates: Matrix
+    velocities: Matrix
+
+    def __call__(self, instants: Vector) -> Matrix:
+        """States at instants of the arc, shape (2n, instants)."""
+        places = (2 * np.asarray(instants) - self.start - self.end) / (self.end - self.start)
+        return np.concatenate([legendre.legval(places, self.coordinates), legendre.legval(places, self.velocities)])
+
+    def accelerations(self, instant: float) -> Vector:
+        """Accelerations at an instant of the arc, shape (n,)."""
+        half = (self.end - self.start) / 2
+        place = (instant - self.start) / half - 1
+        return legendre.legval(place, legendre.legder(self.velocities, scl=1 / half))
+
+    @property
+    def error(self) -> float:
+        """What the coefficients left out make of the coordinates, relative to them, told by the last ones."""
+        return _size(self.coordinates[-TAIL:], self)
+
+    @property
+    def last(self) -> Vector:
+        """State at the end, shape (2n,)."""
+        return self(np.array([self.end]))[:, 0]
+
+
+def arc_over(compute: Accelerations, start: float, end: float, state: Vector, guess: Matrix) -> Arc | None:
+    """The motion from a state over a singular configuration, to an instant behind it.
+
+    Parameters
+    ----------
+    compute : callable
+        Takes an instant and a state near the constraints to the accelerations at the nearest state that keeps them.
+    start, end : float
+        The singular configuration lies well between them.
+    state : ndarray, shape (2n,)
+        At the start.
+    guess : ndarray, shape (NODES, n)
+        Accelerations at Gauss's nodes to begin with.
+
+    Returns
+    -------
+    Arc or None
+        None where the iteration finds no motion.
+    """
+    instants, last = (start + end) / 2 + (end - start) / 2 * POINTS, np.inf
+    arc = _integrated(start, end, state, guess)
+    for iteration in range(ITERATIONS):
+        try:
+            found = np.array([compute(t, at) for t, at in zip(instants, arc(instants).T, strict=True)])
+        except InconsistentConstraints:
+            return None
+        before, arc = arc, _integrated(start, end, state, found)
+        change = _size(arc.coordinates - before.coordinates, arc)
+        if change <= ROUNDING or CONTRACTION * last < change <= SMALL:
+            return arc
+        if not np.isfinite(change) or (iteration > WARMING_UP and change > CONTRACTION * last):
+            return None
+        last = change
+    return None
+
+
+def _integrated(start: float, end: float, state: Vector, accelerations: Matrix) -> Arc:
+    n, half = len(state) // 2, (end - start) / 2
+    velocities = legendre.legint(TO_COEFFICIENTS @ accelerations, lbnd=-1, scl=half)
+    velocities[0] += state[n:]
+    coordinates = legendre.legint(velocities, lbnd=-1, scl=half)
+    coordinates[0] += state[:n]
+    return Arc(start, end, coordinates, velocities)
+
+
+def _size(coefficients: Matrix, arc: Arc) -> float:
+    """Bound on a sum of Legendre's polynomials, relative to the arc's coordinates."""
+    extent = max(1.0, float(np.max(np.abs(arc.coordinates[0]), initial=0.0)))
+    return float(np.max(np.sum(np.abs(coefficients), axis=0), initial=0.0)) / extent

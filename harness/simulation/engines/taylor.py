@@ -1,0 +1,172 @@
+"""The Taylor engine: heyoka's adaptive integrator on the motion program.
+
+After a block of steps the state is projected onto the constraints; the next block is as long as the way back to them is
+short.
+"""
+
+import time
+from typing import Any
+
+import numpy as np
+
+from ...failures import Failure, HolonomError
+from ...program.heyoka_function import import_heyoka
+from ...program.motion_problem import MotionProblem, computing
+from ...program.precision import Precision, read_precision
+from ..constraints.program_projection import ProgramProjection
+from ..constraints.stabilization import Equations, equations_of_motion, stabilized_equations
+from ..evaluation import Numbers
+from ..request import Stabilization
+from .code import Code, better_code, pays
+from .program_motion import FIRST_BLOCK, ProgramMotion
+
+DRIFT = 100  # times what rounding does to a number: how far a state may leave the constraints inside a block
+FINE, FINE_BLOCK = 1e-9, 512  # a tolerance whose steps leave the constraints so slowly that a first block may be long
+LONGEST_BLOCK = 1024  # steps
+GROWTH = 8  # from block to block, at most
+DECAYS_IN_A_RUN = 50.0  # gamma of Baumgarte's cure and Gear's, times the length of the time span
+
+
+class TaylorMotion(ProgramMotion):
+    """A motion followed by heyoka.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        Without an obstacle.
+    tol : float or None
+        Tolerance of a step; None for the precision of the numbers.
+    precision : Precision or str
+    drift : Stabilization
+    compact : bool or None
+        Whether to compile in compact mode; None to begin with code that is quickly compiled, and to compile better
+        code when what is left of a run earns that back.
+    decay : float or None
+        gamma of Baumgarte's cure and Gear's; None for `DECAYS_IN_A_RUN` by the length of the scene's time span.
+
+    Raises
+    ------
+    HolonomError
+        The precision is none, or cannot hold the tolerance; heyoka is not installed.
+    """
+
+    def __init__(
+        self,
+        problem: MotionProblem,
+        tol: float | None = None,
+        precision: Precision | str = "double",
+        drift: Stabilization = Stabilization.PROJECTION,
+        compact: bool | None = None,
+        decay: float | None = None,
+    ) -> None:
+        numbers = read_precision(precision) if isinstance(precision, str) else precision
+        super().__init__(problem, numbers, import_heyoka().taylor_outcome.err_nf_state)
+        self._tolerance = {} if tol is None else {"tol": self.precision.number(repr(held(tol, self.precision)))}
+        self._chosen = compact is not None
+        self._program = computing(problem.motion, {f"ddot({name})" for name in problem.coordinates})
+        code = Code.QUICK if compact is None else Code.COMPACT if compact else Code.UNROLLED
+        begun, number = time.perf_counter(), self.precision.number
+        self._equations = self._equations_with(drift, decay)
+        start = np.array([number(problem.start[name]) for name in problem.state])
+        self._set_up(code, number(problem.start["t"]), start)
+        kept = drift is Stabilization.PROJECTION and problem.multipliers
+        self._keeper = ProgramProjection(problem, self.precision) if kept else None
+        self.compile_seconds = time.perf_counter() - begun
+        self.tol = float(self._integrator.tol)
+        self._first_block = FINE_BLOCK if self.tol <= FINE else FIRST_BLOCK
+        self._allowed = max(DRIFT * 10.0**-self.precision.sure_digits, self.tol)
+
+    def _begin(self) -> None:
+        self._length = self._first_block
+        if not self._chosen:
+            self._clock = time.perf_counter(), self.time
+
+    def _prepare_next(self, until: Any) -> None:
+        """Project, choose the next block's length, and compile better code where that pays."""
+        if self._keeper is None:
+            self._length = LONGEST_BLOCK
+        else:
+            drift = self._keeper.project(self.time, self.state)
+            self._length = block_within(self._allowed, self._length, drift)
+        self._compile_if_it_pays(until)
+
+    def _keep_constraints(self) -> None:
+        if self._keeper is not None:
+            self._keeper.project(self._integrator.time, self.state)
+
+    def _compile_if_it_pays(self, until: Any) -> None:
+        """Compile better code, if what is left of the run earns that back, by how long it has taken so far."""
+        better = None if self._chosen else better_code(self.code, self.precision)
+        if better is None:
+            return
+        now, (begun, instant) = time.perf_counter(), self._clock
+        left = (now - begun) * float((until - self.time) / (self.time - instant))
+        if pays(better, self._program.operations, left):
+            self._set_up(better, self.time, self.state)
+            self._clock = time.perf_counter(), self.time
+            self.compile_seconds += self._clock[0] - now
+
+    def _set_up(self, code: Code, instant: Any, state: Numbers) -> None:
+        self.code = code
+        self._integrator = import_heyoka().taylor_adaptive(
+            self._equations, state, time=instant, **self._tolerance, **code.options, **self.precision.options
+        )
+        self.state = self._integrator.state  # a view: what the integrator does shows in it
+
+    def _equations_with(self, drift: Stabilization, decay: float | None) -> Equations:
+        if drift in (Stabilization.BAUMGARTE, Stabilization.GGL) and self._problem.multipliers:
+            gamma = DECAYS_IN_A_RUN / _length(self._problem) if decay is None else decay
+            return stabilized_equations(self._problem, self._program, self.precision, drift, gamma)
+        return equations_of_motion(self._problem, self._program, self.precision)
+
+
+def block_within(allowed: float, steps: int, drift: float) -> int:
+    """Length of a block in which a state leaves the constraints no farther than is allowed.
+
+    Parameters
+    ----------
+    allowed : float
+    steps : int
+        Of the block before.
+    drift : float
+        How far it left them there. What a velocity misses grows with the time, what a position misses with its square.
+
+    Returns
+    -------
+    int
+    """
+    growth = (allowed / drift) ** 0.5 if drift > 0 else GROWTH
+    return max(1, min(int(steps * min(growth, GROWTH)), LONGEST_BLOCK))
+
+
+def held(tol: float, precision: Precision) -> float:
+    """A tolerance that the numbers can hold.
+
+    Parameters
+    ----------
+    tol : float
+    precision : Precision
+
+    Returns
+    -------
+    float
+        The same.
+
+    Raises
+    ------
+    HolonomError
+        It is finer than rounding, or it is none.
+    """
+    finest = f"1e-{precision.sure_digits + 1}"
+    if not float(finest) <= tol < 1:
+        raise HolonomError(
+            Failure.TOLERANCE_UNHELD,
+            detail=f"{precision.name} precision holds tolerances from {finest} to 1, not {tol:g}",
+        )
+    return tol
+
+
+def _length(problem: MotionProblem) -> float:
+    """Length of the time span; a unit of time where the scene names none."""
+    first, last = map(float, problem.time_span or (0, 1))
+    return last - first

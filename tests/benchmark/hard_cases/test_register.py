@@ -1,0 +1,48 @@
+"""The register in its short form: every case holds against its truth, and the methods it warns of lose theirs."""
+
+import pytest
+
+from holonom.benchmark.hard_cases.case import CaseReport, Extent, Verdict
+from holonom.benchmark.hard_cases.plain import PLAIN
+from holonom.benchmark.hard_cases.register import REGISTER, examine
+from holonom.benchmark.hard_cases.solves import DIRECT, ORTHOGONAL, PIVOTED, TEXTBOOK
+from holonom.simulation.advice import HardCase
+
+LOSING = {
+    "parallel constraints": {TEXTBOOK, DIRECT},
+    "constraint given twice": {PLAIN},
+    "redundant spatial mechanism": {PLAIN},
+    "parallelogram through its dead centres": {PLAIN},
+    "mass ratio of 1e12": {TEXTBOOK, DIRECT},
+}
+
+
+@pytest.fixture(scope="module", params=REGISTER, ids=lambda case: case.name)
+def report(request) -> CaseReport:
+    return examine(request.param, Extent.SHORT)
+
+
+def test_ours_hold_and_the_plain_ways_lose_where_the_case_is_hard_for_them(report):
+    failing = [result for result in report.findings.results if result.verdict is Verdict.FAILS]
+    assert not failing
+    losing = {result.method for result in report.findings.results if result.verdict is Verdict.LOSES}
+    assert losing >= LOSING.get(report.case.name, set())
+
+
+def test_register_meets_every_kind_of_hard_case():
+    assert {case.kind for case in REGISTER} == set(HardCase)
+    assert len({case.name for case in REGISTER}) == len(REGISTER)
+
+
+def test_parallel_constraints_cost_the_orthogonal_solve_half_of_the_digits():
+    """Digits are lost like log10(1/angle), not like twice that, down to where nothing of G is left."""
+    case = next(case for case in REGISTER if case.name == "parallel constraints")
+    sweep = examine(case, Extent.SHORT).findings.sweep
+    by_angle = {method: dict(zip(sweep.values, row, strict=True)) for method, row in sweep.digits.items()}
+    for method in (ORTHOGONAL, PIVOTED):
+        lost = by_angle[method][1e-2] - by_angle[method][1e-6]
+        assert lost == pytest.approx(4, abs=1)
+    for method in (TEXTBOOK, DIRECT):
+        lost = by_angle[method][1e-2] - by_angle[method][1e-6]
+        assert lost == pytest.approx(8, abs=1.5)
+    assert by_angle[ORTHOGONAL][1e-7] >= 8 > 4 > by_angle[TEXTBOOK][1e-7]

@@ -1,0 +1,78 @@
+"""holonom stability: one table, one figure, one document, and the status that tells whether a case fails."""
+
+import json
+import xml.etree.ElementTree as ET
+
+import pytest
+
+from holonom.benchmark.hard_cases import register
+from holonom.benchmark.hard_cases.case import Case, Findings, Sweep, found, ours, required, theirs
+from holonom.cli import holonom
+from holonom.simulation.advice import HardCase, advice
+
+
+def shown(name: str, *results, sweep=None) -> Case:
+    return Case(name, HardCase.STIFF, "a truth told by hand", lambda extent: Findings(results, sweep))
+
+
+HELD = shown(
+    "held",
+    theirs("plain", "place", 1.25, 6.0),
+    ours("ours", "place", 9.0, 6.0),
+    required("ours", "reported", True),
+    sweep=Sweep("angle", (0.1, 0.01), {"ours": (9.0, 8.0), "plain": (9.0, 7.0)}),
+)
+FAILED = shown("failed", ours("ours", "place", 5.0, 6.0))
+
+
+def run(monkeypatch, cases, *arguments) -> int:
+    monkeypatch.setattr(register, "REGISTER", cases)
+    return holonom(["stability", *map(str, arguments)], standalone_mode=False)
+
+
+def test_document_tells_digits_verdicts_and_advice(monkeypatch, capsys):
+    assert run(monkeypatch, (HELD,), "--short", "--json", "-") == 0
+    (case,) = json.loads(capsys.readouterr().out)
+    assert [result["verdict"] for result in case["results"]] == ["loses it", "holds", "holds"]
+    assert [result["digits"] for result in case["results"]] == [1.25, 9.0, None]
+    assert case["sweep"]["digits"]["plain"] == [9.0, 7.0]
+    assert case["advice"] == advice(HardCase.STIFF)
+    assert not case["fails"]
+
+
+def test_a_failing_case_leaves_with_one(monkeypatch, capsys):
+    assert run(monkeypatch, (HELD, FAILED)) == 1
+    table = capsys.readouterr().out
+    assert "fails" in table
+    assert "2 hard cases, 1 failure" in table
+    assert advice(HardCase.STIFF) in table
+
+
+def test_figure_shows_every_method_and_is_the_same_twice(monkeypatch, tmp_path):
+    files = tmp_path / "first.svg", tmp_path / "second.svg"
+    for file in files:
+        assert run(monkeypatch, (HELD, FAILED), "--plot", file) == 1
+    text = files[0].read_text()
+    assert text == files[1].read_text()
+    labels = " ".join(ET.fromstring(text).itertext())
+    assert "plain: place" in labels
+    assert "failed" in labels
+    assert "angle" in labels
+
+
+def test_figure_that_cannot_be_written_is_refused(monkeypatch, tmp_path, capsys):
+    assert run(monkeypatch, (HELD,), "--plot", tmp_path / "no" / "figure.svg") == 2
+    assert "cannot be written" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("kind", HardCase)
+def test_advice_is_one_sentence_for_each_kind(kind):
+    sentence = advice(kind)
+    assert sentence[0].isupper()
+    assert sentence.endswith(".")
+    assert ". " not in sentence
+
+
+def test_findings_without_a_sweep_are_results_alone():
+    assert found(ours("ours", "place", 9.0, 6.0)).sweep is None

@@ -1,0 +1,73 @@
+"""Instants at which a controlled length vanishes: a zero of the law, and a point without gradient on the constraint."""
+
+from math import pi
+
+import pytest
+
+from holonom.confined import Limits
+from holonom.failures import HolonomError
+from holonom.program.motion_problem import MotionProblem, motion_problem
+from holonom.program.request import Request
+from holonom.simulation.constraints.vanishing import vanishing_instants, zeros_of_controls
+from holonom.simulation.matrices import MotionMatrices
+from holonom.simulation.request import FINAL_STATE_ALONE, Engine, SimulationRequest
+from holonom.simulation.simulate import simulate
+
+SCENE = """
+load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  potential_energy = 10*y, constraints = [{constraint}])$
+motion : holonomic_scene(system, control_law = [u = {law}], initial_state = [{state}], time_span = [0, {end}])$
+"""
+CIRCLE = "x^2 + y^2 - u^2"
+
+
+@pytest.fixture
+def described(write_scene):
+    def describe(constraint: str, law: str, state: str, end: int = 2) -> MotionProblem:
+        text = SCENE.format(constraint=constraint, law=law, state=state, end=end)
+        return motion_problem(write_scene(text), Request(), Limits())
+
+    return describe
+
+
+def test_zeros_are_those_of_the_law(described):
+    problem = described(CIRCLE, "cos(3*t)", "x = 0, y = -1, dot(x) = 0")
+    assert zeros_of_controls(problem, 0.0, 2.0) == pytest.approx([pi / 6, pi / 2], abs=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("constraint", "state"),
+    [
+        ("y - u*x", "x = 1, y = 1, dot(x) = 0"),  # a gradient of at least one
+        ("x^2 + y^2 - 2 - u", "x = 1, y = sqrt(2), dot(x) = 0"),  # a length that is not zero where its control is
+        ("x*y - u*x - 1", "x = 1, y = 2, dot(x) = 0"),  # a hyperbola
+    ],
+)
+def test_zeros_of_a_control_that_is_no_vanishing_length_are_harmless(described, constraint, state):
+    problem = described(constraint, "1 - t", state)
+    assert zeros_of_controls(problem, 0.0, 2.0) == [1.0]
+    assert vanishing_instants(problem, MotionMatrices(problem), 2.0) == []
+
+
+def test_length_vanishes_about_a_hinge_that_moves(described):
+    """The point without gradient is the hinge, wherever it is then."""
+    problem = described("(x - sin(t))^2 + y^2 - u^2", "1 - t", "x = 3/5, y = -4/5, dot(x) = 0")
+    assert vanishing_instants(problem, MotionMatrices(problem), 2.0) == [1.0]
+
+
+@pytest.mark.parametrize("engine", [Engine.AUTO, Engine.TAYLOR])
+def test_straight_way_into_the_hinge_is_stopped_although_nothing_in_the_motion_warns_of_it(described, engine):
+    problem = described(CIRCLE, "1 - t", "x = 0, y = -1, dot(x) = 0")
+    with pytest.raises(HolonomError, match=r"beyond t = 1, where the gradient of the constraint of lambda1 vanishes"):
+        simulate(problem, SimulationRequest(engine=engine, samples=FINAL_STATE_ALONE))
+
+
+def test_motion_goes_on_past_a_zero_at_which_the_bob_is_far_from_the_hinge(described):
+    """On the hyperbola x^2 - y^2 = u^2 the bob slides along the branch y = -x at u = 0, unless it is in the corner."""
+    problem = described("x^2 - y^2 - u", "1 - t", "x = 2, y = -sqrt(3), dot(x) = 0")
+    assert vanishing_instants(problem, MotionMatrices(problem), 2.0) == [1.0]
+    report = simulate(problem, SimulationRequest(samples=FINAL_STATE_ALONE)).report
+    assert report.t == 2.0
+    assert report.engine == "taylor"
+    assert report.coordinates["x"] ** 2 - report.coordinates["y"] ** 2 == pytest.approx(-1, abs=1e-12)

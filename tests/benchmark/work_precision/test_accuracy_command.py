@@ -1,0 +1,34 @@
+"""Truth: scenes that cannot be measured are refused in one sentence, before anything is."""
+
+import subprocess
+import sys
+
+import pytest
+
+SCENE = """
+load("holonom.mac")$
+bob : holonomic_system(
+  coordinates    = [x, y],
+  kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  constraints    = [{constraints}])$
+slide : holonomic_scene(bob, initial_state = [x = 0, dot(x) = 1]{span})$
+"""
+
+
+@pytest.mark.parametrize(
+    ("constraints", "span", "said"),
+    [
+        ("x - y", "", "slide: the scene has no time span"),
+        ("x - y, x - y", ", time_span = [0, 1]", "constraint 2 depends on the others"),
+    ],
+)
+def test_a_scene_that_cannot_be_measured_is_refused_in_one_sentence(write_scene, tmp_path, constraints, span, said):
+    written = tmp_path / "study.json"
+    scene = write_scene(SCENE.format(constraints=constraints, span=span))
+    command = [sys.executable, "-m", "holonom", "accuracy", str(scene), "--json", str(written)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+    assert done.stdout == ""
+    assert not written.exists()

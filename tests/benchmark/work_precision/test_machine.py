@@ -1,0 +1,23 @@
+"""Truth: what the interpreter and the packages say of themselves."""
+
+import os
+import platform
+from datetime import date
+
+import heyoka
+import numpy
+
+from holonom.benchmark.work_precision.machine import this_machine
+
+
+def test_the_machine_names_its_processor_cores_versions_and_the_day():
+    machine = this_machine(("heyoka", "numpy", "no such package"))
+    assert machine.versions == {
+        "Python": platform.python_version(),
+        "heyoka": heyoka.__version__,
+        "numpy": numpy.__version__,
+    }
+    assert machine.cores == len(os.sched_getaffinity(0))
+    assert machine.date == date.today().isoformat()
+    for part in (machine.processor, machine.system, machine.date, numpy.__version__):
+        assert part in str(machine)

@@ -1,0 +1,146 @@
+"""Truth: the paper's free motion in closed form, q1 + q2 = (3 + 19/6 t) exp(-t), by mpmath."""
+
+import json
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import jsonschema
+import mpmath
+import pytest
+
+from holonom.benchmark.work_precision.candidates import Group, Measurement
+from holonom.benchmark.work_precision.contest import measure
+from holonom.benchmark.work_precision.document import study_document
+from holonom.benchmark.work_precision.errors import WORKING_DIGITS, relative_error
+from holonom.benchmark.work_precision.plan import Plan
+from holonom.benchmark.work_precision.reference import find_reference
+from holonom.benchmark.work_precision.runge_kutta import RUNGE_KUTTA, runge_kutta_ladder
+from holonom.benchmark.work_precision.series import double_series, expansion_of
+from holonom.benchmark.work_precision.solvers import SOLVERS, solver_ladder
+from holonom.benchmark.work_precision.study import study
+from holonom.benchmark.work_precision.taylor import drift_cures, taylor_ladder, the_two_solves
+from holonom.confined import Limits
+from holonom.figures.work_precision import draw_study
+from holonom.program.motion_problem import motion_problem
+from holonom.program.motion_program import Solve
+from holonom.program.request import Request
+from holonom.simulation.request import Stabilization
+
+ROOT = Path(__file__).parents[3]
+PAPER = ROOT / "examples" / "paper" / "paper.mac"
+SCHEMA = ROOT / "harness" / "schemas" / "work_precision.json"
+REQUEST = Request("free_motion_scene")
+UNTIL = Fraction(2)
+SHORT = Plan(
+    tolerances={"double": (1e-6, 1e-9, 1e-12), "30": (1e-20,)},
+    solver_tolerances=(1e-6, 1e-9),
+    orders=(10, 20),
+    series_digits=25,
+)
+
+
+def closed_form(instant):
+    """Coordinates and velocities: dot(q1) = v1 - integral of s, s = q1 + q2, q3 = u s, u = 3/10 exp(t)."""
+    with mpmath.workdps(WORKING_DIGITS):
+        t = mpmath.mpf(instant.numerator) / instant.denominator
+        a, b = mpmath.mpf(3), mpmath.mpf(19) / 6
+        decay = mpmath.exp(-t)
+        s, ds = (a + b * t) * decay, (b - a - b * t) * decay
+        v1 = mpmath.mpf(1) / 2 - (a + b) + (a + b + b * t) * decay
+        q1 = 1 + (mpmath.mpf(1) / 2 - a - b) * t + (a + 2 * b) - (a + 2 * b + b * t) * decay
+        u0 = mpmath.mpf(3) / 10
+        return [q1, s - q1, u0 * (a + b * t), v1, ds - v1, u0 * b]
+
+
+@pytest.fixture(scope="module")
+def problems():
+    return [motion_problem(PAPER, replace(REQUEST, solve=solve), Limits(), 70) for solve in Solve]
+
+
+@pytest.fixture(scope="module")
+def reference(problems):
+    instant = expansion_of(problems[0], UNTIL).instant
+    return find_reference(problems[0], sorted({instant, UNTIL}), 30)
+
+
+@pytest.fixture(scope="module")
+def done():
+    return study(PAPER, REQUEST, Limits(), replace(SHORT, tolerances={"double": (1e-4, 1e-8, 1e-12)}))
+
+
+def test_the_reference_is_the_closed_form_to_fifteen_digits_more(reference):
+    for instant, state in reference.states.items():
+        assert relative_error(state, closed_form(instant)) < 1e-45
+
+
+def test_the_reference_is_confirmed_by_another_order_and_precision(reference):
+    assert reference.digits != reference.confirming_digits
+    assert reference.order != reference.confirming_order
+    assert min(reference.digits, reference.confirming_digits) >= 30 + 15
+    assert 0 < reference.difference < 1e-45
+
+
+@pytest.mark.usefixtures("gsl")
+def test_what_the_table_states_is_the_distance_from_the_closed_form(problems, reference):
+    problem = problems[0]
+    candidates = [
+        *double_series(expansion_of(problem, UNTIL), SHORT.orders),
+        *(c for precision, row in SHORT.tolerances.items() for c in taylor_ladder(problem, UNTIL, precision, row)),
+        *runge_kutta_ladder(problem, UNTIL, SHORT.solver_tolerances),
+        *solver_ladder(problem, UNTIL, SHORT.solver_tolerances),
+        *drift_cures(problem, UNTIL, 1e-10),
+        *the_two_solves(problems, UNTIL, 1e-10),
+    ]
+    results = measure(candidates, reference, lambda: None)
+    for candidate, result in zip(candidates, results, strict=True):
+        prepared = candidate.prepare()
+        error = relative_error(prepared.state(prepared.run()), closed_form(candidate.instant))
+        assert isinstance(result, Measurement), result
+        assert result.error == pytest.approx(error, rel=1e-6)
+        assert result.seconds > 0
+        assert result.operations > 0
+
+
+def test_maxima_sums_its_own_series_to_the_truncated_closed_form(done):
+    """The rest of the exponential series at t = 1 decides the error of orders 10 and 20, rounded or not."""
+    exact = {m.setting: m.error for m in done.measurements if m.method == "series, exact"}
+    rounded = {m.setting: m.error for m in done.measurements if m.method == "series, 25 digits"}
+    assert exact["order 20"] < 1e-15 < 1e-7 < exact["order 10"] < 1e-5
+    assert rounded["order 20"] == pytest.approx(exact["order 20"], rel=1e-3)
+
+
+@pytest.mark.usefixtures("gsl")
+def test_every_group_is_measured(done):
+    assert {m.group for m in done.measurements} == set(Group)
+    assert {m.method for m in done.measurements if m.group is Group.SOLVER} == set(SOLVERS)
+    assert {m.method for m in done.measurements if m.group is Group.RUNGE_KUTTA} == {RUNGE_KUTTA}
+    assert len([m for m in done.measurements if m.group is Group.DRIFT]) == len(Stabilization)
+    assert not done.omissions
+
+
+def test_the_document_keeps_to_its_schema(done):
+    document = json.loads(json.dumps(study_document(done)))
+    schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
+    jsonschema.Draft202012Validator(schema).validate(document)
+    assert len(document["measurements"]) == len(done.measurements)
+    assert document["advice"][-1] == {"digits": 30, "cheapest": None}
+
+
+def test_the_figure_names_every_method_and_the_machine(done, tmp_path):
+    draw_study(done, tmp_path / "study.svg")
+    drawn = (tmp_path / "study.svg").read_text(encoding="utf-8")
+    for text in (*{m.method for m in done.measurements}, done.machine.date, done.machine.versions["heyoka"]):
+        assert text in drawn
+
+
+def test_precisions_whose_reference_would_take_too_long_are_left_out_with_the_reason():
+    plan = replace(
+        SHORT, tolerances={"double": (1e-6,), "100": (1e-50,)}, orders=(10,), until=UNTIL, longest_reference=0
+    )
+    done = study(PAPER, REQUEST, Limits(), plan)
+    (left_out,) = (omission for omission in done.omissions if omission.method.startswith("Taylor"))
+    assert left_out.method == "Taylor, 100 digits"
+    assert "reference would take" in left_out.reason
+    assert done.until == UNTIL
+    assert {m.method for m in done.measurements if m.group is Group.TAYLOR} == {"Taylor, double"}

@@ -1,0 +1,57 @@
+"""What is particular to the C form: the compiler, names, and shapes."""
+
+import ctypes
+
+import numpy as np
+import pytest
+from programs import PENDULUM, program
+
+from holonom.failures import HolonomError
+from holonom.program.c_function import compile_c, load_c
+from holonom.program.c_source import c_source
+
+
+def test_without_a_compiler_one_sentence_says_so(monkeypatch, tmp_path):
+    monkeypatch.delenv("CC", raising=False)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(HolonomError, match="no C compiler is installed"):
+        compile_c(PENDULUM)
+
+
+def test_the_compiler_that_cc_names_is_the_one_used(monkeypatch):
+    monkeypatch.setenv("CC", "no-such-compiler -O3")
+    with pytest.raises(HolonomError, match="no C compiler is installed"):
+        compile_c(PENDULUM)
+
+
+def test_what_the_compiler_says_is_passed_on():
+    with pytest.raises(HolonomError, match="the C compiler refused the motion program: .*unknown_type"):
+        load_c("unknown_type x;")
+
+
+def test_names_from_the_program_stay_inside_the_comment():
+    name = '*/ int stolen = 1; /* \\\n"'
+    written = program([name], [("w", ["Add", name, 1])], {name: "w"})
+    assert compile_c(written)([1.0]) == [2.0]
+    with pytest.raises(ValueError, match="stolen"):
+        ctypes.c_int.in_dll(load_c(c_source(written)), "stolen")
+
+
+def test_the_function_can_be_named():
+    assert "void pendulum(const double *in, double *out)" in c_source(PENDULUM, "pendulum")
+    with pytest.raises(HolonomError, match="cannot name a function"):
+        c_source(PENDULUM, "f(); //")
+
+
+def test_without_gnu_vectors_the_source_is_plain_c99():
+    points = np.random.default_rng(1).normal(size=(6, 11))
+    plain = load_c(c_source(PENDULUM).replace("#ifdef __GNUC__", "#if 0"))
+    result = np.empty((3, 11))
+    plain.motion_batch(ctypes.c_size_t(11), ctypes.c_void_p(points.ctypes.data), ctypes.c_void_p(result.ctypes.data))
+    assert result == pytest.approx(compile_c(PENDULUM)(points), rel=1e-12)
+
+
+@pytest.mark.parametrize("shape", [(), (5,), (6, 2, 2)])
+def test_other_shapes_are_refused(shape):
+    with pytest.raises(ValueError, match="needed"):
+        compile_c(PENDULUM)(np.zeros(shape))

@@ -1,0 +1,189 @@
+"""A scene as a library in C11: clean, linkable, and with the numbers that the closed forms have."""
+
+import ctypes
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from holonom.cli import holonom
+from holonom.confined import Limits
+from holonom.program.c_library import c_library, default_name, identifiers
+from holonom.program.model import scene_model
+from holonom.program.request import Request
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+STRICT = ["-Wall", "-Wextra", "-pedantic", "-O2"]
+DOUBLES = np.ctypeslib.ndpointer(dtype=float, flags="C_CONTIGUOUS")
+
+
+def write_library(directory: Path, scene: str, name: str, *parameters: str) -> Path:
+    model = scene_model(EXAMPLES / scene, Request(), parameters, Limits())
+    directory.mkdir(exist_ok=True)
+    for file, text in c_library(model, name).items():
+        (directory / file).write_text(text, encoding="utf-8")
+    return directory
+
+
+def run(*command: str | Path, directory: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(command, cwd=directory, capture_output=True, text=True, check=False)
+
+
+@pytest.fixture(scope="module")
+def pendulum(tmp_path_factory) -> ctypes.CDLL:
+    """The pendulum of controlled length, m and g open."""
+    directory = write_library(tmp_path_factory.mktemp("c"), "pendulum.mac", "bob", "m", "g")
+    run("cc", "-std=c11", "-O2", "-shared", "-fPIC", "bob.c", "-o", "bob.so", "-lm", directory=directory)
+    library = ctypes.CDLL(str(directory / "bob.so"))
+    double = ctypes.c_double
+    library.bob_motion.argtypes = [double, *[DOUBLES] * 6]
+    library.bob_motion_batch.argtypes = [ctypes.c_size_t, *[DOUBLES] * 7]
+    library.bob_residual.argtypes = [double, *[DOUBLES] * 6]
+    library.bob_jacobian.argtypes = [double, *[DOUBLES] * 5]
+    library.bob_project.argtypes = [double, *[DOUBLES] * 4]
+    library.bob_law.argtypes = [double, *[DOUBLES] * 2]
+    library.bob_values.argtypes = [DOUBLES]
+    return library
+
+
+def random_inputs(points: int) -> tuple[np.ndarray, ...]:
+    """q, v, u with its rates, and (m, g), one column a point."""
+    rng = np.random.default_rng(7)
+    q, v, u = rng.normal(size=(2, points)), rng.normal(size=(2, points)), rng.normal(size=(3, points))
+    return q, v, u, rng.uniform(1, 2, size=(2, points))
+
+
+@pytest.mark.parametrize(
+    ("scene", "parameters"),
+    [
+        ("paper/paper.mac", ["u0"]),
+        ("pendulum.mac", ["m", "g"]),
+        ("car_axis.mac", []),
+        ("prescribed_tension.mac", []),
+        ("spherical_pendulum.mac", []),
+        ("andrews.mac", []),
+    ],
+)
+def test_compilers_have_nothing_to_say(tmp_path, scene, parameters):
+    directory = write_library(tmp_path / "library", scene, "system", *parameters)
+    compiled = run("cc", "-std=c11", *STRICT, "system.c", "system_driver.c", "-lm", "-o", "driver", directory=directory)
+    assert (compiled.returncode, compiled.stderr) == (0, "")
+    ran = run("./driver", directory=directory)
+    assert ran.returncode == 0
+    assert "nan" not in ran.stdout
+
+
+@pytest.mark.skipif(shutil.which("g++") is None, reason="no C++ compiler is installed")
+def test_the_header_serves_cpp(tmp_path):
+    directory = write_library(tmp_path / "library", "pendulum.mac", "bob")
+    program = '#include "bob.h"\nint main() { double p[1]; bob_values(p); return BOB_COORDINATE_y - 1; }\n'
+    (directory / "main.cpp").write_text(program)
+    assert run("cc", "-std=c11", "-c", "bob.c", directory=directory).returncode == 0
+    linked = run("g++", *STRICT, "main.cpp", "bob.o", "-o", "main", directory=directory)
+    assert (linked.returncode, linked.stderr) == (0, "")
+    assert run("./main", directory=directory).returncode == 0
+
+
+def test_two_systems_link_into_one_program(tmp_path):
+    directory = write_library(tmp_path / "library", "pendulum.mac", "bob")
+    write_library(directory, "car_axis.mac", "axis")
+    program = '#include "bob.h"\n#include "axis.h"\nint main(void) { return AXIS_COORDINATES - 2*BOB_COORDINATES; }\n'
+    (directory / "main.c").write_text(program)
+    linked = run("cc", *STRICT, "main.c", "bob.c", "axis.c", "-lm", "-o", "main", directory=directory)
+    assert (linked.returncode, linked.stderr) == (0, "")
+    assert run("./main", directory=directory).returncode == 0
+
+
+@pytest.mark.skipif(shutil.which("cmake") is None, reason="CMake is not installed")
+def test_cmake_builds_the_driver(tmp_path):
+    directory = write_library(tmp_path / "library", "pendulum.mac", "bob")
+    assert run("cmake", "-S", ".", "-B", "build", directory=directory).returncode == 0
+    assert run("cmake", "--build", "build", directory=directory).returncode == 0
+    printed = run("build/bob_driver", directory=directory).stdout
+    # released at rest at the angle pi/13 from the vertical: lambda = m g y/(2 l^2)
+    assert float(printed.split("lambda1 = ")[1]) == pytest.approx(-9.81 * np.cos(np.pi / 13) / 2, rel=1e-14)
+
+
+def test_motion_has_the_pendulums_closed_form(pendulum):
+    # lambda = m (g y + u ddot(u) + dot(u)^2 - v^2)/(2 r^2), A a = Q + 2 lambda q
+    for point in range(5):
+        q, v, u, p = (np.ascontiguousarray(array[:, point]) for array in random_inputs(5))
+        a, multiplier = np.empty(2), np.empty(1)
+        pendulum.bob_motion(0.0, q, v, u, p, a, multiplier)
+        m, g = p
+        expected = m * (g * q[1] + u[0] * u[2] + u[1] ** 2 - v @ v) / (2 * q @ q)
+        assert multiplier[0] == pytest.approx(expected, rel=1e-13)
+        assert a == pytest.approx(2 * expected * q / m - [0, g], rel=1e-12)
+
+
+def test_a_batch_has_the_numbers_of_its_points(pendulum):
+    points = 11
+    q, v, u, p = random_inputs(points)
+    a, multipliers = np.empty((2, points)), np.empty((1, points))
+    pendulum.bob_motion_batch(points, np.zeros(points), q, v, u, p, a, multipliers)
+    for point in range(points):
+        alone, multiplier = np.empty(2), np.empty(1)
+        arrays = (np.ascontiguousarray(array[:, point]) for array in (q, v, u, p))
+        pendulum.bob_motion(0.0, *arrays, alone, multiplier)
+        assert a[:, point] == pytest.approx(alone, rel=1e-13)
+        assert multipliers[:, point] == pytest.approx(multiplier, rel=1e-13)
+
+
+def test_constraints_and_jacobian_are_those_of_the_circle(pendulum):
+    q, v, u, p = (np.ascontiguousarray(array[:, 0]) for array in random_inputs(1))
+    f, rate, jacobian = np.empty(1), np.empty(1), np.empty(2)
+    pendulum.bob_residual(0.0, q, v, u, p, f, rate)
+    pendulum.bob_jacobian(0.0, q, v, u, p, jacobian)
+    assert f[0] == pytest.approx(q @ q - u[0] ** 2, rel=1e-13)
+    assert rate[0] == pytest.approx(2 * q @ v - 2 * u[0] * u[1], rel=1e-13)
+    assert jacobian == pytest.approx(2 * q, rel=1e-15)
+
+
+def test_projection_goes_along_the_radius(pendulum):
+    q, v, u, p = np.array([0.9, -1.2]), np.array([0.4, 0.3]), np.array([1.0, 0.25, 0.0]), np.array([2.0, 9.81])
+    assert pendulum.bob_project(0.0, q, v, u, p) == 0
+    assert q == pytest.approx([0.6, -0.8], rel=1e-14)
+    assert v == pytest.approx([0.4 + 0.15, 0.3 - 0.2], rel=1e-13)  # v is tangent; dot(u) goes along the radius
+
+
+def test_what_cannot_be_projected_is_left_as_it_was(pendulum):
+    q, v = np.zeros(2), np.array([0.4, 0.3])  # the centre is as far from every point of the circle
+    assert pendulum.bob_project(0.0, q, v, np.array([1.0, 0.0, 0.0]), np.ones(2)) == 1
+    assert q.tolist() == [0.0, 0.0]
+    assert v.tolist() == [0.4, 0.3]
+
+
+def test_the_law_and_the_values_are_those_of_the_scene(pendulum):
+    p, u = np.empty(2), np.full(3, np.nan)
+    pendulum.bob_values(p)
+    pendulum.bob_law(5.0, p, u)
+    assert p.tolist() == [1.0, 9.81]
+    assert u.tolist() == [1.0, 0.0, 0.0]
+
+
+def test_names_that_c_does_not_know_stay_apart():
+    assert identifiers(["q1", "Q1", "x_1", "x 1", "φ", "é"]) == ["q1", "Q1", "x_1", "x_1_", "_", "e"]
+    assert default_name(Path("3-link arm.mac")) == "scene_3_link_arm"
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        (["--to", "c"], "say where they go, with -o DIR"),
+        (["--to", "c", "--name", "a-b", "-o", "lib"], "a-b cannot name a function"),
+        (["--to", "c", "--parameters", "m,k", "-o", "lib"], "'k' cannot stay open; .* the scene, which has m, g, l0"),
+        (["--to", "c", "--parameters", "m;", "-o", "lib"], "m; cannot be the name of a parameter"),
+        (["--to", "python", "--name", "bob"], "go with --to c"),
+    ],
+)
+def test_what_cannot_be_written_is_one_sentence_and_nothing_is_written(tmp_path, monkeypatch, options, sentence):
+    monkeypatch.chdir(tmp_path)
+    scene = str(EXAMPLES / "pendulum.mac")
+    result = CliRunner().invoke(holonom, ["program", scene, *options], standalone_mode=False)
+    said = result.output + str(result.exception or "")
+    assert re.search(sentence, said)
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,281 @@
+"""Effects: a scene pays for those it calls for only, and says what it pays."""
+
+import json
+import re
+from itertools import chain, combinations
+from pathlib import Path
+
+import pytest
+import sympy as sp
+from click.testing import CliRunner
+from programs import PENDULUM, document
+
+from holonom.cli import holonom
+from holonom.confined import Limits
+from holonom.crosscheck import check_record
+from holonom.crosscheck.independent import IndependentEquations
+from holonom.crosscheck.points import Valuation, random_point
+from holonom.crosscheck.system import described_system
+from holonom.failures import HolonomError
+from holonom.maxima import run_scene
+from holonom.program.effects import Measure, Status, measure_costs, read_costs
+from holonom.program.motion_program import read_program
+from holonom.program.numpy_function import NumpyFunction
+from holonom.program.request import Request, effects_document, program_document
+from holonom.record import read_record
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+SPHERICAL = EXAMPLES / "spherical_pendulum.mac"
+OPTIONAL = ("support_motion", "frame_rotation", "gravity", "drag")
+SUBSETS = tuple(chain.from_iterable(combinations(OPTIONAL, size) for size in range(len(OPTIONAL) + 1)))
+
+SYSTEM = """
+load("holonom.mac")$
+system : holonomic_system(coordinates = [{coordinates}], controls = [u], parameters = [m, k],
+  kinetic_energy = [{kinetic}], potential_energy = [{potential}], forces = [{forces}],
+  constraints = [{constraint}])$
+"""
+SCENE = """
+moving_scene : holonomic_scene(system, effects = {effects}, control_law = [u = {law}],
+  parameter_values = [{values}], initial_state = [{state}], observe = [trajectory, multipliers, energy])$
+"""
+
+# Name of the system: its entries, each a list of (effect, value), its constraint, and a state that satisfies it.
+SYSTEMS = {
+    "spherical pendulum": {
+        "coordinates": "x, y, z",
+        "kinetic": [
+            ("relative_motion", "m*(dot(x)^2 + dot(y)^2 + dot(z)^2)/2"),
+            ("support_motion", "m*dot(u)*dot(x)"),
+            ("frame_rotation", "m*k*(x*dot(y) - y*dot(x)) + m*k^2*(x^2 + y^2)/2"),
+        ],
+        "potential": [("gravity", "m*10*z")],
+        "forces": [("drag", "[-k*dot(x), -k*dot(y), -k*dot(z)]")],
+        "constraint": "x^2 + y^2 + z^2 - 1",
+        "state": "x = 1, y = 0, z = 0, dot(x) = 0, dot(y) = 0, dot(z) = 0",
+        "indispensable": {"relative_motion"},
+    },
+    "polar coordinates": {
+        "coordinates": "r, phi",
+        "kinetic": [("motion", "m*(dot(r)^2 + r^2*dot(phi)^2)/2"), ("wobble", "m*sin(phi)*dot(r) + u*dot(phi)")],
+        "potential": [("spring", "k*(r - 1)^2/2"), ("magnetic", "k*r^2*dot(phi)")],
+        "forces": [("motor", "[0, sin(t)]"), ("drag", "[-k*dot(r)^3, 0]")],
+        "constraint": "r - u",
+        "state": "phi = 0, dot(phi) = 1",
+        "indispensable": {"motion"},
+    },
+    "coupled masses": {
+        "coordinates": "p, q, s",
+        "kinetic": [("masses", "m*(dot(p)^2 + dot(q)^2 + dot(s)^2)/2"), ("coupling", "dot(q)*(dot(p) + dot(s))/4")],
+        "potential": [("weight", "m*(p + q)"), ("spring", "k*(p - s)^2/2")],
+        "forces": [("push", "[t, u, dot(u)]"), ("drag", "[-dot(p), -dot(q), -dot(s)]")],
+        "constraint": "p*q - u*s",
+        "state": "p = 0, q = 1, dot(q) = 0, dot(s) = 0",
+        "indispensable": {"masses"},
+    },
+}  # fmt: skip
+
+
+def symbol(name):
+    return sp.Symbol(name, real=True)
+
+
+def listed(names):
+    return f"[{', '.join(names)}]"
+
+
+def spherical_scene(called):
+    """The example's system with a scene of its own that moves both controls."""
+    described = SPHERICAL.read_text(encoding="utf-8").partition("swinging_scene :")[0]
+    described = re.sub(r"^load\(.*\$$", 'load("holonom.mac")$', described, flags=re.MULTILINE)
+    values = "m = 3/2, l = 1, g = 981/100, c = 1/10, Omega = 1/2"
+    state = "x = 3/5, y = 0, z = -4/5, dot(x) = 0, dot(y) = 1"
+    scene = SCENE.format(
+        effects=listed(["relative_motion", *called]), law="sin(3*t), w = cos(t)", values=values, state=state
+    )
+    return described + scene
+
+
+def system_text(name, kept):
+    """A system with only the kept effects written down, and a scene of all of them."""
+    described = SYSTEMS[name]
+
+    def entry_text(entry):
+        return ", ".join(f"{effect} = {value}" for effect, value in described[entry] if effect in kept)
+
+    return SYSTEM.format(
+        coordinates=described["coordinates"],
+        constraint=described["constraint"],
+        **{entry: entry_text(entry) for entry in ("kinetic", "potential", "forces")},
+    )
+
+
+def scene_text(name, called):
+    return SCENE.format(effects=called, law="1 + t", values="m = 3/2, k = 1/3", state=SYSTEMS[name]["state"])
+
+
+def effects_of(name):
+    return [effect for entry in ("kinetic", "potential", "forces") for effect, _ in SYSTEMS[name][entry]]
+
+
+def costs_of(*arguments):
+    result = CliRunner().invoke(holonom, ["effects", *map(str, arguments), "--json", "-"])
+    return json.loads(result.stdout)
+
+
+def refusal_of(file, *options):
+    result = CliRunner().invoke(holonom, ["effects", str(file), *options], standalone_mode=False)
+    assert result.return_value == 2
+    assert result.output.startswith("holonom: ")
+    assert result.output.count("\n") == 1
+    return result.output
+
+
+@pytest.mark.parametrize("called", SUBSETS, ids=lambda called: "+".join(called) or "none")
+def test_every_subset_of_effects_is_checked(called, write_scene):
+    file = write_scene(spherical_scene(called))
+    record = read_record(run_scene(file))
+    report = check_record(record)
+    assert report.verdicts
+    assert report.disagreements == 0
+    assert_solves_independent_equations(file, record)
+
+
+def assert_solves_independent_equations(file, record):
+    """The motion program's numbers are the solution of the bordered system that SymPy writes down."""
+    program = read_program(program_document(file, Request(), Limits()))
+    (scene,) = record.scenes
+    known = IndependentEquations(described_system(record.system, scene.effects))
+    point = random_point(program.inputs, 0, "effects")
+    value = Valuation(point | {symbol(name): number for name, number in scene.parameter_values.items()})
+    expected = known.bordered.solution(value)
+    computed = NumpyFunction(program)([float(point[symbol(name)]) for name in program.inputs])
+    for name, number in zip(program.outputs, computed, strict=True):
+        if name != "energy":
+            assert number == pytest.approx(float(expected[symbol(name)]), rel=1e-10)
+
+
+LEFT_OUT = [
+    (name, effect) for name in SYSTEMS for effect in effects_of(name) if effect not in SYSTEMS[name]["indispensable"]
+]
+
+
+@pytest.mark.parametrize(("name", "left_out"), LEFT_OUT)
+def test_leaving_an_effect_out_is_as_if_it_were_not_written(name, left_out, write_scene):
+    kept = [effect for effect in effects_of(name) if effect != left_out]
+    chosen = write_scene(system_text(name, effects_of(name)) + scene_text(name, listed(kept)))
+    assert_same_assignments(program_document(chosen, Request(), Limits()), name, kept, write_scene)
+
+
+def assert_same_assignments(chosen, name, kept, write_scene):
+    written = program_document(write_scene(system_text(name, kept) + scene_text(name, "all")), Request(), Limits())
+    assert json.loads(chosen)["assignments"] == json.loads(written)["assignments"]
+    assert chosen == written
+
+
+def test_a_scene_that_calls_for_less_pays_less():
+    swinging = costs_of(SPHERICAL, "--scene", "swinging_scene")
+    shaken = costs_of(SPHERICAL, "--scene", "shaken_scene")
+    assert swinging["operations"] < shaken["operations"]
+
+
+def test_costs_are_those_of_the_programs():
+    costs = costs_of(SPHERICAL, "--scene", "foucault_scene")
+    program = json.loads(program_document(SPHERICAL, Request(scene="foucault_scene"), Limits()))
+    assert costs["scene"] == "foucault_scene"
+    assert costs["operations"] == program["operations"]
+    terms = {(term["equation"], term["term"]): term for term in costs["terms"]}
+    assert len(terms) == len(costs["terms"])
+    assert terms["3", "(dB_k/dq_s - dB_s/dq_k) dot(q_k)"]["status"] == Status.PRESENT
+    assert terms["3", "[k,m;s] dot(q_k) dot(q_m)"] == {
+        "equation": "3",
+        "term": "[k,m;s] dot(q_k) dot(q_m)",
+        "status": Status.ABSENT_BY_STRUCTURE,
+        "operations": 0,
+        "seconds": 0.0,
+    }
+    found = {effect["name"]: effect for effect in costs["effects"]}
+    assert found["frame_rotation"]["status"] == Status.PRESENT
+    assert found["frame_rotation"]["operations"] > 0
+    assert found["drag"]["status"] == Status.ABSENT_BY_CHOICE
+    assert found["relative_motion"]["operations"] is None
+
+
+def test_the_table_shows_every_term_and_effect():
+    result = CliRunner().invoke(holonom, ["effects", str(SPHERICAL), "--scene", "swinging_scene"])
+    for said in ("[k,m;s] dot(q_k)", "absent by structure", "absent by choice", "indispensable", "20 operations"):
+        assert said in result.stdout
+
+
+def test_a_file_without_scenes_has_all_its_effects(write_scene):
+    costs = costs_of(write_scene(system_text("coupled masses", effects_of("coupled masses"))), "--set", "m=2")
+    assert costs["scene"] is None
+    assert {effect["status"] for effect in costs["effects"]} == {Status.PRESENT}
+
+
+def test_without_a_compiler_numpy_is_measured(monkeypatch):
+    monkeypatch.setenv("CC", "no-such-compiler")
+    costs = measure_costs(read_costs(effects_document(SPHERICAL, Request(scene="swinging_scene"), Limits())))
+    assert costs.measured_in is Measure.NUMPY
+    assert costs.seconds_per_evaluation > 0
+
+
+def test_a_constant_control_has_no_rates(write_scene):
+    scene = scene_text("coupled masses", "all")
+    still = write_scene(system_text("coupled masses", effects_of("coupled masses")) + scene.replace("1 + t", "2"))
+    program = read_program(program_document(still, Request(), Limits()))
+    assert "u" in program.inputs
+    assert not {"dot(u)", "ddot(u)"} & set(program.inputs)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"version": 2},
+        {"terms": [{"equation": "3"}]},
+        {"program": None},
+        {"program": {}},
+        {"effects": [{"name": "drag"}]},
+    ],
+)
+def test_what_is_no_document_of_costs_is_refused_in_one_sentence(change):
+    whole = document(PENDULUM.inputs, [], {"out": PENDULUM.inputs[0]})
+    good = {"format": "holonom-effects", "version": 1, "program": whole, "terms": [], "effects": []}
+    assert read_costs(json.dumps(good)).effects == ()
+    with pytest.raises(HolonomError) as refusal:
+        read_costs(json.dumps(good | change))
+    assert "\n" not in str(refusal.value)
+
+
+def test_text_that_is_not_json_is_refused():
+    with pytest.raises(HolonomError):
+        read_costs("{")
+
+
+def test_an_effect_that_does_not_exist_is_refused(write_scene):
+    file = write_scene(spherical_scene(["antigravity"]))
+    assert "there is no effect 'antigravity'" in refusal_of(file)
+
+
+def test_a_scene_without_motion_is_refused(write_scene):
+    text = spherical_scene([]).replace("[relative_motion]", "[gravity, drag]")
+    assert "leave no kinetic energy" in refusal_of(write_scene(text))
+
+
+def test_a_singular_bordered_matrix_is_refused(write_scene):
+    text = spherical_scene([]).replace("[relative_motion]", "[support_motion]")
+    assert "singular" in refusal_of(write_scene(text))
+
+
+def test_dependent_constraints_are_refused(write_scene):
+    file = write_scene(
+        'load("holonom.mac")$ system : holonomic_system(coordinates = [x, y], kinetic_energy = dot(x)^2 + dot(y)^2,'
+        " constraints = [x + y, 2*x + 2*y])$"
+    )
+    assert "depends on the others" in refusal_of(file)
+
+
+def test_a_value_for_an_undeclared_parameter_is_refused(write_scene):
+    assert "'mass' is set from outside" in refusal_of(SPHERICAL, "--set", "mass=2")
+    file = write_scene(spherical_scene([]).replace("m = 3/2", "mass = 3/2"))
+    assert "parameter_values names 'mass'" in refusal_of(file)

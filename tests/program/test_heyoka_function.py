@@ -1,0 +1,54 @@
+"""What is particular to heyoka: expressions for its integrators."""
+
+import sys
+
+import heyoka
+import numpy as np
+import pytest
+from programs import PENDULUM, chain
+
+from holonom.failures import HolonomError
+from holonom.program.heyoka_function import dynamics, heyoka_expressions, heyoka_function
+
+GRAVITY = {"g": heyoka.expression(9.81)}
+
+
+def test_pendulum_keeps_energy_and_length():
+    """Truth: along the exact motion both are constant; heyoka integrates to machine precision."""
+    integrator = heyoka.taylor_adaptive(dynamics(PENDULUM, GRAVITY), [0.6, -0.8, 0.4, 0.3])
+    integrator.propagate_until(3.0)
+    x, y, dx, dy = integrator.state
+    assert x**2 + y**2 == pytest.approx(1, abs=1e-12)
+    assert (dx**2 + dy**2) / 2 + 9.81 * y == pytest.approx(0.125 - 9.81 * 0.8, abs=1e-11)
+
+
+def test_state_is_coordinates_then_velocities():
+    assert [str(symbol) for symbol, _ in dynamics(PENDULUM, GRAVITY)] == ["x", "y", "dot(x)", "dot(y)"]
+
+
+def test_control_law_is_a_function_of_time():
+    """Truth: a mass on a string reeled in along its own direction, without gravity, has ddot(x1) = ddot(u)."""
+    t = heyoka.time
+    law = {"u": 1.0 + t**2.0, "dot(u)": 2.0 * t, "ddot(u)": heyoka.expression(2.0), "g": heyoka.expression(0.0)}
+    integrator = heyoka.taylor_adaptive(dynamics(chain(1), law), [1.0, 0.0, 0.0, 0.0])
+    integrator.propagate_until(1.0)
+    assert integrator.state == pytest.approx([2.0, 0.0, 2.0, 0.0], abs=1e-12)
+
+
+def test_rationals_take_the_precision_asked_for():
+    number = np.longdouble if np.finfo(np.longdouble).eps < np.finfo(float).eps else float
+    third = heyoka_expressions(
+        PENDULUM, {name: heyoka.expression(name) for name in PENDULUM.inputs}, lambda q: number(q.numerator)
+    )
+    assert set(third) == set(PENDULUM.outputs)
+
+
+def test_a_missing_control_law_is_named():
+    with pytest.raises(HolonomError, match="nothing is given for g"):
+        dynamics(PENDULUM, {})
+
+
+def test_a_missing_extra_is_one_sentence_that_names_it(monkeypatch):
+    monkeypatch.setitem(sys.modules, "heyoka", None)
+    with pytest.raises(HolonomError, match="this needs heyoka, which is not installed"):
+        heyoka_function(PENDULUM)

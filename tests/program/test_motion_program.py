@@ -1,0 +1,108 @@
+"""Reading a motion program, and counting its operations."""
+
+import json
+
+import pytest
+from programs import PENDULUM, chain, document, program
+
+from holonom.failures import HolonomError
+from holonom.program.motion_program import (
+    Call,
+    Constant,
+    Name,
+    Operation,
+    count_operations,
+    operations_in,
+    read_program,
+)
+
+
+def expression(tree):
+    return program(["a", "b"], [("w", tree)], {"out": "w"}).assignments[0][1]
+
+
+def test_expression_stays_as_written():
+    assert expression(["Add", "a", ["Multiply", "a", "b"], "a"]) == Call(
+        Operation.ADD, (Name("a"), Call(Operation.MULTIPLY, (Name("a"), Name("b"))), Name("a"))
+    )
+
+
+def test_numbers_are_exact():
+    third, large, decimal = (expression(tree) for tree in (["Rational", 1, 3], {"num": str(2**70)}, {"num": "-123e-2"}))
+    assert third * 3 == 1
+    assert large == 2**70
+    assert decimal * 100 == -123
+
+
+def test_constants_are_not_names():
+    assert expression("Pi") is Constant.PI
+
+
+@pytest.mark.parametrize(
+    ("tree", "operations"),
+    [
+        ("a", 0),
+        (["Rational", 1, 3], 0),
+        (["Add", "a"], 0),
+        (["Add", "a", "b", 1], 2),
+        (["Multiply", 2, "a", "b", "b"], 3),
+        (["Subtract", "a", ["Negate", "b"]], 2),
+        (["Divide", ["Power", "a", 2], ["Sqrt", "b"]], 3),
+        (["Arctan2", ["Sin", "a"], "b"], 2),
+    ],
+)
+def test_every_operation_counts_one(tree, operations):
+    assert operations_in(expression(tree)) == operations
+
+
+def test_count_of_a_program_is_the_one_it_carries():
+    assert count_operations(PENDULUM) == PENDULUM.operations
+
+
+def test_count_grows_with_the_chain_link_by_link():
+    counts = [count_operations(chain(links)) for links in (5, 6, 7)]
+    assert counts[2] - counts[1] == counts[1] - counts[0]
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"version": 2}, "version"),
+        ({"solve": "iterative"}, "solve"),
+        ({"operations": -1}, "operations"),
+        ({"inputs": ["a", "a"]}, "inputs"),
+        ({"outputs": {}}, "outputs"),
+        ({"outputs": {"out": "b"}}, "b is used before it is computed"),
+        ({"assignments": [["w", "v"]]}, "v is used before it is computed"),
+        ({"assignments": [["w", "a"], ["w", "a"]]}, "w is computed twice"),
+        ({"assignments": [["a", 1]]}, "a is computed twice"),
+        ({"assignments": [["w", ["Power", "a"]]]}, "not an expression"),
+        ({"assignments": [["w", ["__import__", "a"]]]}, "not an expression"),
+        ({"assignments": [["w", ["Rational", 1, 0]]]}, "not an expression"),
+        ({"assignments": [["w", 1.5]]}, "not an expression"),
+        ({"assignments": [["w", True]]}, "not a number"),
+        ({"assignments": [["w", "ImaginaryUnit"]]}, "no real number"),
+        ({"assignments": [["w", {"num": "1e9999"}]]}, "larger than a double"),
+        ({"assignments": [["w", {"num": "1e99999999"}]]}, "not an expression"),
+        ({"assignments": [["w", {"num": "nan"}]]}, "not an expression"),
+    ],
+)
+def test_what_is_no_program_is_refused_in_one_sentence(change, sentence):
+    text = json.dumps(document(["a"], [], {"out": "a"}) | change)
+    with pytest.raises(HolonomError) as refusal:
+        read_program(text)
+    assert sentence in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize("depth", [200, 100_000])
+def test_deep_nesting_is_refused(depth):
+    text = json.dumps(document(["a"], [["w", "DEEP"]], {"out": "w"}))
+    nested = '["Sin",' * depth + '"a"' + "]" * depth
+    with pytest.raises(HolonomError):
+        read_program(text.replace('"DEEP"', nested))
+
+
+def test_text_that_is_not_json_is_refused():
+    with pytest.raises(HolonomError):
+        read_program("{")

@@ -1,0 +1,95 @@
+"""`holonom program`: what is asked of Maxima, and what comes back."""
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from reference import IllConditioned, reference
+from test_same_numbers import assert_same_numbers, random_points
+
+from holonom.cli import holonom
+from holonom.confined import Limits
+from holonom.failures import HolonomError
+from holonom.program.motion_program import Program, Solve, count_operations, read_program
+from holonom.program.request import Request, program_document, read_settings
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+SCENES = {
+    "pendulum": "pendulum.mac",
+    "bead": "bead.mac",
+    "weightless cabin": "weightless_cabin.mac",
+    "paper": "paper/paper.mac",
+    "chain": "chain.mac",
+    "linkage": "linkage.mac",
+    "squeezer": "andrews.mac",
+}
+
+
+def motion_program(file: str, **request) -> Program:
+    return read_program(program_document(EXAMPLES / file, Request(**request), Limits()))
+
+
+@pytest.fixture(scope="module", params=[(name, solve) for name in SCENES for solve in Solve], ids=" ".join)
+def written(request: pytest.FixtureRequest) -> Program:
+    name, solve = request.param
+    return motion_program(SCENES[name], solve=solve)
+
+
+def test_operations_are_what_an_independent_count_finds(written):
+    assert count_operations(written) == written.operations
+
+
+def test_every_form_gives_the_same_numbers(written):
+    try:
+        for point in random_points(written).T:
+            reference(written, point.tolist())
+    except IllConditioned:
+        pytest.skip("its pivots nearly vanish at a random point")
+    assert_same_numbers(written)
+
+
+def test_settings_reach_the_scene_file():
+    assert "ddot(y5)" in motion_program("chain.mac", settings={"N": "5"}).outputs
+
+
+def test_the_command_writes_json_by_default():
+    result = CliRunner().invoke(holonom, ["program", str(EXAMPLES / "chain.mac"), "--set", "N=2"])
+    document = json.loads(result.stdout)
+    assert document["operations"] == count_operations(read_program(result.stdout))
+    assert document["inputs"][0] == "t"
+
+
+def test_the_command_writes_python(tmp_path):
+    file = tmp_path / "motion.py"
+    CliRunner().invoke(holonom, ["program", str(EXAMPLES / "pendulum.mac"), "--to", "python", "-o", str(file)])
+    assert "def motion(values" in file.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("text", ["N", "N=", "=4", "N=quit()", "N=1;2", "a b=1", "N=4]$ system(1)$ [", "N=1/2/3"])
+def test_a_setting_that_is_no_number_is_refused(text):
+    with pytest.raises(HolonomError, match="sets nothing"):
+        read_settings([text])
+
+
+@pytest.mark.parametrize(
+    ("text", "value"), [("N=64", "64"), ("g=9.81", "9.81"), ("u0=-3/10", "-3/10"), ("e=1e-3", "1e-3")]
+)
+def test_numbers_of_every_kind_can_be_set(text, value):
+    assert list(read_settings([text]).values()) == [value]
+
+
+@pytest.mark.parametrize(
+    ("request_", "sentence"),
+    [
+        ({"settings": {"M": "4"}}, "'M' is set from outside"),
+        ({"scene": "no_such_scene"}, "there is no scene 'no_such_scene'"),
+        ({"scene": "f()$"}, "cannot be the name of a scene"),
+    ],
+)
+def test_what_the_scene_file_does_not_have_is_refused_where_it_stands(request_, sentence):
+    with pytest.raises(HolonomError) as refusal:
+        motion_program("chain.mac", **request_)
+    assert sentence in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+    assert refusal.value.place in ("", str(EXAMPLES / "chain.mac"))

@@ -1,0 +1,97 @@
+"""Every form of a program gives the same numbers, to the rounding errors that its operations make."""
+
+import math
+import random
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, assume, given, settings
+from programs import PENDULUM, chain, program, random_programs
+from reference import IllConditioned, assert_within_bounds, reference
+
+from holonom.program.c_function import compile_c
+from holonom.program.heyoka_function import HeyokaFunction, heyoka_function
+from holonom.program.numpy_function import NumpyFunction
+from holonom.program.python_source import python_source
+
+POINTS = 11  # one block of eight lanes in C, and three points more
+
+
+def python_function(written):
+    """The function of a program's Python source, run as its reader would."""
+    module = {}
+    exec(python_source(written), module)
+    return module["motion"]
+
+
+def random_points(written, seed=0):
+    """Columns of an array, one a point, with coordinates of the order of one."""
+    draw = random.Random(seed)
+    return np.array([[draw.uniform(-2, 2) for _ in range(POINTS)] for _ in written.inputs])
+
+
+def every_form(written):
+    """Arrays of outputs, shape (outputs, points), by the name of the form that computed them."""
+    points = random_points(written)
+    c, compiled, python = compile_c(written), heyoka_function(written), python_function(written)
+    return points, {
+        "NumPy": NumpyFunction(written)(points),
+        "C, many points": c(points),
+        "C, one point": np.column_stack([c(point) for point in points.T]),
+        "heyoka, many points": compiled(points),
+        "heyoka, one point": np.column_stack([compiled(point) for point in points.T]),
+        "Python": np.column_stack([python(point.tolist()) for point in points.T]).astype(float),
+    }
+
+
+def assert_same_numbers(written):
+    points, forms = every_form(written)
+    for index, point in enumerate(points.T):
+        expected = reference(written, point.tolist())
+        for form, outputs in forms.items():
+            assert_within_bounds(form, expected, outputs[:, index])
+
+
+@pytest.mark.parametrize("written", [PENDULUM, chain(1), chain(2), chain(12)], ids=["pendulum", "1", "2", "12"])
+def test_programs_by_hand(written):
+    assert_same_numbers(written)
+
+
+@settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
+@given(random_programs())
+def test_random_programs(written):
+    try:
+        for point in random_points(written).T:
+            reference(written, point.tolist())
+    except IllConditioned:
+        assume(False)
+    assert_same_numbers(written)
+
+
+@pytest.mark.parametrize("terms", [1000, 5000])
+def test_sums_of_thousands_of_terms(terms):
+    """The energy of a long chain is one sum."""
+    written = program(["a"], [("w", ["Add", *(["Multiply", k, "a"] for k in range(1, terms + 1))])], {"out": "w"})
+    exact = terms * (terms + 1) / 2
+    for function in (NumpyFunction(written), compile_c(written), heyoka_function(written)):
+        assert function(np.array([1.0]))[0] == pytest.approx(exact, rel=1e-15)
+
+
+def test_compact_mode_gives_the_same_numbers():
+    written = chain(3)
+    points = random_points(written)
+    plain, compact = (HeyokaFunction(written, compact)(points) for compact in (False, True))
+    assert compact == pytest.approx(plain, rel=1e-9)
+
+
+def test_python_source_keeps_rationals_exact_for_many_digits():
+    written = program(["a"], [("w", ["Multiply", ["Rational", 1, 3], "a"])], {"out": "w"})
+    with mpmath.workdps(60):
+        assert python_function(written)([mpmath.mpf(3)], mpmath) == [1]
+
+
+def test_a_singular_pivot_gives_no_finite_number():
+    written = program(["a"], [("w", ["Divide", 1, "a"])], {"out": "w"})
+    for function in (NumpyFunction(written), compile_c(written), heyoka_function(written)):
+        assert function(np.array([0.0]))[0] == math.inf

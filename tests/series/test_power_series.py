@@ -1,0 +1,270 @@
+"""Power series of the initial motion: against a recurrence written by hand, between the engines, and their ends."""
+
+import json
+import math
+import subprocess
+import sys
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+
+import mpmath
+import numpy as np
+import pytest
+from paper_series import START, paper_by_hand
+
+from holonom.confined import Limits
+from holonom.failures import HolonomError
+from holonom.program.precision import read_precision
+from holonom.series import heyoka_series
+from holonom.series.power_series import (
+    MotionSeries,
+    SeriesRequest,
+    compute_series,
+    number,
+    numbers,
+    read_series,
+    values_at,
+)
+from holonom.series.radius import truncation_error
+
+ROOT = Path(__file__).resolve().parents[2]
+PAPER = ROOT / "examples" / "paper" / "paper.mac"
+PENDULUM = ROOT / "examples" / "pendulum.mac"
+ANDREWS = ROOT / "examples" / "andrews.mac"
+
+needs_extended = pytest.mark.skipif(
+    np.finfo(np.longdouble).nmant != 63, reason="this machine has no extended precision"
+)
+
+
+@cache
+def series(file: Path, order: int, digits: int | str = "exact", scene: str | None = None, u0: str = "3/10"):
+    settings = {"u0": u0} if file == PAPER else {}
+    return compute_series(file, SeriesRequest(order, scene, digits, settings=settings), Limits())
+
+
+def compiled(
+    order: int, precision: str, file: Path = PAPER, scene: str | None = None, until: Fraction | None = None
+) -> MotionSeries:
+    return heyoka_series.compute_series(
+        file, SeriesRequest(order, scene, until=until), read_precision(precision), Limits()
+    )
+
+
+def relative_digits(found: MotionSeries, exact: MotionSeries) -> float:
+    """Digits in which all coefficients agree."""
+    worst = mpmath.mpf(0)
+    with mpmath.workdps(130):
+        for (_, row), (_, true) in zip(found.all_series(), exact.all_series(), strict=True):
+            for a, b in zip(numbers(row), numbers(true), strict=True):
+                worst = max(worst, abs(a - b) / abs(b) if b else abs(a))
+        return float(-mpmath.log10(worst)) if worst else math.inf
+
+
+def test_paper_to_order_40_in_exact_rationals():
+    found = dict(series(PAPER, 40).all_series())
+    expected = paper_by_hand(40, Fraction(3, 10), START["q1"], START["q2"])
+    assert {name: [Fraction(text) for text in row] for name, row in found.items()} == expected
+    assert found["q1"][:3] == ("1", "1/2", "-167/118")
+
+
+def test_rounded_coefficients_have_their_digits():
+    assert relative_digits(series(PAPER, 40, 30), series(PAPER, 40)) >= 29
+
+
+def test_entire_motion_loses_no_digits():
+    """Coefficients down to 1e-50: rounding excites a motion that ends at the radius, and is found out."""
+    free = "free_motion_scene"
+    assert relative_digits(series(PAPER, 40, 20, free), series(PAPER, 40, "exact", free)) >= 19
+
+
+PRECISIONS = [
+    ("double", 12),
+    pytest.param("extended", 15, marks=needs_extended),
+    ("quadruple", 29),
+    ("20", 19),
+    ("100", 99),
+]
+
+
+@pytest.mark.parametrize(("precision", "digits"), PRECISIONS)
+def test_engines_agree(precision, digits):
+    assert relative_digits(compiled(40, precision), series(PAPER, 40)) >= digits
+
+
+def test_engines_agree_on_a_pendulum():
+    swing = compiled(20, "quadruple", PENDULUM, "lengthening_scene")
+    assert relative_digits(swing, series(PENDULUM, 20, 40, "lengthening_scene")) >= 28
+
+
+def test_engines_agree_on_the_squeezer_in_fifty_digits():
+    """Seven bodies, six constraints, order 40: Maxima's confirmed bigfloats and heyoka's arithmetic of MPFR."""
+    assert relative_digits(compiled(40, "50", ANDREWS), series(ANDREWS, 40, 50)) >= 48
+
+
+def test_automatic_arithmetic_is_exact_where_it_can_be():
+    assert series(PAPER, 4, "automatic").arithmetic == "exact"
+    assert series(PENDULUM, 4, "automatic", "swing_scene").arithmetic == "bigfloat(30)"
+
+
+@pytest.mark.parametrize("u0", [Fraction(k, 4) for k in range(-8, 9, 2)] + [Fraction(3, 10), Fraction(-1, 10)])
+def test_radius_of_the_paper(u0):
+    """Truth: the zeros of 1 + 2 (u0 + t)^2, a complex pair."""
+    radius = series(PAPER, 160, u0=str(u0)).radius
+    true = math.sqrt(u0**2 + 0.5)
+    assert abs(radius.estimate - true) <= min(radius.uncertainty, 1e-3 * true)
+    assert sorted(z.imag for z in radius.singularities) == pytest.approx([-math.sqrt(0.5), math.sqrt(0.5)], abs=1e-6)
+    assert [z.real for z in radius.singularities] == pytest.approx([-float(u0)] * 2, abs=1e-6)
+
+
+def test_radius_is_where_a_pade_approximant_has_a_pole():
+    """A second opinion: mpmath's Padé approximant of the multiplier."""
+    motion = series(PAPER, 40)
+    with mpmath.workdps(60):
+        _, denominator = mpmath.pade(numbers(motion.multipliers["lambda1"]), 20, 20)
+        poles = [complex(z) for z in mpmath.polyroots(denominator[::-1], maxsteps=500, extraprec=500)]
+    for singularity in motion.radius.singularities:
+        assert min(abs(pole - singularity) for pole in poles) < 0.05 * motion.radius.estimate
+
+
+def test_motion_under_the_free_law_is_entire():
+    radius = series(PAPER, 40, "exact", "free_motion_scene").radius
+    assert radius.estimate is None
+    assert "entire" in radius.remark
+
+
+def test_radius_of_a_pendulum_released_at_rest():
+    """Truth: the amplitude's elliptic functions have their poles at ±K ± i K', in units of sqrt(l/g)."""
+    radius = series(PENDULUM, 60, 30, "swing_scene").radius
+    m = mpmath.sin(mpmath.pi / 26) ** 2
+    true = abs(mpmath.mpc(mpmath.ellipk(m), mpmath.ellipk(1 - m))) / mpmath.sqrt(9.81)
+    assert abs(radius.estimate - true) <= radius.uncertainty
+    assert len(radius.singularities) == 4
+
+
+def test_truncation_error_covers_the_error():
+    motion = series(PAPER, 40)
+    longer = {name: numbers(row) for name, row in series(PAPER, 160).all_series()}
+    for time in (0.1, 0.4, 0.6):
+        for name, row in motion.all_series():
+            error = abs(mpmath.polyval(longer[name][::-1], time) - mpmath.polyval(numbers(row)[::-1], time))
+            assert float(error) <= 10 * truncation_error(numbers(row), motion.radius, time)
+
+
+def test_values_beyond_the_radius_are_refused_with_the_reason():
+    with pytest.raises(HolonomError, match=r"does not converge at t = 2: its radius of convergence is 0\.768"):
+        values_at(series(PAPER, 40), Fraction(2))
+
+
+def test_values_are_refused_where_the_radius_is_unknown_and_the_terms_grow():
+    with pytest.raises(HolonomError, match=r"do not fall at t = 5; its radius of convergence is unknown"):
+        values_at(series(PAPER, 10), Fraction(5))
+
+
+def worst_difference_at_the_end(one, other):
+    """Between two continuations."""
+    with mpmath.workdps(60):
+        return max(
+            abs(number(ours[name][-1]) - number(theirs[name][-1]))
+            for ours, theirs in ((one.coordinates, other.coordinates), (one.velocities, other.velocities))
+            for name in theirs
+        )
+
+
+def test_continuation_passes_the_radius():
+    """Beyond it, heyoka's integrator in quadruple precision is the witness of Maxima's expansions."""
+    found = compute_series(PAPER, SeriesRequest(8, None, "exact", Fraction(3)), Limits()).continuation
+    assert worst_difference_at_the_end(found, compiled(8, "quadruple", until=Fraction(3)).continuation) < 1e-26
+
+
+@pytest.mark.parametrize(
+    ("precision", "error"), [("double", 1e-13), pytest.param("extended", 1e-16, marks=needs_extended), ("40", 1e-39)]
+)
+def test_continuation_has_the_precision_of_its_numbers(precision, error):
+    witness = compute_series(PAPER, SeriesRequest(8, None, 50, Fraction(-2)), Limits()).continuation
+    found = compiled(8, precision, until=Fraction(-2)).continuation
+    assert number(found.instants[-1]) == -2
+    assert worst_difference_at_the_end(found, witness) < error
+
+
+def test_continuation_ends_at_a_pole(tmp_path):
+    """ddot(x) = 6 x^2 from x = 1, dot(x) = 2: x = 1/(1 - t)^2."""
+    scene = tmp_path / "pole.mac"
+    scene.write_text(
+        'load("holonom.mac")$\n'
+        "system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [pull = [6*x^2]],"
+        " constraints = [])$\n"
+        "escape : holonomic_scene(system, initial_state = [x = 1, dot(x) = 2])$\n"
+    )
+    before = compiled(20, "double", scene, until=Fraction(1, 2)).continuation
+    assert float(before.coordinates["x"][-1]) == pytest.approx(4, rel=1e-14)
+    with pytest.raises(HolonomError, match="cannot be continued beyond t = 1"):
+        compiled(20, "double", scene, until=Fraction(2))
+
+
+def test_constraint_forces_are_multipliers_times_gradients(tmp_path):
+    """Where a scene observes them: Lambda = lambda df/dq, a product of series, with f = q3 - (u0 + t) (q1 + q2)."""
+    scene = tmp_path / "paper.mac"
+    text = PAPER.read_text().replace("../../maxima/holonom.mac", str(ROOT / "maxima" / "holonom.mac"))
+    text = text.replace("sconcat(pathname_directory(load_pathname), ", "(")
+    scene.write_text(text.rpartition("  time_span")[0] + "  observe = [constraint_forces])$\n")
+    for motion in (series(scene, 12), compiled(12, "quadruple", scene)):
+        assert set(motion.constraint_forces) == {"Lambda[1]", "Lambda[2]", "Lambda[3]"}
+        with mpmath.workdps(50):
+            reaction = numbers(motion.multipliers["lambda1"])
+            pulled = [-(mpmath.mpf(3) / 10 * reaction[n] + (reaction[n - 1] if n else 0)) for n in range(13)]
+            for name, expected in zip(motion.constraint_forces, (pulled, pulled, reaction), strict=True):
+                found = numbers(motion.constraint_forces[name])
+                assert max(abs(a - b) for a, b in zip(found, expected, strict=True)) < 1e-26
+
+
+def test_order_that_heyoka_cannot_reach_is_refused():
+    with pytest.raises(HolonomError, match="heyoka reaches order"):
+        compiled(1000, "double")
+
+
+def test_long_exact_numbers_are_read():
+    text = "1" * 6000
+    assert float(number(f"{text}/{text}0")) == pytest.approx(0.1)
+
+
+def test_what_is_no_series_is_refused():
+    with pytest.raises(HolonomError, match="not a power series"):
+        read_series('{"order": 3}')
+
+
+def test_command_writes_the_document():
+    command = [sys.executable, "-m", "holonom", "series", str(PAPER), "--order", "40", "--exact", "--json", "-"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, cwd=ROOT)
+    document = json.loads(done.stdout)
+    assert document["arithmetic"] == "exact"
+    assert document["coordinates"]["q1"][:3] == ["1", "1/2", "-167/118"]
+    assert document["radius_of_convergence"]["estimate"] == pytest.approx(math.sqrt(0.59), rel=1e-2)
+    first = min(document["radius_of_convergence"]["singularities"])
+    assert first == pytest.approx([-0.3, -math.sqrt(0.5)], abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["--order", "1"],
+        ["--order", "4", "--digits", "0"],
+        ["--order", "4", "--exact", "--digits", "3"],
+        ["--order", "4", "--digits", "10000000000"],
+        ["--order", "4", "--precision", "0"],
+        ["--order", "4", "--precision", "half"],
+        ["--order", "4", "--precision", "10000000000"],
+        ["--order", "4", "--precision", "double", "--exact"],
+        ["--order", "400", "--precision", "double"],
+        ["--order", "4", "--at", "noon"],
+        ["--order", "40", "--at", "5"],
+        ["--order", "4", "--scene", "nowhere"],
+    ],
+)
+def test_bad_requests_leave_with_two_and_one_sentence(arguments):
+    command = [sys.executable, "-m", "holonom", "series", str(PAPER), *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, cwd=ROOT)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert "Traceback" not in done.stderr

@@ -1,0 +1,100 @@
+"""Projection: closed forms of nearest states, dependent constraints, contradictions, Newton's convergence."""
+
+import numpy as np
+import pytest
+from problems import problem
+
+from holonom.confined import Limits
+from holonom.failures import Failure
+from holonom.program.motion_problem import motion_problem
+from holonom.program.request import Request
+from holonom.simulation.constraints.projection import InconsistentConstraints, project
+from holonom.simulation.matrices import MotionMatrices
+
+CIRCLE = """
+load("holonom.mac")$
+circle : holonomic_system(
+  coordinates = [x, y], parameters = [m],
+  kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2,
+  constraints = {constraints})$
+round : holonomic_scene(circle, parameter_values = [m = 3],
+  initial_state = [x = {x}, y = {y}, dot(x) = 0, dot(y) = 0])$
+"""
+
+
+@pytest.fixture
+def circle(write_scene):
+    def matrices(constraints: str, x: str = "2", y: str = "0") -> MotionMatrices:
+        file = write_scene(CIRCLE.format(constraints=constraints, x=x, y=y))
+        return MotionMatrices(motion_problem(file, Request(), Limits()))
+
+    return matrices
+
+
+class Counted:
+    """Matrices that count how often they are asked for."""
+
+    def __init__(self, matrices: MotionMatrices) -> None:
+        self.matrices, self.calls = matrices, 0
+
+    def __call__(self, t: float, state: np.ndarray):
+        self.calls += 1
+        return self.matrices(t, state)
+
+
+def test_on_a_circle_the_nearest_state_is_radial_and_tangential(circle):
+    matrices = circle("[(x^2 + y^2 - 4)/2]")
+    state = np.array([1.5, 1.7, 0.4, -0.9])
+    projected = project(matrices, 0.0, state, 1)
+    radial = state[:2] / np.linalg.norm(state[:2])
+    assert np.allclose(projected[:2], 2 * radial, rtol=1e-15)
+    assert np.allclose(projected[2:], state[2:] - (state[2:] @ radial) * radial, rtol=1e-14)
+
+
+def test_a_dependent_constraint_changes_nothing(circle):
+    once, twice = circle("[(x^2 + y^2 - 4)/2]"), circle("[(x^2 + y^2 - 4)/2, 5*x^2 + 5*y^2 - 20]")
+    state = np.array([1.5, 1.7, 0.4, -0.9])
+    assert np.allclose(project(once, 0.0, state, 1), project(twice, 0.0, state, 1), rtol=1e-14)
+
+
+def test_newtons_method_squares_the_distance(circle):
+    matrices = Counted(circle("[(x^2 + y^2 - 4)/2]"))
+    project(matrices, 0.0, np.array([2.02, 0.01, 0.0, 1.0]), 1)
+    assert matrices.calls <= 5  # 2e-2, 1e-4, 2e-9, rounding, and the look that finds it so
+
+
+def test_in_the_mass_metric_the_heavy_coordinate_stays():
+    bob = problem("hard/heavy_bob.mac")
+    matrices = MotionMatrices(bob)
+    state = np.array([float(bob.start[name]) for name in bob.state])
+    state[: len(state) // 2] += 1e-4
+    at = matrices(0.0, state)
+    moved = project(matrices, 0.0, state)[: len(at.force)] - state[: len(at.force)]
+    # A d = J^T mu: to first order, the change is a combination of the constraints' gradients
+    weights = np.linalg.lstsq(at.jacobian.T, at.mass @ moved, rcond=None)[0]
+    left = at.mass @ moved - at.jacobian.T @ weights
+    assert np.all(np.abs(left) <= 1e-3 * np.max(np.abs(at.mass @ moved)))
+    assert np.max(np.abs(matrices(0.0, state).residual)) > 1e-5
+
+
+@pytest.mark.parametrize("distance", [1e-8, 1e-4, 1e-2])
+def test_a_closed_spatial_mechanism_is_put_together_again(distance):
+    sarrus = problem("hard/sarrus_linkage.mac")
+    matrices = MotionMatrices(sarrus)
+    state = np.array([float(sarrus.start[name]) for name in sarrus.state])
+    disturbed = state + distance * np.sin(np.arange(1, len(state) + 1))
+    projected = project(matrices, 0.0, disturbed, len(sarrus.multipliers) - 1)
+    at = matrices(0.0, projected)
+    assert np.max(np.abs(at.residual)) <= 1e-14
+    assert np.max(np.abs(at.residual_rate)) <= 1e-14
+    assert np.linalg.norm(projected - state) <= 20 * distance
+
+
+def test_contradicting_constraints_are_refused_with_what_remains(circle):
+    matrices = circle("[x - y, x - y - t^2]", "0", "0")
+    with pytest.raises(InconsistentConstraints) as refused:
+        project(matrices, 1.0, np.zeros(4), 1)
+    assert refused.value.failure is Failure.INCONSISTENT
+    # x - y = 1/2 misses both by 1/2; over the length sqrt(2/m) of a gradient in the mass metric
+    assert refused.value.residual == pytest.approx(0.5 / np.sqrt(2 / 3), rel=1e-12)
+    assert "at t = 1" in str(refused.value)

@@ -1,0 +1,84 @@
+"""What the engines that take the motion program have in common: going on, pieces, obstacles and ends."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from problems import problem
+
+from holonom.confined import Limits
+from holonom.failures import HolonomError
+from holonom.program.motion_problem import motion_problem
+from holonom.program.request import Request
+from holonom.simulation.engines.program_motion import FIRST_BLOCK, ProgramObstacle
+from holonom.simulation.engines.runge_kutta import RungeKuttaMotion
+from holonom.simulation.engines.taylor import TaylorMotion
+
+CLOSE = {TaylorMotion: 1e-12, RungeKuttaMotion: 1e-9}  # what two ways to a state may differ by
+BURST = """
+load("holonom.mac")$
+body : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [growth = [6*x^2]], constraints = [])$
+burst : holonomic_scene(body, initial_state = [x = 1, dot(x) = 2], time_span = [0, 2])$
+"""
+
+
+@pytest.fixture(params=[TaylorMotion, RungeKuttaMotion])
+def engine(request):
+    if request.param is RungeKuttaMotion:
+        request.getfixturevalue("gsl")
+    return request.param
+
+
+def test_it_goes_on_from_where_it_is(engine):
+    at_once, in_parts = (engine(problem("chain.mac")) for _ in range(2))
+    at_once.advance(2.0)
+    for instant in np.linspace(0.1, 2, 20):
+        in_parts.advance(instant)
+    assert in_parts.time == 2.0
+    assert in_parts.state == pytest.approx(at_once.state, abs=10 * CLOSE[engine])
+
+
+def test_a_run_repeated_from_the_start_is_the_same_bit_by_bit(engine):
+    motion = engine(problem("chain.mac"), 1e-9)
+    begin, start = motion.time, motion.state.copy()
+    motion.advance(2.0)
+    first = motion.state.copy()
+    motion.restart(begin, start)
+    motion.advance(2.0)
+    assert (motion.state == first).all()
+
+
+def test_pieces_join_and_hold_the_states_between(engine):
+    motion, other = (engine(problem("pendulum.mac")) for _ in range(2))
+    pieces = list(motion.pieces(100.0))
+    assert len(pieces) == motion.steps > 2 * FIRST_BLOCK
+    assert [pieces[0].start, pieces[-1].end] == [0, 100]
+    for before, after in pairwise(pieces):
+        assert before.end == after.start
+        ends = before.states(np.array([before.end])), after.states(np.array([after.start]))
+        assert ends[0] == pytest.approx(ends[1], abs=CLOSE[engine])
+    middle = pieces[len(pieces) // 2]
+    instants = np.linspace(middle.start, middle.end, 4)
+    other.advance(instants[2])
+    assert middle.states(instants)[:, 2] == pytest.approx(other.state, abs=10 * CLOSE[engine])
+
+
+def test_an_obstacle_leaves_the_last_good_state(engine):
+    """Before a singular configuration of the linkage, where the rods' angle is a right one: the tips are at y = 0."""
+    motion = engine(problem("linkage.mac"))
+    pieces = []
+    with pytest.raises(ProgramObstacle, match="nears a singular one"):
+        pieces.extend(motion.pieces(10.0))
+    assert pieces[-1].end == motion.time
+    assert np.isfinite(motion.state).all()
+    x, y = motion.state[:2]
+    assert x**2 + y**2 == pytest.approx(1, abs=1e-14)
+    assert 0 < y < 0.5
+
+
+def test_a_motion_that_ends_in_finite_time_is_followed_to_there(engine, write_scene):
+    """Truth: ddot(x) = 6 x^2 has the motion x = 1/(1 - t)^2, which ends at t = 1."""
+    motion = engine(motion_problem(write_scene(BURST), Request(), Limits()))
+    with pytest.raises(HolonomError, match=r"beyond t = 0\.99999.*, where steps become too short"):
+        motion.advance(2.0)
+    assert motion.state[0] * (1 - motion.time) ** 2 == pytest.approx(1, rel=1e-3)

@@ -1,0 +1,224 @@
+"""The robust engine: through singular configurations, under redundant constraints, where numbers are large or stiff."""
+
+import numpy as np
+import pytest
+from problems import problem
+from truths import GRAVITY, four_bar, linkage_period, linkage_tip, sarrus_angles
+
+from holonom.confined import Limits
+from holonom.failures import Failure, HolonomError
+from holonom.program.motion_problem import MotionProblem, motion_problem
+from holonom.program.request import Request
+from holonom.simulation.diagnostics import condition
+from holonom.simulation.engines.robust import RobustMotion
+
+FOUR_BAR_AT_10 = [0.47838505776097055901, 0.87815017879120930116]  # by its elliptic functions, to twenty digits
+
+
+def test_a_four_bar_linkage_goes_through_its_dead_centres():
+    motion = RobustMotion(problem("linkage.mac"), 1e-12)
+    motion.advance(10.0)
+    assert np.allclose(motion.state[:2], FOUR_BAR_AT_10, rtol=0, atol=1e-9)
+    assert len(motion.passages) == 10
+    assert all(abs(linkage_tip(1, instant)[1]) < 1e-5 for instant in motion.passages)  # rods in line
+
+
+@pytest.mark.parametrize(("bars", "revolutions"), [(1, 25), (4, 5), (12, 1)])
+def test_it_stays_on_its_branch_for_many_revolutions(bars, revolutions):
+    motion = RobustMotion(problem("linkage.mac", N=str(bars)))
+    motion.advance(revolutions * linkage_period(bars) + 0.1)
+    assert np.allclose(motion.state[:2], linkage_tip(bars, motion.time), rtol=0, atol=1e-6)
+    assert len(motion.passages) == 2 * revolutions
+    assert np.max(np.abs(motion.matrices(motion.time, motion.state).residual)) < 1e-12
+
+
+def test_states_between_the_steps_and_within_an_arc_are_on_the_motion():
+    motion = RobustMotion(problem("linkage.mac"), 1e-12)
+    for piece in motion.pieces(1.5):
+        instants = np.linspace(piece.start, piece.end, 5)
+        tips = np.array([linkage_tip(1, t) for t in instants])
+        assert np.allclose(piece.states(instants)[:2].T, tips, rtol=0, atol=1e-8)
+
+
+def test_constraint_forces_stay_right_through_a_dead_centre():
+    motion = RobustMotion(problem("linkage.mac"), 1e-12)
+    motion.advance(1.5)
+    for away in [-3e-2, -1e-3, -1e-5, 1e-8, 1e-6, 1e-4, 1e-2]:
+        instant = motion.passages[0] + away
+        state, accelerations = four_bar(instant)
+        at, found = motion.matrices(instant, state), motion.solution(instant, state)
+        assert found.accelerations == pytest.approx(accelerations, abs=1e-9)
+        assert found.constraint_forces == pytest.approx(at.mass @ accelerations - at.force, abs=1e-9)
+
+
+@pytest.mark.parametrize("away", [-1e-2, -1e-4, -1e-6, -1e-8, 0.0, 1e-8, 1e-6, 1e-4, 1e-2])
+def test_it_may_start_at_a_dead_centre_and_beside_one(away):
+    motion, start = RobustMotion(problem("linkage.mac"), 1e-12), 0.70845002 + away
+    motion.restart(start, four_bar(start)[0])
+    motion.advance(1.0)
+    assert motion.state == pytest.approx(four_bar(1.0)[0], abs=1e-9)
+
+
+def test_a_motion_may_stop_and_go_on_anywhere():
+    motion = RobustMotion(problem("linkage.mac"), 1e-12)
+    for instant in np.linspace(0.0, 1.5, 61)[1:]:
+        motion.advance(instant)
+        assert motion.time == instant
+        assert np.allclose(motion.state[:2], linkage_tip(1, instant), rtol=0, atol=1e-9)
+
+
+IN_LINE = """
+load("holonom.mac")$
+bars : holonomic_system(
+  coordinates = [x0, y0, x1, y1],
+  kinetic_energy = (2*(dot(x0)^2 + dot(y0)^2 + dot(x1)^2 + dot(y1)^2) + dot(x0)*dot(x1) + dot(y0)*dot(y1))/6,
+  potential_energy = 981/100*(y0 + y1),
+  constraints = [(x0^2 + y0^2 - 1)/2, ((x1 - 1)^2 + y1^2 - 1)/2, ((x1 - x0)^2 + (y1 - y0)^2 - 1)/2])$
+started : holonomic_scene(bars, initial_state = [x0 = 1, y0 = 0, x1 = 2, y1 = 0,
+  dot(x0) = 0, dot(y0) = {left}, dot(x1) = 0, dot(y1) = {right}])$
+"""
+
+
+@pytest.fixture
+def in_line(write_scene):
+    """A four-bar linkage that starts with all rods in line."""
+
+    def asked(left: str, right: str) -> MotionProblem:
+        return motion_problem(write_scene(IN_LINE.format(left=left, right=right)), Request(), Limits())
+
+    return asked
+
+
+def test_from_a_singular_configuration_the_velocities_choose_the_parallelogram(in_line):
+    motion = RobustMotion(in_line("-3", "-3"), 1e-12)
+    motion.advance(0.4)
+    x0, y0, x1, y1 = motion.state[:4]
+    assert (x1, y1) == pytest.approx((1 + x0, y0), abs=1e-12)
+    # both rods turn alike: 5/6 v^2 + 2 g y is constant
+    assert 5 / 6 * (motion.state[4:6] @ motion.state[4:6]) + 2 * GRAVITY * y0 == pytest.approx(7.5, rel=1e-11)
+
+
+def test_from_a_singular_configuration_the_velocities_choose_the_folded_branch(in_line):
+    motion = RobustMotion(in_line("0", "-3"), 1e-12)
+    motion.advance(0.4)
+    # the left rod lies still, its tip on the right rod's hinge; the other two turn together: v^2/3 + g y is constant
+    assert motion.state[[0, 1, 4, 5]] == pytest.approx([1, 0, 0, 0], abs=1e-10)
+    assert motion.state[6:] @ motion.state[6:] / 3 + GRAVITY * motion.state[3] == pytest.approx(3, rel=1e-11)
+
+
+def test_a_velocity_along_no_branch_is_refused(in_line):
+    with pytest.raises(HolonomError):
+        RobustMotion(in_line("3", "-3"), 1e-12).advance(0.4)
+
+
+def test_at_rest_in_a_singular_configuration_nothing_tells_the_branch(in_line):
+    with pytest.raises(HolonomError, match="singular configuration") as refused:
+        RobustMotion(in_line("0", "0"), 1e-10).advance(1.0)
+    assert refused.value.failure is Failure.NO_WAY_ON
+
+
+def test_a_redundant_spatial_mechanism_moves_through_its_singular_configurations():
+    sarrus = problem("hard/sarrus_linkage.mac")
+    motion, instants = RobustMotion(sarrus, 1e-12), np.linspace(0.25, 4.0, 16)
+    assert motion.rank == len(sarrus.multipliers) - 1
+    height = sarrus.coordinates.index("p3z")
+    for instant, angle in zip(instants, sarrus_angles(instants), strict=True):
+        motion.advance(instant)
+        assert motion.state[height] == pytest.approx(2 * np.sin(angle), abs=1e-9)
+    flat_or_in_line = np.diff(np.sign(np.sin(2 * sarrus_angles(np.linspace(1e-3, 4.0, 4000)))))
+    assert len(motion.passages) == np.count_nonzero(flat_or_in_line)
+
+
+def test_under_redundant_constraints_forces_are_unique_and_multipliers_least():
+    motion = RobustMotion(problem("hard/sarrus_linkage.mac"), 1e-11)
+    motion.advance(0.3)
+    found, at = motion.solution(motion.time, motion.state), motion.matrices(motion.time, motion.state)
+    # that the edges P1 P3 and P2 P3 lie along e1 and e2, and that P1 and P2 are so far apart, says one thing twice
+    assert motion.dependent == ("lambda9", "lambda10", "lambda11", "lambda12", "lambda14")
+    forces = at.mass @ found.accelerations - at.force
+    assert np.allclose(found.constraint_forces, forces, rtol=0, atol=1e-12 * np.max(np.abs(forces)))
+    least = np.linalg.pinv(at.jacobian.T, rcond=1e-9) @ forces
+    assert np.allclose(found.multipliers, least, rtol=0, atol=1e-10 * np.max(np.abs(least)))
+
+
+def test_the_papers_free_motion_stays_right_until_the_control_overflows():
+    motion = RobustMotion(problem("paper/paper.mac", "free_motion_scene"), 1e-11)
+    for instant in (10.0, 100.0, 400.0, 709.0):
+        motion.advance(instant)
+        # q1 + q2 = (a + b t) exp(-t), q3 = u0 (a + b t), and no reaction
+        assert motion.state[2] == pytest.approx(0.3 * (3 + (3 + 1 / 6) * instant), rel=1e-9)
+        found = motion.solution(instant, motion.state)
+        assert abs(found.multipliers[0]) <= 1e-13
+        assert np.max(np.abs(found.constraint_forces)) <= 1e-13
+    with pytest.raises(HolonomError) as refused:
+        motion.advance(720.0)
+    assert refused.value.failure is Failure.NO_WAY_ON
+    assert 709 < motion.time < 710
+
+
+STIFF = """
+load("holonom.mac")$
+pair : holonomic_system(
+  coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  forces = [damping = [-10^5*dot(x), -10^5*dot(y)], spring = [-10^5*x, -10^5*y]],
+  constraints = [x - y, 2*x - 2*y])$
+released : holonomic_scene(pair, initial_state = [x = 1, y = 1, dot(x) = 0, dot(y) = 0])$
+"""
+
+
+def test_a_stiff_motion_is_found_out_and_followed(write_scene):
+    motion = RobustMotion(motion_problem(write_scene(STIFF), Request(), Limits()), 1e-8)
+    motion.advance(2.0)
+    assert motion.stiff
+    assert motion.steps < 1000  # DOP853 alone takes some thirty thousand
+    slow, fast = np.roots([1, 1e5, 1e5])[::-1]
+    x = (fast * np.exp(2 * slow) - slow * np.exp(2 * fast)) / (fast - slow)
+    assert motion.state[0] == pytest.approx(x, abs=1e-9)
+
+
+CONTRADICTION = """
+load("holonom.mac")$
+pair : holonomic_system(
+  coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  constraints = [x - y, x - y - t^3])$
+pulled : holonomic_scene(pair, initial_state = [x = 0, y = 0, dot(x) = 1, dot(y) = 1])$
+"""
+
+
+def test_constraints_that_come_to_contradict_one_another_stop_the_motion(write_scene):
+    with pytest.raises(HolonomError) as refused:
+        RobustMotion(motion_problem(write_scene(CONTRADICTION), Request(), Limits())).advance(1.0)
+    assert refused.value.failure is Failure.INCONSISTENT
+
+
+NEAR_MISS = """
+load("holonom.mac")$
+bars : holonomic_system(
+  coordinates = [x0, y0, x1, y1],
+  kinetic_energy = (2*(dot(x0)^2 + dot(y0)^2 + dot(x1)^2 + dot(y1)^2) + dot(x0)*dot(x1) + dot(y0)*dot(y1))/6,
+  potential_energy = 981/100*(y0 + y1),
+  constraints = [(x0^2 + y0^2 - 1)/2, ((x1 - 1)^2 + (y1 + 1/1000)^2 - (1001/1000)^2)/2,
+                 ((x1 - x0)^2 + (y1 - y0)^2 - 1)/2])$
+upright : holonomic_scene(bars, initial_state = [x0 = 0, y0 = 1, x1 = 1, y1 = 1,
+  dot(x0) = 1, dot(y0) = 0, dot(x1) = 1, dot(y1) = 0])$
+"""
+
+
+def test_a_near_miss_is_no_passage(write_scene):
+    asked = motion_problem(write_scene(NEAR_MISS), Request(), Limits())
+    motion, conditions = RobustMotion(asked, 1e-11), []
+    for piece in motion.pieces(3.0):
+        v0, v1 = motion.state[4:6], motion.state[6:]
+        energy = (2 * (v0 @ v0 + v1 @ v1) + v0 @ v1) / 6 + GRAVITY * (motion.state[1] + motion.state[3])
+        assert energy == pytest.approx(5 / 6 + 2 * GRAVITY, abs=1e-8), piece.end
+        conditions.append(condition(motion.matrices(motion.time, motion.state)))
+    assert max(conditions) > 1e3
+    assert motion.passages == []
+
+
+def test_a_length_that_vanishes_stops_the_motion():
+    motion = RobustMotion(problem("hard/vanishing_length.mac"))
+    with pytest.raises(HolonomError, match="steps become too short") as refused:
+        motion.advance(2.0)
+    assert refused.value.failure is Failure.NO_WAY_ON
+    assert motion.time == pytest.approx(1.0, abs=1e-5)

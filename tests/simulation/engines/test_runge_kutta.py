@@ -1,0 +1,90 @@
+"""What is particular to the Runge-Kutta engine: compiled steps, states between them, the constraints kept in C."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from problems import problem
+
+from holonom.confined import Limits
+from holonom.failures import Failure, HolonomError
+from holonom.program.motion_problem import motion_problem
+from holonom.program.request import Request
+from holonom.simulation.engines import prince_dormand
+from holonom.simulation.engines.runge_kutta import RungeKuttaMotion
+from holonom.simulation.engines.taylor import TaylorMotion
+from holonom.simulation.request import Engine, SimulationRequest, Stabilization
+from holonom.simulation.simulate import simulate
+
+THROWN = """
+load("holonom.mac")$
+body : holonomic_system(coordinates = [x, z], kinetic_energy = (dot(x)^2 + dot(z)^2)/2, potential_energy = 10*z,
+  constraints = [])$
+flight : holonomic_scene(body, initial_state = [x = 0, z = 0, dot(x) = 1, dot(z) = 5], time_span = [0, 1])$
+"""
+
+pytestmark = pytest.mark.usefixtures("gsl")
+
+
+def test_a_parabola_is_followed_to_rounding(write_scene):
+    """Truth: a method of order 8 is exact for polynomials of degree 2, and the first step reaches the end."""
+    motion = RungeKuttaMotion(motion_problem(write_scene(THROWN), Request(), Limits()), 1e-6)
+    motion.advance(1.0)
+    assert motion.state == pytest.approx([1, 0, 1, -5], abs=1e-13)
+
+
+def test_the_error_follows_the_tolerance():
+    """Truth: the pendulum of the Taylor engine at rounding; six powers of ten in the tolerance are six in the error."""
+    true = TaylorMotion(problem("pendulum.mac"))
+    true.advance(10.0)
+    errors = []
+    for tol in (1e-4, 1e-7, 1e-10):
+        motion = RungeKuttaMotion(problem("pendulum.mac"), tol)
+        motion.advance(10.0)
+        errors.append(np.abs(motion.state - true.state).max())
+    assert errors[2] < 1e-9
+    assert 1e2 < errors[0] / errors[1] < 1e5
+    assert 1e2 < errors[1] / errors[2] < 1e5
+
+
+def test_projection_keeps_the_constraints_that_a_coarse_tolerance_loses():
+    def missed(drift):
+        motion = RungeKuttaMotion(problem("pendulum.mac", "swing_scene"), 1e-5, drift)
+        motion.advance(50.0)
+        (x, y), (vx, vy) = motion.state[:2], motion.state[2:]
+        return max(abs(x**2 + y**2 - 1), abs(x * vx + y * vy))
+
+    assert missed(Stabilization.PROJECTION) < 1e-14
+    assert missed(Stabilization.NONE) > 1e-6
+
+
+def test_the_work_of_a_control_is_balanced():
+    """Truth: energy; the car axis' road does work on it all the time."""
+    request = SimulationRequest(1e-11, engine=Engine.RUNGE_KUTTA, samples=0)
+    report = simulate(problem("car_axis.mac"), request).report
+    assert abs(report.energy_error) < 1e-11
+    assert report.engine == "runge-kutta"
+    assert report.code == ""
+
+
+@pytest.mark.parametrize(
+    ("request_", "said"),
+    [
+        (SimulationRequest(1e-15), "holds tolerances from 1e-14 to 1, not 1e-15"),
+        (SimulationRequest(precision="quadruple"), "computes in double precision, not quadruple"),
+        (SimulationRequest(drift=Stabilization.GGL), "no cure of drift named ggl"),
+    ],
+)
+def test_what_it_lacks_is_refused(request_, said):
+    wanted = SimulationRequest(
+        request_.tol, request_.precision, Engine.RUNGE_KUTTA, request_.drift, until=Fraction(1), samples=0
+    )
+    with pytest.raises(HolonomError, match=said):
+        simulate(problem("pendulum.mac"), wanted)
+
+
+def test_a_missing_library_is_named(monkeypatch):
+    monkeypatch.setattr(prince_dormand.shutil, "which", lambda _: None)
+    with pytest.raises(HolonomError, match="needs the GNU Scientific Library.*libgsl-dev") as refusal:
+        RungeKuttaMotion(problem("pendulum.mac"))
+    assert refusal.value.failure is Failure.GSL_MISSING

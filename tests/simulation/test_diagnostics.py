@@ -1,0 +1,106 @@
+"""Residuals, condition and energy balance, against closed forms."""
+
+import numpy as np
+import pytest
+from problems import problem
+
+from holonom.confined import Limits
+from holonom.program.motion_problem import motion_problem
+from holonom.program.request import Request
+from holonom.simulation.diagnostics import EnergyBalance, condition, residuals
+from holonom.simulation.engines.robust import RobustMotion
+from holonom.simulation.matrices import Matrices, MotionMatrices
+
+
+def balance_of(motion: RobustMotion, asked) -> EnergyBalance:
+    def multipliers(instants, states):
+        return np.array([motion.solution(t, state).multipliers for t, state in zip(instants, states.T, strict=True)]).T
+
+    return EnergyBalance(asked, multipliers)
+
+
+def followed(asked, until: float):
+    """Energy gained and work done along a motion."""
+    motion = RobustMotion(asked, 1e-12)
+    balance = balance_of(motion, asked)
+    start = balance.energy(np.array([motion.time]), motion.state[:, None])[0]
+    work = sum(balance.work(piece) for piece in motion.pieces(until))
+    return balance.energy(np.array([motion.time]), motion.state[:, None])[0] - start, work, balance
+
+
+def test_a_table_that_rises_does_the_work_of_the_weight(particle_scene):
+    gained, work, balance = followed(motion_problem(particle_scene, Request(), Limits()), 1.5)
+    assert not balance.conservative
+    assert work == pytest.approx(2 * 9.81 * 1.5, rel=1e-13)  # m g u, the table rising by u = t
+    assert gained == pytest.approx(work, rel=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("name", "scene", "until"),
+    [
+        ("paper/paper", "free_motion_scene", 3.0),
+        ("paper/paper", "initial_motion_scene", 3.0),
+        ("pendulum", "lengthening_scene", 2.0),
+        ("chain", None, 1.0),
+        ("bead", "driven_scene", 2.0),
+        ("whirling_bob", None, 1.0),
+    ],
+)
+def test_energy_gained_is_work_done(name, scene, until):
+    gained, work, balance = followed(problem(f"{name}.mac", scene), until)
+    assert not balance.conservative
+    assert abs(gained) > 1e-3
+    assert abs(gained - work) <= 1e-9 * max(1.0, abs(gained))
+
+
+def test_where_nothing_does_work_the_energy_stays():
+    gained, work, balance = followed(problem("linkage.mac"), 2.0)
+    assert balance.conservative
+    assert work == 0
+    assert abs(gained) <= 1e-10
+
+
+def test_damping_takes_its_power():
+    paper = problem("paper/paper.mac", "free_motion_scene")
+    balance = balance_of(RobustMotion(paper), paper)
+    state = np.array([1.0, 2.0, 0.9, 0.5, -1 / 3, 0.95])
+    # conservative forces are in Q here, too: Q.v = -(q1 + q2) v1 - 2 (v1 + v2) v2, and no reaction along a free motion
+    expected = -3 * 0.5 - 2 * (0.5 - 1 / 3) * (-1 / 3)
+    assert balance.power(np.array([0.0]), state[:, None])[0] == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_residual_is_the_distance_from_the_constraint():
+    pendulum = problem("pendulum.mac", "swing_scene")
+    matrices = MotionMatrices(pendulum)
+    state = np.array([float(pendulum.start[name]) for name in pendulum.state])
+    n = len(pendulum.coordinates)
+    outwards = state[:n] / np.linalg.norm(state[:n])
+    state[:n] += 1e-7 * outwards
+    state[n:] += 1e-5 * outwards
+    left = residuals(matrices(0.0, state), state, np.zeros(n))
+    assert left["position"] == pytest.approx(1e-7, rel=1e-6)
+    assert left["velocity"] == pytest.approx(1e-5, rel=1e-6)
+
+
+def test_a_steep_constraint_weighs_no_more_than_a_flat_one():
+    def at(factor: float) -> Matrices:
+        row, left = np.array([[3.0, 4.0]]), np.array([1e-6])
+        return Matrices(np.eye(2), np.zeros(2), factor * row, factor * left, factor * left, factor * left, True)
+
+    found = [residuals(at(factor), np.ones(4), np.ones(2)) for factor in (1.0, 1e200, 1e-200)]
+    assert found[0]["position"] == pytest.approx(2e-7)
+    assert all(other[name] == pytest.approx(found[0][name]) for other in found for name in found[0])
+
+
+@pytest.mark.parametrize("angle", [1.0, 1e-3, 1e-6])
+def test_condition_of_two_constraints_at_an_angle(angle):
+    jacobian = np.array([[1.0, 0.0], [1e5 * np.cos(angle), 1e5 * np.sin(angle)]])
+    zeros = np.zeros(2)
+    at = Matrices(np.eye(2), zeros, jacobian, zeros, zeros, zeros, True)
+    assert condition(at) == pytest.approx(1 / np.tan(angle / 2) ** 2, rel=1e-8)
+
+
+def test_condition_of_dependent_constraints_has_no_bound():
+    zeros = np.zeros(2)
+    at = Matrices(np.eye(2), zeros, np.array([[1.0, 2.0], [2.0, 4.0]]), zeros, zeros, zeros, True)
+    assert condition(at) > 1e30
