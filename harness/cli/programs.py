@@ -15,13 +15,13 @@ from .options import STANDARD_OUTPUT, asks_one_scene, json_text, publish, runs_s
 @holonom.command()
 @asks_one_scene
 @click.option("--solve", type=click.Choice(["direct", "orthogonal"]), default="direct", show_default=True)
-@click.option("--to", "form", type=click.Choice(["c", "python", "json"]), default="json", show_default=True)
-@click.option("--name", help="With c: what every public name begins with; without it, the file's name.")
+@click.option("--to", "form", type=click.Choice(["c", "fmu", "python", "json"]), default="json", show_default=True)
+@click.option("--name", help="With c and fmu: what every public name begins with; without it, the file's name.")
 @click.option(
     "--parameters",
     metavar="NAME,...",
     callback=lambda ctx, parameter, text: tuple(text.split(",")) if text else (),
-    help="With c: parameters that stay open although the scene gives them values.",
+    help="With c and fmu: parameters that stay open although the scene gives them values.",
 )
 @click.option(
     "-o",
@@ -29,7 +29,7 @@ from .options import STANDARD_OUTPUT, asks_one_scene, json_text, publish, runs_s
     metavar="FILE|DIR",
     type=click.Path(path_type=Path),
     default=STANDARD_OUTPUT,
-    help="Where it goes; c takes a directory.",
+    help="Where it goes; c takes a directory, fmu a file.",
 )
 @runs_scenes
 def program(
@@ -46,26 +46,34 @@ def program(
     """Write the motion program of a SCENE, for those who carry it elsewhere.
 
     As json or python it has the scene's values, and controls as inputs. As c it is a library in C11: accelerations and
-    multipliers, the control law, residuals and Jacobian of the constraints, projection. Controls, and parameters
-    without a value or named by --parameters, are inputs there.
+    multipliers, the control law, residuals and Jacobian of the constraints, projection; as fmu the same for FMI 3 model
+    exchange. Controls, and parameters without a value or named by --parameters, are inputs of both.
     """
     from ..program.motion_program import Solve
     from ..program.request import Form, Request, program_text, read_settings
 
     request = Request(scene, Solve(solve), read_settings(settings))
-    if form != "c":
+    if form not in ("c", "fmu"):
         if name or parameters:
-            raise click.UsageError("--name and --parameters go with --to c")
+            raise click.UsageError("--name and --parameters go with --to c or --to fmu")
         publish(program_text(scene_file, request, Form(form), limits), output)
         return 0
-    from ..files import write_files
     from ..program.c_library import c_library, default_name
     from ..program.model import scene_model
 
     if output == STANDARD_OUTPUT:
-        raise HolonomError(Failure.NOT_A_DIRECTORY)
+        raise HolonomError(Failure.NOT_A_FILE)
+    name = name or default_name(scene_file)
     model = scene_model(scene_file, request, parameters, limits)
-    write_files(output, c_library(model, name or default_name(scene_file)))
+    if form == "c":
+        from ..files import write_files
+
+        write_files(output, c_library(model, name))
+    else:
+        from ..files import write_whole
+        from ..program.fmu import write_fmu
+
+        write_whole(output, write_fmu(model, name))
     return 0
 
 

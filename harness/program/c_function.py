@@ -6,6 +6,7 @@ import shlex
 import shutil
 import subprocess
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -106,16 +107,34 @@ def load_c(source: str, *options: str) -> ctypes.CDLL:
     HolonomError
         As `compile_c`.
     """
-    compiler = _compiler()
     with tempfile.TemporaryDirectory(prefix="holonom-") as directory:
         source_file, library = Path(directory, "motion.c"), Path(directory, "motion.so")
         source_file.write_text(source, encoding="utf-8")
-        command = [*compiler, *OPTIONS, str(source_file), "-o", str(library), *options, "-lm"]
-        finished = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
-        if finished.returncode != 0:
-            said = " ".join(finished.stderr.split())
-            raise HolonomError(Failure.COMPILER_REFUSED, detail=said[:SHOWN])
+        compile_shared([source_file], library, *OPTIONS, *options)
         return ctypes.CDLL(str(library))
+
+
+def compile_shared(sources: Sequence[Path], library: Path, *options: str) -> None:
+    """Compile C sources into a shared object.
+
+    Parameters
+    ----------
+    sources : sequence of Path
+    library : Path
+        The shared object to make.
+    options : str
+        What the compiler is told.
+
+    Raises
+    ------
+    HolonomError
+        As `compile_c`.
+    """
+    command = [*_compiler(), *map(str, sources), "-o", str(library), *options, "-lm"]
+    finished = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
+    if finished.returncode != 0:
+        said = " ".join(finished.stderr.split())
+        raise HolonomError(Failure.COMPILER_REFUSED, detail=said[:SHOWN])
 
 
 def _compiler() -> list[str]:

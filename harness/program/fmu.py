@@ -1,0 +1,179 @@
+"""A scene's model as an FMI 3.0 unit for model exchange: the library in C, compiled, beside its sources.
+
+Controls, with their rates and second rates, are inputs, which start at the control law's values; open parameters can be
+tuned; coordinates and velocities are states and, like accelerations and multipliers, outputs.
+"""
+
+import hashlib
+import io
+import platform
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from xml.etree import ElementTree
+
+from ..failures import Failure, HolonomError
+from .c_function import compile_shared
+from .c_library import c_library
+from .model import Model
+
+UNIT = Path(__file__).with_name("fmi3.c")
+OPTIONS = ("-std=c11", "-O2", "-fvisibility=hidden", "-shared", "-fPIC")
+SUFFIXES = {"linux": ".so", "darwin": ".dylib", "windows": ".dll"}
+MACHINES = {"amd64": "x86_64", "arm64": "aarch64"}
+EPOCH = (1980, 1, 1, 0, 0, 0)  # of every file in the archive: the same unit is the same bytes
+
+MODEL_H = """\
+#include "{name}.h"
+#define MODEL(function) {name}_##function
+#define TOKEN "{token}"
+enum {{ N = {NAME}_COORDINATES, G = {NAME}_MULTIPLIERS, M = {NAME}_CONTROLS, K = {NAME}_PARAMETERS }};
+"""
+
+
+def write_fmu(model: Model, name: str) -> bytes:
+    """Write a model as an FMI 3.0 unit.
+
+    Parameters
+    ----------
+    model : Model
+    name : str
+        Its model identifier, and the name of the library in C.
+
+    Returns
+    -------
+    bytes
+        A ZIP archive with modelDescription.xml, the binary for this machine, and the sources.
+
+    Raises
+    ------
+    HolonomError
+        There is no C compiler; the name is no identifier; something has no value to start from.
+    """
+    _require_start(model)
+    library = c_library(model, name)
+    sources = {f"{name}.c": library[f"{name}.c"], f"{name}.h": library[f"{name}.h"]}
+    sources["fmi3.c"] = UNIT.read_text(encoding="utf-8")
+    token = hashlib.sha256("".join(sources.values()).encode()).hexdigest()
+    sources["model.h"] = MODEL_H.format(name=name, NAME=name.upper(), token=token)
+    folder, suffix = platform_folder()
+    return _archive(
+        {
+            "modelDescription.xml": _xml(model_description(model, name, token)),
+            f"binaries/{folder}/{name}{suffix}": _compiled(sources, name),
+            "sources/buildDescription.xml": _xml(build_description(name)),
+            **{f"sources/{file}": text.encode() for file, text in sources.items()},
+        }
+    )
+
+
+def platform_folder() -> tuple[str, str]:
+    """Folder of a unit that holds the binary for the machine at hand, such as x86_64-linux, and the binary's suffix."""
+    system, machine = platform.system().lower(), platform.machine().lower()
+    return f"{MACHINES.get(machine, machine)}-{system}", SUFFIXES.get(system, ".so")
+
+
+def model_description(model: Model, name: str, token: str) -> ElementTree.Element:
+    """modelDescription.xml; the value references are those of fmi3.c."""
+    root = ElementTree.Element(
+        "fmiModelDescription",
+        fmiVersion="3.0",
+        modelName=model.title,
+        description=model.system,
+        instantiationToken=token,
+        generationTool="Holonom",
+        variableNamingConvention="flat",
+    )
+    ElementTree.SubElement(root, "ModelExchange", modelIdentifier=name, canGetAndSetFMUState="true")
+    ElementTree.SubElement(root, "DefaultExperiment", startTime=model.start["t"])
+    variables = ElementTree.SubElement(root, "ModelVariables")
+    for reference, attributes in enumerate(_variables(model)):
+        ElementTree.SubElement(variables, "Float64", valueReference=str(reference), **attributes)
+    structure = ElementTree.SubElement(root, "ModelStructure")
+    by_role: dict[str, list[str]] = {"Output": [], "ContinuousStateDerivative": [], "InitialUnknown": []}
+    for variable in variables:
+        reference = variable.attrib["valueReference"]
+        if variable.get("causality") == "output":
+            by_role["Output"].append(reference)
+        if "derivative" in variable.attrib:
+            by_role["ContinuousStateDerivative"].append(reference)
+        if variable.get("initial") == "calculated":
+            by_role["InitialUnknown"].append(reference)
+    for role, references in by_role.items():
+        for reference in references:
+            ElementTree.SubElement(structure, role, valueReference=reference)
+    return root
+
+
+def build_description(name: str) -> ElementTree.Element:
+    """sources/buildDescription.xml: what to compile where the binary is missing."""
+    root = ElementTree.Element("fmiBuildDescription", fmiVersion="3.0")
+    configuration = ElementTree.SubElement(root, "BuildConfiguration", modelIdentifier=name)
+    files = ElementTree.SubElement(configuration, "SourceFileSet", language="C11")
+    for file in (f"{name}.c", "fmi3.c"):
+        ElementTree.SubElement(files, "SourceFile", name=file)
+    return root
+
+
+def _variables(model: Model) -> Iterator[dict[str, str]]:
+    """Attributes of every variable, in the order of the value references."""
+    n, velocities = len(model.coordinates), [f"dot({name})" for name in model.coordinates]
+    yield {"name": "time", "causality": "independent", "variability": "continuous"}
+    for state in (*model.coordinates, *velocities):
+        yield {"name": state, "causality": "output", "initial": "exact", "start": model.start[state]}
+    for history, value in zip(_histories(model), _inputs_at_start(model), strict=True):
+        yield {"name": history, "causality": "input", "start": value}
+    for name in model.parameters:
+        start = model.values[name]
+        yield {"name": name, "causality": "parameter", "variability": "tunable", "initial": "exact", "start": start}
+    for s, name in enumerate((*model.coordinates, *velocities)):
+        derivative = {"name": f"der({name})", "causality": "local", "initial": "calculated", "derivative": str(s + 1)}
+        yield derivative if s < n else derivative | {"name": f"ddot({model.coordinates[s - n]})", "causality": "output"}
+    for name in model.multipliers:
+        yield {"name": name, "causality": "output", "initial": "calculated"}
+
+
+def _histories(model: Model) -> list[str]:
+    return [history.format(name) for history in ("{}", "dot({})", "ddot({})") for name in model.controls]
+
+
+def _inputs_at_start(model: Model) -> list[str]:
+    """The control law's values at the start; 0 for a control without a law."""
+    values = {}
+    if model.law is not None:
+        from .numpy_function import NumpyFunction
+
+        numbers = [float(model.start["t"]), *(float(model.values[name]) for name in model.parameters)]
+        values = dict(zip(model.law.outputs, NumpyFunction(model.law)(numbers), strict=True))
+    return [repr(float(values.get(history, 0))) for history in _histories(model)]
+
+
+def _require_start(model: Model) -> None:
+    for name in model.parameters:
+        if name not in model.values:
+            raise HolonomError(Failure.INPUT_MISSING, detail=name)
+    if model.start is None:
+        raise HolonomError(Failure.INPUT_MISSING, detail="a parameter that the initial state depends on")
+
+
+def _compiled(sources: dict[str, str], name: str) -> bytes:
+    with TemporaryDirectory(prefix="holonom-") as directory:
+        for file, text in sources.items():
+            Path(directory, file).write_text(text, encoding="utf-8")
+        library = Path(directory, "library")
+        compile_shared([Path(directory, f"{name}.c"), Path(directory, "fmi3.c")], library, *OPTIONS)
+        return library.read_bytes()
+
+
+def _xml(root: ElementTree.Element) -> bytes:
+    ElementTree.indent(root)
+    return ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
+
+
+def _archive(files: dict[str, bytes]) -> bytes:
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+        for file, content in files.items():
+            archive.writestr(zipfile.ZipInfo(file, EPOCH), content, zipfile.ZIP_DEFLATED)
+    return packed.getvalue()
