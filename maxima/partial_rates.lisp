@@ -1,0 +1,40 @@
+;;; diff(x, t) in a scene's text: what Maxima takes for a partial derivative
+;;;
+;;; Maxima takes every symbol for a constant that  depends  does not say otherwise of, so that
+;;; -c*diff(x, t) is 0 before a system can be described with it, and the damping is gone.
+;;; Here  diff  notes what scene text differentiates by t, so that holonomic_system can refuse
+;;; it where it holds a coordinate or a control; the result is Maxima's own in any case.
+;;; Scene text is what runs outside the functions that the library defines.
+
+(in-package :maxima)
+
+(defvar *library-functions* (make-hash-table))
+
+(defvar *partial-rates* nil "What scene text has differentiated by t as if it were constant, last first.")
+
+(defvar *plain-diff* (symbol-function '$diff))
+
+(defun $diff (&rest arguments)
+  (if (and (eq (second arguments) '$t) (scene-text-p) (constant-by-default-p (first arguments)))
+      (push (first arguments) *partial-rates*))
+  (apply *plain-diff* arguments))
+
+(defun constant-by-default-p (e)
+  "Whether a symbol of e is taken for a constant because  depends  says nothing about it."
+  (some #'(lambda (symbol) (not (or (eq symbol '$t) (mget symbol 'depends))))
+        (cdr ($listofvars e))))
+
+(defun scene-text-p ()
+  "Whether no function of the library is being called: each call leaves its name on Maxima's stack."
+  (notany #'(lambda (entry) (and (symbolp entry) (gethash entry *library-functions*)))
+          *mlambda-call-stack*))
+
+(defun $note_library_functions ()
+  "From now on the functions defined so far are those of the library."
+  (dolist (f (cdr $functions) '$done)
+    (setf (gethash (caar f) *library-functions*) t)))
+
+(defun $partial_rates ()
+  "The list of what scene text has differentiated by t since it was last asked for."
+  (prog1 (cons '(mlist) (reverse *partial-rates*))
+    (setq *partial-rates* nil)))
