@@ -94,7 +94,7 @@ def simulate(
     problem = read_problem(document)
     from ..simulation.document import report_document, simulation_document
     from ..simulation.output import require_formats, write_files
-    from ..simulation.request import FINAL_STATE_ALONE, Engine, SimulationRequest, Stabilization
+    from ..simulation.request import FINAL_STATE_ALONE, EngineName, SimulationRequest, Stabilization
     from ..simulation.simulate import simulate as follow
     from .tables.simulation import motion_progress, show_simulation
 
@@ -103,7 +103,7 @@ def simulate(
         samples = FINAL_STATE_ALONE
     elif samples is None and plot_file is not None:
         samples = SAMPLES_OF_A_PLOT
-    wanted = SimulationRequest(tol, precision, Engine(engine), Stabilization(drift), until, samples, compact)
+    wanted = SimulationRequest(tol, precision, EngineName(engine), Stabilization(drift), until, samples, compact)
     with motion_progress(problem.title) as progress:
         simulation = follow(problem, wanted, progress)
     write_files(simulation, output, plot_file)

@@ -11,6 +11,7 @@ import jinja2
 from markupsafe import Markup, escape
 
 from ..series.power_series import number
+from ..simulation.diagnosis import engine_text, remarks
 from . import mathematics
 from .chapter import Chapter
 from .excerpts import Excerpt
@@ -163,6 +164,8 @@ def _environment() -> jinja2.Environment:
         "power_of_ten": _power_of_ten,
         "with_code": _with_code,
         "counted": _counted,
+        "engine_text": engine_text,
+        "remarks": remarks,
         "complex_numbers": _complex_numbers,
         "coefficient": _coefficient,
         "symbol": mathematics.symbol,

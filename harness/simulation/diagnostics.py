@@ -9,7 +9,7 @@ integral of the power is an error of the motion (Goldstein, Poole & Safko, secti
 """
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
@@ -18,9 +18,11 @@ from ..program.motion_problem import MotionProblem, computing
 from ..program.motion_program import names_in
 from ..program.precision import Precision, read_precision
 from .constraints.factorization import weighted_constraints
-from .engines.dense_output import Piece
 from .evaluation import Numbers, evaluation, zeros
 from .matrices import Matrices, Matrix, Vector
+
+if TYPE_CHECKING:
+    from .engines.engine import Piece
 
 POINTS, WEIGHTS = leggauss(6)  # exact to order 12 over a piece; a step of either engine is that smooth
 PROBES = (0.3127, -0.7411, 1.2713)  # seeds of states at which power that vanishes identically is told from other power
@@ -131,7 +133,7 @@ class EnergyBalance:
         reactions = self._multipliers(instants, states) if self._moving else self._no_multipliers(len(instants))
         return self._output("power", instants, states, reactions)
 
-    def work(self, piece: Piece) -> Any:
+    def work(self, piece: "Piece") -> Any:
         """Integral of the power over a piece of the motion.
 
         Parameters

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from .diagnosis import engine_text, remarks
 from .result import Report, Simulation
 
 
@@ -36,9 +37,11 @@ def report_document(report: Report) -> dict[str, Any]:
     Returns
     -------
     dict
-        Its attributes.
+        Its attributes; beside the legs and the cases the sentences that people read, ``engine`` and ``remarks``.
     """
-    return {name: _published(value, report.digits) for name, value in vars(report).items()}
+    said = {"engine": engine_text(report.legs), "remarks": tuple(remarks(report.legs, report.cases))}
+    attributes = vars(report) | {"legs": tuple(leg._asdict() for leg in report.legs)} | said
+    return {name: _published(value, report.digits) for name, value in attributes.items()}
 
 
 def published_list(samples: np.ndarray, digits: int) -> list[float | str]:
@@ -59,12 +62,12 @@ def published_list(samples: np.ndarray, digits: int) -> list[float | str]:
 
 def _published(value: Any, digits: int) -> Any:
     match value:
-        case str() | int():
+        case str() | int() | None:
             return value
         case Mapping():
             return {name: _published(each, digits) for name, each in value.items()}
         case tuple():
-            return list(value)
+            return [_published(each, digits) for each in value]
         case float():
             return float(value)
         case _:

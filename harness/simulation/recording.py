@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from .diagnostics import EnergyBalance
-from .engines.dense_output import Piece
+from .engines.engine import Piece
 from .evaluation import Numbers
 
 

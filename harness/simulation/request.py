@@ -7,7 +7,7 @@ from fractions import Fraction
 FINAL_STATE_ALONE = 0
 
 
-class Engine(StrEnum):
+class EngineName(StrEnum):
     """What follows the motion."""
 
     AUTO = "auto"
@@ -41,7 +41,7 @@ class SimulationRequest:
     precision : str or int
         ``double``, ``extended``, ``quadruple``, or a number of decimal digits. Only the Taylor engine knows others
         than double.
-    engine : Engine
+    engine : EngineName
     drift : Stabilization
         What the Taylor engine does; the Runge-Kutta engine projects or does nothing, the robust one always projects.
     until : Fraction or None
@@ -55,7 +55,7 @@ class SimulationRequest:
 
     tol: float | None = None
     precision: str | int = "double"
-    engine: Engine = Engine.AUTO
+    engine: EngineName = EngineName.AUTO
     drift: Stabilization = Stabilization.PROJECTION
     until: Fraction | None = None
     samples: int | None = None

@@ -6,6 +6,9 @@ from typing import Any
 
 from numpy.typing import NDArray
 
+from .diagnosis import HardCase
+from .engines.switching import Leg
+
 Samples = Mapping[str, NDArray[Any]]
 
 
@@ -29,8 +32,8 @@ class Report:
     condition : float
         Condition number of G = J A^-1 J^T at the end, each constraint scaled to unit length.
     steps : int
-    engine : str
-        ``taylor``, ``robust``, or who worked when: ``taylor, robust 0.31..0.35, taylor``.
+    legs : tuple of Leg
+        Which engine followed the motion from when to when, and why.
     code : str
         How heyoka compiled the Taylor engine in the end (`Code`); empty where it did nothing.
     precision : str
@@ -38,8 +41,8 @@ class Report:
         Decimal digits that tell its numbers apart.
     tol : float
     compile_seconds, run_seconds : float
-    remarks : tuple of str
-        One sentence each: a hand-over, advice on a hard case.
+    cases : tuple of HardCase
+        Kinds of hard case that the motion is.
     """
 
     t: Any
@@ -50,14 +53,14 @@ class Report:
     energy_error: float
     condition: float
     steps: int
-    engine: str
+    legs: tuple[Leg, ...]
     code: str
     precision: str
     digits: int
     tol: float
     compile_seconds: float
     run_seconds: float
-    remarks: tuple[str, ...]
+    cases: tuple[HardCase, ...]
 
 
 @dataclass(frozen=True)

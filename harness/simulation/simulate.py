@@ -1,7 +1,7 @@
 """A simulation: engines follow the motion, a recording keeps what is wanted of it, a report says how well it went."""
 
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
@@ -11,19 +11,16 @@ import numpy as np
 from ..failures import Failure, HolonomError
 from ..program.motion_problem import MotionProblem
 from ..program.precision import Precision, read_precision
-from .advice import HardCase
-from .constraints.vanishing import require_gradient, shortly_before, vanishing_instants
+from .constraints.singularity import require_gradient, shortly_before, vanishing_instants
+from .diagnosis import HardCase, Instant, dependence, hard_cases
 from .diagnostics import EnergyBalance, condition, residuals
-from .engines.dense_output import Piece
-from .engines.switching import Engines
+from .engines.engine import Piece, Solutions
+from .engines.switching import SwitchingEngine
 from .evaluation import Numbers, as_floats
-from .hard_cases import Instant, dependence, hard_cases
 from .matrices import MotionMatrices, Vector, start_of
 from .recording import Recording
-from .remarks import engine_text, remarks
 from .request import FINAL_STATE_ALONE, SimulationRequest
 from .result import Report, Samples, Simulation
-from .solution import Solutions
 
 Progress = Callable[[float], None]
 
@@ -89,20 +86,20 @@ class _Simulation:
         self.matrices = MotionMatrices(problem)
         obstacle = problem.obstacle or dependence(self.matrices, Instant(*start_of(problem)))
         self.doubtful = vanishing_instants(problem, self.matrices, float(self.end))
-        self.engines = Engines(replace(problem, obstacle=obstacle), request, self.precision, self.end)
-        self.first = self.engines.state.copy()
+        self.engine = SwitchingEngine(replace(problem, obstacle=obstacle), request, self.precision, self.end)
+        self.first = self.engine.state.copy()
         self.balance = EnergyBalance(problem, self._multipliers, self.precision)
-        self.compile_seconds = time.perf_counter() - begun - self.engines.compile_seconds
+        self.compile_seconds = time.perf_counter() - begun - self.engine.compile_seconds
         self.recording = Recording(self.balance, self._wanted_instants(), self.precision.number("0"))
 
     def run(self, progress: Progress | None) -> Simulation:
-        begun, compiled = time.perf_counter(), self.engines.compile_seconds
+        begun, compiled = time.perf_counter(), self.engine.compile_seconds
         self.recording.begin(self.start, self.first)
         self._follow(self._take(progress))
-        self.recording.end(self.end, self.engines.state)
-        seconds = time.perf_counter() - begun - (self.engines.compile_seconds - compiled)
+        self.recording.end(self.end, self.engine.state)
+        seconds = time.perf_counter() - begun - (self.engine.compile_seconds - compiled)
         instants, states = np.array(self.recording.instants), np.array(self.recording.states).T
-        solutions = self.engines.solve_all(instants, states)
+        solutions = self.engine.solutions(instants, states)
         energies = self._energies(instants, states)
         return Simulation(
             scene=self.problem.scene,
@@ -116,10 +113,16 @@ class _Simulation:
 
     def _follow(self, take: Callable[[Piece], None] | None) -> None:
         for t in self.doubtful:
-            self.engines.follow(self.precision.number(repr(shortly_before(t, float(self.start)))), take)
-            at = Instant(float(self.engines.time), as_floats(self.engines.state))
+            self._go_on(self.precision.number(repr(shortly_before(t, float(self.start)))), take)
+            at = Instant(float(self.engine.time), as_floats(self.engine.state))
             require_gradient(self.problem, self.matrices, t, at)
-        self.engines.follow(self.end, take)
+        self._go_on(self.end, take)
+
+    def _go_on(self, until: Any, take: Callable[[Piece], None] | None) -> None:
+        if take is None:
+            return self.engine.advance(until)
+        for piece in self.engine.pieces(until):
+            take(piece)
 
     def _wanted_instants(self) -> Sequence[Any] | None:
         """Instants to keep; None for those of the steps. The last one is kept in any case."""
@@ -142,7 +145,7 @@ class _Simulation:
         return take
 
     def _multipliers(self, instants: Numbers, states: Numbers) -> Numbers:
-        return self.engines.solve(instants, states).multipliers
+        return self.engine.solutions(instants, states).multipliers
 
     def _energies(self, instants: Numbers, states: Numbers) -> Samples:
         """Energies at the samples, and what they differ by from the energy at the start and the work done since."""
@@ -175,7 +178,7 @@ class _Simulation:
         return residuals(at, as_floats(state), as_floats(accelerations))
 
     def _report(self, solutions: Solutions, energy_error: float, seconds: float) -> Report:
-        state, legs, n = self.engines.state.copy(), self.engines.legs, len(self.problem.coordinates)
+        state, n = self.engine.state.copy(), len(self.problem.coordinates)
         observed = self.problem.multipliers if "multipliers" in self.problem.observe else ()
         at = self.matrices(float(self.end), as_floats(state))
         return Report(
@@ -186,17 +189,20 @@ class _Simulation:
             residuals=residuals(at, as_floats(state), as_floats(solutions.accelerations[:, -1])),
             energy_error=energy_error,
             condition=condition(at),
-            steps=self.engines.steps,
-            engine=engine_text(legs),
-            code=self.engines.code,
+            steps=self.engine.steps,
+            legs=tuple(self.engine.legs),
+            code=self.engine.code,
             precision=self.precision.name,
             digits=self.precision.digits,
-            tol=self.engines.tol,
-            compile_seconds=self.compile_seconds + self.engines.compile_seconds,
+            tol=self.engine.tol,
+            compile_seconds=self.compile_seconds + self.engine.compile_seconds,
             run_seconds=seconds,
-            remarks=tuple(remarks(legs, self._cases(state, as_floats(solutions.multipliers[:, -1])))),
+            cases=self._cases(state, as_floats(solutions.multipliers[:, -1])),
         )
 
-    def _cases(self, state: Numbers, multipliers: Vector) -> Iterator[HardCase]:
+    def _cases(self, state: Numbers, multipliers: Vector) -> tuple[HardCase, ...]:
+        """Those that the robust engine was called for, then those that the ends tell; each once."""
         start, end = Instant(float(self.start), as_floats(self.first)), Instant(float(self.end), as_floats(state))
-        yield from hard_cases(self.matrices, start, end, multipliers, self.engines.steps)
+        called_for = [leg.case for leg in self.engine.legs if leg.case is not None]
+        found = hard_cases(self.matrices, start, end, multipliers, self.engine.steps)
+        return tuple(dict.fromkeys([*called_for, *found]))

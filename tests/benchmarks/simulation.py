@@ -31,9 +31,9 @@ from holonom.failures import HolonomError
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request
 from holonom.program.timing import Batch, python_batch
-from holonom.simulation.engines.program_motion import ProgramMotion
-from holonom.simulation.engines.runge_kutta import RungeKuttaMotion
-from holonom.simulation.engines.taylor import TaylorMotion
+from holonom.simulation.engines.program_engine import ProgramEngine
+from holonom.simulation.engines.runge_kutta import RungeKuttaEngine
+from holonom.simulation.engines.taylor import TaylorEngine
 from holonom.simulation.request import Stabilization
 
 ERROR = 1e-9
@@ -90,20 +90,20 @@ def contest(motion: Motion, problem: MotionProblem) -> tuple[dict[str, list[Sett
         settings[name], reasons[name] = tighten(partial(peer, motion, problem), motion, reference, TOLERANCES)
         print(f"{motion.name}: {name} {reasons[name]}", file=sys.stderr)
     as_heyoka = TOLERANCES[TOLERANCES.index(settings[HEYOKA][0].tolerance) :]
-    for engine, set_up, tolerances in ((TAYLOR, unrolled, as_heyoka), (RUNGE_KUTTA, RungeKuttaMotion, TOLERANCES)):
+    for engine, set_up, tolerances in ((TAYLOR, unrolled, as_heyoka), (RUNGE_KUTTA, RungeKuttaEngine, TOLERANCES)):
         for name, drift in ((engine, Stabilization.PROJECTION), (unprojected(engine), Stabilization.NONE)):
             prepare = partial(holonom, motion, problem, partial(set_up, drift=drift))
             settings[name], reasons[name] = tighten(prepare, motion, reference, tolerances)
     return with_turns(settings), reasons
 
 
-def unrolled(problem: MotionProblem, tolerance: float, drift: Stabilization) -> TaylorMotion:
+def unrolled(problem: MotionProblem, tolerance: float, drift: Stabilization) -> TaylorEngine:
     """The Taylor engine, its code unrolled, which is heyoka's own default."""
-    return TaylorMotion(problem, tolerance, drift=drift, compact=False)
+    return TaylorEngine(problem, tolerance, drift=drift, compact=False)
 
 
 def holonom(
-    motion: Motion, problem: MotionProblem, set_up: Callable[[MotionProblem, float], ProgramMotion]
+    motion: Motion, problem: MotionProblem, set_up: Callable[[MotionProblem, float], ProgramEngine]
 ) -> Prepared:
     """One of our engines."""
 

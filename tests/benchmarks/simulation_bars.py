@@ -21,7 +21,7 @@ from holonom.confined import Limits
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request
 from holonom.program.timing import python_batch, shortest_times
-from holonom.simulation.request import Engine, SimulationRequest, Stabilization
+from holonom.simulation.request import EngineName, SimulationRequest, Stabilization
 from holonom.simulation.simulate import simulate
 
 if TYPE_CHECKING:
@@ -129,7 +129,7 @@ def _worst_residuals(motion: Motion, problem: MotionProblem) -> dict[str, float]
     """The larger residuals of the constraints that the two engines leave."""
     requests = (
         SimulationRequest(float(TOLERANCE), engine=engine, until=motion.until, samples=0)
-        for engine in (Engine.TAYLOR, Engine.RUNGE_KUTTA)
+        for engine in (EngineName.TAYLOR, EngineName.RUNGE_KUTTA)
     )
     found = [simulate(problem, request).report.residuals for request in requests]
     return {kind: max(residuals[kind] for residuals in found) for kind in ("position", "velocity")}

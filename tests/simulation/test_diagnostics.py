@@ -8,11 +8,11 @@ from holonom.confined import Limits
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
 from holonom.simulation.diagnostics import EnergyBalance, condition, residuals
-from holonom.simulation.engines.robust import RobustMotion
+from holonom.simulation.engines.robust import RobustEngine
 from holonom.simulation.matrices import Matrices, MotionMatrices
 
 
-def balance_of(motion: RobustMotion, asked) -> EnergyBalance:
+def balance_of(motion: RobustEngine, asked) -> EnergyBalance:
     def multipliers(instants, states):
         return np.array([motion.solution(t, state).multipliers for t, state in zip(instants, states.T, strict=True)]).T
 
@@ -21,7 +21,7 @@ def balance_of(motion: RobustMotion, asked) -> EnergyBalance:
 
 def followed(asked, until: float):
     """Energy gained and work done along a motion."""
-    motion = RobustMotion(asked, 1e-12)
+    motion = RobustEngine(asked, 1e-12)
     balance = balance_of(motion, asked)
     start = balance.energy(np.array([motion.time]), motion.state[:, None])[0]
     work = sum(balance.work(piece) for piece in motion.pieces(until))
@@ -62,7 +62,7 @@ def test_where_nothing_does_work_the_energy_stays():
 
 def test_damping_takes_its_power():
     paper = problem("paper/paper.mac", "free_motion_scene")
-    balance = balance_of(RobustMotion(paper), paper)
+    balance = balance_of(RobustEngine(paper), paper)
     state = np.array([1.0, 2.0, 0.9, 0.5, -1 / 3, 0.95])
     # conservative forces are in Q here, too: Q.v = -(q1 + q2) v1 - 2 (v1 + v2) v2, and no reaction along a free motion
     expected = -3 * 0.5 - 2 * (0.5 - 1 / 3) * (-1 / 3)

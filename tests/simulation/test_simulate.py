@@ -12,7 +12,8 @@ from holonom.confined import Limits
 from holonom.failures import Failure, HolonomError
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request
-from holonom.simulation.request import Engine, SimulationRequest, Stabilization
+from holonom.simulation.diagnosis import HardCase, engine_text, remarks
+from holonom.simulation.request import EngineName, SimulationRequest, Stabilization
 from holonom.simulation.result import Report, Simulation
 from holonom.simulation.simulate import simulate
 
@@ -138,9 +139,14 @@ def test_a_linkage_keeps_its_branch_through_its_dead_centres():
 
 def test_a_hand_over_is_told_in_one_line_each():
     report = final(problem("linkage.mac"), until=Fraction(1))
-    assert report.engine.startswith("taylor, robust 0.6")
-    assert report.engine.endswith(", taylor")
-    said = [line for line in report.remarks if "the robust engine takes over" in line]
+    taylor, robust, last = report.legs
+    assert (taylor.engine, robust.engine, last.engine) == (EngineName.TAYLOR, EngineName.ROBUST, EngineName.TAYLOR)
+    assert 0.6 < robust.start < 0.70845 < robust.end
+    assert robust.case is HardCase.SINGULAR_PASSAGE
+    text = engine_text(report.legs)
+    assert text.startswith("taylor, robust 0.6")
+    assert text.endswith(", taylor")
+    said = [line for line in remarks(report.legs, report.cases) if "the robust engine takes over" in line]
     assert len(said) == 1
     assert "because the configuration nears a singular one" in said[0]
 
@@ -148,18 +154,19 @@ def test_a_hand_over_is_told_in_one_line_each():
 def test_the_taylor_engine_alone_stops_before_a_singular_configuration():
     """Truth: the rods lie in line for the first time where their angle is a right one, at t = 0.70845."""
     with pytest.raises(HolonomError, match="nears a singular one") as refusal:
-        final(problem("linkage.mac"), engine=Engine.TAYLOR)
+        final(problem("linkage.mac"), engine=EngineName.TAYLOR)
     assert refusal.value.failure is Failure.NO_WAY_ON
 
 
 def test_redundant_constraints_are_told_and_followed():
     """Truth: a constraint given twice changes nothing but the multipliers, which share the reaction."""
     report = final(problem("hard/repeated_constraint.mac"))
-    assert report.engine == "robust"
-    assert any("takes over, because of 2 constraints only 1" in line for line in report.remarks)
+    assert [leg.engine for leg in report.legs] == [EngineName.ROBUST]
+    said = remarks(report.legs, report.cases)
+    assert any("takes over, because of 2 constraints only 1" in line for line in said)
     assert report.multipliers["lambda1"] == pytest.approx(report.multipliers["lambda2"])
     with pytest.raises(HolonomError, match="the motion program cannot be solved: of 2 constraints only 1"):
-        final(problem("hard/repeated_constraint.mac"), engine=Engine.TAYLOR)
+        final(problem("hard/repeated_constraint.mac"), engine=EngineName.TAYLOR)
     with pytest.raises(HolonomError, match="takes the robust engine, which computes in double precision"):
         final(problem("hard/repeated_constraint.mac"), precision="quadruple")
 
@@ -170,11 +177,11 @@ def test_a_precision_that_the_robust_engine_lacks_is_not_feigned():
 
 
 @pytest.mark.parametrize("scene", [("chain.mac", "swing_scene"), ("andrews.mac", None), ("pendulum.mac", None)])
-@pytest.mark.parametrize("engine", [Engine.RUNGE_KUTTA, Engine.ROBUST])
+@pytest.mark.parametrize("engine", [EngineName.RUNGE_KUTTA, EngineName.ROBUST])
 @pytest.mark.usefixtures("gsl")
 def test_all_engines_find_the_same_motion(scene, engine):
-    ours, theirs = (final(problem(*scene), engine=each) for each in (Engine.TAYLOR, engine))
-    assert (ours.engine, theirs.engine) == ("taylor", engine)
+    ours, theirs = (final(problem(*scene), engine=each) for each in (EngineName.TAYLOR, engine))
+    assert [leg.engine for leg in (*ours.legs, *theirs.legs)] == [EngineName.TAYLOR, engine]
     assert numbers(theirs.coordinates) == pytest.approx(numbers(ours.coordinates), rel=1e-7, abs=1e-7)
     assert numbers(theirs.multipliers) == pytest.approx(numbers(ours.multipliers), rel=1e-5, abs=1e-5)
 
@@ -285,7 +292,7 @@ def test_a_length_that_goes_through_zero_stops_the_motion_there():
 
 def test_a_tolerance_that_the_robust_engine_cannot_hold_is_refused():
     with pytest.raises(HolonomError, match="the robust engine holds tolerances from"):
-        final(problem("paper/paper.mac"), tol=1e-15, engine=Engine.ROBUST)
+        final(problem("paper/paper.mac"), tol=1e-15, engine=EngineName.ROBUST)
 
 
 def test_a_singularity_of_the_control_law_stops_the_motion_there(write_scene):

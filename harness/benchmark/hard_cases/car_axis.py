@@ -8,7 +8,7 @@ deTestSet for R, which are right to about twelve decimals.
 
 from mpmath import mpf
 
-from ...simulation.advice import HardCase
+from ...simulation.diagnosis import HardCase
 from .case import Case, Extent, Findings, found, ours, theirs
 from .digits import digits_kept
 from .plain import PLAIN, plain_motion

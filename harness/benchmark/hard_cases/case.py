@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
-from ...simulation.advice import HardCase, advice
+from ...simulation.diagnosis import HardCase, advice
 
 
 class Extent(StrEnum):

@@ -5,7 +5,7 @@ There the parallelogram may turn into an antiparallelogram; the motion goes on a
 
 from mpmath import mpf, sqrt
 
-from ...simulation.advice import HardCase, advice
+from ...simulation.diagnosis import HardCase
 from .case import Case, Extent, Findings, found, ours, required, theirs
 from .digits import certified, digits_kept, digits_of_error
 from .elliptic import revolution, turning
@@ -32,7 +32,7 @@ def examine(extent: Extent) -> Findings:
         theirs(PLAIN, f"place after {turns} revolutions", digits_kept(plain[:2], tip, 1), NEEDED),
         ours(motion.engine, f"place after {turns} revolutions", digits_kept(motion.coordinates[:2], tip, 1), NEEDED),
         ours(motion.engine, "energy", digits_of_error(motion.energy_error, ENERGY), NEEDED),
-        required(motion.engine, "passage reported", advice(HardCase.SINGULAR_PASSAGE) in motion.remarks),
+        required(motion.engine, "passage reported", HardCase.SINGULAR_PASSAGE in motion.cases),
     )
 
 

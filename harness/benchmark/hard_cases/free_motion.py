@@ -3,7 +3,7 @@
 import numpy as np
 from mpmath import mpf
 
-from ...simulation.advice import HardCase
+from ...simulation.diagnosis import HardCase
 from .case import Case, Extent, Findings, found, ours, theirs
 from .digits import digits_of_error
 from .paper_motion import FILE, SCENE, constraint_force, coordinates, forces, velocities

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from mpmath import mpf, pi, sqrt
 
-from ...simulation.advice import HardCase
+from ...simulation.diagnosis import HardCase
 from .case import Case, Extent, Findings, Result, found, ours, theirs
 from .digits import certified, digits_kept, digits_of_error
 from .elliptic import period, swing

@@ -10,7 +10,7 @@ import mpmath
 import numpy as np
 from mpmath import mp, mpf, sqrt
 
-from ...simulation.advice import HardCase
+from ...simulation.diagnosis import HardCase
 from ...simulation.matrices import Vector
 from .case import Case, Extent, Findings, found, ours, theirs
 from .digits import digits_kept

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from mpmath import mpf
 
-from ...simulation.advice import HardCase
+from ...simulation.diagnosis import HardCase
 from .case import Case, Extent, Findings, Result, found, ours, theirs
 from .digits import digits_kept, digits_of_error
 from .paper_motion import FILE, SCENE, constraint_force, coordinates, forces

@@ -7,7 +7,7 @@ from math import cos, sin
 
 import numpy as np
 
-from ...simulation.advice import HardCase
+from ...simulation.diagnosis import HardCase
 from ...simulation.matrices import Vector
 from .case import Case, Extent, Findings, Sweep, ours, theirs
 from .digits import digits_kept

@@ -2,7 +2,7 @@
 
 from mpmath import mpf, pi, sqrt
 
-from ...simulation.advice import HardCase, advice
+from ...simulation.diagnosis import HardCase
 from .case import Case, Extent, Findings, found, ours, required, theirs
 from .digits import certified, digits_kept
 from .elliptic import swing
@@ -28,7 +28,7 @@ def examine(extent: Extent) -> Findings:
         ours(motion.engine, "coordinates", digits_kept(motion.coordinates, place), NEEDED),
         ours(motion.engine, "constraint force", digits_kept(motion.constraint_forces, force), NEEDED),
         ours(motion.engine, "least multipliers", digits_kept(motion.multipliers, 2 * [multiplier / 2]), NEEDED),
-        required(motion.engine, "redundancy reported", advice(HardCase.REDUNDANT) in motion.remarks),
+        required(motion.engine, "redundancy reported", HardCase.REDUNDANT in motion.cases),
     )
 
 

@@ -1,6 +1,5 @@
 """The scenes of the register, and their motions, simulated as a user would."""
 
-import re
 from collections.abc import Mapping
 from fractions import Fraction
 from functools import cache
@@ -13,11 +12,11 @@ from ...confined import Limits
 from ...program.motion_problem import MotionProblem, motion_problem
 from ...program.motion_program import Solve
 from ...program.request import Request
+from ...simulation.diagnosis import HardCase
 from ...simulation.matrices import Vector
 from ...simulation.request import FINAL_STATE_ALONE, SimulationRequest
 from ...simulation.simulate import simulate
 
-ENGINES = re.compile("taylor|robust")
 EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
 
 
@@ -27,6 +26,7 @@ class Arrived(NamedTuple):
     Attributes
     ----------
     engine : str
+        Those that followed it, each once.
     state : ndarray, shape (2n,)
         Coordinates, then velocities.
     coordinates, constraint_forces : ndarray, shape (n,)
@@ -36,7 +36,7 @@ class Arrived(NamedTuple):
         Of the constraints.
     energy_error : float
         Its size.
-    remarks : tuple of str
+    cases : tuple of HardCase
     """
 
     engine: str
@@ -46,7 +46,7 @@ class Arrived(NamedTuple):
     multipliers: Vector
     residual: float
     energy_error: float
-    remarks: tuple[str, ...]
+    cases: tuple[HardCase, ...]
 
 
 @cache
@@ -91,14 +91,14 @@ def simulated(motion: MotionProblem, until: float, **asked: object) -> Arrived:
     report = simulation.report
     coordinates, velocities = _numbers(report.coordinates), _numbers(report.velocities)
     return Arrived(
-        ", ".join(dict.fromkeys(ENGINES.findall(report.engine))),
+        ", ".join(dict.fromkeys(leg.engine for leg in report.legs)),
         np.concatenate([coordinates, velocities]),
         coordinates,
         _numbers({name: forces[-1] for name, forces in simulation.constraint_forces.items()}),
         _numbers(report.multipliers),
         report.residuals["position"],
         abs(report.energy_error),
-        report.remarks,
+        report.cases,
     )
 
 

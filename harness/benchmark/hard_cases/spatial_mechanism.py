@@ -7,7 +7,7 @@ with m = l = 1.
 import numpy as np
 from mpmath import asin, cos, findroot, mpf, quad, sin, sqrt
 
-from ...simulation.advice import HardCase, advice
+from ...simulation.diagnosis import HardCase
 from ...simulation.matrices import MotionMatrices, Vector
 from .case import Case, Extent, Findings, found, ours, required, theirs
 from .digits import certified, digits_kept
@@ -34,7 +34,7 @@ def examine(extent: Extent) -> Findings:
         ours(motion.engine, "coordinates", digits_kept(motion.coordinates, places), NEEDED),
         ours(motion.engine, "constraint forces", digits_kept(motion.constraint_forces, reactions), NEEDED),
         ours(motion.engine, "least multipliers", digits_kept(motion.multipliers, multipliers), NEEDED),
-        required(motion.engine, "redundancy reported", advice(HardCase.REDUNDANT) in motion.remarks),
+        required(motion.engine, "redundancy reported", HardCase.REDUNDANT in motion.cases),
     )
 
 

@@ -9,7 +9,7 @@ a linear system, whose motion is a sum of two oscillations.
 
 from mpmath import cos, eigsy, matrix, mpf, sqrt
 
-from ...simulation.advice import HardCase
+from ...simulation.diagnosis import HardCase
 from .case import Case, Extent, Findings, found, ours, theirs
 from .digits import certified, digits_kept, digits_of_error
 from .plain import PLAIN, plain_motion

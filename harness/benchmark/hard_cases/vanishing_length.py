@@ -7,7 +7,7 @@ from math import nan
 from mpmath import mpf
 
 from ...failures import HolonomError
-from ...simulation.advice import HardCase, advice
+from ...simulation.diagnosis import HardCase, advice
 from .case import Case, Extent, Findings, Result, found, ours, required
 from .digits import digits_kept
 from .scenes import problem, simulated

@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from ...program.precision import read_precision
-from ...simulation.engines.taylor import TaylorMotion
+from ...simulation.engines.taylor import TaylorEngine
 from ...simulation.request import Stabilization
 from .errors import State, relative_error
 from .taylor import order_of_step, state_of
@@ -72,7 +72,7 @@ def find_reference(problem: MotionProblem, instants: Sequence[Fraction], digits:
     Raises
     ------
     HolonomError
-        As `holonom.simulation.engines.taylor.TaylorMotion`.
+        As `holonom.simulation.engines.taylor.TaylorEngine`.
     """
     fine, coarse = digits + MORE_DIGITS, digits + CONFIRMING_DIGITS
     states, confirming = (_states(problem, instants, d) for d in (fine, coarse))
@@ -88,7 +88,7 @@ def find_reference(problem: MotionProblem, instants: Sequence[Fraction], digits:
 
 def _states(problem: MotionProblem, instants: Sequence[Fraction], digits: int) -> dict[Fraction, State]:
     numbers, states = read_precision(str(digits)), {}
-    motion = TaylorMotion(problem, _tolerance(digits), numbers, Stabilization.NONE)
+    motion = TaylorEngine(problem, _tolerance(digits), numbers, Stabilization.NONE)
     for instant in instants:
         motion.advance(numbers.ratio(instant))
         states[instant] = state_of(numbers, motion.state)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...simulation.engines.runge_kutta import RungeKuttaMotion
+from ...simulation.engines.runge_kutta import RungeKuttaEngine
 from .candidates import Candidate, Group, Prepared
 from .errors import State, numbers_of
 from .right_hand_side import acceleration_program
@@ -42,7 +42,7 @@ def runge_kutta_ladder(problem: MotionProblem, until: Fraction, tolerances: Sequ
 
 
 def _prepare(problem: MotionProblem, until: Fraction, tol: float) -> Prepared:
-    motion, operations = RungeKuttaMotion(problem, tol), acceleration_program(problem).operations
+    motion, operations = RungeKuttaEngine(problem, tol), acceleration_program(problem).operations
     begin, start, end = motion.time, motion.state.copy(), float(until)
     before = 0
 

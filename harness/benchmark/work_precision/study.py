@@ -13,7 +13,7 @@ from ...program.motion_problem import MotionProblem, motion_problem
 from ...program.motion_program import Solve
 from ...program.precision import read_precision
 from ...program.request import Request
-from ...simulation.engines.taylor import TaylorMotion
+from ...simulation.engines.taylor import TaylorEngine
 from ...simulation.request import Stabilization
 from ...simulation.simulate import last_instant
 from .advice import Advice, Price, cheapest_methods, prices
@@ -130,7 +130,7 @@ def _end_of(problem: MotionProblem, plan: Plan) -> Fraction:
 
 def _within_reach(plan: Plan, problem: MotionProblem, until: Fraction) -> tuple[Plan, list[Omission]]:
     """The plan without the precisions whose reference would take too long."""
-    rehearsal = TaylorMotion(problem, drift=Stabilization.NONE)
+    rehearsal = TaylorEngine(problem, drift=Stabilization.NONE)
     rehearsal.advance(float(until))
     tolerances, beyond = dict(plan.tolerances), []
     for precision in reversed(plan.tolerances):

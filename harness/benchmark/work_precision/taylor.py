@@ -12,7 +12,7 @@ import numpy as np
 from ...program.motion_problem import MotionProblem
 from ...program.motion_program import Solve
 from ...program.precision import Precision, read_precision
-from ...simulation.engines.taylor import TaylorMotion
+from ...simulation.engines.taylor import TaylorEngine
 from ...simulation.request import Stabilization
 from .candidates import Candidate, Group, Prepared
 from .errors import State, numbers_of
@@ -79,7 +79,7 @@ def prepare_taylor(
 ) -> Prepared:
     """Compile the Taylor engine for one precision and tolerance."""
     numbers = read_precision(precision)
-    motion = TaylorMotion(problem, tol, numbers, drift, compact=_compact(problem, precision))
+    motion = TaylorEngine(problem, tol, numbers, drift, compact=_compact(problem, precision))
     begin, start, last = motion.time, np.array(motion.state), numbers.ratio(until)
     runs = 0
 

@@ -3,10 +3,10 @@
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ...simulation.result import Simulation
+    from ...simulation.result import Report, Simulation
 
 
 @contextmanager
@@ -52,11 +52,14 @@ def show_simulation(simulation: "Simulation") -> None:
         console.print(line, soft_wrap=True, markup=False)
 
 
-def _quality(report: Any) -> Iterator[str]:
+def _quality(report: "Report") -> Iterator[str]:
+    from ...simulation.diagnosis import engine_text, remarks
+
     left = ", ".join(f"{name} {value:.1e}" for name, value in report.residuals.items())
     yield f"residuals of the constraints: {left}; condition number of G: {report.condition:.3g}"
     yield f"energy error: {report.energy_error:.1e}"
-    yield f"{report.steps} steps by {report.engine}, in {report.precision} precision at tolerance {report.tol:.1e}"
+    steps = f"{report.steps} steps by {engine_text(report.legs)}"
+    yield f"{steps}, in {report.precision} precision at tolerance {report.tol:.1e}"
     code = f" {report.code} code" if report.code else ""
     yield f"{report.compile_seconds:.3f} s to compile{code}, {report.run_seconds:.3g} s to run"
-    yield from report.remarks
+    yield from remarks(report.legs, report.cases)

@@ -11,7 +11,6 @@ Radau's method takes over, of order 5 and stable for stiff motions.
 
 import time
 from collections.abc import Iterator
-from typing import NamedTuple
 
 import numpy as np
 from scipy.integrate import DOP853, OdeSolver, Radau
@@ -27,9 +26,10 @@ from ..constraints.factorization import (
     weighted_constraints,
 )
 from ..constraints.projection import InconsistentConstraints, settle
-from ..constraints.singularity import least_of, probed, singular_values_at, vanishing
+from ..constraints.singularity import extrapolated_zero, least_of, probed, singular_values_at
 from ..matrices import Matrix, MotionMatrices, Vector, start_of
-from .dense_output import Piece
+from ..request import EngineName
+from .engine import Piece, Solutions
 from .singular_passage import NODES, Arc, arc_over
 from .stiffness import StiffnessWatch
 
@@ -49,25 +49,8 @@ NEARLY_SINGULAR = 1e-3  # relative singular values that are left out where a mot
 FIRST_ARCS = 1.0 / 2.0 ** np.arange(12)  # lengths of arcs away from a singular configuration, as ways of coordinates
 
 
-class Solution(NamedTuple):
-    """What the equations of motion determine at a state.
-
-    Attributes
-    ----------
-    accelerations : ndarray, shape (n,)
-    multipliers : ndarray, shape (g,)
-        The least of all that give the constraint forces.
-    constraint_forces : ndarray, shape (n,)
-        J^T lambda, unique.
-    """
-
-    accelerations: Vector
-    multipliers: Vector
-    constraint_forces: Vector
-
-
-class RobustMotion:
-    """A motion followed by the robust engine.
+class RobustEngine:
+    """A motion followed with pivots, in double precision; see `Engine`.
 
     Parameters
     ----------
@@ -77,17 +60,14 @@ class RobustMotion:
 
     Attributes
     ----------
-    time : float
-    state : ndarray, shape (2n,)
-        Coordinates, then velocities.
-    steps : int
-    tol : float
-    compile_seconds : float
     rank : int
         How many of the constraints are independent.
     stiff : bool
         Whether the motion was found to be stiff.
     """
+
+    name = EngineName.ROBUST
+    code = ""
 
     def __init__(self, problem: MotionProblem, tol: float | None = None) -> None:
         clock = time.perf_counter()
@@ -145,14 +125,14 @@ class RobustMotion:
         Raises
         ------
         HolonomError
-            The motion cannot be followed so far.
+            As `advance`.
         """
         while self.time < until:
             yield self._along_arc(until) if self._arc or self._arc_found() else self._step(until)
             self.steps += 1
 
     @property
-    def singular_ahead(self) -> bool:
+    def amid_passage(self) -> bool:
         """Whether a singular configuration is in reach of the next steps, or being passed."""
         return self._arc is not None or self._vanishing - self.time <= REACH * self._solver.h_abs
 
@@ -161,18 +141,13 @@ class RobustMotion:
         """Instants at which the motion went through a singular configuration."""
         return [instant for instant in self._places if instant <= self.time]
 
-    def solution(self, t: float, state: Vector) -> Solution:
-        """Accelerations, multipliers and constraint forces at a state that keeps the constraints.
+    def solutions(self, instants: Vector, states: Matrix) -> Solutions:
+        """What the equations of motion determine at instants, shape (k,), and states that keep the constraints."""
+        found = [self.solution(t, state) for t, state in zip(instants, states.T, strict=True)]
+        return Solutions(*(np.array(each).T for each in zip(*found, strict=True)))
 
-        Parameters
-        ----------
-        t : float
-        state : ndarray, shape (2n,)
-
-        Returns
-        -------
-        Solution
-        """
+    def solution(self, t: float, state: Vector) -> Solutions:
+        """The same at one instant and state: vectors."""
         at = self.matrices(t, state)
         weighted = weighted_constraints(at.mass, at.jacobian)
         rank = min(self.rank, rank_of(weighted.singular_values(), UNTRUSTED))
@@ -184,7 +159,7 @@ class RobustMotion:
         else:
             accelerations = arc.accelerations(t)
             multipliers = factored.multipliers_of(at.mass @ accelerations - at.force)
-        return Solution(accelerations, multipliers, at.jacobian.T @ multipliers)
+        return Solutions(accelerations, multipliers, at.jacobian.T @ multipliers)
 
     @property
     def dependent(self) -> tuple[str, ...]:
@@ -237,7 +212,7 @@ class RobustMotion:
         before, last = self.time, self._least
         self.state, accelerations, self._least = self._kept(t, state)
         self._solver.y, self._solver.f = self.state, np.concatenate([self.state[self.n :], accelerations])
-        self.time, self._vanishing = t, vanishing(before, last, t, self._least)
+        self.time, self._vanishing = t, extrapolated_zero(before, last, t, self._least)
 
     def _kept(self, t: float, state: Vector) -> tuple[Vector, Vector, float]:
         """The nearest state that keeps the constraints, its accelerations, and the least singular value there."""

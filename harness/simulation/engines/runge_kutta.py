@@ -1,23 +1,47 @@
-"""The Runge-Kutta engine: GSL's method of order 8 on the motion program in C.
+"""The Runge-Kutta engine: GSL's method of Prince and Dormand, of order 8, on the motion program in C.
 
-Its tolerance is that of a step, as the Taylor engine's is. It takes less time than the Taylor engine where a tolerance
-is not fine and the program long; and for short runs, since all of a run is one call.
+J. Comput. Appl. Math. 7 (1981) 67; `prince_dormand.c` holds what surrounds GSL. Its tolerance is that of a step, as the
+Taylor engine's is. It takes less time than the Taylor engine where a tolerance is not fine and the program long; and
+for short runs, since all of a run is one call.
 """
 
+import ctypes
+import shlex
+import shutil
+import subprocess
 import time
+from collections.abc import Iterator
+from pathlib import Path
+from textwrap import indent
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ...failures import Failure, HolonomError
-from ...program.motion_problem import MotionProblem
+from ...program.c_function import load_c
+from ...program.c_source import HELPERS, scalar_statements
+from ...program.motion_problem import MotionProblem, computing
+from ...program.motion_program import Program
 from ...program.precision import read_precision
-from ..request import Stabilization
-from .prince_dormand import PrinceDormand
-from .program_motion import ProgramMotion
+from ..request import EngineName, Stabilization
+from .program_engine import ProgramEngine
 
 FINEST, USUAL = 1e-14, 1e-12  # tolerances; below the first, rounding decides about the steps
+PROJECTED = 16  # steps after which the state is projected: to project takes as long as a fifth of a step
+FUNCTION = """\
+static inline void {name}(double t, const double *state, double *out)
+{{
+{body}
+}}
+"""
+DRIVER = Path(__file__).with_name("prince_dormand.c")
+
+Floats = NDArray[np.float64]
 
 
-class RungeKuttaMotion(ProgramMotion):
-    """A motion followed by the method of Prince and Dormand, in double precision.
+class RungeKuttaEngine(ProgramEngine):
+    """A motion followed by the method of Prince and Dormand, in double precision; see `Engine`.
 
     Parameters
     ----------
@@ -34,6 +58,8 @@ class RungeKuttaMotion(ProgramMotion):
         The tolerance is finer than the method holds; there is no such cure of drift; there is no C compiler or no GNU
         Scientific Library.
     """
+
+    name = EngineName.RUNGE_KUTTA
 
     def __init__(
         self, problem: MotionProblem, tol: float | None = None, drift: Stabilization = Stabilization.PROJECTION
@@ -56,3 +82,151 @@ class RungeKuttaMotion(ProgramMotion):
     def evaluations(self) -> int:
         """How often the motion program has been evaluated so far."""
         return self._integrator.evaluations
+
+
+class PrinceDormand(ctypes.Structure):
+    """Follows a motion in double precision, in C from the first to the last step.
+
+    It is ``struct follower`` of `prince_dormand.c`, and has the part of the interface of heyoka's integrators that
+    `Integrator` names.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        Without an obstacle.
+    tol : float
+        Relative and absolute.
+    projects : bool
+        Whether it keeps the constraints.
+
+    Attributes
+    ----------
+    time : float
+        The instant that is reached.
+    state : ndarray, shape (2n,)
+        At that instant, in place.
+    last_h : float
+        Length of the last step.
+    tol : float
+
+    Raises
+    ------
+    HolonomError
+        There is no C compiler; the GNU Scientific Library is not installed.
+    """
+
+    _fields_ = (
+        ("time", ctypes.c_double),
+        ("_state", ctypes.c_void_p),
+        *((name, ctypes.c_double) for name in ("_until", "last_h", "_shortest", "_longest")),
+        *((name, ctypes.c_long) for name in ("_most", "_taken")),
+        *((name, ctypes.c_void_p) for name in ("_instants", "_states")),
+    )
+
+    def __init__(self, problem: MotionProblem, tol: float, projects: bool) -> None:
+        self.state, self.tol = np.array([float(problem.start[name]) for name in problem.state]), tol
+        super().__init__(float(problem.start["t"]), self.state.ctypes.data)
+        library = load_c("\n".join(_source(problem, projects)), *_options_of_gsl())
+        self._advance, self._go_between = library.advance, library.go_between
+        self._advance.argtypes = (ctypes.c_void_p,)
+        self._go_between.argtypes = (ctypes.c_double, ctypes.c_double, ctypes.c_void_p)
+        self._address = ctypes.addressof(self)
+        self._evaluations = ctypes.c_long.in_dll(library, "evaluations")
+        library.begin.argtypes = (ctypes.c_double,)
+        if library.begin(tol) != 0:
+            raise MemoryError
+
+    @property
+    def evaluations(self) -> int:
+        """How often the accelerations have been evaluated."""
+        return self._evaluations.value
+
+    def propagate_until(
+        self, until: float, max_steps: int, *, c_output: bool = False
+    ) -> tuple[bool, float, float, int, "Steps | None", None]:
+        """Take steps: to an instant, or so many, or until one fails.
+
+        Parameters
+        ----------
+        until : float
+        max_steps : int
+        c_output : bool
+            Whether the states between the steps are wanted.
+
+        Returns
+        -------
+        (bool, float, float, int, Steps or None, None)
+            Whether a step has failed, the shortest and the longest step without one that `until` cut short, their
+            number, the states between them.
+        """
+        self._until, self._most = until, max_steps
+        if c_output:
+            return self._with_steps(max_steps)
+        failed = self._advance(self._address) != 0
+        return failed, self._shortest, self._longest, self._taken, None, None
+
+    def _with_steps(self, most: int) -> tuple[bool, float, float, int, "Steps", None]:
+        instants, states = np.empty(most + 1), np.empty((most, len(self.state)))
+        self._instants, self._states = instants.ctypes.data, states.ctypes.data
+        failed = self._advance(self._address) != 0
+        self._instants = None
+        taken = self._taken
+        instants[taken] = self.time
+        steps = Steps(self._go_between, instants[: taken + 1], states[:taken])
+        return failed, self._shortest, self._longest, taken, steps, None
+
+
+class Steps:
+    """States between steps: each is reached by a step of its own, as exact as those of the motion.
+
+    Parameters
+    ----------
+    go_between : callable
+        Takes an instant, a later one and the address of the state at the first; returns zero.
+    times : ndarray, shape (steps + 1,)
+    states : ndarray, shape (steps, 2n)
+        At the beginnings.
+    """
+
+    def __init__(self, go_between: Any, times: Floats, states: Floats) -> None:
+        self._go_between, self._states = go_between, states
+        self.times = times
+
+    def __call__(self, instants: Floats) -> Floats:
+        """The states at instants of the steps, shape (k, 2n)."""
+        steps = np.clip(np.searchsorted(self.times, instants, side="right") - 1, 0, len(self._states) - 1)
+        found = self._states[steps]
+        for begin, instant, state in zip(self.times[steps], instants, found, strict=True):
+            if self._go_between(begin, instant, state.ctypes.data) != 0:
+                raise HolonomError(Failure.NO_WAY_ON, detail=f"{begin:.10g}, where a step between two others fails")
+        return found
+
+
+def _source(problem: MotionProblem, projects: bool) -> Iterator[str]:
+    places = range(1, len(problem.coordinates) + 1)
+    yield from ("#include <math.h>", "#include <stddef.h>", "#include <string.h>", HELPERS)
+    yield _function(problem, "accelerations", problem.motion, {f"ddot({name})" for name in problem.coordinates})
+    if projects:
+        for kind in ("position", "velocity"):
+            outputs = {f"{kind}_correction[{place}]" for place in places}
+            yield _function(problem, f"{kind}_corrections", problem.projection, outputs)
+        yield f"#define PROJECTED {PROJECTED}"
+    yield f"#define STATE {len(problem.state)}"
+    yield DRIVER.read_text(encoding="utf-8")
+
+
+def _function(problem: MotionProblem, name: str, program: Program, outputs: set[str]) -> str:
+    state = [f"state[{place}]" for place in range(len(problem.state))]
+    unused = ["0.0"] * len(problem.multipliers)
+    statements = scalar_statements(computing(program, outputs), ["t", *state, *unused])
+    return FUNCTION.format(name=name, body=indent("\n".join(statements), " " * 4))
+
+
+def _options_of_gsl() -> list[str]:
+    """What the compiler is told about the library."""
+    configuration = shutil.which("gsl-config")
+    if configuration is None:
+        raise HolonomError(Failure.GSL_MISSING)
+    command = [configuration, "--cflags", "--libs"]
+    said = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=True).stdout
+    return shlex.split(said)

@@ -1,4 +1,4 @@
-"""The engines at work on one motion, one handing over to the other.
+"""One motion followed by more engines than one: where the first meets an obstacle, the robust engine leads past it.
 
 The Taylor engine is the first choice, the Runge-Kutta engine one that can be asked for; both take the motion program.
 Where constraints are redundant, no order of pivots solves the equations, and the robust engine does all; where the
@@ -6,29 +6,23 @@ configuration nears a singular one, or numbers leave their range, it takes over 
 constraints are as independent again as they were when it did.
 """
 
-from collections.abc import Callable
+from collections import deque
+from collections.abc import Callable, Iterator
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...failures import Failure, HolonomError
 from ...program.motion_problem import MotionProblem
 from ...program.precision import Precision
-from ..advice import HardCase
+from ..diagnosis import HardCase
 from ..evaluation import Numbers, as_floats
-from ..request import Engine, SimulationRequest
-from ..solution import Solutions, program_solution
-from .dense_output import Piece
-from .program_motion import ProgramMotion, ProgramObstacle
-from .taylor import DECAYS_IN_A_RUN, TaylorMotion
+from ..request import EngineName, SimulationRequest
+from .engine import Engine, Obstacle, Piece, Solutions
 
-if TYPE_CHECKING:
-    from .robust import RobustMotion
-
-BY_PROGRAM = (Engine.TAYLOR, Engine.RUNGE_KUTTA)
+BY_PROGRAM = (EngineName.TAYLOR, EngineName.RUNGE_KUTTA)
 FINE = 1e-13  # tolerance of the robust engine between two legs of a Taylor engine that nobody gave one
-Take = Callable[[Piece], None]
 
 
 class Leg(NamedTuple):
@@ -36,7 +30,7 @@ class Leg(NamedTuple):
 
     Attributes
     ----------
-    engine : Engine
+    engine : EngineName
     start, end : float
     case : HardCase or None
         What the robust engine was called for; None where nobody called it.
@@ -44,15 +38,15 @@ class Leg(NamedTuple):
         Why it was called, a clause.
     """
 
-    engine: Engine
+    engine: EngineName
     start: float
     end: float
     case: HardCase | None = None
     reason: str = ""
 
 
-class Engines:
-    """A motion followed by the engines that a request allows.
+class SwitchingEngine:
+    """The engines that a request allows, at work as one; see `Engine`.
 
     Parameters
     ----------
@@ -64,44 +58,19 @@ class Engines:
 
     Attributes
     ----------
-    time : number
-    state : ndarray, shape (2n,)
     legs : list of Leg
         In order, as far as the motion has come.
+
+    Raises
+    ------
+    HolonomError
+        The engine asked for cannot follow this motion, or not in this precision or to this tolerance.
     """
 
     def __init__(self, problem: MotionProblem, request: SimulationRequest, precision: Precision, end: Any) -> None:
         self._problem, self._request, self._precision = problem, request, precision
-        self._end = self._goal = end
-        self.legs: list[Leg] = []
-        self._engine = Engine.TAYLOR if request.engine is Engine.AUTO else request.engine
-        self._only_robust = request.engine is Engine.ROBUST or problem.obstacle is not None
-        if problem.obstacle is not None and request.engine in BY_PROGRAM:
-            raise HolonomError(Failure.NO_PIVOTS, detail=problem.obstacle)
-        if self._only_robust and precision.name != "double":
-            raise HolonomError(Failure.ROBUST_IS_DOUBLE, detail=problem.obstacle or "--engine asks for it")
-        self._current = self.robust if self._only_robust else self.by_program
-        self._program_solution = None if self._only_robust else program_solution(problem, precision)
-
-    @cached_property
-    def by_program(self) -> ProgramMotion:
-        """The engine that takes the motion program."""
-        request = self._request
-        if request.engine is Engine.RUNGE_KUTTA:
-            return _runge_kutta(self._problem, request, self._precision)
-        decay = DECAYS_IN_A_RUN / float(self._end - self._precision.number(self._problem.start["t"]))
-        return TaylorMotion(self._problem, request.tol, self._precision, request.drift, request.compact, decay)
-
-    @cached_property
-    def robust(self) -> "RobustMotion":
-        """The robust engine."""
-        from .robust import TIGHTEST, RobustMotion
-
-        asked = self._request.tol
-        if asked is not None and self._only_robust and not TIGHTEST <= asked < 1:
-            holds = f"the robust engine holds tolerances from {TIGHTEST:.1e} to 1, not {asked:g}"
-            raise HolonomError(Failure.TOLERANCE_UNHELD, detail=holds)
-        return RobustMotion(self._problem, FINE if asked is None and not self._only_robust else asked)
+        self._current = self._first = self._first_engine(end)
+        self._begun, self.legs = float(self.time), []
 
     @property
     def time(self) -> Any:
@@ -124,107 +93,116 @@ class Engines:
         return sum(engine.compile_seconds for engine in self._set_up)
 
     @property
-    def _set_up(self) -> "list[ProgramMotion | RobustMotion]":
-        """The engines that have been called for so far."""
-        return [self.__dict__[engine] for engine in ("by_program", "robust") if engine in self.__dict__]
-
-    @property
     def code(self) -> str:
-        """How heyoka compiled the Taylor engine; empty where it did nothing."""
-        return self.by_program.code if "by_program" in self.__dict__ else ""
+        """How heyoka compiled the engine that began."""
+        return self._first.code
 
     @property
     def tol(self) -> float:
         """Tolerance of the engine that began."""
-        return (self.robust if self._only_robust else self.by_program).tol
+        return self._first.tol
 
-    @property
-    def redundant(self) -> bool:
-        """Whether there are fewer independent constraints than constraints."""
-        return self._problem.obstacle is not None and self.robust.rank < len(self._problem.multipliers)
-
-    def solve(self, instants: Numbers, states: Numbers) -> Solutions:
-        """Accelerations, multipliers and constraint forces near the instant that is reached, by the engine at work."""
-        return (self._robust_solution if self._robust_works() else self._program_solution)(instants, states)
-
-    def solve_all(self, instants: Numbers, states: Numbers) -> Solutions:
-        """The same at states of the whole motion, each by the engine that followed it there."""
-        robust = [leg for leg in self.legs if leg.engine is Engine.ROBUST]
-        there = np.array([any(leg.start < t <= leg.end for leg in robust) for t in as_floats(instants)], dtype=bool)
-        if self._only_robust or there.all():
-            return self._robust_solution(instants, states)
-        found = self._program_solution(instants, states)
-        if there.any():
-            for rows, better in zip(found, self._robust_solution(instants[there], states[:, there]), strict=True):
-                rows[:, there] = better[: len(rows)]
-        return found
-
-    def follow(self, until: Any, take: Take | None) -> None:
-        """Follow the motion to an instant.
-
-        Parameters
-        ----------
-        until : number
-        take : callable or None
-            Takes each piece of the motion; without it there are none, and the engine is at its fastest.
+    def advance(self, until: Any) -> None:
+        """Follow the motion to an instant, each engine at its fastest.
 
         Raises
         ------
         HolonomError
             The motion cannot be followed so far by the engines allowed.
         """
-        self._goal = until
-        if self._only_robust:
-            self._robust_leg(take, self._at_the_end, *self._why_robust())
-        while self.time != self._goal:
+        deque(self._followed(until, _without_pieces), maxlen=0)
+
+    def pieces(self, until: Any) -> Iterator[Piece]:
+        """Follow the motion to an instant, step by step; raises as `advance`."""
+        return self._followed(until, _with_pieces)
+
+    def solutions(self, instants: Numbers, states: Numbers) -> Solutions:
+        """What the equations of motion determine, by the engine that followed the motion there or is at work."""
+        second = self.__dict__.get("_second")
+        there = self._by(second, as_floats(instants))
+        if there.all() and second is not None:
+            return second.solutions(instants, states)
+        found = self._first.solutions(instants, states)
+        if there.any():
+            for rows, better in zip(found, second.solutions(instants[there], states[:, there]), strict=True):
+                rows[:, there] = better[: len(rows)]
+        return found
+
+    # ---- engines ----
+
+    def _first_engine(self, end: Any) -> Engine:
+        asked, obstacle = self._request.engine, self._problem.obstacle
+        if obstacle is not None and asked in BY_PROGRAM:
+            raise HolonomError(Failure.NO_PIVOTS, detail=obstacle)
+        if obstacle is not None or asked is EngineName.ROBUST:
+            if self._precision.name != "double":
+                raise HolonomError(Failure.ROBUST_IS_DOUBLE, detail=obstacle or "--engine asks for it")
+            return _robust(self._problem, self._request)
+        if asked is EngineName.RUNGE_KUTTA:
+            return _runge_kutta(self._problem, self._request, self._precision)
+        return _taylor(self._problem, self._request, self._precision, end)
+
+    @cached_property
+    def _second(self) -> Engine:
+        """The robust engine, where the first one needs it."""
+        from .robust import RobustEngine
+
+        return RobustEngine(self._problem, FINE if self._request.tol is None else self._request.tol)
+
+    @property
+    def _set_up(self) -> list[Engine]:
+        """The engines that have been called for so far."""
+        return [self._first, *(self.__dict__[name] for name in ("_second",) if name in self.__dict__)]
+
+    def _by(self, engine: Engine | None, instants: Numbers) -> Numbers:
+        """Which of the instants an engine has followed the motion to."""
+        legs = [leg for leg in self.legs if engine is not None and leg.engine is engine.name]
+        spans = [(leg.start, leg.end) for leg in legs]
+        if engine is self._current:
+            spans.append((self._begun, np.inf))
+        return np.array([any(start < t <= end for start, end in spans) for t in instants], dtype=bool)
+
+    # ---- legs ----
+
+    def _followed(self, until: Any, along: Callable[[Engine, Any], Iterator[Piece]]) -> Iterator[Piece]:
+        while self.time != until:
             try:
-                self._program_leg(take)
-            except ProgramObstacle as obstacle:
-                self._hand_over(obstacle, take)
+                yield from self._leg(along(self._first, until), lambda: False, *self._why_first)
+            except Obstacle as obstacle:
+                if self._request.engine in BY_PROGRAM or self._precision.name != "double":
+                    raise
+                yield from self._past(obstacle, self._second, until)
 
-    def _program_leg(self, take: Take | None) -> None:
-        start = float(self.time)
-        try:
-            if take is None:
-                self.by_program.advance(self._goal)
-            else:
-                for piece in self.by_program.pieces(self._goal):
-                    take(piece)
-        finally:
-            if float(self.time) > start:
-                self._add_leg(Leg(self._engine, start, float(self.time)))
-
-    def _hand_over(self, obstacle: ProgramObstacle, take: Take | None) -> None:
-        if self._request.engine in BY_PROGRAM or self._precision.name != "double":
-            raise obstacle
-        taylor, robust = self.by_program, self.robust
-        robust.restart(taylor.time, taylor.state.copy())
-        least = taylor.watch.least(taylor.time, taylor.state)
-        self._current = robust
+    def _past(self, obstacle: Obstacle, second: Engine, until: Any) -> Iterator[Piece]:
+        """The motion past an obstacle, or to an instant before that."""
+        second.restart(self._first.time, self._first.state.copy())
+        self._current = second
 
         def passed() -> bool:
-            return taylor.watch.least(robust.time, robust.state) > least
+            return not second.amid_passage and obstacle.passed(second.time, second.state)
 
-        self._robust_leg(take, passed, obstacle.case, obstacle.reason)
-        taylor.restart(robust.time, robust.state)
-        self._current = taylor
+        yield from self._leg(second.pieces(until), passed, obstacle.case, obstacle.reason)
+        self._first.restart(second.time, second.state)
+        self._current = self._first
 
-    def _robust_leg(self, take: Take | None, done: Callable[[], bool], *why: Any) -> None:
-        start = self.robust.time
-        for piece in self.robust.pieces(self._goal):
-            if take is not None:
-                take(piece)
-            if not self.robust.singular_ahead and done():
-                break
-        self._add_leg(Leg(Engine.ROBUST, start, self.robust.time, *why))
+    def _leg(self, pieces: Iterator[Piece], done: Callable[[], bool], *why: Any) -> Iterator[Piece]:
+        self._begun = float(self.time)
+        try:
+            for piece in pieces:
+                yield piece
+                if done():
+                    break
+        finally:
+            if float(self.time) > self._begun:
+                self._add_leg(Leg(self._current.name, self._begun, float(self.time), *why))
 
-    def _why_robust(self) -> tuple[HardCase | None, str]:
+    @property
+    def _why_first(self) -> tuple[HardCase | None, str]:
+        """Why the engine that began is the robust one, where nobody asked for it."""
         if self._problem.obstacle is None:
             return None, ""
-        return (HardCase.REDUNDANT if self.redundant else HardCase.SINGULAR_PASSAGE), self._problem.obstacle
-
-    def _at_the_end(self) -> bool:
-        return self.robust.time == self._goal
+        redundant = self._first.rank < len(self._problem.multipliers)
+        return (HardCase.REDUNDANT if redundant else HardCase.SINGULAR_PASSAGE), self._problem.obstacle
 
     def _add_leg(self, leg: Leg) -> None:
         """Keep a leg, as one with the last where the same engine went on for the same reason."""
@@ -232,17 +210,35 @@ class Engines:
             leg = leg._replace(start=self.legs.pop().start)
         self.legs.append(leg)
 
-    def _robust_works(self) -> bool:
-        return self._current is self.__dict__.get("robust")
 
-    def _robust_solution(self, instants: Numbers, states: Numbers) -> Solutions:
-        found = [self.robust.solution(t, state) for t, state in zip(instants, states.T, strict=True)]
-        return Solutions(*(np.array(each).T for each in zip(*found, strict=True)))
+def _with_pieces(engine: Engine, until: Any) -> Iterator[Piece]:
+    return engine.pieces(until)
 
 
-def _runge_kutta(problem: MotionProblem, request: SimulationRequest, precision: Precision) -> ProgramMotion:
-    from .runge_kutta import RungeKuttaMotion
+def _without_pieces(engine: Engine, until: Any) -> Iterator[Piece]:
+    engine.advance(until)
+    yield from ()
+
+
+def _taylor(problem: MotionProblem, request: SimulationRequest, precision: Precision, end: Any) -> Engine:
+    from .taylor import DECAYS_IN_A_RUN, TaylorEngine
+
+    decay = DECAYS_IN_A_RUN / float(end - precision.number(problem.start["t"]))
+    return TaylorEngine(problem, request.tol, precision, request.drift, request.compact, decay)
+
+
+def _runge_kutta(problem: MotionProblem, request: SimulationRequest, precision: Precision) -> Engine:
+    from .runge_kutta import RungeKuttaEngine
 
     if precision.name != "double":
         raise HolonomError(Failure.RUNGE_KUTTA_IS_DOUBLE, detail=precision.name)
-    return RungeKuttaMotion(problem, request.tol, request.drift)
+    return RungeKuttaEngine(problem, request.tol, request.drift)
+
+
+def _robust(problem: MotionProblem, request: SimulationRequest) -> Engine:
+    from .robust import TIGHTEST, RobustEngine
+
+    if request.tol is not None and not TIGHTEST <= request.tol < 1:
+        holds = f"the robust engine holds tolerances from {TIGHTEST:.1e} to 1, not {request.tol:g}"
+        raise HolonomError(Failure.TOLERANCE_UNHELD, detail=holds)
+    return RobustEngine(problem, request.tol)

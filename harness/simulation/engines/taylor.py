@@ -16,9 +16,9 @@ from ...program.precision import Precision, read_precision
 from ..constraints.program_projection import ProgramProjection
 from ..constraints.stabilization import Equations, equations_of_motion, stabilized_equations
 from ..evaluation import Numbers
-from ..request import Stabilization
+from ..request import EngineName, Stabilization
 from .code import Code, better_code, pays
-from .program_motion import FIRST_BLOCK, ProgramMotion
+from .program_engine import FIRST_BLOCK, ProgramEngine
 
 DRIFT = 100  # times what rounding does to a number: how far a state may leave the constraints inside a block
 FINE, FINE_BLOCK = 1e-9, 512  # a tolerance whose steps leave the constraints so slowly that a first block may be long
@@ -27,8 +27,8 @@ GROWTH = 8  # from block to block, at most
 DECAYS_IN_A_RUN = 50.0  # gamma of Baumgarte's cure and Gear's, times the length of the time span
 
 
-class TaylorMotion(ProgramMotion):
-    """A motion followed by heyoka.
+class TaylorEngine(ProgramEngine):
+    """A motion followed by heyoka; see `Engine`.
 
     Parameters
     ----------
@@ -49,6 +49,8 @@ class TaylorMotion(ProgramMotion):
     HolonomError
         The precision is none, or cannot hold the tolerance; heyoka is not installed.
     """
+
+    name = EngineName.TAYLOR
 
     def __init__(
         self,

@@ -5,8 +5,7 @@ import pytest
 from holonom.confined import Limits
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
-from holonom.simulation.advice import ADVICE, HardCase, advice
-from holonom.simulation.hard_cases import Instant, stiffness
+from holonom.simulation.diagnosis import ADVICE, HardCase, Instant, advice, remarks, stiffness
 from holonom.simulation.matrices import MotionMatrices, start_of
 from holonom.simulation.request import FINAL_STATE_ALONE, SimulationRequest
 from holonom.simulation.simulate import simulate
@@ -60,10 +59,10 @@ SOMEBODYS = {
 }
 
 
-def remarks_on(file) -> tuple[str, ...]:
-    return simulate(
-        motion_problem(file, Request(), Limits()), SimulationRequest(samples=FINAL_STATE_ALONE)
-    ).report.remarks
+def remarks_on(file) -> set[str]:
+    asked = SimulationRequest(samples=FINAL_STATE_ALONE)
+    report = simulate(motion_problem(file, Request(), Limits()), asked).report
+    return set(remarks(report.legs, report.cases))
 
 
 @pytest.mark.parametrize("kind", SOMEBODYS)
@@ -72,7 +71,7 @@ def test_somebodys_hard_case_is_met_with_the_advice_on_it(write_scene, kind):
 
 
 def test_a_plain_pendulum_needs_no_advice(write_scene):
-    assert not set(ADVICE.values()) & set(remarks_on(write_scene(SCENE.format(**PENDULUM))))
+    assert not set(ADVICE.values()) & remarks_on(write_scene(SCENE.format(**PENDULUM)))
 
 
 @pytest.mark.parametrize("ratio", [10, 10**4])

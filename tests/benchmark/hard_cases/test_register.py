@@ -6,7 +6,7 @@ from holonom.benchmark.hard_cases.case import CaseReport, Extent, Verdict
 from holonom.benchmark.hard_cases.plain import PLAIN
 from holonom.benchmark.hard_cases.register import REGISTER, examine
 from holonom.benchmark.hard_cases.solves import DIRECT, ORTHOGONAL, PIVOTED, TEXTBOOK
-from holonom.simulation.advice import HardCase
+from holonom.simulation.diagnosis import HardCase
 
 LOSING = {
     "parallel constraints": {TEXTBOOK, DIRECT},

@@ -8,7 +8,7 @@ import pytest
 from holonom.benchmark.hard_cases import register
 from holonom.benchmark.hard_cases.case import Case, Findings, Sweep, found, ours, required, theirs
 from holonom.cli import holonom
-from holonom.simulation.advice import HardCase, advice
+from holonom.simulation.diagnosis import HardCase, advice
 
 
 def shown(name: str, *results, sweep=None) -> Case:

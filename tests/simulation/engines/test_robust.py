@@ -10,13 +10,13 @@ from holonom.failures import Failure, HolonomError
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request
 from holonom.simulation.diagnostics import condition
-from holonom.simulation.engines.robust import RobustMotion
+from holonom.simulation.engines.robust import RobustEngine
 
 FOUR_BAR_AT_10 = [0.47838505776097055901, 0.87815017879120930116]  # by its elliptic functions, to twenty digits
 
 
 def test_a_four_bar_linkage_goes_through_its_dead_centres():
-    motion = RobustMotion(problem("linkage.mac"), 1e-12)
+    motion = RobustEngine(problem("linkage.mac"), 1e-12)
     motion.advance(10.0)
     assert np.allclose(motion.state[:2], FOUR_BAR_AT_10, rtol=0, atol=1e-9)
     assert len(motion.passages) == 10
@@ -25,7 +25,7 @@ def test_a_four_bar_linkage_goes_through_its_dead_centres():
 
 @pytest.mark.parametrize(("bars", "revolutions"), [(1, 25), (4, 5), (12, 1)])
 def test_it_stays_on_its_branch_for_many_revolutions(bars, revolutions):
-    motion = RobustMotion(problem("linkage.mac", N=str(bars)))
+    motion = RobustEngine(problem("linkage.mac", N=str(bars)))
     motion.advance(revolutions * linkage_period(bars) + 0.1)
     assert np.allclose(motion.state[:2], linkage_tip(bars, motion.time), rtol=0, atol=1e-6)
     assert len(motion.passages) == 2 * revolutions
@@ -33,7 +33,7 @@ def test_it_stays_on_its_branch_for_many_revolutions(bars, revolutions):
 
 
 def test_states_between_the_steps_and_within_an_arc_are_on_the_motion():
-    motion = RobustMotion(problem("linkage.mac"), 1e-12)
+    motion = RobustEngine(problem("linkage.mac"), 1e-12)
     for piece in motion.pieces(1.5):
         instants = np.linspace(piece.start, piece.end, 5)
         tips = np.array([linkage_tip(1, t) for t in instants])
@@ -41,7 +41,7 @@ def test_states_between_the_steps_and_within_an_arc_are_on_the_motion():
 
 
 def test_constraint_forces_stay_right_through_a_dead_centre():
-    motion = RobustMotion(problem("linkage.mac"), 1e-12)
+    motion = RobustEngine(problem("linkage.mac"), 1e-12)
     motion.advance(1.5)
     for away in [-3e-2, -1e-3, -1e-5, 1e-8, 1e-6, 1e-4, 1e-2]:
         instant = motion.passages[0] + away
@@ -53,14 +53,14 @@ def test_constraint_forces_stay_right_through_a_dead_centre():
 
 @pytest.mark.parametrize("away", [-1e-2, -1e-4, -1e-6, -1e-8, 0.0, 1e-8, 1e-6, 1e-4, 1e-2])
 def test_it_may_start_at_a_dead_centre_and_beside_one(away):
-    motion, start = RobustMotion(problem("linkage.mac"), 1e-12), 0.70845002 + away
+    motion, start = RobustEngine(problem("linkage.mac"), 1e-12), 0.70845002 + away
     motion.restart(start, four_bar(start)[0])
     motion.advance(1.0)
     assert motion.state == pytest.approx(four_bar(1.0)[0], abs=1e-9)
 
 
 def test_a_motion_may_stop_and_go_on_anywhere():
-    motion = RobustMotion(problem("linkage.mac"), 1e-12)
+    motion = RobustEngine(problem("linkage.mac"), 1e-12)
     for instant in np.linspace(0.0, 1.5, 61)[1:]:
         motion.advance(instant)
         assert motion.time == instant
@@ -90,7 +90,7 @@ def in_line(write_scene):
 
 
 def test_from_a_singular_configuration_the_velocities_choose_the_parallelogram(in_line):
-    motion = RobustMotion(in_line("-3", "-3"), 1e-12)
+    motion = RobustEngine(in_line("-3", "-3"), 1e-12)
     motion.advance(0.4)
     x0, y0, x1, y1 = motion.state[:4]
     assert (x1, y1) == pytest.approx((1 + x0, y0), abs=1e-12)
@@ -99,7 +99,7 @@ def test_from_a_singular_configuration_the_velocities_choose_the_parallelogram(i
 
 
 def test_from_a_singular_configuration_the_velocities_choose_the_folded_branch(in_line):
-    motion = RobustMotion(in_line("0", "-3"), 1e-12)
+    motion = RobustEngine(in_line("0", "-3"), 1e-12)
     motion.advance(0.4)
     # the left rod lies still, its tip on the right rod's hinge; the other two turn together: v^2/3 + g y is constant
     assert motion.state[[0, 1, 4, 5]] == pytest.approx([1, 0, 0, 0], abs=1e-10)
@@ -108,18 +108,18 @@ def test_from_a_singular_configuration_the_velocities_choose_the_folded_branch(i
 
 def test_a_velocity_along_no_branch_is_refused(in_line):
     with pytest.raises(HolonomError):
-        RobustMotion(in_line("3", "-3"), 1e-12).advance(0.4)
+        RobustEngine(in_line("3", "-3"), 1e-12).advance(0.4)
 
 
 def test_at_rest_in_a_singular_configuration_nothing_tells_the_branch(in_line):
     with pytest.raises(HolonomError, match="singular configuration") as refused:
-        RobustMotion(in_line("0", "0"), 1e-10).advance(1.0)
+        RobustEngine(in_line("0", "0"), 1e-10).advance(1.0)
     assert refused.value.failure is Failure.NO_WAY_ON
 
 
 def test_a_redundant_spatial_mechanism_moves_through_its_singular_configurations():
     sarrus = problem("hard/sarrus_linkage.mac")
-    motion, instants = RobustMotion(sarrus, 1e-12), np.linspace(0.25, 4.0, 16)
+    motion, instants = RobustEngine(sarrus, 1e-12), np.linspace(0.25, 4.0, 16)
     assert motion.rank == len(sarrus.multipliers) - 1
     height = sarrus.coordinates.index("p3z")
     for instant, angle in zip(instants, sarrus_angles(instants), strict=True):
@@ -130,7 +130,7 @@ def test_a_redundant_spatial_mechanism_moves_through_its_singular_configurations
 
 
 def test_under_redundant_constraints_forces_are_unique_and_multipliers_least():
-    motion = RobustMotion(problem("hard/sarrus_linkage.mac"), 1e-11)
+    motion = RobustEngine(problem("hard/sarrus_linkage.mac"), 1e-11)
     motion.advance(0.3)
     found, at = motion.solution(motion.time, motion.state), motion.matrices(motion.time, motion.state)
     # that the edges P1 P3 and P2 P3 lie along e1 and e2, and that P1 and P2 are so far apart, says one thing twice
@@ -142,7 +142,7 @@ def test_under_redundant_constraints_forces_are_unique_and_multipliers_least():
 
 
 def test_the_papers_free_motion_stays_right_until_the_control_overflows():
-    motion = RobustMotion(problem("paper/paper.mac", "free_motion_scene"), 1e-11)
+    motion = RobustEngine(problem("paper/paper.mac", "free_motion_scene"), 1e-11)
     for instant in (10.0, 100.0, 400.0, 709.0):
         motion.advance(instant)
         # q1 + q2 = (a + b t) exp(-t), q3 = u0 (a + b t), and no reaction
@@ -167,7 +167,7 @@ released : holonomic_scene(pair, initial_state = [x = 1, y = 1, dot(x) = 0, dot(
 
 
 def test_a_stiff_motion_is_found_out_and_followed(write_scene):
-    motion = RobustMotion(motion_problem(write_scene(STIFF), Request(), Limits()), 1e-8)
+    motion = RobustEngine(motion_problem(write_scene(STIFF), Request(), Limits()), 1e-8)
     motion.advance(2.0)
     assert motion.stiff
     assert motion.steps < 1000  # DOP853 alone takes some thirty thousand
@@ -187,7 +187,7 @@ pulled : holonomic_scene(pair, initial_state = [x = 0, y = 0, dot(x) = 1, dot(y)
 
 def test_constraints_that_come_to_contradict_one_another_stop_the_motion(write_scene):
     with pytest.raises(HolonomError) as refused:
-        RobustMotion(motion_problem(write_scene(CONTRADICTION), Request(), Limits())).advance(1.0)
+        RobustEngine(motion_problem(write_scene(CONTRADICTION), Request(), Limits())).advance(1.0)
     assert refused.value.failure is Failure.INCONSISTENT
 
 
@@ -206,7 +206,7 @@ upright : holonomic_scene(bars, initial_state = [x0 = 0, y0 = 1, x1 = 1, y1 = 1,
 
 def test_a_near_miss_is_no_passage(write_scene):
     asked = motion_problem(write_scene(NEAR_MISS), Request(), Limits())
-    motion, conditions = RobustMotion(asked, 1e-11), []
+    motion, conditions = RobustEngine(asked, 1e-11), []
     for piece in motion.pieces(3.0):
         v0, v1 = motion.state[4:6], motion.state[6:]
         energy = (2 * (v0 @ v0 + v1 @ v1) + v0 @ v1) / 6 + GRAVITY * (motion.state[1] + motion.state[3])
@@ -217,7 +217,7 @@ def test_a_near_miss_is_no_passage(write_scene):
 
 
 def test_a_length_that_vanishes_stops_the_motion():
-    motion = RobustMotion(problem("hard/vanishing_length.mac"))
+    motion = RobustEngine(problem("hard/vanishing_length.mac"))
     with pytest.raises(HolonomError, match="steps become too short") as refused:
         motion.advance(2.0)
     assert refused.value.failure is Failure.NO_WAY_ON

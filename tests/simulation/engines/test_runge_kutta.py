@@ -10,10 +10,10 @@ from holonom.confined import Limits
 from holonom.failures import Failure, HolonomError
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
-from holonom.simulation.engines import prince_dormand
-from holonom.simulation.engines.runge_kutta import RungeKuttaMotion
-from holonom.simulation.engines.taylor import TaylorMotion
-from holonom.simulation.request import Engine, SimulationRequest, Stabilization
+from holonom.simulation.engines import runge_kutta
+from holonom.simulation.engines.runge_kutta import RungeKuttaEngine
+from holonom.simulation.engines.taylor import TaylorEngine
+from holonom.simulation.request import EngineName, SimulationRequest, Stabilization
 from holonom.simulation.simulate import simulate
 
 THROWN = """
@@ -28,18 +28,18 @@ pytestmark = pytest.mark.usefixtures("gsl")
 
 def test_a_parabola_is_followed_to_rounding(write_scene):
     """Truth: a method of order 8 is exact for polynomials of degree 2, and the first step reaches the end."""
-    motion = RungeKuttaMotion(motion_problem(write_scene(THROWN), Request(), Limits()), 1e-6)
+    motion = RungeKuttaEngine(motion_problem(write_scene(THROWN), Request(), Limits()), 1e-6)
     motion.advance(1.0)
     assert motion.state == pytest.approx([1, 0, 1, -5], abs=1e-13)
 
 
 def test_the_error_follows_the_tolerance():
     """Truth: the pendulum of the Taylor engine at rounding; six powers of ten in the tolerance are six in the error."""
-    true = TaylorMotion(problem("pendulum.mac"))
+    true = TaylorEngine(problem("pendulum.mac"))
     true.advance(10.0)
     errors = []
     for tol in (1e-4, 1e-7, 1e-10):
-        motion = RungeKuttaMotion(problem("pendulum.mac"), tol)
+        motion = RungeKuttaEngine(problem("pendulum.mac"), tol)
         motion.advance(10.0)
         errors.append(np.abs(motion.state - true.state).max())
     assert errors[2] < 1e-9
@@ -49,7 +49,7 @@ def test_the_error_follows_the_tolerance():
 
 def test_projection_keeps_the_constraints_that_a_coarse_tolerance_loses():
     def missed(drift):
-        motion = RungeKuttaMotion(problem("pendulum.mac", "swing_scene"), 1e-5, drift)
+        motion = RungeKuttaEngine(problem("pendulum.mac", "swing_scene"), 1e-5, drift)
         motion.advance(50.0)
         (x, y), (vx, vy) = motion.state[:2], motion.state[2:]
         return max(abs(x**2 + y**2 - 1), abs(x * vx + y * vy))
@@ -60,10 +60,10 @@ def test_projection_keeps_the_constraints_that_a_coarse_tolerance_loses():
 
 def test_the_work_of_a_control_is_balanced():
     """Truth: energy; the car axis' road does work on it all the time."""
-    request = SimulationRequest(1e-11, engine=Engine.RUNGE_KUTTA, samples=0)
+    request = SimulationRequest(1e-11, engine=EngineName.RUNGE_KUTTA, samples=0)
     report = simulate(problem("car_axis.mac"), request).report
     assert abs(report.energy_error) < 1e-11
-    assert report.engine == "runge-kutta"
+    assert [leg.engine for leg in report.legs] == [EngineName.RUNGE_KUTTA]
     assert report.code == ""
 
 
@@ -77,14 +77,14 @@ def test_the_work_of_a_control_is_balanced():
 )
 def test_what_it_lacks_is_refused(request_, said):
     wanted = SimulationRequest(
-        request_.tol, request_.precision, Engine.RUNGE_KUTTA, request_.drift, until=Fraction(1), samples=0
+        request_.tol, request_.precision, EngineName.RUNGE_KUTTA, request_.drift, until=Fraction(1), samples=0
     )
     with pytest.raises(HolonomError, match=said):
         simulate(problem("pendulum.mac"), wanted)
 
 
 def test_a_missing_library_is_named(monkeypatch):
-    monkeypatch.setattr(prince_dormand.shutil, "which", lambda _: None)
+    monkeypatch.setattr(runge_kutta.shutil, "which", lambda _: None)
     with pytest.raises(HolonomError, match="needs the GNU Scientific Library.*libgsl-dev") as refusal:
-        RungeKuttaMotion(problem("pendulum.mac"))
+        RungeKuttaEngine(problem("pendulum.mac"))
     assert refusal.value.failure is Failure.GSL_MISSING

@@ -7,16 +7,16 @@ from problems import problem
 from holonom.program.precision import read_precision
 from holonom.simulation.constraints.program_projection import ProgramProjection
 from holonom.simulation.engines.code import Code, better_code, pays
-from holonom.simulation.engines.taylor import TaylorMotion
+from holonom.simulation.engines.taylor import TaylorEngine
 from holonom.simulation.request import Stabilization
 
 
 def test_code_is_better_where_a_run_earns_it():
     """What is compiled first is compiled quickly; better code pays for long runs, and in hardware numbers only."""
-    assert TaylorMotion(problem("pendulum.mac")).code is Code.QUICK
-    assert TaylorMotion(problem("pendulum.mac"), compact=True).code is Code.COMPACT
-    assert TaylorMotion(problem("pendulum.mac"), compact=False).code is Code.UNROLLED
-    long = TaylorMotion(problem("pendulum.mac", "swing_scene"))
+    assert TaylorEngine(problem("pendulum.mac")).code is Code.QUICK
+    assert TaylorEngine(problem("pendulum.mac"), compact=True).code is Code.COMPACT
+    assert TaylorEngine(problem("pendulum.mac"), compact=False).code is Code.UNROLLED
+    long = TaylorEngine(problem("pendulum.mac", "swing_scene"))
     long.advance(20000.0)
     assert long.code is not Code.QUICK
     assert not pays(Code.COMPACT, 20, 1e-3)
@@ -27,9 +27,9 @@ def test_code_is_better_where_a_run_earns_it():
 
 @pytest.mark.parametrize("compact", [None, True, False])
 def test_the_code_does_not_change_the_motion(compact):
-    motion = TaylorMotion(problem("car_axis.mac"), compact=compact)
+    motion = TaylorEngine(problem("car_axis.mac"), compact=compact)
     motion.advance(1.0)
-    other = TaylorMotion(problem("car_axis.mac"), drift=Stabilization.NONE, compact=True)
+    other = TaylorEngine(problem("car_axis.mac"), drift=Stabilization.NONE, compact=True)
     other.advance(1.0)
     assert motion.state == pytest.approx(other.state, abs=1e-11)
 

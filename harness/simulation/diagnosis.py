@@ -1,18 +1,22 @@
-"""Hard cases that a motion is, as far as its matrices tell at the start and at the end.
+"""What kinds of hard case a motion is, and what a user should do about each.
 
-Those that the engines meet on the way, redundant constraints, singular configurations, vanishing gradients, they tell
-themselves.
+Its matrices tell at the start and at the end; what the engines meet on the way, redundant constraints, singular
+configurations, vanishing gradients, they tell themselves.
 """
 
-from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from collections.abc import Iterable, Iterator, Sequence
+from enum import StrEnum
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from .advice import HardCase
 from .constraints.factorization import factored_constraints, rank_of, weighted_constraints
 from .diagnostics import condition
 from .matrices import Matrices, MotionMatrices, Vector
+from .request import EngineName
+
+if TYPE_CHECKING:
+    from .engines.switching import Leg
 
 ILL_CONDITIONED, DEPENDENT = 1e8, 1e20  # condition of G: half of a double's digits lost, and none left
 UNEQUAL_MASSES = 1e8  # ratio of the entries on A's diagonal: half of a double's digits
@@ -22,6 +26,61 @@ FREE = 1e-13  # constraint forces, in terms of the others
 STIFF = 1e5  # squares of frequencies, one in terms of another
 AT_REST = 1e-8  # squares of frequencies, in terms of the largest, that differences do not tell from zero
 DIFFERENCE = 1e-5  # in coordinates: the cube root of a double's rounding error
+LISTED = 3  # legs of the robust engine that are told one by one
+
+
+class HardCase(StrEnum):
+    """A kind of motion on which a plain method loses its digits."""
+
+    NEARLY_DEPENDENT = "nearly dependent constraints"
+    REDUNDANT = "redundant constraints"
+    SINGULAR_PASSAGE = "passage through a singular configuration"
+    STIFF = "stiffness"
+    OVERFLOW = "overflow"
+    MASS_RATIO = "large mass ratio"
+    LONG_RUN = "long run"
+    FREE_CANCELLATION = "cancellation along a free motion"
+    VANISHING_LENGTH = "vanishing length"
+
+
+ADVICE = {
+    HardCase.NEARLY_DEPENDENT: (
+        "The constraints are nearly dependent: take the orthogonal solve, which keeps the accelerations, "
+        "and trust the constraint forces rather than single multipliers."
+    ),
+    HardCase.REDUNDANT: (
+        "The constraints are redundant: leave the robust engine to work; the motion and the constraint forces are "
+        "unique, while the multipliers are the ones of smallest norm, so remove constraints to give them a meaning."
+    ),
+    HardCase.SINGULAR_PASSAGE: (
+        "The motion passes a singular configuration: keep the default engine, which hands over to the robust one, "
+        "and look at the energy error, which tells whether it left on the right branch."
+    ),
+    HardCase.STIFF: (
+        "The motion is stiff: keep the Taylor engine where its fast oscillation matters, and where it does not, "
+        "replace the stiff part by a constraint."
+    ),
+    HardCase.OVERFLOW: (
+        "Numbers come near the end of the range of double precision: divide the constraint by what grows in it, "
+        "or choose units in which the control stays moderate."
+    ),
+    HardCase.MASS_RATIO: (
+        "The masses differ by many orders of magnitude: take the orthogonal solve, and quadruple precision where a "
+        "light body hangs in line between heavy ones; or leave the light mass out."
+    ),
+    HardCase.LONG_RUN: (
+        "The run is long: keep the projection and the default tolerance, and expect to lose up to one and a half "
+        "digits of the phase for every tenfold time, or take quadruple precision."
+    ),
+    HardCase.FREE_CANCELLATION: (
+        "The motion is free: every multiplier is a difference that cancels, so read values below 1e-13 of the forces "
+        "as zero, and let `holonom free` prove it."
+    ),
+    HardCase.VANISHING_LENGTH: (
+        "A controlled length goes through zero, where its constraint has no gradient and no reaction can act: "
+        "end the run before it, or choose a law that keeps the length away from zero."
+    ),
+}
 
 
 class Instant(NamedTuple):
@@ -138,3 +197,48 @@ def _free(ends: Sequence[Matrices], multipliers: Vector) -> bool:
     forces = max(float(np.abs(at.force).max(initial=0.0)) for at in ends)
     reaction = float(np.abs(ends[-1].jacobian.T @ multipliers).max(initial=0.0))
     return forces > 0 and len(multipliers) > 0 and reaction <= FREE * forces
+
+
+def advice(kind: HardCase) -> str:
+    """The sentence that says what to do about a hard case.
+
+    Parameters
+    ----------
+    kind : HardCase
+
+    Returns
+    -------
+    str
+    """
+    return ADVICE[kind]
+
+
+def engine_text(legs: "Sequence[Leg]") -> str:
+    """Who followed the motion when, in one line.
+
+    Parameters
+    ----------
+    legs : sequence of Leg
+
+    Returns
+    -------
+    str
+        For instance ``taylor`` or ``taylor, robust 0.31..0.35, taylor``.
+    """
+    if len(legs) == 1:
+        return str(legs[0].engine)
+    robust = [leg for leg in legs if leg.engine is EngineName.ROBUST]
+    if len(robust) > LISTED:
+        return f"{legs[0].engine}, robust {len(robust)} times from {robust[0].start:.6g} to {robust[-1].end:.6g}"
+    spans = {leg: f" {leg.start:.6g}..{leg.end:.6g}" for leg in robust}
+    return ", ".join(f"{leg.engine}{spans.get(leg, '')}" for leg in legs)
+
+
+def remarks(legs: "Sequence[Leg]", cases: Iterable[HardCase]) -> Iterator[str]:
+    """What happened on the way, and what to do about the hard cases that the motion is: one sentence each."""
+    called = [leg for leg in legs if leg.engine is EngineName.ROBUST and leg.case is not None]
+    for leg in called[:LISTED]:
+        yield f"From t = {leg.start:.6g} to {leg.end:.6g} the robust engine takes over, because {leg.reason}."
+    if len(called) > LISTED:
+        yield f"The robust engine takes over {len(called)} times in all."
+    yield from map(advice, cases)

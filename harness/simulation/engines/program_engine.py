@@ -6,42 +6,27 @@ configuration of the constraints is one for the fixed pivots of the motion progr
 through it.
 """
 
+import time
 from collections.abc import Callable, Iterator
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, Protocol
 
+import numpy as np
 from numpy.typing import NDArray
 
 from ...failures import Failure, HolonomError
 from ...program.motion_problem import MotionProblem
 from ...program.precision import Precision
-from ..advice import HardCase
-from ..constraints.vanishing import no_gradient
-from ..constraints.watch import Watch
-from ..evaluation import Numbers
-from .dense_output import Piece
+from ..constraints.singularity import Watch, no_gradient
+from ..diagnosis import HardCase
+from ..evaluation import Evaluation, Numbers, evaluation, zeros
+from ..request import EngineName
+from .engine import Obstacle, Piece, Solutions
 
 FIRST_BLOCK = 128  # steps; what surrounds a block, projection above all, takes as long as some small steps
 SHRUNK = 32  # times shorter than the longest: a step that calls for a closer look; 16 occurs in quiet motions
 SHORTEST = 1e-10  # of the longest: a step that leads nowhere
-
-
-class ProgramObstacle(HolonomError):
-    """The motion program fails ahead, while pivots may lead on.
-
-    Parameters
-    ----------
-    t : float
-        The instant that is reached.
-    case : HardCase
-    reason : str
-        A clause about that instant.
-    """
-
-    def __init__(self, t: float, case: HardCase, reason: str) -> None:
-        super().__init__(Failure.NO_WAY_ON, detail=f"{t:.10g}, where {reason}")
-        self.case, self.reason = case, reason
 
 
 class Dense(Protocol):
@@ -82,10 +67,10 @@ class Integrator(Protocol):
         """
 
 
-class ProgramMotion:
-    """A motion followed on its motion program.
+class ProgramEngine:
+    """What an engine on the motion program is; see `Engine`.
 
-    An engine provides the integrator, and says what is done between the blocks.
+    It provides the integrator, and says what is done between the blocks.
 
     Parameters
     ----------
@@ -95,18 +80,10 @@ class ProgramMotion:
     failed : object
         The outcome of the integrator's steps where the last one led to no numbers.
 
-    Attributes
-    ----------
-    precision : Precision
-    steps : int
-    state : ndarray, shape (2n,)
-        Coordinates, then velocities, at the instant that is reached.
-    tol : float
-    code : str
-        How heyoka has compiled the integrator; empty where it has not.
-    compile_seconds : float
     """
 
+    name: EngineName
+    amid_passage = False
     state: Numbers
     tol: float
     code: str = ""
@@ -119,6 +96,7 @@ class ProgramMotion:
         self.steps, self._longest, self._usual = 0, 0.0, 0.0
         self._problem = problem
         self._obstacle: HolonomError | None = None
+        self._evaluate: Evaluation | None = None
 
     @property
     def time(self) -> Any:
@@ -151,8 +129,8 @@ class ProgramMotion:
 
         Raises
         ------
-        ProgramObstacle
-            The motion program fails ahead; time and state are those before it does.
+        Obstacle
+            The motion program fails ahead, while pivots may lead on; time and state are those before it does.
         HolonomError
             The motion itself ends.
         """
@@ -163,22 +141,7 @@ class ProgramMotion:
         self._keep_constraints()
 
     def pieces(self, until: Any) -> Iterator[Piece]:
-        """Follow the motion to an instant, with its states between the steps.
-
-        Parameters
-        ----------
-        until : number
-
-        Yields
-        ------
-        Piece
-            One for each step.
-
-        Raises
-        ------
-        HolonomError
-            As `advance`.
-        """
+        """Follow the motion to an instant, with its states between the steps; raises as `advance`."""
         self._begin()
         ended = self._integrator.time == until
         while not ended:
@@ -187,6 +150,17 @@ class ProgramMotion:
                 for start, end in pairwise(dense.times):
                     yield Piece(start, end, _states_of(dense))
         self._keep_constraints()
+
+    def solutions(self, instants: Numbers, states: Numbers) -> Solutions:
+        """What the equations of motion determine at instants, shape (k,), and states, shape (2n, k)."""
+        n, g = len(self._problem.coordinates), len(self._problem.multipliers)
+        if self._evaluate is None:
+            begun = time.perf_counter()
+            self._evaluate = evaluation(self._problem.motion, self.precision)
+            self.compile_seconds += time.perf_counter() - begun
+        inputs = np.concatenate([np.reshape(instants, (1, -1)), states, zeros(self.precision, g, len(instants))])
+        found = self._evaluate(np.ascontiguousarray(inputs))
+        return Solutions(found[:n], found[n : n + g], found[n + g :])
 
     def _begin(self) -> None:
         self._length = self._first_block
@@ -237,7 +211,7 @@ class ProgramMotion:
         if outcome == self._failed:
             self._go_back(instant, before)
             reason = f"numbers leave the range of {self.precision.name} precision"
-            self._obstacle = ProgramObstacle(float(instant), HardCase.OVERFLOW, reason)
+            self._obstacle = self._obstacle_here(HardCase.OVERFLOW, reason)
             return []
         self.steps += 1
         self._keep_constraints()
@@ -249,13 +223,18 @@ class ProgramMotion:
         """What the constraints' directions, the gradients and the length of the last step say about the next ones."""
         t = float(self.time)
         if self.watch.singular_ahead(t, self.state):
-            return ProgramObstacle(t, HardCase.SINGULAR_PASSAGE, "the configuration nears a singular one")
+            return self._obstacle_here(HardCase.SINGULAR_PASSAGE, "the configuration nears a singular one")
         if self.time == until or abs(self._integrator.last_h) >= SHORTEST * self._longest:
             return None
         vanished = self.watch.vanished(t, self.state)
         if vanished is None:
             return HolonomError(Failure.NO_WAY_ON, detail=f"{t:.10g}, where steps become too short")
         return no_gradient(t, vanished)
+
+    def _obstacle_here(self, case: HardCase, reason: str) -> Obstacle:
+        """An obstacle that is passed where the constraints are more independent again than here."""
+        least = self.watch.least(self.time, self.state)
+        return Obstacle(float(self.time), case, reason, lambda t, state: self.watch.least(t, state) > least)
 
     def _go_back(self, instant: Any, state: Numbers) -> None:
         self._integrator.time = instant

@@ -10,11 +10,11 @@ from holonom.confined import Limits
 from holonom.failures import HolonomError
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
-from holonom.simulation.engines.program_motion import FIRST_BLOCK, ProgramObstacle
-from holonom.simulation.engines.runge_kutta import RungeKuttaMotion
-from holonom.simulation.engines.taylor import TaylorMotion
+from holonom.simulation.engines.program_engine import FIRST_BLOCK, Obstacle
+from holonom.simulation.engines.runge_kutta import RungeKuttaEngine
+from holonom.simulation.engines.taylor import TaylorEngine
 
-CLOSE = {TaylorMotion: 1e-12, RungeKuttaMotion: 1e-9}  # what two ways to a state may differ by
+CLOSE = {TaylorEngine: 1e-12, RungeKuttaEngine: 1e-9}  # what two ways to a state may differ by
 BURST = """
 load("holonom.mac")$
 body : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [growth = [6*x^2]], constraints = [])$
@@ -22,9 +22,9 @@ burst : holonomic_scene(body, initial_state = [x = 1, dot(x) = 2], time_span = [
 """
 
 
-@pytest.fixture(params=[TaylorMotion, RungeKuttaMotion])
+@pytest.fixture(params=[TaylorEngine, RungeKuttaEngine])
 def engine(request):
-    if request.param is RungeKuttaMotion:
+    if request.param is RungeKuttaEngine:
         request.getfixturevalue("gsl")
     return request.param
 
@@ -67,7 +67,7 @@ def test_an_obstacle_leaves_the_last_good_state(engine):
     """Before a singular configuration of the linkage, where the rods' angle is a right one: the tips are at y = 0."""
     motion = engine(problem("linkage.mac"))
     pieces = []
-    with pytest.raises(ProgramObstacle, match="nears a singular one"):
+    with pytest.raises(Obstacle, match="nears a singular one"):
         pieces.extend(motion.pieces(10.0))
     assert pieces[-1].end == motion.time
     assert np.isfinite(motion.state).all()

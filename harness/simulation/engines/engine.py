@@ -1,0 +1,116 @@
+"""What every engine is: a motion that has come to an instant and a state, goes on, and says why where it cannot."""
+
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple, Protocol
+
+from numpy.typing import NDArray
+
+from ...failures import Failure, HolonomError
+from ..diagnosis import HardCase
+from ..evaluation import Numbers
+from ..request import EngineName
+
+
+class Piece(NamedTuple):
+    """A step of the motion with its dense output.
+
+    Attributes
+    ----------
+    start, end : number
+    states : callable
+        Takes instants of the step, shape (k,), to states, shape (2n, k): coordinates, then velocities.
+    """
+
+    start: Any
+    end: Any
+    states: Callable[[NDArray[Any]], NDArray[Any]]
+
+
+class Solutions(NamedTuple):
+    """What the equations of motion determine at k states.
+
+    Attributes
+    ----------
+    accelerations : ndarray, shape (n, k)
+    multipliers : ndarray, shape (g, k)
+        Where constraints are redundant, the least of all that give the constraint forces.
+    constraint_forces : ndarray, shape (n, k)
+        J^T lambda, unique; of shape (0, k) where the scene does not observe them.
+    """
+
+    accelerations: Numbers
+    multipliers: Numbers
+    constraint_forces: Numbers
+
+
+class Obstacle(HolonomError):
+    """Why an engine stopped, where another one may lead on.
+
+    Parameters
+    ----------
+    t : float
+        The instant that is reached.
+    case : HardCase
+    reason : str
+        A clause about that instant.
+    passed : callable
+        Whether the obstacle lies behind an instant and a state.
+    """
+
+    def __init__(self, t: float, case: HardCase, reason: str, passed: Callable[[Any, Numbers], bool]) -> None:
+        super().__init__(Failure.NO_WAY_ON, detail=f"{t:.10g}, where {reason}")
+        self.case, self.reason, self.passed = case, reason, passed
+
+
+class Engine(Protocol):
+    """What follows a motion.
+
+    Attributes
+    ----------
+    name : EngineName
+    time : number
+        The instant that is reached.
+    state : ndarray, shape (2n,)
+        Coordinates, then velocities, at that instant.
+    steps : int
+        Taken so far.
+    tol : float
+        Tolerance of a step.
+    code : str
+        How heyoka compiled it; empty where it did not.
+    compile_seconds : float
+    amid_passage : bool
+        Whether a singular configuration is so near that only this engine can go on.
+    """
+
+    name: EngineName
+    time: Any
+    state: Numbers
+    steps: int
+    tol: float
+    code: str
+    compile_seconds: float
+    amid_passage: bool
+
+    def restart(self, instant: Any, state: Numbers) -> None:
+        """Go on from another instant and state, shape (2n,)."""
+
+    def advance(self, until: Any) -> None:
+        """Follow the motion to an instant.
+
+        Raises
+        ------
+        Obstacle
+            The engine cannot, while another one may; time and state are those before the obstacle.
+        HolonomError
+            The motion itself ends.
+        """
+
+    def pieces(self, until: Any) -> Iterator[Piece]:
+        """Follow the motion to an instant, step by step, with its states between; raises as `advance`.
+
+        A piece's states are to be asked for before the next piece.
+        """
+
+    def solutions(self, instants: Numbers, states: Numbers) -> Solutions:
+        """What the equations of motion determine at instants, shape (k,), and states, shape (2n, k)."""
