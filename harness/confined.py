@@ -1,45 +1,74 @@
-"""One process, confined: so much time, memory and output, and nothing of it left behind."""
+"""One process, confined: so much time, memory and output, and nothing of it left behind.
+
+What runs a stranger's program is walled in by bubblewrap besides: no network, a process namespace of its own, and of the
+file system nothing but what is named, to be read only. All that it started ends with it then, whatever kills this
+process. Without bubblewrap a watcher ends the process group once this process is gone.
+"""
 
 import os
-import resource
 import selectors
+import shutil
 import signal
 import subprocess
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from enum import Enum
+from functools import cache
 from pathlib import Path
+
+import psutil
 
 from .failures import Failure
 
 MIB = 1024 * 1024
-PAGE = os.sysconf("SC_PAGE_SIZE")
+BLOCK = 512  # bytes in which a shell counts the size of files
 CHUNK = 65536
 WATCH_INTERVAL = 0.05  # seconds between two looks at the memory: a fast hog gains about 100 MiB in between
 LEAVING_TIME = 5.0  # seconds for a process that has closed its output to be gone
+PROBE_TIME = 10.0  # seconds for bubblewrap to show that it is allowed here
+
+# Arguments: the size of files in blocks, then the command. Standard input is a pipe that nobody writes to: it ends with
+# this process, and the process group with it.
+WATCHED = (
+    'ulimit -c 0; ulimit -f "$1"; shift; exec 4<&0 </dev/null; '
+    '(read -r _ <&4; kill -KILL 0) >/dev/null 2>&1 & exec "$@" 4<&-'
+)
+SYSTEM = ("/bin", "/sbin", "/lib", "/lib32", "/lib64", "/usr", "/etc/alternatives", "/etc/ld.so.cache")
+SHARED_BY_PROGRAMS = ("bin", "lib", "lib64", "libexec", "share")  # what lies beside a program that is not in /usr
+
+
+class Sandbox(Enum):
+    """Whether a scene is walled in: always, where that can be done, or not at all because it is trusted."""
+
+    REQUIRED = "required"
+    WHERE_POSSIBLE = "where possible"
+    TRUSTED = "trusted"
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What one process may take.
+    """What one process may take, and whether it is walled in.
 
     Parameters
     ----------
     seconds : float
         Wall-clock time.
     memory_mib : int
-        Resident memory of the process and its children, in MiB.
+        Resident memory of the process and all that it started, in MiB.
     output_mib : int
         Printed text, in MiB.
     file_mib : int
         Each file written, in MiB.
+    sandbox : Sandbox
     """
 
     seconds: float = 120.0
     memory_mib: int = 4096
     output_mib: int = 16
     file_mib: int = 1024
+    sandbox: Sandbox = Sandbox.WHERE_POSSIBLE
 
 
 class LimitExceeded(Exception):
@@ -59,52 +88,115 @@ class LimitExceeded(Exception):
         self.detail = detail
 
 
-def run_confined(
-    command: Sequence[str], directory: Path, environment: Mapping[str, str], limits: Limits, printed: bytearray
-) -> None:
-    """Run a command to its end, or end it with all its children at the first limit it exceeds.
+@dataclass(frozen=True)
+class Confinement:
+    """Where a process runs and what it sees.
+
+    Parameters
+    ----------
+    directory : Path
+        Its working directory, the only one that it may write to where it is walled in.
+    environment : mapping of str to str
+        Its whole environment.
+    readable : sequence of Path
+        What it may read besides the system's programs, where it is walled in.
+    limits : Limits
+    """
+
+    directory: Path
+    environment: Mapping[str, str]
+    readable: Sequence[Path]
+    limits: Limits
+
+
+def run_confined(command: Sequence[str], confinement: Confinement, printed: bytearray) -> int:
+    """Run a command to its end, or end it with all that it started at the first limit it exceeds.
 
     Parameters
     ----------
     command : sequence of str
-        The program and its arguments.
-    directory : Path
-        Its working directory.
-    environment : mapping of str to str
-        Its whole environment.
-    limits : Limits
-        What it may take.
+        The program, by its path, and its arguments.
+    confinement : Confinement
     printed : bytearray
         Receives what it prints, also when it is ended early.
+
+    Returns
+    -------
+    int
+        Its exit status; negative, the signal that ended it.
 
     Raises
     ------
     LimitExceeded
         It took more time or memory, or printed more, than the limits allow.
+    OSError
+        It cannot be started.
     """
+    limits = confinement.limits
+    walls = _walls(confinement, Path(command[0])) if walled_in(limits) else ()
+    blocks = str(limits.file_mib * MIB // BLOCK)
     # A session of its own: the process and its children are one group, out of reach of the terminal's Ctrl-C.
     process = subprocess.Popen(
-        command,
-        cwd=directory,
-        env=dict(environment),
-        stdin=subprocess.DEVNULL,
+        ["/bin/sh", "-c", WATCHED, "sh", blocks, *walls, *command],
+        cwd=confinement.directory,
+        env=dict(confinement.environment),
+        stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         start_new_session=True,
     )
     try:
-        _limit_files(process.pid, limits)
         _watch(process, limits, printed)
         with suppress(subprocess.TimeoutExpired):  # its output is complete, and it is ended below
             process.wait(LEAVING_TIME)
     finally:
-        _end_group(process)
+        _end(process)
+    return process.returncode
 
 
-def _limit_files(pid: int, limits: Limits) -> None:
-    size = limits.file_mib * MIB
-    with suppress(ProcessLookupError):  # it may have ended already
-        resource.prlimit(pid, resource.RLIMIT_FSIZE, (size, size))
+def walled_in(limits: Limits) -> bool:
+    """Whether a run under these limits is walled in by bubblewrap."""
+    return limits.sandbox is not Sandbox.TRUSTED and bubblewrap() is not None
+
+
+@cache
+def bubblewrap() -> str | None:
+    """The path of bubblewrap; None where it is missing or forbidden."""
+    if (found := shutil.which("bwrap")) is None:
+        return None
+    command = [found, "--unshare-all", "--die-with-parent", "--ro-bind", "/", "/", "/bin/sh", "-c", ":"]
+    try:
+        tried = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, timeout=PROBE_TIME, check=False)
+    except (OSError, subprocess.TimeoutExpired):
+        return None
+    return found if tried.returncode == 0 else None
+
+
+def _walls(confinement: Confinement, program: Path) -> list[str]:
+    """The command that goes before a command to wall it in."""
+    directory = str(confinement.directory.resolve())
+    walls = [
+        bubblewrap(),
+        "--unshare-all",
+        "--die-with-parent",
+        "--cap-drop",
+        "ALL",
+        "--dev",
+        "/dev",
+        "--tmpfs",
+        "/tmp",
+    ]
+    for part in filter(os.path.lexists, SYSTEM):
+        walls += ["--symlink", os.readlink(part), part] if os.path.islink(part) else ["--ro-bind", part, part]
+    for part in (*_surroundings(program), *map(str, confinement.readable)):
+        walls += ["--ro-bind", part, part]
+    return [*walls, "--bind", directory, directory, "--chdir", directory, "--"]
+
+
+def _surroundings(program: Path) -> list[str]:
+    """What a program that is not in /usr needs: the folders beside it, and it by the name that it is called by."""
+    folders = {program.parent, *(program.resolve().parents[1] / name for name in SHARED_BY_PROGRAMS)}
+    return sorted(str(folder) for folder in folders if folder.is_dir() and not folder.is_relative_to("/usr"))
 
 
 def _watch(process: subprocess.Popen[bytes], limits: Limits, printed: bytearray) -> None:
@@ -126,27 +218,48 @@ def _watch(process: subprocess.Popen[bytes], limits: Limits, printed: bytearray)
             if (now := time.monotonic()) > deadline:
                 raise LimitExceeded(Failure.TOO_LONG, f"{limits.seconds:g} s, holding {memory // MIB} MiB of memory")
             if now > next_look:
-                if (memory := _resident_memory(process.pid)) > limits.memory_mib * MIB:
+                if (memory := resident_memory(process.pid)) > limits.memory_mib * MIB:
                     raise LimitExceeded(Failure.TOO_LARGE, f"{limits.memory_mib} MiB")
                 next_look = now + WATCH_INTERVAL
 
 
-def _resident_memory(group: int) -> int:
-    """Resident memory of a process group in bytes, as Linux reports it in /proc/<pid>/stat; 0 elsewhere."""
-    pages = 0
-    for stat in Path("/proc").glob("[0-9]*/stat"):
-        try:
-            # The fields after the command's name, which may hold anything: state, parent, group, ...
-            fields = stat.read_text().rpartition(")")[2].split()
-        except OSError:
-            continue  # it ended meanwhile
-        if int(fields[2]) == group:
-            pages += int(fields[21])
-    return pages * PAGE
+def resident_memory(pid: int) -> int:
+    """Resident memory of a process and all that it started, in bytes.
+
+    Parameters
+    ----------
+    pid : int
+
+    Returns
+    -------
+    int
+        What has ended, even while it was looked at, counts for nothing.
+    """
+    return sum(map(_own_memory, _tree(pid)))
 
 
-def _end_group(process: subprocess.Popen[bytes]) -> None:
+def _tree(pid: int) -> list[psutil.Process]:
+    try:
+        process = psutil.Process(pid)
+        return [process, *process.children(recursive=True)]
+    except psutil.NoSuchProcess:
+        return []
+
+
+def _own_memory(process: psutil.Process) -> int:
+    try:
+        return process.memory_info().rss
+    except psutil.NoSuchProcess:
+        return 0
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    """End a process, all that it started, and its group."""
+    for each in _tree(process.pid):
+        with suppress(psutil.NoSuchProcess):
+            each.kill()
     with suppress(ProcessLookupError):  # perhaps nobody is left
         os.killpg(process.pid, signal.SIGKILL)
     process.wait()
     process.stdout.close()
+    process.stdin.close()

@@ -9,6 +9,21 @@ class Failure(Enum):
 
     FILE_MISSING = ("there is no such file", "give the path of a scene, for instance examples/paper/paper.mac")
     FILE_UNREADABLE = ("the file cannot be read: {detail}", "give the path of a readable Maxima file")
+    NOT_UTF8 = ("the file is not UTF-8 text: byte {detail}", "save it as UTF-8")
+    NOT_MAXIMA = (
+        "this does not run as Maxima: {detail}",
+        "put a Maxima that works first in PATH, or free space for temporary files",
+    )
+    TORN = ("what Maxima left behind is not whole: its {detail}", "free space for temporary files, and run it again")
+    KILLED = ("Maxima was ended by {detail}", "see what ends it, perhaps a lack of memory, and run it again")
+    NO_PRIVATE_DIRECTORY = (
+        "no directory for temporary files can be made: {detail}",
+        "name one that can be written in the variable TMPDIR, or free space",
+    )
+    NO_SANDBOX = (
+        "bubblewrap is missing or forbidden here",
+        "install the package `bubblewrap`, or run the scene without --sandbox",
+    )
     MAXIMA_MISSING = (
         "Maxima is not installed",
         "run `make`, or install the package `maxima` of your distribution",
@@ -31,6 +46,8 @@ class Failure(Enum):
     NOT_A_RECORD = ("this is not a derivation record: {detail}", "derive it anew with `holonom derive`")
     NOT_AN_EXPRESSION = ("{detail} is not an expression that a derivation record can hold", "")
     UNWRITABLE = ("the output cannot be written: {detail}", "give a file in a directory that can be written")
+    DISK_FULL = ("the output cannot be written: {detail}", "free space, and run it again")
+    COMPILER_UNUSABLE = ("the C compiler cannot be run: {detail}", "name one that works in the variable CC")
     NOT_A_COMPANION = (
         "the directory holds other things than a companion",
         "give the name of a new directory, or of one that `holonom companion` made",
@@ -87,6 +104,28 @@ class Failure(Enum):
     NO_WAY_ON = ("the motion cannot be followed beyond t = {detail}", "end the run before it")
     RTEST_UNPAIRED = ("an input has no expected result", "")
     RTEST_FAILED = ("not all of the {detail} tests passed", "")
+
+    @property
+    def status(self) -> int:
+        """The exit status of a command that fails so: 2, or 3 where the machine is at fault."""
+        return 3 if self.name in FAULTS_OF_THE_MACHINE else 2
+
+
+FAULTS_OF_THE_MACHINE = frozenset(
+    {
+        "MAXIMA_MISSING",
+        "NOT_MAXIMA",
+        "TORN",
+        "KILLED",
+        "NO_PRIVATE_DIRECTORY",
+        "NO_SANDBOX",
+        "DISK_FULL",
+        "COMPILER_MISSING",
+        "COMPILER_UNUSABLE",
+        "EXTRA_MISSING",
+        "GSL_MISSING",
+    }
+)
 
 
 class HolonomError(Exception):

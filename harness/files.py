@@ -1,11 +1,124 @@
 """Files and directories that appear whole or not at all."""
 
+import fcntl
 import os
+import re
+import secrets
 import shutil
-from collections.abc import Mapping
+import tempfile
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from .failures import Failure, HolonomError
+
+DRAFT = "draft-"
+PRIVATE = ".holonom-run-"
+PRIVATE_NAME = re.compile(re.escape(PRIVATE) + r"[a-z0-9_]{8}")
+
+
+@contextmanager
+def private_directory() -> Iterator[Path]:
+    """A directory for temporary files, gone at the end. While it is in use it is locked.
+
+    Yields
+    ------
+    Path
+
+    Raises
+    ------
+    HolonomError
+        It cannot be made.
+    """
+    path, lock = _locked_directory()
+    try:
+        yield path
+    finally:
+        _remove_private_directory(path)
+        os.close(lock)
+
+
+def sweep_private_directories() -> None:
+    """Remove the directories that killed runs left: those that nobody has locked."""
+    with suppress(OSError):
+        for name in filter(PRIVATE_NAME.fullmatch, os.listdir(tempfile.gettempdir())):
+            _sweep(Path(tempfile.gettempdir(), name))
+
+
+def remove_tree(path: Path) -> None:
+    """Remove a directory, whatever its permissions, and all that it holds."""
+
+    def make_writable(function: Callable[..., object], name: str, _: object) -> None:
+        with suppress(OSError):
+            os.chmod(os.path.dirname(name), 0o700)
+            if os.path.isdir(name) and not os.path.islink(name):
+                os.chmod(name, 0o700)
+                shutil.rmtree(name, ignore_errors=True)
+            else:
+                function(name)
+
+    shutil.rmtree(path, onerror=make_writable)
+
+
+def _locked_directory() -> tuple[Path, int]:
+    """A new directory, and the descriptor that holds its lock."""
+    while True:
+        try:
+            path = Path(tempfile.mkdtemp(prefix=PRIVATE)).resolve()
+            lock = os.open(path, os.O_RDONLY)
+        except OSError as error:
+            raise HolonomError(Failure.NO_PRIVATE_DIRECTORY, detail=error.strerror or str(error)) from None
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if path.exists():  # and was not swept before it was locked
+            return path, lock
+        os.close(lock)
+
+
+def _remove_private_directory(path: Path) -> None:
+    """Remove a private directory, and first the unfinished files that it has links to."""
+    for link in path.glob(f"{DRAFT}*"):
+        if link.is_symlink():
+            _remove(link.readlink())
+    remove_tree(path)
+
+
+@contextmanager
+def draft_of(target: Path) -> Iterator[Path]:
+    """A name beside a file or directory, for what is to take its place. At the end nothing has that name.
+
+    A command that runs under supervision links to it from its private directory: should it be killed, the draft is
+    removed with that.
+    """
+    draft = target.with_name(f".{target.name}.{os.getpid()}.new")
+    home = Path(tempfile.gettempdir())
+    link = home / f"{DRAFT}{secrets.token_hex(8)}" if PRIVATE_NAME.fullmatch(home.name) else None
+    if link is not None:
+        link.symlink_to(draft)
+    try:
+        yield draft
+    finally:
+        _remove(draft)
+        if link is not None:
+            link.unlink(missing_ok=True)
+
+
+def _remove(path: Path) -> None:
+    if path.is_dir() and not path.is_symlink():
+        remove_tree(path)
+    else:
+        path.unlink(missing_ok=True)
+
+
+def _sweep(path: Path) -> None:
+    with suppress(OSError):
+        if path.is_symlink() or path.stat().st_uid != os.getuid():
+            return
+        lock = os.open(path, os.O_RDONLY)
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            _remove_private_directory(path)
+        finally:
+            os.close(lock)
 
 
 def write_whole(path: Path, content: str | bytes) -> None:
@@ -91,9 +204,6 @@ def write_whole_directory(path: Path, files: Mapping[str, str]) -> None:
 
 
 def _replace(target: Path, data: bytes) -> None:
-    draft = target.with_name(f".{target.name}.{os.getpid()}")
-    try:
+    with draft_of(target) as draft:
         draft.write_bytes(data)
         draft.replace(target)
-    finally:
-        draft.unlink(missing_ok=True)

@@ -13,7 +13,7 @@ from sympy import Expr
 from .confined import Limits
 from .failures import Failure, HolonomError
 from .mathjson import to_sympy
-from .maxima import run_batch
+from .maxima import ask_scene
 from .program.request import scene_argument
 
 Law = Mapping[str, Expr]
@@ -127,14 +127,14 @@ def free_motion(file: Path, scene: str | None, settings: Mapping[str, str], limi
     Raises
     ------
     HolonomError
-        As `holonom.maxima.run_batch`; the file has no such scene.
+        As `holonom.maxima.ask_scene`; the file has no such scene.
 
     References
     ----------
     Chen, Guo & Mei (2019), section 2, eq. (10).
     """
     writer = f"lambda([file], write_free_motion(file, {scene_argument(scene)}))"
-    document = json.loads(run_batch(file, writer, limits, settings))
+    document = json.loads(ask_scene(file, writer, limits, settings))
     if document.get("format") != "holonom-free-motion":
         raise HolonomError(Failure.NOT_A_RECORD, file, "it holds no free motion")
     law, universal, trajectory, prescribed = (

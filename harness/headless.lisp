@@ -1,15 +1,18 @@
 ;;; Headless Maxima: one file, one call, no prompts, one outcome
 ;;;
 ;;; Maxima in batch mode leaves with status 0 whatever happened, goes on after a Lisp error and repeats a
-;;; question for ever when nobody answers. A job loads this file first and then calls RUN-HEADLESS, which
+;;; question for ever when nobody answers. A job loads this file first and then calls one of
 ;;;
-;;;   1. reads a file statement by statement, as batchload does, remembering where each one starts;
-;;;   2. makes an error of all that would stop or prompt: a question, a syntax error, a Lisp error;
-;;;   3. evaluates one closing call, for instance write_record("record.json");
-;;;   4. leaves the outcome in a file of its own, an end mark that no printed text can imitate:
-;;;      the kind of ending, the file, the line of the statement (0 outside of them) and the message, a line each.
+;;;   RUN-FILE         reads a file statement by statement, as batchload does, remembering where each one starts, and
+;;;                    evaluates a closing call, for instance write_record("record.json");
+;;;   RUN-SCENE        reads the file likewise and writes down what it described (description.lisp);
+;;;   RUN-DESCRIPTION  reads no file but such a description, and evaluates the closing call.
 ;;;
-;;; The kinds are FINISHED, FAULT (Maxima or the file itself refused), QUESTION, SYNTAX and LISP.
+;;; Each makes an error of all that would stop or prompt, a question, a syntax error, a Lisp error, and leaves the
+;;; outcome in a file: a mark that the run is given, the kind of ending, the file, the line of the statement (0
+;;; outside of them), the message, and the mark again, a line each. Until the end the kind is STARTED.
+;;;
+;;; The kinds of endings are FINISHED, FAULT (Maxima or the file itself refused), QUESTION, SYNTAX and LISP.
 
 (in-package :maxima)
 
@@ -43,16 +46,38 @@
 
 ;;; The run
 
-(defun run-headless (file directory preparation call outcome)
-  "Run FILE between the Maxima texts PREPARATION and CALL, load() looking in DIRECTORY first."
-  (setq $file_search_maxima
-        `((mlist) ,(format nil "~A/$$$.mac" directory) ,@(cdr $file_search_maxima)))
-  (with-open-file (*statement-stream* file)
+(defun run-file (copy call job)
+  "Run COPY, the text of the file, then the Maxima text CALL."
+  (with-open-file (*statement-stream* copy)
+    (run-job job (lambda ()
+                   (run-statements (first job))
+                   (evaluate-text call)))))
+
+(defun run-scene (copy description job)
+  "Run COPY, the text of the scene file, and write what it described to DESCRIPTION."
+  (with-open-file (*statement-stream* copy)
+    (run-job job (lambda ()
+                   (run-statements (first job))
+                   (write-description description)))))
+
+(defun run-description (description call job)
+  "Describe anew what DESCRIPTION holds, then run the Maxima text CALL."
+  (run-job job (lambda ()
+                 (mfuncall '$load "holonom.mac")
+                 (describe-anew description)
+                 (evaluate-text call))))
+
+(defun run-job (job run)
+  "Do what JOB prepares, then RUN. A job is (name of the file run, where load() looks first, Maxima text that comes
+before all, outcome, mark)."
+  (destructuring-bind (name library preparation outcome mark) job
+    (write-outcome outcome mark name '(started ""))
+    (setq $file_search_maxima
+          `((mlist) ,(format nil "~A/$$$.mac" library) ,@(cdr $file_search_maxima)))
     (let ((ending (ending-of (lambda ()
                                (evaluate-text preparation)
-                               (run-statements file)
-                               (evaluate-text call)))))
-      (write-outcome outcome ending)
+                               (funcall run)))))
+      (write-outcome outcome mark name ending)
       (leave (if (eq (first ending) 'finished) 0 1)))))
 
 (defun run-statements (file)
@@ -143,12 +168,12 @@
 
 ;;; The ending
 
-(defun write-outcome (outcome ending)
+(defun write-outcome (outcome mark name ending)
   (destructuring-bind (kind message) ending
-    (let* ((file (namestring (truename *statement-stream*)))
+    (let* ((file (if *statement-start* (namestring (truename *statement-stream*)) name))
            (line (if *statement-start* (line-at *statement-start* file) 0)))
-      (with-open-file (stream outcome :direction :output)
-        (format stream "~A~%~A~%~D~%~A~%" kind file line message)))))
+      (with-open-file (stream outcome :direction :output :if-exists :supersede)
+        (format stream "~A~%~A~%~A~%~D~%~A~%~A~%" mark kind file line message mark)))))
 
 (defun leave (status)
   (finish-output)

@@ -3,28 +3,50 @@
 This is the only module that knows Maxima is a process. A run has a private directory; `headless.lisp`, loaded before
 anything else, makes errors of questions and leaves the ending in a file, for Maxima's exit status says nothing. What
 Maxima prints is kept for people and not read, with one exception: the count of Maxima's own test runner.
+
+A scene file is a program, perhaps a stranger's. Unless it is trusted, one process runs it and writes down what it
+described, and another one, which never sees the file and begins when the first is gone, derives from that
+(`description.lisp`).
 """
 
 import os
 import re
+import secrets
 import shlex
 import shutil
-import tempfile
+import signal
+import stat
+import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from .confined import MIB, PAGE, LimitExceeded, Limits, run_confined
+import psutil
+
+from .confined import MIB, Confinement, LimitExceeded, Limits, Sandbox, run_confined
 from .failures import Failure, HolonomError
+from .files import private_directory
 
 LIBRARY = Path(__file__).resolve().parents[1] / "maxima"
 HEADLESS = Path(__file__).with_name("headless.lisp")
+DESCRIPTION = Path(__file__).with_name("description.lisp")
 DEFAULT_LIMITS = Limits()
 NO_SETTINGS: Mapping[str, str] = {}
-PHYSICAL_MEMORY = os.sysconf("SC_PHYS_PAGES") * PAGE  # bytes
 LAST_LINES = 10  # lines of Maxima's output that an error carries
+PASSED_ON = (
+    "PATH",
+    "LD_LIBRARY_PATH",
+    "GCL_GC_PAGE_THRESH",
+    "SBCL_HOME",
+    "ECLDIR",
+    "MAXIMA_PREFIX",
+    "MAXIMA_LAYOUT_AUTOTOOLS",
+)
+BYTE_ORDER_MARK = "\ufeff"
+SIGNALLED = 128  # a shell adds this to the number of the signal that ended a process
 
+STARTED, FINISHED = "STARTED", "FINISHED"
 ENDINGS = {
     "FAULT": Failure.REFUSED,
     "QUESTION": Failure.QUESTION,
@@ -46,6 +68,32 @@ class Ending:
     detail: str = ""
 
 
+@dataclass(frozen=True)
+class Run:
+    """One run of Maxima, in a directory of its own.
+
+    Attributes
+    ----------
+    file : Path
+        The file that it is about.
+    directory : Path
+    limits : Limits
+    settings : mapping of str to str
+    mark : str
+        What only this run can know: the names of what it leaves behind end in it, and the outcome holds it.
+    """
+
+    file: Path
+    directory: Path
+    limits: Limits
+    settings: Mapping[str, str]
+    mark: str
+
+    def leaves(self, what: str) -> Path:
+        """The file that the run is to leave behind."""
+        return self.directory / f"{what}-{self.mark}"
+
+
 def run_scene(scene: Path, limits: Limits = DEFAULT_LIMITS, settings: Mapping[str, str] = NO_SETTINGS) -> str:
     """Derive a scene file.
 
@@ -56,7 +104,7 @@ def run_scene(scene: Path, limits: Limits = DEFAULT_LIMITS, settings: Mapping[st
     limits : Limits
         What the run may take.
     settings : mapping of str to str
-        As for `run_batch`.
+        As for `ask_scene`.
 
     Returns
     -------
@@ -66,24 +114,28 @@ def run_scene(scene: Path, limits: Limits = DEFAULT_LIMITS, settings: Mapping[st
     Raises
     ------
     HolonomError
-        The file is missing, is refused, asks a question, exceeds a limit, or Maxima is missing.
+        As `ask_scene`.
     """
-    return run_batch(scene, "write_record", limits, settings)
+    return ask_scene(scene, "write_record", limits, settings)
 
 
-def run_batch(
-    file: Path, writer: str, limits: Limits = DEFAULT_LIMITS, settings: Mapping[str, str] = NO_SETTINGS
+def ask_scene(
+    scene: Path, writer: str, limits: Limits = DEFAULT_LIMITS, settings: Mapping[str, str] = NO_SETTINGS
 ) -> str:
-    """Run a Maxima file, then one Maxima function that writes a document.
+    """Ask the library for a document about a scene file.
+
+    Unless the file is trusted, nothing that it does can reach the process that writes the document: that one begins
+    when all that the file started has ended, and knows of it the description alone.
 
     Parameters
     ----------
-    file : Path
-        The Maxima file. ``load("holonom.mac")`` in it finds this project's library.
+    scene : Path
+        A Maxima file that describes one system and any number of scenes. ``load("holonom.mac")`` in it finds this
+        project's library.
     writer : str
-        The Maxima function that writes the document, given the name of the file to write.
+        The library's function that writes the document, given the name of the file to write.
     limits : Limits
-        What the run may take.
+        What the two processes may take together.
     settings : mapping of str to str
         Numbers in Maxima's notation, for what the file leaves open and for parameters.
 
@@ -95,14 +147,44 @@ def run_batch(
     Raises
     ------
     HolonomError
-        As `run_scene`.
+        The file is missing, is refused, asks a question, exceeds a limit, or Maxima is missing.
     """
-    with _private_directory() as directory:
-        printed = _run(file, f'{writer}("document")$', limits, directory, settings)
-        document = directory / "document"
-        if not document.exists():
-            raise HolonomError(Failure.NOTHING_WRITTEN, file, last_lines=_last_lines(printed))
-        return document.read_text(encoding="utf-8")
+    if limits.sandbox is Sandbox.TRUSTED:
+        return run_batch(scene, writer, limits, settings)
+    began = time.monotonic()
+    with _new_run(scene, limits, settings) as run:
+        printed = _run(run, f"run-scene {_copy(run)} {_quoted(run.leaves('description').name)}", writer)
+        description = _left_behind(run, "description", printed)
+    rest = replace(limits, seconds=limits.seconds - (time.monotonic() - began))
+    with _new_run(scene, rest, settings) as run:
+        (run.directory / "description").write_bytes(description)
+        printed = _run(run, f'run-description "description" {_call(writer, run)}', writer)
+        return _document(run, printed)
+
+
+def run_batch(
+    file: Path, writer: str, limits: Limits = DEFAULT_LIMITS, settings: Mapping[str, str] = NO_SETTINGS
+) -> str:
+    """Run a Maxima file of one's own, then one Maxima function that writes a document, perhaps one of the file's.
+
+    Parameters
+    ----------
+    file, writer, limits, settings
+        As for `ask_scene`.
+
+    Returns
+    -------
+    str
+        What the function wrote.
+
+    Raises
+    ------
+    HolonomError
+        As `ask_scene`.
+    """
+    with _new_run(file, limits, settings) as run:
+        printed = _run(run, f"run-file {_copy(run)} {_call(writer, run)}", writer)
+        return _document(run, printed)
 
 
 def run_rtest(rtest: Path, limits: Limits = DEFAULT_LIMITS) -> int:
@@ -129,9 +211,10 @@ def run_rtest(rtest: Path, limits: Limits = DEFAULT_LIMITS) -> int:
     tests, unpaired = divmod(count_statements(rtest.read_text(encoding="utf-8")), 2)
     if unpaired:
         raise HolonomError(Failure.RTEST_UNPAIRED, rtest)
-    with _private_directory() as directory:
-        shutil.copy(rtest, directory)  # for Maxima leaves a list of errors beside the file it tests
-        printed = _run(LIBRARY / "holonom.mac", f"batch({_quoted(rtest.name)}, test)$", limits, directory)
+    with _new_run(LIBRARY / "holonom.mac", limits, NO_SETTINGS) as run:
+        shutil.copy(rtest, run.directory)  # for Maxima leaves a list of errors beside the file it tests
+        test = _quoted(f"batch({_quoted(rtest.name)}, test)$")
+        printed = _run(run, f"run-file {_copy(run)} {test}", test)
     if re.findall(r"(\d+)/(\d+) tests passed", printed) != [(str(tests), str(tests))]:
         raise HolonomError(Failure.RTEST_FAILED, rtest, str(tests), last_lines=tuple(printed.splitlines()))
     return tests
@@ -177,25 +260,78 @@ def statement_ends(text: str, position: int = 0) -> Iterator[int]:
 
 
 @contextmanager
-def _private_directory() -> Iterator[Path]:
-    with tempfile.TemporaryDirectory(prefix="holonom-") as name:
-        yield Path(name)
+def _new_run(file: Path, limits: Limits, settings: Mapping[str, str]) -> Iterator[Run]:
+    with private_directory() as directory:
+        yield Run(file, directory, limits, settings, secrets.token_hex(16))
 
 
-def _run(file: Path, call: str, limits: Limits, directory: Path, settings: Mapping[str, str] = NO_SETTINGS) -> str:
-    """Run the statements of `file` and then `call`; return what Maxima printed."""
-    _refuse_unreadable(file)
-    if (maxima := shutil.which("maxima")) is None:
-        raise HolonomError(Failure.MAXIMA_MISSING)
-    (directory / "job.lisp").write_text(_job(file, call, settings), encoding="utf-8")
+def _copy(run: Run) -> str:
+    """The name of a copy of the run's file, as Lisp text; every path and every line end can be read in the copy."""
+    (run.directory / "file.mac").write_bytes(read_maxima_text(run.file).encode())
+    return '"file.mac"'
+
+
+def read_maxima_text(file: Path) -> str:
+    """Read a Maxima file, with or without a byte order mark, its lines ended in any way.
+
+    Parameters
+    ----------
+    file : Path
+
+    Returns
+    -------
+    str
+        With line feeds.
+
+    Raises
+    ------
+    HolonomError
+        There is no such file, it is no regular one, it cannot be read, or it is not UTF-8.
+    """
+    try:
+        if not stat.S_ISREG(file.stat().st_mode):
+            raise HolonomError(Failure.FILE_UNREADABLE, file, "it is no regular file")
+        content = file.read_bytes()
+    except FileNotFoundError:
+        raise HolonomError(Failure.FILE_MISSING, file) from None
+    except OSError as error:
+        raise HolonomError(Failure.FILE_UNREADABLE, file, error.strerror or str(error)) from None
+    try:
+        text = content.decode()
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise HolonomError(Failure.NOT_UTF8, f"{file}:{line}", f"0x{content[error.start]:02x}") from None
+    if "\0" in text:
+        raise HolonomError(Failure.FILE_UNREADABLE, file, "it holds null characters and is no text")
+    return text.removeprefix(BYTE_ORDER_MARK).replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _call(writer: str, run: Run) -> str:
+    """Maxima text that writes the document, as Lisp text."""
+    return _quoted(f"{writer}({_quoted(run.leaves('document').name)})$")
+
+
+def _run(run: Run, start: str, writer: str) -> str:
+    """Do what `start` says; return what Maxima printed."""
+    maxima = _maxima()
+    outcome = run.leaves("outcome")
+    preparation = f"(holonom_print : false, {_set(run.settings)})$"
+    arguments = [_quoted(each) for each in (run.file.resolve(), LIBRARY, preparation, outcome.name, run.mark)]
+    parts = [
+        *(each.read_text(encoding="utf-8") for each in (HEADLESS, DESCRIPTION)),
+        f"({start} '({' '.join(arguments)}))\n",
+    ]
+    (run.directory / "job.lisp").write_bytes(os.fsencode("\n".join(parts)))
     command = [maxima, "--init=/dev/null", "--very-quiet", "--preload-lisp=job.lisp"]
     output = bytearray()
     try:
-        run_confined(command, directory, _environment(directory, limits), limits, output)
+        status = run_confined(command, _confinement(run), output)
     except LimitExceeded as exceeded:
-        ending = Ending(exceeded.failure, str(file), exceeded.detail)
+        ending = Ending(exceeded.failure, str(run.file), exceeded.detail)
+    except OSError as error:
+        ending = Ending(Failure.NOT_MAXIMA, maxima, error.strerror or str(error))
     else:
-        ending = _read_ending(directory / "outcome", file)
+        ending = _read_ending(run, maxima, status)
     printed = output.decode(errors="replace")
     if ending is None:
         return printed
@@ -204,48 +340,92 @@ def _run(file: Path, call: str, limits: Limits, directory: Path, settings: Mappi
         ending.place,
         ending.detail,
         last_lines=_last_lines(printed),
-        command=_repeating_command(file, call, settings),
+        command=_repeating_command(run.file, f'{writer}("document")$', run.settings),
     )
 
 
-def _environment(directory: Path, limits: Limits) -> dict[str, str]:
-    """A private directory for all that Maxima keeps, and English messages."""
-    return os.environ | {
-        "MAXIMA_USERDIR": str(directory),
-        "MAXIMA_TEMPDIR": str(directory),
+def _maxima() -> str:
+    if (found := shutil.which("maxima")) is None:
+        raise HolonomError(Failure.MAXIMA_MISSING)
+    return found
+
+
+def _confinement(run: Run) -> Confinement:
+    """A private directory for all that Maxima keeps, English messages, and nothing else of this machine's settings."""
+    directory = str(run.directory)
+    environment = {name: os.environ[name] for name in PASSED_ON if name in os.environ}
+    environment |= {
+        "HOME": directory,
+        "TMPDIR": directory,
+        "MAXIMA_USERDIR": directory,
+        "MAXIMA_TEMPDIR": directory,
         "LC_ALL": "C",
         # GCL collects garbage in earnest from about a fifth of this share of the machine's memory on (measured), well
         # under the limit: what garbage there is depends on the limit then, and not on the machine.
-        "GCL_MEM_MULTIPLE": f"{limits.memory_mib * MIB / PHYSICAL_MEMORY:.6f}",
+        "GCL_MEM_MULTIPLE": f"{run.limits.memory_mib * MIB / psutil.virtual_memory().total:.6f}",
     }
+    return Confinement(run.directory, environment, (LIBRARY, _own_folder(run.file)), run.limits)
 
 
-def _refuse_unreadable(file: Path) -> None:
-    try:
-        file.open("rb").close()
-    except FileNotFoundError:
-        raise HolonomError(Failure.FILE_MISSING, file) from None
-    except OSError as error:
-        raise HolonomError(Failure.FILE_UNREADABLE, file, error.strerror or str(error)) from None
+def _own_folder(file: Path) -> Path:
+    """The folder that a file may read; the file alone where that would be the user's home directory, or more."""
+    folder = file.resolve().parent
+    return file.resolve() if Path.home().resolve().is_relative_to(folder) else folder
 
 
-def _job(file: Path, call: str, settings: Mapping[str, str]) -> str:
-    """The Lisp that Maxima loads first, which does the whole run."""
-    preparation = f"(holonom_print : false, {_set(settings)})$"
-    arguments = [_quoted(argument) for argument in (file.resolve(), LIBRARY, preparation, call, "outcome")]
-    return f"{HEADLESS.read_text(encoding='utf-8')}\n(run-headless {' '.join(arguments)})\n"
-
-
-def _read_ending(outcome: Path, file: Path) -> Ending | None:
+def _read_ending(run: Run, maxima: str, status: int) -> Ending | None:
     """The ending that `headless.lisp` wrote; None when the run is finished."""
-    if not outcome.exists():
-        return Ending(Failure.ENDED_EARLY, str(file))
-    kind, running, line, message = outcome.read_text(encoding="utf-8", errors="replace").split("\n", 3)
-    if kind == "FINISHED":
+    lines = (_read_left(run.leaves("outcome"), run.limits) or b"").decode(errors="replace").split("\n")
+    if lines == [""]:
+        return Ending(Failure.NOT_MAXIMA, maxima, f"exit status {status}")
+    if len(lines) < 7 or [lines[0], *lines[-2:]] != [run.mark, run.mark, ""]:
+        return Ending(Failure.TORN, str(run.file), "outcome")
+    kind, running, line, message = lines[1], lines[2], lines[3], " ".join(lines[4:-2])
+    if kind == FINISHED:
         return None
-    shown = str(file) if running == str(file.resolve()) else running
+    if kind == STARTED:
+        return _unfinished(run, status)
+    if kind not in ENDINGS or not line.isdigit():
+        return Ending(Failure.TORN, str(run.file), "outcome")
+    own = running in (str(run.file.resolve()), str((run.directory / "file.mac").resolve()))
+    shown = str(run.file) if own else running
     place = shown if line == "0" else f"{shown}:{line}"
-    return Ending(ENDINGS[kind], place, " ".join(message.split()))
+    return Ending(ENDINGS[kind], place, " ".join(message.split()) or "it does not say which")
+
+
+def _unfinished(run: Run, status: int) -> Ending:
+    """The ending of a run that did not come to its end: it ended itself, or was ended by a signal."""
+    number = -status if status < 0 else status - SIGNALLED
+    if number <= 0:
+        return Ending(Failure.ENDED_EARLY, str(run.file))
+    return Ending(Failure.KILLED, str(run.file), signal.Signals(number).name)
+
+
+def _document(run: Run, printed: str) -> str:
+    text = _left_behind(run, "document", printed).decode(errors="replace")
+    if not text.endswith("\n"):
+        raise HolonomError(Failure.TORN, run.file, "document", last_lines=_last_lines(printed))
+    return text
+
+
+def _left_behind(run: Run, what: str, printed: str) -> bytes:
+    content = _read_left(run.leaves(what), run.limits)
+    if content is None:
+        raise HolonomError(Failure.NOTHING_WRITTEN, run.file, last_lines=_last_lines(printed))
+    return content
+
+
+def _read_left(path: Path, limits: Limits) -> bytes | None:
+    """What a process left in a regular file, or None; a link is not followed, nor a pipe waited for."""
+    try:
+        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+    except OSError:
+        return None
+    with open(descriptor, "rb") as file:
+        found = os.fstat(descriptor)
+        if not stat.S_ISREG(found.st_mode) or found.st_size > limits.file_mib * MIB:
+            return None
+        return file.read()
 
 
 def _last_lines(printed: str) -> tuple[str, ...]:

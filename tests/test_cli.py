@@ -64,9 +64,7 @@ def test_a_disagreement_is_reported_and_leaves_with_one(particle_record, monkeyp
     monkeypatch.setattr("sys.argv", ["holonom", "check", str(particle_scene)])
     from holonom.cli import main
 
-    with pytest.raises(SystemExit) as left:
-        main()
-    assert left.value.code == 1
+    assert run() == 1
     assert "disagrees" in capsys.readouterr().out
 
 

@@ -1,21 +1,27 @@
 """A confined process: each limit ends it, and nothing of it stays behind."""
 
 import os
+import subprocess
 import sys
 import time
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from uuid import uuid4
 
+import psutil
 import pytest
 
 from holonom.confined import LimitExceeded, Limits, run_confined
 from holonom.failures import Failure
 
+READABLE = (Path(sys.prefix), Path(sys.base_prefix))
 LIMITS = Limits(seconds=5, memory_mib=200, output_mib=1, file_mib=1)
 
 
 def run(program: str, directory: Path, limits: Limits = LIMITS) -> bytes:
     printed = bytearray()
-    run_confined([sys.executable, "-c", program], directory, os.environ, limits, printed)
+    run_confined([sys.executable, "-c", program], Confinement(directory, os.environ, READABLE, limits), printed)
     return bytes(printed)
 
 
@@ -49,18 +55,66 @@ def test_no_file_grows_beyond_its_limit(tmp_path):
     assert (tmp_path / "large").stat().st_size <= 2**20
 
 
-def test_children_end_with_the_process(tmp_path):
-    spawn = "import subprocess, sys; print(subprocess.Popen([sys.executable, '-c', {child!r}]).pid, flush=True)"
-    child = "import os, time; os.close(1); os.close(2); time.sleep(60)"
-    pid = int(run(spawn.format(child=child), tmp_path))
-    deadline = time.monotonic() + 5
-    while is_running(pid) and time.monotonic() < deadline:
-        time.sleep(0.01)
-    assert not is_running(pid)
+@pytest.mark.parametrize("sandbox", [Sandbox.TRUSTED, Sandbox.WHERE_POSSIBLE])
+def test_what_it_started_ends_with_the_process(sandbox, tmp_path):
+    mark = uuid4().hex
+    child = f"import os, time; os.close(1); os.close(2); time.sleep(60)  # {mark}"
+    run(f"import subprocess, sys; subprocess.Popen([sys.executable, '-c', {child!r}])", tmp_path, trusting(sandbox))
+    assert not living(mark)
 
 
-def is_running(pid: int) -> bool:
+@pytest.mark.parametrize("sandbox", [Sandbox.TRUSTED, Sandbox.WHERE_POSSIBLE])
+def test_a_killed_parent_takes_all_with_it(sandbox, tmp_path):
+    mark = uuid4().hex
+    sleeper = (
+        f"import subprocess, sys, time; subprocess.run([sys.executable, '-c', 'import time; time.sleep(60)  # {mark}'])"
+    )
+    starter = (
+        "import os, sys; from pathlib import Path\n"
+        "from holonom.confined import Confinement, Limits, Sandbox, run_confined\n"
+        f"readable, limits = {list(map(str, READABLE))}, Limits(sandbox=Sandbox({sandbox.value!r}))\n"
+        f"place = Confinement(Path({str(tmp_path)!r}), os.environ, list(map(Path, readable)), limits)\n"
+        f"run_confined([sys.executable, '-c', {sleeper!r}], place, bytearray())"
+    )
+    parent = subprocess.Popen([sys.executable, "-c", starter])
+    assert soon(lambda: len(living(f"sleep(60)  # {mark}'")) > 0 or len(living(mark)) > 1)
+    parent.kill()
+    parent.wait()
+    assert soon(lambda: not living(mark))
+
+
+def test_memory_counts_what_was_started_too():
+    hog = "held = bytearray(10**8); print(flush=True); import time; time.sleep(60)"
+    started = f"import subprocess, sys; subprocess.run([sys.executable, '-c', {hog!r}])"
+    process = subprocess.Popen([sys.executable, "-c", started], stdout=subprocess.PIPE)
     try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except FileNotFoundError:
-        return False
+        process.stdout.readline()
+        assert resident_memory(process.pid) > 10**8
+    finally:
+        for each in [*psutil.Process(process.pid).children(), process]:
+            each.kill()
+        process.communicate()
+
+
+def test_the_memory_of_a_process_that_has_ended_is_nothing():
+    process = subprocess.Popen([sys.executable, "-c", ""])
+    process.wait()
+    assert resident_memory(process.pid) == 0
+
+
+def trusting(sandbox: Sandbox) -> Limits:
+    return replace(LIMITS, sandbox=sandbox)
+
+
+def living(mark: str) -> list[psutil.Process]:
+    """Processes on whose command line the mark stands."""
+    return [
+        each for each in psutil.process_iter(["cmdline"]) if any(mark in word for word in each.info["cmdline"] or ())
+    ]
+
+
+def soon(condition: Callable[[], bool]) -> bool:
+    deadline = time.monotonic() + 20
+    while not condition() and time.monotonic() < deadline:
+        time.sleep(0.02)
+    return condition()

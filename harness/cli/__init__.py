@@ -17,7 +17,7 @@ from . import (
 from . import (
     work_precision as accuracy,
 )
-from .group import holonom, main
+from .group import holonom, main, run
 
 __all__ = [
     "accuracy",
@@ -27,6 +27,7 @@ __all__ = [
     "holonom",
     "main",
     "programs",
+    "run",
     "series",
     "simulation",
     "stability",

@@ -1,29 +1,42 @@
-"""The group of commands, with bad input explained in one sentence."""
+"""The group of commands, and the sentences and statuses that they leave with."""
 
-import gc
+import io
+import os
 import sys
+import traceback
 from typing import Any
 
 import click
 
 from ..failures import HolonomError
+from ..supervisor import supervise
 
-BAD_INPUT = 2
+MACHINE_AT_FAULT = 3
+INTERNAL_ERROR = 70
 INTERRUPTED = 130
+PIPE_CLOSED = 141
 
 
 class Commands(click.Group):
-    """The commands, with bad input explained in one sentence."""
+    """The commands, with every failure explained in one sentence."""
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command asked for; return its exit status."""
+        verbose = ctx.params["verbose"]
         try:
             return super().invoke(ctx)
         except HolonomError as error:
-            click.echo(f"holonom: {error}", err=True)
-            if ctx.params["verbose"]:
-                _explain(error)
-            return BAD_INPUT
+            return _refused(error, verbose)
+        except BrokenPipeError:
+            return PIPE_CLOSED
+        except MemoryError:
+            return _told("there is not enough memory for this; ask for less.", MACHINE_AT_FAULT)
+        except OSError as error:
+            return _machine_refuses(error)
+        except (click.ClickException, click.Abort, click.exceptions.Exit):
+            raise
+        except Exception as error:
+            return _internal_error(error, verbose)
 
 
 @click.group(cls=Commands)
@@ -39,18 +52,69 @@ def holonom(verbose: bool) -> None:
 def main() -> None:
     """Run the command line and leave with its exit status."""
     try:
+        ending = supervise(run)
+    except HolonomError as error:
+        status = _told(str(error), error.failure.status)
+    else:
+        status = _told(ending.sentence, ending.status) if ending.sentence else ending.status
+    sys.stderr.flush()
+    os._exit(status)  # the child has written all there is to write
+
+
+def run() -> int:
+    """Run the command line in this process.
+
+    Returns
+    -------
+    int
+        The exit status; every failure has been told in one sentence.
+    """
+    _write_what_can_be_written()
+    try:
         status = holonom(standalone_mode=False)
+        sys.stdout.flush()
+        return status or 0
     except click.ClickException as error:
         error.show()
-        status = error.exit_code
-    except click.Abort:
-        status = INTERRUPTED
-    gc.freeze()  # modules need no search for garbage on the way out: it takes three times as long as all the rest
-    sys.exit(status)
+        return error.exit_code
+    except (click.Abort, KeyboardInterrupt):
+        return INTERRUPTED
+    except (BrokenPipeError, SystemExit):  # with which rich and click leave where nobody reads
+        return PIPE_CLOSED
+    except OSError as error:
+        return _machine_refuses(error)
 
 
-def _explain(error: HolonomError) -> None:
-    for line in error.last_lines:
-        click.echo(f"  | {line}", err=True)
-    if error.command:
-        click.echo(f"repeat it with: {error.command}", err=True)
+def _write_what_can_be_written() -> None:
+    """Have a letter that standard output or error cannot show written as its code."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def _told(sentence: str, status: int) -> int:
+    click.echo(f"holonom: {sentence}", err=True)
+    return status
+
+
+def _machine_refuses(error: OSError) -> int:
+    what = f"{error.filename}: {error.strerror}" if error.filename else error.strerror or str(error)
+    return _told(f"this machine refuses: {what}; see to it, and run it again.", MACHINE_AT_FAULT)
+
+
+def _refused(error: HolonomError, verbose: bool) -> int:
+    _told(str(error), error.failure.status)
+    if verbose:
+        for line in error.last_lines:
+            click.echo(f"  | {line}", err=True)
+        if error.command:
+            click.echo(f"repeat it with: {error.command}", err=True)
+    return error.failure.status
+
+
+def _internal_error(error: Exception, verbose: bool) -> int:
+    what = " ".join(f"{type(error).__name__}: {error}".split())
+    _told(f"an internal error, {what}; please report it with the output of `holonom -v ...`.", INTERNAL_ERROR)
+    if verbose:
+        traceback.print_exception(error)
+    return INTERNAL_ERROR

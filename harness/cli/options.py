@@ -9,9 +9,17 @@ from typing import Any
 
 import click
 
-from ..confined import Limits
+from ..confined import Limits, Sandbox, bubblewrap
+from ..failures import Failure, HolonomError
+from ..supervisor import limit_time
 
 STANDARD_OUTPUT = Path("-")
+LONGEST = 1e9  # seconds of a time limit: 30 years
+MOST_MEMORY = 2**30  # MiB of a memory limit
+UNWALLED = (
+    "holonom: bubblewrap is missing or forbidden here: the scene is confined by limits alone, and could read your files;"
+    " install it, or say --trust."
+)
 
 
 def writes_json(command: Callable[..., int]) -> Callable[..., int]:
@@ -40,30 +48,53 @@ def asks_one_scene(command: Callable[..., int]) -> Callable[..., int]:
 
 
 def runs_scenes(command: Callable[..., int]) -> Callable[..., int]:
-    """Give a command the options that limit its Maxima runs, passed on as `limits`."""
+    """Give a command the options that limit and wall in its runs, passed on as `limits`."""
     defaults = Limits()
 
     @click.option(
         "--time-limit",
         metavar="SECONDS",
-        type=click.FloatRange(min=0, min_open=True),
-        default=defaults.seconds,
-        show_default=True,
-        help="Time that Maxima may take for a scene.",
+        type=float,
+        callback=_read_seconds,
+        help=f"Time for the whole command; without it, {defaults.seconds:g} s for each run of Maxima.",
     )
     @click.option(
         "--memory-limit",
         metavar="MIB",
-        type=click.IntRange(min=256),
+        type=click.IntRange(256, MOST_MEMORY),
         default=defaults.memory_mib,
         show_default=True,
         help="Memory that Maxima may take for a scene.",
     )
+    @click.option("--trust", is_flag=True, help="Run the scene file in the open: it may do whatever you may do.")
+    @click.option("--sandbox", is_flag=True, help="Refuse to run a scene file that cannot be walled in.")
     @functools.wraps(command)
-    def limited(*, time_limit: float, memory_limit: int, **options: Any) -> int:
-        return command(limits=Limits(seconds=time_limit, memory_mib=memory_limit), **options)
+    def limited(*, time_limit: float | None, memory_limit: int, trust: bool, sandbox: bool, **options: Any) -> int:
+        if time_limit is not None:
+            limit_time(time_limit)
+        limits = Limits(time_limit or defaults.seconds, memory_limit, sandbox=_sandbox(trust, sandbox))
+        return command(limits=limits, **options)
 
     return limited
+
+
+def _read_seconds(ctx: click.Context, parameter: click.Parameter, seconds: float | None) -> float | None:
+    if seconds is not None and not 0 < seconds <= LONGEST:
+        raise click.BadParameter(f"{seconds:g} is no time; give seconds, more than 0 and at most {LONGEST:g}")
+    return seconds
+
+
+def _sandbox(trust: bool, sandbox: bool) -> Sandbox:
+    """How the scene is walled in; where it is not and nobody asked for that, one line says so."""
+    if trust and sandbox:
+        raise click.UsageError("--trust and --sandbox exclude one another")
+    if trust:
+        return Sandbox.TRUSTED
+    if bubblewrap() is None:
+        if sandbox:
+            raise HolonomError(Failure.NO_SANDBOX)
+        click.echo(UNWALLED, err=True)
+    return Sandbox.REQUIRED if sandbox else Sandbox.WHERE_POSSIBLE
 
 
 def read_instant(ctx: click.Context, parameter: click.Parameter, text: str | None) -> Fraction | None:

@@ -18,7 +18,7 @@ from ..crosscheck import CheckReport, check_record
 from ..errata import errata
 from ..failures import HolonomError
 from ..free_motion import FreeMotion, free_motion
-from ..maxima import run_batch, run_scene
+from ..maxima import ask_scene, run_scene
 from ..program.motion_problem import motion_problem
 from ..program.request import Request
 from ..record import Record, read_record
@@ -196,7 +196,7 @@ def _study(file: Path, settings: Settings, limits: Limits) -> Study:
 
 def names_of_scenes(file: Path, settings: Settings, limits: Limits) -> list[str]:
     """Names of a file's scenes, of those too that prescribe reactions."""
-    return json.loads(run_batch(file, NAMES_OF_SCENES, limits, dict(settings)))
+    return json.loads(ask_scene(file, NAMES_OF_SCENES, limits, dict(settings)))
 
 
 def or_refusal(compute: Callable[..., Any], *arguments: Any) -> Any:

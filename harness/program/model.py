@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ..confined import Limits
 from ..failures import Failure, HolonomError
-from ..maxima import run_batch
+from ..maxima import ask_scene
 from .motion_program import Program, program_of
 from .request import SCENE_NAME, Request, scene_argument
 
@@ -83,7 +83,7 @@ def scene_model(file: Path, request: Request, parameters: Sequence[str], limits:
     Raises
     ------
     HolonomError
-        As `holonom.maxima.run_batch`; the file has no scene, the scene not one of the parameters; no order of pivots
+        As `holonom.maxima.ask_scene`; the file has no scene, the scene not one of the parameters; no order of pivots
         solves its equations.
     """
     for name in parameters:
@@ -91,7 +91,7 @@ def scene_model(file: Path, request: Request, parameters: Sequence[str], limits:
             raise HolonomError(Failure.NOT_A_PARAMETER, detail=name)
     arguments = f"{scene_argument(request.scene)}, '{request.solve}, [{', '.join(parameters)}]"
     call = f"lambda([file], write_model(file, {arguments}))"
-    return read_model(run_batch(file, call, limits, request.settings))
+    return read_model(ask_scene(file, call, limits, request.settings))
 
 
 def read_model(text: str) -> Model:

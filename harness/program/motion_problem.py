@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..confined import Limits
-from ..maxima import run_batch
+from ..maxima import ask_scene
 from .motion_program import Program, count_operations, names_in, program_of
 from .request import Request, scene_argument
 
@@ -96,7 +96,7 @@ def motion_problem(file: Path, request: Request, limits: Limits, digits: int = D
     Raises
     ------
     HolonomError
-        As `holonom.maxima.run_batch`; the file has no scene, a control no law, a parameter no value.
+        As `holonom.maxima.ask_scene`; the file has no scene, a control no law, a parameter no value.
     """
     return read_problem(problem_document(file, request, limits, digits))
 
@@ -121,7 +121,7 @@ def problem_document(file: Path, request: Request, limits: Limits, digits: int =
     """
     arguments = f"{scene_argument(request.scene)}, '{request.solve}, {digits}"
     call = f"lambda([file], write_motion_problem(file, {arguments}))"
-    return run_batch(file, call, limits, request.settings)
+    return ask_scene(file, call, limits, request.settings)
 
 
 def read_problem(text: str) -> MotionProblem:

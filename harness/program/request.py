@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ..confined import Limits
 from ..failures import Failure, HolonomError
-from ..maxima import run_batch
+from ..maxima import ask_scene
 from .motion_program import Solve, read_program
 from .python_source import python_source
 
@@ -111,7 +111,7 @@ def program_document(file: Path, request: Request, limits: Limits) -> str:
     Raises
     ------
     HolonomError
-        As `holonom.maxima.run_batch`; the request's scene has a name that no scene can have.
+        As `holonom.maxima.ask_scene`; the request's scene has a name that no scene can have.
     """
     return _document("write_program", file, request, limits)
 
@@ -142,7 +142,7 @@ def effects_document(file: Path, request: Request, limits: Limits) -> str:
 
 def _document(writer: str, file: Path, request: Request, limits: Limits) -> str:
     call = f"lambda([file], {writer}(file, {scene_argument(request.scene)}, '{request.solve}))"
-    return run_batch(file, call, limits, request.settings)
+    return ask_scene(file, call, limits, request.settings)
 
 
 def scene_argument(scene: str | None) -> str:

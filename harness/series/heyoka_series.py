@@ -20,7 +20,7 @@ import numpy as np
 
 from ..confined import Limits
 from ..failures import Failure, HolonomError
-from ..maxima import run_batch
+from ..maxima import ask_scene
 from ..program.heyoka_function import dynamics, heyoka_expressions, import_heyoka
 from ..program.motion_program import Program, program_of
 from ..program.precision import GUARD_DIGITS, Precision
@@ -83,11 +83,11 @@ def compute_series(file: Path, request: SeriesRequest, precision: Precision, lim
     Raises
     ------
     HolonomError
-        As `holonom.maxima.run_batch`, `expand` and `continue_motion`.
+        As `holonom.maxima.ask_scene`, `expand` and `continue_motion`.
     """
     arguments = f"{scene_argument(request.scene)}, {request.order}, {precision.digits + GUARD_DIGITS}"
     call = f"lambda([file], write_initial_value_problem(file, {arguments}))"
-    problem = read_problem(run_batch(file, call, limits, request.settings))
+    problem = read_problem(ask_scene(file, call, limits, request.settings))
     motion = expand(problem, request.order, precision)
     if request.until is None:
         return motion

@@ -18,7 +18,7 @@ import mpmath
 
 from ..confined import Limits
 from ..failures import Failure, HolonomError
-from ..maxima import run_batch
+from ..maxima import ask_scene
 from ..program.request import scene_argument
 from .radius import Radius, estimate_radius, truncation_error
 
@@ -136,11 +136,11 @@ def compute_series(file: Path, request: SeriesRequest, limits: Limits) -> Motion
     Raises
     ------
     HolonomError
-        As `holonom.maxima.run_batch`: among others, the control law is not analytic at t0, or G is singular there.
+        As `holonom.maxima.ask_scene`: among others, the control law is not analytic at t0, or G is singular there.
     """
     until = "false" if request.until is None else str(request.until)
     arguments = f"{scene_argument(request.scene)}, {request.order}, {_digits_argument(request.digits)}, {until}"
-    return read_series(run_batch(file, f"lambda([file], write_series(file, {arguments}))", limits, request.settings))
+    return read_series(ask_scene(file, f"lambda([file], write_series(file, {arguments}))", limits, request.settings))
 
 
 def read_series(text: str) -> MotionSeries:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import mpmath
 
-from ...maxima import run_batch
+from ...maxima import ask_scene
 from ...program.motion_problem import MotionProblem
 from ...program.precision import read_precision
 from ...program.request import Request, scene_argument
@@ -123,12 +123,12 @@ def maxima_series(
     Raises
     ------
     HolonomError
-        As `holonom.maxima.run_batch`; there are no exact coefficients.
+        As `holonom.maxima.ask_scene`; there are no exact coefficients.
     """
     asked = "'exact" if digits == EXACT else str(digits)
     arguments = f"{scene_argument(request.scene)}, {list(orders)}, {asked}"
     call = f"lambda([file], write_series_costs(file, {arguments}))"
-    for entry in json.loads(run_batch(file, call, limits, request.settings)):
+    for entry in json.loads(ask_scene(file, call, limits, request.settings)):
         with mpmath.workdps(WORKING_DIGITS):
             rows = [numbers(texts) for texts in entry["coordinates"].values()]
             found = _added_up(rows, _step(expansion))

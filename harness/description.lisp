@@ -1,0 +1,161 @@
+;;; A description between two processes
+;;;
+;;; A scene file is a program, and may do anything to the Maxima that runs it. So one process runs the file and writes
+;;; down what it described: the entries given to holonomic_system and holonomic_scene, and what it assumed. A second
+;;; one, which never sees the file, reads that as data, describes the same systems and scenes anew, and derives.
+;;;
+;;; A description is one expression, a list of: the settings used; what is assumed; the systems; their names, each with
+;;; the number of its system; the scenes, each with its name and the number of its system. It is written thus, a blank
+;;; after each item:
+;;;
+;;;   i123      an integer                          s3:abc   a string, its length before it
+;;;   f3/4      a float, as a quotient              y2:$x    a symbol, the length of its name before it
+;;;   b53:7:-2  a bigfloat of 53 bits, 7 and -2     ( y5:MPLUS ... )   an operator with its arguments
+;;;                                                 [ y2:$x ... ]      a name with its indices
+;;;
+;;; Nothing is evaluated while it is read. An operator that is not known, or a symbol that is no name in Maxima's
+;;; language, is refused.
+
+(in-package :maxima)
+
+(defvar *described-operators*
+  '(mplus mtimes mexpt mlist mequal rat $matrix
+    mgreaterp mgeqp mnotequal $equal $kind
+    $point $segment $polyline $circle $mechanical_system $motion_scene)
+  "What a description may hold besides the functions that documents know.")
+
+;;; The first fields of the structures in system.mac and scene.mac
+
+(defun entries-of (structure) (cdr (second structure)))
+(defun system-of (scene) (third scene))
+
+(defun without-systems (scene)
+  "SCENE as it would be if it held no systems: they are described by themselves."
+  (list* (first scene) (second scene) nil nil (nthcdr 4 scene)))
+
+;;; Written by the process that ran the scene file
+
+(defun write-description (file)
+  "Write what the scene file described to FILE; nothing where it did not load the library."
+  (when (mget '$holonomic_system 'mexpr)
+    (with-open-file (out file :direction :output)
+      (write-datum (description) out))))
+
+(defun description ()
+  (let* ((named (structures-of-kind '$mechanical_system))
+         (scenes (structures-of-kind '$motion_scene))
+         (systems (remove-duplicates (append (mapcar #'cdr named) (mapcar (lambda (item) (system-of (cdr item))) scenes))
+                                     :test #'alike1 :from-end t)))
+    (flet ((number-of (system) (position system systems :test #'alike1)))
+      (listed (listed* (cdr $settings_used))
+              (mfuncall '$facts)
+              (listed* systems)
+              (listed* (loop for (name . system) in named collect (listed name (number-of system))))
+              (listed* (loop for (name . scene) in scenes
+                             collect (listed name (number-of (system-of scene)) (without-systems scene))))))))
+
+(defun listed (&rest items) (listed* items))
+(defun listed* (items) (cons '(mlist simp) items))
+
+(defun structures-of-kind (kind)
+  "(name . structure) for each name with a value of that kind, oldest first."
+  (loop for name in (cdr $values)
+        for value = (and (boundp name) (symbol-value name))
+        when (and (consp value) (consp (car value)) (eq (caar value) kind)) collect (cons name value)))
+
+(defun write-datum (e out)
+  (cond ((integerp e) (format out "i~D " e))
+        ((stringp e) (format out "s~D:~A " (length e) e))
+        ((floatp e) (format out "f~D/~D " (numerator (rational e)) (denominator (rational e))))
+        ((symbolp e) (write-symbol e out))
+        ((atom e) (merror "a description cannot hold ~M" e))
+        ((eq (caar e) 'bigfloat) (format out "b~D:~D:~D " (car (last (car e))) (second e) (third e)))
+        ((member 'array (car e)) (write-application #\[ e #\] out))
+        ((eq (caar e) 'mrat) (write-datum ($totaldisrep e) out))
+        (t (write-application #\( e #\) out))))
+
+(defun write-symbol (symbol out)
+  (format out "y~D:~A " (length (symbol-name symbol)) (symbol-name symbol)))
+
+(defun write-application (opening e closing out)
+  (write-char opening out)
+  (write-symbol (caar e) out)
+  (dolist (argument (cdr e)) (write-datum argument out))
+  (write-char closing out))
+
+;;; Read by the process that derives
+
+(defun describe-anew (file)
+  "Describe the systems and scenes in FILE, under their names."
+  (destructuring-bind (used facts systems names scenes) (cdr (with-open-file (in file) (read-datum in)))
+    (setq $settings_used used)
+    (mapc #'assume-anew (cdr facts))
+    (let ((systems (mapcar (lambda (system) (described-anew '$holonomic_system (entries-of system) system))
+                           (cdr systems))))
+      (loop for (nil name number) in (cdr names) do (bind-anew name (nth number systems)))
+      (loop for (nil name number scene) in (cdr scenes)
+            do (bind-anew name (described-anew '$holonomic_scene (cons (nth number systems) (entries-of scene)) scene))))))
+
+(defun described-anew (describe entries expected)
+  "What DESCRIBE makes of ENTRIES, which must be what it made of them before."
+  (let ((made (mapply1 describe entries describe nil)))
+    (unless (alike1 (if (eq describe '$holonomic_scene) (without-systems made) made) expected)
+      (merror "what ~A returned was changed afterwards, or the file changes how Maxima computes: ~
+               describe it as it is meant, or run the file with --trust" (mstring describe)))
+    made))
+
+(defun bind-anew (name structure)
+  (when (boundp name)
+    (merror "the name ~M is taken by Maxima or by the library; choose another" name))
+  (mset name structure))
+
+(defun assume-anew (fact)
+  (if (eq (caar fact) '$kind)
+      (mfuncall '$declare (second fact) (third fact))
+      (mfuncall '$assume fact)))
+
+(defun read-datum (in)
+  (ecase (peek-char t in)
+    (#\( (read-char in) (known-application (read-until #\) in)))
+    (#\[ (read-char in) (indexed-name (read-until #\] in)))
+    (#\i (read-char in) (read-whole in))
+    (#\s (read-char in) (read-text in))
+    (#\y (read-char in) (described-symbol (read-text in)))
+    (#\f (read-char in) (float (/ (read-whole in) (read-whole in)) 1d0))
+    (#\b (read-char in) (let ((bits (read-whole in)))
+                          (list (list 'bigfloat 'simp bits) (read-whole in) (read-whole in))))))
+
+(defun read-until (closing in)
+  (loop until (eql (peek-char t in) closing) collect (read-datum in)
+        finally (read-char in)))
+
+(defun read-whole (in)
+  "An integer and the one character after it."
+  (parse-integer (coerce (loop for c = (read-char in)
+                               while (or (digit-char-p c) (char= c #\-)) collect c)
+                         'string)))
+
+(defun read-text (in)
+  (let ((text (make-string (read-whole in))))
+    (dotimes (i (length text) text) (setf (char text i) (read-char in)))))
+
+(defun described-symbol (name)
+  "Names of Maxima's language begin with $ or %, but for true, false and the operators."
+  (let ((symbol (find-symbol name :maxima)))
+    (cond ((and (plusp (length name)) (find (char name 0) "$%")) (intern name :maxima))
+          ((or (member symbol '(t nil)) (known-operator-p symbol)) symbol)
+          (t (merror "the scene describes its system with ~A, which no document can hold" name)))))
+
+(defun known-operator-p (symbol)
+  (or (member symbol *described-operators*) (assoc symbol *mathjson-functions*)))
+
+(defun known-application (items)
+  (destructuring-bind (operator &rest arguments) items
+    (unless (known-operator-p operator)
+      (merror "the scene describes its system with ~M, which no document can hold" operator))
+    (if (member operator '($mechanical_system $motion_scene))
+        (cons (list operator 'simp) arguments)
+        (simplifya (cons (list operator) arguments) nil))))
+
+(defun indexed-name (items)
+  (cons (list (first items) 'simp 'array) (rest items)))
