@@ -1,7 +1,7 @@
 """One process, confined: so much time, memory and output, and nothing of it left behind.
 
-What runs a stranger's program is walled in by bubblewrap besides: no network, a process namespace of its own, and of the
-file system nothing but what is named, to be read only. All that it started ends with it then, whatever kills this
+What runs a stranger's program is walled in by bubblewrap besides: no network, a process namespace of its own, and of
+the file system nothing but what is named, to be read only. All that it started ends with it then, whatever kills this
 process. Without bubblewrap a watcher ends the process group once this process is gone.
 """
 

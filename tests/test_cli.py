@@ -62,7 +62,7 @@ def test_a_disagreement_is_reported_and_leaves_with_one(particle_record, monkeyp
     multipliers["relations"][0]["right"] = ["Multiply", 2, multipliers["relations"][0]["right"]]
     monkeypatch.setattr("holonom.maxima.run_scene", lambda *_: json.dumps(wrong))
     monkeypatch.setattr("sys.argv", ["holonom", "check", str(particle_scene)])
-    from holonom.cli import main
+    from holonom.cli import run
 
     assert run() == 1
     assert "disagrees" in capsys.readouterr().out

@@ -12,7 +12,7 @@ from uuid import uuid4
 import psutil
 import pytest
 
-from holonom.confined import LimitExceeded, Limits, run_confined
+from holonom.confined import Confinement, LimitExceeded, Limits, Sandbox, resident_memory, run_confined
 from holonom.failures import Failure
 
 READABLE = (Path(sys.prefix), Path(sys.base_prefix))

@@ -163,7 +163,7 @@ def test_long_condition_is_refused_in_one_sentence():
 
 
 def test_json_has_the_stated_shape(capsys, monkeypatch):
-    from holonom.cli import main
+    from holonom.cli import run
 
     monkeypatch.setattr("sys.argv", ["holonom", "free", str(EXAMPLES / "paper/paper.mac"), "--json", "-"])
     assert run() == 0

@@ -17,8 +17,8 @@ STANDARD_OUTPUT = Path("-")
 LONGEST = 1e9  # seconds of a time limit: 30 years
 MOST_MEMORY = 2**30  # MiB of a memory limit
 UNWALLED = (
-    "holonom: bubblewrap is missing or forbidden here: the scene is confined by limits alone, and could read your files;"
-    " install it, or say --trust."
+    "holonom: bubblewrap is missing or forbidden here: the scene is confined by limits alone and may reach your files; "
+    "install it, or say --trust."
 )
 
 
