@@ -9,7 +9,7 @@ SOURCES := $(shell find maxima harness -name '*.mac' -o -name '*.lisp' -o -name 
 
 .DEFAULT_GOAL := paper
 .DELETE_ON_ERROR:
-.PHONY: paper companion check check-long bench setup pictures clean help have-maxima have-compiler have-gsl have-python
+.PHONY: paper companion check check-long bench setup pictures clean help have-maxima have-compiler have-gsl have-bubblewrap have-python
 
 paper: setup $(RECORDS) companion ## Derive and check every scene, compare the paper as printed (the default)
 	$(BIN)/holonom check $(SCENES) --json build/check.json
@@ -27,7 +27,7 @@ check: setup ## Lint, then run the tests, Maxima's own rtest files among them
 check-long: setup ## Run the tests that take too long for every change
 	$(TEST) -m long || [ $$? = 5 ]    # 5: there are none
 
-setup: have-maxima have-compiler have-gsl $(STAMP) ## Install what is missing: Maxima, a C compiler, GSL, and the Python packages in .venv
+setup: have-maxima have-compiler have-gsl have-bubblewrap $(STAMP) ## Install what is missing: Maxima, a C compiler, GSL, bubblewrap, and the Python packages in .venv
 
 bench: setup ## Time the motion program, the power series and simulations against their peers: tables and figures
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,motion,companion,bench]'
@@ -72,6 +72,10 @@ have-compiler:
 have-gsl:
 	@command -v gsl-config >/dev/null || ( $(call install,libgsl-dev) ) || \
 	  echo "Without the GNU Scientific Library there is no Runge-Kutta engine; all the rest works." >&2
+
+have-bubblewrap:
+	@command -v bwrap >/dev/null || ( $(call install,bubblewrap) ) || \
+	  echo "Without bubblewrap a scene file is confined by limits alone and may reach your files; all works." >&2
 
 # The first Python that is new enough; python3 is the last resort because it may be anything.
 PYTHON = $(shell for python in python3.11 python3.12 python3.13 python3; do \

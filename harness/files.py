@@ -106,7 +106,8 @@ def _remove(path: Path) -> None:
     if path.is_dir() and not path.is_symlink():
         remove_tree(path)
     else:
-        path.unlink(missing_ok=True)
+        with suppress(OSError):  # there may be no such place at all
+            path.unlink()
 
 
 def _sweep(path: Path) -> None:

@@ -165,7 +165,7 @@ def ask_scene(
 def run_batch(
     file: Path, writer: str, limits: Limits = DEFAULT_LIMITS, settings: Mapping[str, str] = NO_SETTINGS
 ) -> str:
-    """Run a Maxima file of one's own, then one Maxima function that writes a document, perhaps one of the file's.
+    """Run a Maxima file in the open, then one Maxima function that writes a document, perhaps one of the file's.
 
     Parameters
     ----------
@@ -182,7 +182,7 @@ def run_batch(
     HolonomError
         As `ask_scene`.
     """
-    with _new_run(file, limits, settings) as run:
+    with _new_run(file, replace(limits, sandbox=Sandbox.TRUSTED), settings) as run:
         printed = _run(run, f"run-file {_copy(run)} {_call(writer, run)}", writer)
         return _document(run, printed)
 
