@@ -15,6 +15,7 @@ from .failures import Failure, HolonomError
 from .mathjson import to_sympy
 from .maxima import ask_scene
 from .program.request import scene_argument
+from .shown import Show, Shown
 
 Law = Mapping[str, Expr]
 
@@ -92,7 +93,7 @@ class PrescribedReactions:
 
 
 @dataclass(frozen=True)
-class FreeMotion:
+class FreeMotion(Shown):
     """The answers about one scene.
 
     ``verdict`` is None where the scene has no control law, ``prescribed`` where it prescribes no reactions.
@@ -104,6 +105,11 @@ class FreeMotion:
     universal: UniversalControls
     trajectory: TrajectoryControl
     prescribed: PrescribedReactions | None
+
+    def _table(self) -> Show:
+        from .cli.tables.free_motion import show_free_motion
+
+        return show_free_motion
 
 
 def free_motion(file: Path, scene: str | None, settings: Mapping[str, str], limits: Limits) -> FreeMotion:
