@@ -8,14 +8,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from sympy import Expr
+from sympy import Expr, Symbol
 
 from .confined import Limits
+from .crosscheck.system import described_system
+from .crosscheck.universal_laws import LawOfControls, judge_law
+from .crosscheck.verdict import Judgement
 from .failures import Failure, HolonomError
 from .mathjson import to_sympy
 from .maxima import ask_scene
 from .program.request import scene_argument
-from .shown import Show, Shown
+from .record import read_system
 
 Law = Mapping[str, Expr]
 
@@ -39,23 +42,69 @@ class LawVerdict:
 
 
 @dataclass(frozen=True)
+class UniversalLaw:
+    """A law under which every motion is free, or a family of them.
+
+    Attributes
+    ----------
+    controls : Law
+        By control; in the time, the constants and the free controls.
+    constants : tuple of str
+        Constants of integration: any numbers.
+    free : tuple of str
+        Controls that stay free functions of the time.
+    positive : tuple of Expr
+        What must be positive where the law holds; empty where it always holds.
+    check : Judgement
+        What SymPy found when it tried the law on the equations of motion.
+    """
+
+    controls: Law
+    constants: tuple[str, ...]
+    free: tuple[str, ...]
+    positive: tuple[Expr, ...]
+    check: Judgement
+
+
+@dataclass(frozen=True)
+class ControlCondition:
+    """What must vanish if every motion is to be free.
+
+    Attributes
+    ----------
+    expression : Expr
+        In the time, the controls and their rates.
+    place : Expr
+        The function of the state that it is the coefficient of in (10).
+    effects : tuple of str
+        The terms of the system that it comes from; ``inertia`` for kinetic energy and constraints.
+    """
+
+    expression: Expr
+    place: Expr
+    effects: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class UniversalControls:
     """The laws under which every motion is free.
 
     Attributes
     ----------
-    conditions : tuple of Expr
-        Each must vanish: differential equations for the controls, found by separating the condition.
-    laws : tuple of Law
-        By control; ``u0`` and ``u1`` in them are constants of the control ``u``.
-    unique : bool
-        There are no others.
+    verdict : str
+        ``all`` (these laws are all there are), ``some``, ``none`` (there are none) or ``undecided``.
+    laws : tuple of UniversalLaw
+    conditions : tuple of ControlCondition
+        Shortest first.
+    generic : bool
+        Parameters were left open, and the answer is that for generic values.
     reason : str
     """
 
-    conditions: tuple[Expr, ...]
-    laws: tuple[Law, ...]
-    unique: bool
+    verdict: str
+    laws: tuple[UniversalLaw, ...]
+    conditions: tuple[ControlCondition, ...]
+    generic: bool
     reason: str
 
 
@@ -93,7 +142,7 @@ class PrescribedReactions:
 
 
 @dataclass(frozen=True)
-class FreeMotion(Shown):
+class FreeMotion:
     """The answers about one scene.
 
     ``verdict`` is None where the scene has no control law, ``prescribed`` where it prescribes no reactions.
@@ -105,11 +154,6 @@ class FreeMotion(Shown):
     universal: UniversalControls
     trajectory: TrajectoryControl
     prescribed: PrescribedReactions | None
-
-    def _table(self) -> Show:
-        from .cli.tables.free_motion import show_free_motion
-
-        return show_free_motion
 
 
 def free_motion(file: Path, scene: str | None, settings: Mapping[str, str], limits: Limits) -> FreeMotion:
@@ -143,19 +187,12 @@ def free_motion(file: Path, scene: str | None, settings: Mapping[str, str], limi
     document = json.loads(ask_scene(file, writer, limits, settings))
     if document.get("format") != "holonom-free-motion":
         raise HolonomError(Failure.NOT_A_RECORD, file, "it holds no free motion")
-    law, universal, trajectory, prescribed = (
-        document[part] for part in ("law", "universal", "trajectory", "prescribed")
-    )
+    law, trajectory, prescribed = (document[part] for part in ("law", "trajectory", "prescribed"))
     return FreeMotion(
         document["scene"],
         _expressions(document["condition"]),
         law and LawVerdict(law["satisfies"], _expressions(law["residual"]), law["reason"]),
-        UniversalControls(
-            _expressions(universal["conditions"]),
-            tuple(_law(each) for each in universal["laws"]),
-            universal["unique"],
-            universal["reason"],
-        ),
+        _universal(document),
         TrajectoryControl(
             trajectory["kind"],
             _law(trajectory["law"]),
@@ -165,6 +202,32 @@ def free_motion(file: Path, scene: str | None, settings: Mapping[str, str], limi
         ),
         prescribed and PrescribedReactions(_law(prescribed["reactions"]), _law(prescribed["controls"])),
     )
+
+
+def _universal(document: dict) -> UniversalControls:
+    universal = document["universal"]
+    families = zip(*(universal[part] for part in ("laws", "constants", "free", "positive")), strict=True)
+    return UniversalControls(
+        universal["verdict"],
+        tuple(_checked_law(document, *family) for family in families),
+        tuple(
+            ControlCondition(to_sympy(each["expression"]), to_sympy(each["place"]), tuple(each["effects"]))
+            for each in universal["conditions"]
+        ),
+        universal["generic"],
+        universal["reason"],
+    )
+
+
+def _checked_law(document: dict, law: dict, constants: list, free: list, positive: list) -> UniversalLaw:
+    system = described_system(read_system(document["system"]), document["effects"])
+    controls, conditions = _law(law), _expressions(positive)
+    judgement = judge_law(
+        system,
+        {Symbol(name, real=True): value for name, value in _law(document["parameter_values"]).items()},
+        LawOfControls({Symbol(name, real=True): value for name, value in controls.items()}, conditions),
+    )
+    return UniversalLaw(controls, tuple(constants), tuple(free), conditions, judgement)
 
 
 def _expressions(trees: list) -> tuple[Expr, ...]:

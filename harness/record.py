@@ -210,7 +210,7 @@ def read_record(text: str) -> Record:
     _require_shape(document)
     record = Record(
         maxima=document["maxima"],
-        system=_system(document["system"]),
+        system=read_system(document["system"]),
         derivations=_each(_derivation, document["derivations"]),
         scenes=_each(_scene, document["scenes"]),
     )
@@ -236,7 +236,8 @@ def _require_shape(document: Any) -> None:
         raise HolonomError(Failure.NOT_A_RECORD, detail=f"at {error.json_path}, {error.message}")
 
 
-def _system(system: dict[str, Any]) -> System:
+def read_system(system: dict[str, Any]) -> System:
+    """Read the description of a system, as records and other documents hold it."""
     return System(
         title=system["title"],
         source=system["source"],

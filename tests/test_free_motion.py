@@ -32,8 +32,8 @@ def asked(example: str, scene: str | None = None):
 def test_paper_universal_law_is_eq_15_and_the_only_one():
     universal = asked("paper/paper").universal
     u0 = Symbol("u0", real=True)
-    assert universal.laws == ({"u": u0 * exp(t)},)
-    assert universal.unique
+    assert [law.controls for law in universal.laws] == [{"u": u0 * exp(t)}]
+    assert universal.verdict == "all"
 
 
 def test_paper_trajectory_law_keeps_the_constraint_along_the_free_equations():
@@ -154,6 +154,7 @@ def test_cabin_is_free_in_parabolic_flight_and_not_in_a_lift():
 def test_system_without_a_universal_law_says_so():
     universal = asked("pendulum").universal
     assert universal.laws == ()
+    assert universal.verdict == "none"
     assert "no control can make" in universal.reason
 
 
@@ -169,10 +170,20 @@ def test_json_has_the_stated_shape(capsys, monkeypatch):
     assert run() == 0
     document = json.loads(capsys.readouterr().out)
     assert document["universal"] == {
+        "verdict": "all",
         "laws": [{"u": "u0*exp(t)"}],
-        "unique": True,
+        "constants": [["u0"]],
+        "free": [[]],
+        "positive": [[]],
+        "checks": [{"verdict": "agrees", "digits": 50, "states": 8}],
+        "conditions": document["universal"]["conditions"],
+        "generic": False,
         "reason": document["universal"]["reason"],
     }
+    assert [condition["effects"] for condition in document["universal"]["conditions"]] == [
+        ["inertia", "spring"],
+        ["inertia", "damping"],
+    ]
     assert document["law"]["satisfies"] == "no"
     assert document["trajectory"]["kind"] == "closed form"
     assert document["trajectory"]["samples"][0] == [0, 0.3]

@@ -47,8 +47,20 @@ def _free_motion_document(found: "FreeMotion") -> dict[str, Any]:
             "reason": verdict.reason,
         },
         "universal": {
-            "laws": [law_text(law) for law in universal.laws],
-            "unique": universal.unique,
+            "verdict": universal.verdict,
+            "laws": [law_text(law.controls) for law in universal.laws],
+            "constants": [law.constants for law in universal.laws],
+            "free": [law.free for law in universal.laws],
+            "positive": [[formula(each) for each in law.positive] for law in universal.laws],
+            "checks": [
+                {"verdict": law.check.verdict, "digits": law.check.digits, "states": law.check.points}
+                for law in universal.laws
+            ],
+            "conditions": [
+                {"expression": formula(each.expression), "place": formula(each.place), "effects": each.effects}
+                for each in universal.conditions
+            ],
+            "generic": universal.generic,
             "reason": universal.reason,
         },
         "trajectory": {

@@ -23,6 +23,10 @@ MAXIMAS = {
     "bftorat",
     "algexact",
     "scalarmatrixp",
+    "trigexpandplus",
+    "trigexpandtimes",
+    "linsolve_params",
+    "linsolvewarn",
 }
 ENTRIES = {
     "coordinates",

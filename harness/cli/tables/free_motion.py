@@ -9,7 +9,7 @@ from rich.text import Text
 from .text import formula
 
 if TYPE_CHECKING:
-    from ...free_motion import FreeMotion, Law
+    from ...free_motion import FreeMotion, Law, UniversalControls, UniversalLaw
 
 
 def show_free_motion(console: Console, found: "FreeMotion") -> None:
@@ -19,11 +19,7 @@ def show_free_motion(console: Console, found: "FreeMotion") -> None:
         satisfied = {"no": "not free"}.get(found.verdict.satisfies, f"free for {found.verdict.satisfies}")
         left = [f"leaves {formula(e)}" for e in found.verdict.residual]
         _show_list(console, f"{found.scene}: motion is {satisfied}", [found.verdict.reason, *left])
-    universal = found.universal
-    ending = " (there are no others)" if universal.unique else ""
-    separated = [f"needs {formula(e)} = 0" for e in universal.conditions]
-    laws = [_law(law) for law in universal.laws] or ["none"]
-    _show_list(console, f"controls that make every motion free{ending}", [*laws, universal.reason, *separated])
+    _show_universal(console, found.universal)
     trajectory = found.trajectory
     samples = [_sample(sample, trajectory.law) for sample in trajectory.samples if trajectory.kind == "numeric"]
     _show_list(
@@ -32,6 +28,39 @@ def show_free_motion(console: Console, found: "FreeMotion") -> None:
     if found.prescribed is not None:
         reactions, controls = _law(found.prescribed.reactions), _law(found.prescribed.controls)
         _show_list(console, f"controls under the prescribed reactions {reactions}", [controls])
+
+
+CONDITIONS_SHOWN = 5
+
+TITLES = {
+    "all": "controls that make every motion free, all there are",
+    "some": "controls that make every motion free, some; whether there are others was not decided",
+    "none": "controls that make every motion free: there are none",
+    "undecided": "controls that make every motion free: undecided",
+}
+
+
+def _show_universal(console: Console, found: "UniversalControls") -> None:
+    generic = "; for generic values of the parameters left open" if found.generic else ""
+    needed = [
+        f"needs {formula(each.expression)} = 0, at {formula(each.place)} in (10), from {', '.join(each.effects)}"
+        for each in found.conditions[:CONDITIONS_SHOWN]
+    ]
+    more = len(found.conditions) - len(needed)
+    rest = [f"and {more} longer conditions"] if more > 0 else []
+    laws = [line for law in found.laws for line in _universal_law(law)]
+    _show_list(console, TITLES[found.verdict], [*laws, found.reason + generic, *needed, *rest])
+
+
+def _universal_law(law: "UniversalLaw") -> list[str]:
+    free = f"{', '.join(law.free)} any function of the time" if law.free else ""
+    where = " and ".join(f"{formula(each)} > 0" for each in law.positive)
+    check = law.check
+    found = f"{check.verdict} to {check.digits} digits in {check.points} random states"
+    return [
+        ", ".join(filter(None, (_law(law.controls), free))) + (f"  where {where}" if where else ""),
+        f"  SymPy, from the equations of motion: {found}{': ' + check.detail if check.detail else ''}",
+    ]
 
 
 def _show_list(console: Console, title: str, lines: Iterable[str]) -> None:

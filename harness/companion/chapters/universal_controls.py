@@ -11,7 +11,7 @@ from ..excerpts import excerpt
 from ..runs import derived, free
 
 SOURCE = "maxima/free_motion/universal.mac"
-FUNCTIONS = ("universal_controls", "separated_conditions", "solved_laws", "linear_law")
+FUNCTIONS = ("universal_controls", "laws_of_condition", "laws_under", "solved_conditions")
 OTHERS = {"cabin": CABIN, "pendulum": PENDULUM, "bead": BEAD, "spherical_pendulum": SPHERICAL_PENDULUM}
 
 SCENES = {"paper": INITIAL_SCENE}  # of other files, the last

@@ -120,7 +120,9 @@ def _derived(each: PrintedEquation, paper: Derived, laws: tuple, root: Path) -> 
     """The instance against a printed equation and the lines that derive it; none where it is given, not derived."""
     if each.number == "15":
         universal = "maxima/free_motion/universal.mac"
-        lines = tuple(excerpt(root, universal, name) for name in ("universal_controls", "solved_laws", "linear_law"))
+        lines = tuple(
+            excerpt(root, universal, name) for name in ("universal_controls", "solved_conditions", "solved_linear")
+        )
         return (_law(laws, paper),), lines
     if (found := COUNTERPARTS.get(each.name)) is None:
         return (), ()
@@ -134,7 +136,7 @@ def _derived(each: PrintedEquation, paper: Derived, laws: tuple, root: Path) -> 
 
 def _law(laws: tuple, paper: Derived) -> Instance:
     """The law found, with the verdict that it leaves nothing of the condition (10)."""
-    relations = tuple(Relation(control, from_sympy(value)) for law in laws for control, value in law.items())
+    relations = tuple(Relation(control, from_sympy(value)) for law in laws for control, value in law.controls.items())
     condition = named_equations(paper, FREE_SCENE)["condition of free motion under the control law"]
     verdicts = verdicts_on(paper, condition, FREE_SCENE)
     return Instance("the laws under which (10) vanishes for every state", Equation("15", "law", relations), verdicts)

@@ -1,0 +1,152 @@
+"""The laws that are said to make every motion free, tried once more on the equations of motion.
+
+Under such a law the free accelerations, those of the forces alone, keep the constraints: at every state on the
+constraint manifold d^2 f/dt^2 = 0 with the accelerations that solve Lagrange's equations without multipliers. States
+are drawn at random and moved onto the manifold by Newton's method, position first, velocity after it; nothing that
+Maxima derived is used, neither (10) nor a solution of the constraints.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+from mpmath import mp
+
+from .independent import IndependentEquations
+from .points import IrregularPoint, Valuation, random_point
+from .report import Verdict
+from .system import MechanicalSystem, dotted
+from .verdict import DIGITS, POINTS, WORKING_DIGITS, Judgement
+
+DRAWS = 40
+"""Draws for each state before the search for a regular one is given up."""
+
+NEWTON_STEPS = 60
+"""Steps of Newton's method towards the manifold; quadratic convergence needs a dozen from nearby."""
+
+
+@dataclass(frozen=True)
+class LawOfControls:
+    """A law for the controls.
+
+    Attributes
+    ----------
+    controls : mapping of Symbol to Expr
+        By control, in the time, in constants and in controls that stay free.
+    positive : tuple of Expr
+        What must be positive where the law holds.
+    """
+
+    controls: Mapping[sp.Symbol, sp.Expr]
+    positive: tuple[sp.Expr, ...] = ()
+
+
+def judge_law(system: MechanicalSystem, values: Mapping[sp.Symbol, sp.Expr], law: LawOfControls) -> Judgement:
+    """Verdict on a law: whether the free accelerations keep the constraints in random states.
+
+    Parameters
+    ----------
+    system : MechanicalSystem
+        Of the effects called for.
+    values : mapping of Symbol to Expr
+        Values of parameters; those left out are drawn at random too.
+    law : LawOfControls
+
+    Returns
+    -------
+    Judgement
+        ``agrees`` with the digits and states, or ``disagrees`` with the first residual; also where no regular state was
+        found, and then the detail says so.
+    """
+    moved = _MovedByLaw(system, values, law)
+    seed = " ".join(f"{control} = {expression}" for control, expression in law.controls.items())
+    draws = (random_point(moved.names, attempt, seed) for attempt in range(DRAWS * POINTS))
+    with mp.workdps(WORKING_DIGITS):
+        for _ in range(POINTS):
+            detail = _residual_at_next_state(moved, draws)
+            if detail:
+                return Judgement(Verdict.DISAGREES, DIGITS, POINTS, detail)
+    return Judgement(Verdict.AGREES, DIGITS, POINTS)
+
+
+def _residual_at_next_state(moved: _MovedByLaw, draws: Iterator[Mapping[sp.Symbol, sp.Rational]]) -> str:
+    for point in draws:
+        try:
+            return moved.residual(point)
+        except (IrregularPoint, ZeroDivisionError):
+            continue
+    return "no regular state was found on the constraint manifold"
+
+
+class _MovedByLaw:
+    """The equations of a system with a law and parameter values put in."""
+
+    def __init__(self, system: MechanicalSystem, values: Mapping[sp.Symbol, sp.Expr], law: LawOfControls) -> None:
+        equations = IndependentEquations(system)
+        history = dict(values)
+        for control, expression in law.controls.items():
+            rate = system.total_rate(expression)
+            history |= {
+                control: expression,
+                dotted("dot", control): rate,
+                dotted("ddot", control): system.total_rate(rate),
+            }
+
+        def under_law(expressions: Sequence[sp.Expr]) -> tuple[sp.Expr, ...]:
+            return tuple(expression.xreplace(history).xreplace(values) for expression in expressions)
+
+        self.coordinates, self.velocities = system.coordinates, system.velocities
+        self.constraints = under_law(system.constraints)
+        self.rates = under_law(equations.constraint_rates)
+        self.second_rates = under_law(equations.constraint_accelerations)
+        self.jacobian = [[f.diff(q) for q in self.coordinates] for f in self.constraints]
+        self.free = type(equations.free)(system.accelerations, under_law(equations.free.residuals))
+        self.positive = under_law(law.positive)
+        everything = (*self.constraints, *self.rates, *self.second_rates, *self.free.residuals, *self.positive)
+        symbols = set().union(*(expression.free_symbols for expression in everything))
+        self.names = sorted(s.name for s in (symbols | {*self.coordinates, *self.velocities}) - {*system.accelerations})
+
+    def residual(self, point: Mapping[sp.Symbol, sp.Rational]) -> str:
+        """Tell the first constraint that the free accelerations do not keep; empty where they keep all."""
+        if any(Valuation(point)(expression) <= 0 for expression in self.positive):
+            raise IrregularPoint
+        state: dict[sp.Symbol, mp.mpf] = {symbol: mp.mpf(number.p) / number.q for symbol, number in point.items()}
+        for _ in range(NEWTON_STEPS):
+            if not self._corrected(state, self.coordinates, self.constraints):
+                break
+        else:
+            raise IrregularPoint
+        self._corrected(state, self.velocities, self.rates)
+        value = _valuation(state)
+        for acceleration, number in self.free.solution(value).items():
+            value.define(acceleration, number)
+            state[acceleration] = number
+        scale = max(1, *(abs(number) for number in state.values())) ** 2
+        for beta, second_rate in enumerate(self.second_rates, start=1):
+            if abs(left := value(second_rate)) > mp.mpf(10) ** -DIGITS * scale:
+                return f"the free accelerations leave constraint {beta} with the second rate {mp.nstr(left, 12)}"
+        return ""
+
+    def _corrected(
+        self, state: dict[sp.Symbol, mp.mpf], unknowns: Sequence[sp.Symbol], residuals: Sequence[sp.Expr]
+    ) -> bool:
+        """Move the unknowns by the shortest step that takes the residuals to zero; whether there was one to take."""
+        value = _valuation(state)
+        right = mp.matrix([value(residual) for residual in residuals])
+        size = max(abs(number) for number in state.values())
+        if max(map(abs, right)) <= mp.mpf(10) ** -(DIGITS + 10) * max(1, size):
+            return False
+        jacobian = mp.matrix([[value(entry) for entry in row] for row in self.jacobian])
+        move = jacobian.T * mp.lu_solve(jacobian * jacobian.T, right)
+        for unknown, by in zip(unknowns, move, strict=True):
+            state[unknown] -= by
+        return True
+
+
+def _valuation(state: Mapping[sp.Symbol, mp.mpf]) -> Valuation:
+    value = Valuation({})
+    for symbol, number in state.items():
+        value.define(symbol, number)
+    return value

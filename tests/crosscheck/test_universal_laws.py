@@ -1,0 +1,67 @@
+"""The second look at a law that is said to make every motion free: right laws pass it, wrong ones do not."""
+
+import pytest
+import sympy as sp
+
+from holonom.crosscheck.report import Verdict
+from holonom.crosscheck.system import MechanicalSystem, dotted
+from holonom.crosscheck.universal_laws import LawOfControls, judge_law
+
+
+def real(names: str) -> tuple[sp.Symbol, ...]:
+    return sp.symbols(names, real=True, seq=True)
+
+
+(t,) = real("t")
+(u, w, u0, u1, k, m) = real("u w u0 u1 k m")
+
+
+def system(names: str, force, constraints, controls=(u,), mass=1) -> MechanicalSystem:
+    q = real(names)
+    multipliers = real(" ".join(f"lambda{beta}" for beta, _ in enumerate(constraints, start=1)))
+    energy = sp.Add(*(mass * dotted("dot", x) ** 2 for x in q)) / 2
+    return MechanicalSystem(t, q, tuple(controls), multipliers, energy, sp.Integer(0), tuple(force), tuple(constraints))
+
+
+(q1, q2, q3), (x, y) = real("q1 q2 q3"), real("x y")
+CENTRIPETAL = -(dotted("dot", x) ** 2 + dotted("dot", y) ** 2) / (x**2 + y**2)
+PAPER = system(
+    "q1 q2 q3", (-q1 - q2, -2 * (dotted("dot", q1) + dotted("dot", q2)), sp.Integer(0)), [q3 - u * (q1 + q2)]
+)
+CIRCLE = system("x y", (CENTRIPETAL * x, CENTRIPETAL * y), [x**2 + y**2 - u**2])
+SPRING = system("x", (-k * x,), [x - u], mass=m)
+SUM = system("x", (sp.Integer(-10),), [x - u - w], controls=(u, w))
+
+
+@pytest.mark.parametrize(
+    ("moved", "law", "positive"),
+    [
+        (PAPER, {u: u0 * sp.exp(t)}, ()),
+        (CIRCLE, {u: sp.sqrt(2 * u0 + 2 * u1 * t)}, ()),
+        (SPRING, {u: u0 * sp.cos(sp.sqrt(k / m) * t)}, (k / m,)),
+        (SUM, {u: -w + u0 - 5 * t**2}, ()),
+    ],
+    ids=["the paper's law", "on a curved manifold", "for one sign of a parameter", "with a free control"],
+)
+def test_law_that_makes_every_motion_free_passes(moved, law, positive):
+    found = judge_law(moved, {}, LawOfControls(law, positive))
+    assert (found.verdict, found.detail) == (Verdict.AGREES, "")
+
+
+@pytest.mark.parametrize(
+    ("moved", "law"),
+    [
+        (PAPER, {u: u0 * sp.exp(t) + sp.Rational(1, 10**20)}),
+        (CIRCLE, {u: u0 + t}),
+        (SPRING, {u: u0 * sp.cos(t)}),
+        (SUM, {u: w + u0 - 5 * t**2}),
+    ],
+)
+def test_law_that_leaves_a_reaction_is_caught(moved, law):
+    assert judge_law(moved, {}, LawOfControls(law)).verdict is Verdict.DISAGREES
+
+
+def test_law_without_a_state_is_no_law():
+    found = judge_law(CIRCLE, {}, LawOfControls({u: sp.Integer(0)}))
+    assert found.verdict is Verdict.DISAGREES
+    assert "no regular state" in found.detail
