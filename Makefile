@@ -29,6 +29,7 @@ check-long: setup ## Run the tests that take too long for every change
 
 setup: have-maxima have-compiler have-gsl have-bubblewrap $(STAMP) ## Install what is missing: Maxima, a C compiler, GSL, bubblewrap, and the Python packages in .venv
 
+bench: export OPENBLAS_NUM_THREADS = 1
 bench: setup ## Time the motion program, the power series and simulations against their peers: tables and figures
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,motion,companion,bench]'
 	$(BIN)/python tests/benchmarks/run.py build/benchmarks

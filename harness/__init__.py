@@ -1,7 +1,37 @@
-"""Holonom: runs the Maxima derivation, reads its record, checks it, shows it."""
+"""Holonom: controllable holonomic systems, derived by Maxima, checked by SymPy, followed in numbers.
 
-import os
+    import holonom
+    scene = holonom.load("pendulum.mac")
+    scene.equations, scene.check(), scene.free(), scene.series(), scene.simulate(until=10)
 
-# Matrices here have some dozens of rows. On a busy machine BLAS takes twenty times as long for them with its threads as
-# without, as measured; NumPy reads this when it is first imported.
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+Importing the package imports nothing else and changes nothing; what a name needs is imported when it is first used.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .confined import Limits
+    from .failures import HolonomError
+    from .scene import Equations, MotionProgram, Scene, load, system
+
+PUBLIC = {
+    "load": ".scene",
+    "system": ".scene",
+    "Scene": ".scene",
+    "Equations": ".scene",
+    "MotionProgram": ".scene",
+    "Limits": ".confined",
+    "HolonomError": ".failures",
+}
+__all__ = ["Equations", "HolonomError", "Limits", "MotionProgram", "Scene", "load", "system"]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in PUBLIC:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(PUBLIC[name], __name__), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *PUBLIC})

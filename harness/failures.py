@@ -56,6 +56,8 @@ class Failure(Enum):
     NOT_A_SETTING = ("{detail} sets nothing", "write NAME=VALUE with a number, for instance N=64 or u0=3/10")
     NOT_A_PARAMETER = ("{detail} cannot be the name of a parameter", "give names with commas between them, such as m,g")
     NOT_A_FILE = ("this form is no text for the terminal", "say where it goes: -o DIR for C, -o FILE.fmu for FMI")
+    NOT_A_CHOICE = ("there is no {detail}", "")
+    NO_SUCH_SCENE = ("there is no scene {detail}", "give the name that a scene is assigned to")
     NOT_A_SCENE_NAME = ("{detail} cannot be the name of a scene", "give the name that the scene is assigned to")
     NOT_A_PROGRAM = ("this is not a motion program: {detail}", "write it anew with `holonom program`")
     NOT_COSTS = ("these are not the costs of a scene: {detail}", "compute them anew with `holonom effects`")

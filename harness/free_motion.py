@@ -19,6 +19,7 @@ from .mathjson import to_sympy
 from .maxima import ask_scene
 from .program.request import scene_argument
 from .record import read_system
+from .shown import Show, Shown
 
 Law = Mapping[str, Expr]
 
@@ -142,7 +143,7 @@ class PrescribedReactions:
 
 
 @dataclass(frozen=True)
-class FreeMotion:
+class FreeMotion(Shown):
     """The answers about one scene.
 
     ``verdict`` is None where the scene has no control law, ``prescribed`` where it prescribes no reactions.
@@ -154,6 +155,11 @@ class FreeMotion:
     universal: UniversalControls
     trajectory: TrajectoryControl
     prescribed: PrescribedReactions | None
+
+    def _table(self) -> Show:
+        from .cli.tables.free_motion import show_free_motion
+
+        return show_free_motion
 
 
 def free_motion(file: Path, scene: str | None, settings: Mapping[str, str], limits: Limits) -> FreeMotion:

@@ -15,6 +15,7 @@ MACHINE_AT_FAULT = 3
 INTERNAL_ERROR = 70
 INTERRUPTED = 130
 PIPE_CLOSED = 141
+OWN_PROCESS = object()  # what a command finds in its context when nothing else runs in its process
 
 
 class Commands(click.Group):
@@ -51,6 +52,8 @@ def holonom(verbose: bool) -> None:
 
 def main() -> None:
     """Run the command line and leave with its exit status."""
+    # As `holonom.threads` says; NumPy reads this when it is first imported.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
         ending = supervise(run)
     except HolonomError as error:
@@ -71,7 +74,7 @@ def run() -> int:
     """
     _write_what_can_be_written()
     try:
-        status = holonom(standalone_mode=False)
+        status = holonom(standalone_mode=False, obj=OWN_PROCESS)
         sys.stdout.flush()
         return status or 0
     except click.ClickException as error:

@@ -101,5 +101,5 @@ def effects(
     costs = measure_costs(read_costs(effects_document(scene_file, request, limits)))
     publish(json_text(asdict(costs)), json_file)
     if json_file != STANDARD_OUTPUT:
-        show_costs(make_console(), str(scene_file), costs)
+        show_costs(make_console(), costs)
     return 0

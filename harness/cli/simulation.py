@@ -1,5 +1,6 @@
 """The command about motion in numbers: simulate."""
 
+import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from fractions import Fraction
@@ -10,7 +11,7 @@ import click
 
 from ..confined import Limits
 from ..failures import HolonomError
-from .group import holonom
+from .group import OWN_PROCESS, holonom
 from .options import (
     STANDARD_OUTPUT,
     asks_one_scene,
@@ -110,7 +111,9 @@ def simulate(
     if json_file is not None:
         publish(json_text(report_document(simulation.report) if final else simulation_document(simulation)), json_file)
     if json_file != STANDARD_OUTPUT:
-        show_simulation(simulation)
+        from .tables.text import make_console
+
+        show_simulation(make_console(), simulation)
     return 0
 
 
@@ -128,7 +131,8 @@ def _digits_of(precision: str) -> int:
 @contextmanager
 def _imported_meanwhile() -> Iterator[None]:
     """Import what is needed next while the block waits for Maxima; the block itself must import nothing."""
-    importing = Thread(target=_import_what_follows)
+    own_process = click.get_current_context().obj is OWN_PROCESS
+    importing = Thread(target=_import_what_follows, args=(own_process,))
     importing.start()
     try:
         yield
@@ -136,11 +140,27 @@ def _imported_meanwhile() -> Iterator[None]:
         importing.join()
 
 
-def _import_what_follows() -> None:
+def _import_what_follows(own_process: bool) -> None:
     with suppress(ImportError, HolonomError):  # what is missing is told when it is needed
         import jsonschema  # noqa: F401
+
+        if own_process:
+            _import_heyoka_alone()
 
         from ..simulation import simulate  # noqa: F401
         from ..simulation.evaluation import wake_compiler
 
         wake_compiler()
+
+
+def _import_heyoka_alone() -> None:
+    """Import heyoka without SymPy, which takes four times as long and of which a simulation has no need.
+
+    heyoka remembers that it found none: only where nobody else uses it in this process.
+    """
+    if "sympy" not in sys.modules:
+        sys.modules["sympy"] = None
+        try:
+            import heyoka  # noqa: F401
+        finally:
+            del sys.modules["sympy"]

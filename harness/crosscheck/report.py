@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
+from ..shown import Show, Shown
+
 
 class Verdict(StrEnum):
     """What can be said of an equation once it has been compared with the independent evaluation."""
@@ -44,7 +46,7 @@ class EquationVerdict:
 
 
 @dataclass(frozen=True)
-class CheckReport:
+class CheckReport(Shown):
     """Verdicts on all equations of a record, in the record's order."""
 
     verdicts: tuple[EquationVerdict, ...]
@@ -53,3 +55,8 @@ class CheckReport:
     def disagreements(self) -> int:
         """Number of equations that disagree or are missing."""
         return sum(found.verdict is Verdict.DISAGREES for found in self.verdicts)
+
+    def _table(self) -> Show:
+        from ..cli.tables.derivation import show_verdicts
+
+        return show_verdicts

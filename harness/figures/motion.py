@@ -12,13 +12,14 @@ from .style import LINES, PALETTE, figure_style, new_figure, write_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 WIDTH, HEIGHT_OF_PANEL = 9.0, 3.2  # inches
 LEGIBLE = 12  # curves that a legend can still tell apart
 
 
 def draw_motion(simulation: Simulation, file: Path) -> None:
-    """Draw a motion.
+    """Draw a motion into a file.
 
     Parameters
     ----------
@@ -30,6 +31,18 @@ def draw_motion(simulation: Simulation, file: Path) -> None:
     ------
     HolonomError
         Matplotlib is not installed; the file cannot be written.
+    """
+    with figure_style():
+        write_figure(motion_figure(simulation), file)
+
+
+def motion_figure(simulation: Simulation) -> "Figure":
+    """The figure of a motion, a panel for each kind of quantity that it holds.
+
+    Raises
+    ------
+    HolonomError
+        Matplotlib is not installed.
     """
     groups = {
         "coordinates": simulation.coordinates,
@@ -46,7 +59,7 @@ def draw_motion(simulation: Simulation, file: Path) -> None:
             panel.set_ylabel(f"{title}\n(units of the scene)")
         panels[0].set_title(simulation.title)
         panels[-1].set_xlabel("t (units of the scene)")
-        write_figure(figure, file)
+    return figure
 
 
 def _draw(axes: "Axes", instants: NDArray[np.float64], curves: Mapping[str, NDArray]) -> None:

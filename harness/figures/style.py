@@ -122,6 +122,27 @@ def write_figure(figure: "Figure", path: Path) -> None:
     write_whole(path, _png(figure) if path.suffix == ".png" else svg_text(figure))
 
 
+class Picture:
+    """A figure that a notebook shows, and that can be written to a file.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+    """
+
+    def __init__(self, figure: "Figure") -> None:
+        self.figure = figure
+
+    def save(self, path: str | Path) -> None:
+        """Write it as SVG or PNG, as the name says."""
+        with figure_style():
+            write_figure(self.figure, Path(path))
+
+    def _repr_svg_(self) -> str:
+        with figure_style():
+            return svg_text(self.figure)
+
+
 def svg_text(figure: "Figure") -> str:
     """A figure as the text of an SVG document, its ink the reader's.
 

@@ -18,6 +18,7 @@ import jsonschema
 import numpy as np
 
 from ..failures import Failure, HolonomError
+from ..shown import Show, Shown
 from .c_function import compile_c
 from .motion_program import Program, program_of
 from .numpy_function import NumpyFunction
@@ -109,7 +110,7 @@ class EffectCost:
 
 
 @dataclass(frozen=True)
-class MeasuredCosts:
+class MeasuredCosts(Shown):
     """What a scene pays for, in operations and in time for one evaluation."""
 
     scene: str | None
@@ -118,6 +119,11 @@ class MeasuredCosts:
     measured_in: Measure
     terms: tuple[TermCost, ...]
     effects: tuple[EffectCost, ...]
+
+    def _table(self) -> Show:
+        from ..cli.tables.costs import show_costs
+
+        return show_costs
 
 
 def read_costs(text: str) -> Costs:

@@ -5,9 +5,7 @@ A value used twice is one expression object used twice, so that heyoka finds aga
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from types import ModuleType
 from typing import TYPE_CHECKING
@@ -199,28 +197,9 @@ def _arithmetic(heyoka: ModuleType, number: Callable[[Fraction], object]) -> Ari
 
 
 def import_heyoka() -> ModuleType:
-    """Import heyoka, or say that it is missing.
-
-    heyoka imports SymPy where it finds it, which takes four times as long as heyoka itself; nothing here needs both.
-    """
-    if (imported := sys.modules.get("heyoka")) is not None:
-        return imported
+    """Import heyoka, or say that it is missing."""
     try:
-        with _hidden("sympy"):
-            import heyoka
+        import heyoka
     except ImportError:
         raise HolonomError(Failure.EXTRA_MISSING, detail="heyoka") from None
     return heyoka
-
-
-@contextmanager
-def _hidden(module: str) -> Iterator[None]:
-    """Hide a module from imports inside the block, unless it is imported already."""
-    if module in sys.modules:
-        yield
-        return
-    sys.modules[module] = None
-    try:
-        yield
-    finally:
-        del sys.modules[module]

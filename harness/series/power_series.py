@@ -20,6 +20,7 @@ from ..confined import Limits
 from ..failures import Failure, HolonomError
 from ..maxima import ask_scene
 from ..program.request import scene_argument
+from ..shown import Show, Shown
 from .radius import Radius, estimate_radius, truncation_error
 
 EXACT = "exact"
@@ -66,7 +67,7 @@ class Continuation:
 
 
 @dataclass(frozen=True)
-class MotionSeries:
+class MotionSeries(Shown):
     """The power series of one motion about its initial instant.
 
     Attributes
@@ -102,6 +103,11 @@ class MotionSeries:
         """Radius of convergence about t0."""
         with mpmath.workdps(self.digits):
             return estimate_radius([numbers(series) for _, series in self.all_series()])
+
+    def _table(self) -> Show:
+        from ..cli.tables.series import show_series
+
+        return show_series
 
     def all_series(self) -> Iterator[tuple[str, Numbers]]:
         """Name and coefficients of each series."""

@@ -124,6 +124,8 @@ def truncation_error(coefficients: Sequence[mpmath.mpf], radius: Radius, time: f
 def _radius_of(coefficients: Sequence[mpmath.mpf]) -> Radius:
     if not any(coefficients[len(coefficients) // 2 :]):
         return POLYNOMIAL if len(coefficients) > FEWEST else TOO_FEW
+    if len(coefficients) < FEWEST:
+        return TOO_FEW
     scale, balanced = _balanced(coefficients)
     first, stride = _powers(balanced)
     strided = balanced[first::stride]

@@ -2,12 +2,19 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
 
+from ..failures import Failure, HolonomError
+from ..shown import Show, Shown
 from .diagnosis import HardCase
 from .engines.switching import Leg
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+    from ..figures.style import Picture
 
 Samples = Mapping[str, NDArray[Any]]
 
@@ -64,7 +71,7 @@ class Report:
 
 
 @dataclass(frozen=True)
-class Simulation:
+class Simulation(Shown):
     """A motion followed from its start to its end.
 
     Attributes
@@ -88,6 +95,51 @@ class Simulation:
     energy: Samples
     residuals: Samples
     report: Report
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        """Samples of one quantity: ``t``, a coordinate, ``dot(x)``, ``lambda1``, ``energy``, ``residual.position``.
+
+        Raises
+        ------
+        KeyError
+            There is no such quantity, or the scene does not observe it.
+        """
+        columns = dict(self.columns())
+        if name not in columns:
+            raise KeyError(f"no samples of {name!r}; the scene observes {', '.join(columns)}")
+        return columns[name]
+
+    def _table(self) -> Show:
+        from ..cli.tables.simulation import show_simulation
+
+        return show_simulation
+
+    def to_pandas(self) -> "DataFrame":
+        """All samples as a pandas DataFrame, a row an instant.
+
+        Raises
+        ------
+        HolonomError
+            pandas is not installed.
+        """
+        try:
+            from pandas import DataFrame
+        except ImportError:
+            raise HolonomError(Failure.EXTRA_MISSING, detail="pandas") from None
+        return DataFrame(dict(self.columns())).set_index("t")
+
+    def plot(self) -> "Picture":
+        """The motion as a picture, for a notebook or a file.
+
+        Raises
+        ------
+        HolonomError
+            Matplotlib is not installed.
+        """
+        from ..figures.motion import motion_figure
+        from ..figures.style import Picture
+
+        return Picture(motion_figure(self))
 
     def columns(self) -> Iterator[tuple[str, NDArray[Any]]]:
         """The time, then every series of samples with its name; residuals are named ``residual.position`` and so on."""

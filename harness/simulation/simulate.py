@@ -11,6 +11,7 @@ import numpy as np
 from ..failures import Failure, HolonomError
 from ..program.motion_problem import MotionProblem
 from ..program.precision import Precision, read_precision
+from ..threads import one_blas_thread
 from .constraints.singularity import require_gradient, shortly_before, vanishing_instants
 from .diagnosis import HardCase, Instant, dependence, hard_cases
 from .diagnostics import EnergyBalance, condition, residuals
@@ -44,7 +45,8 @@ def simulate(problem: MotionProblem, request: SimulationRequest, progress: Progr
     HolonomError
         The request cannot be met: its precision, tolerance, engine or end; or the motion cannot be followed so far.
     """
-    return _Simulation(problem, request).run(progress)
+    with one_blas_thread():
+        return _Simulation(problem, request).run(progress)
 
 
 def last_instant(problem: MotionProblem, until: Fraction | None, precision: Precision) -> Any:

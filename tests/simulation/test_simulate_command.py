@@ -36,17 +36,14 @@ def test_the_final_state_is_one_document():
 
 def test_a_simulation_waits_for_no_sympy():
     asked = ["simulate", str(PENDULUM), "--final", "--json", "-"]
-    script = f"import sys; from holonom.cli import holonom; holonom({asked}, standalone_mode=False); "
-    done = subprocess.run(
-        [
-            sys.executable,
-            "-c",
-            script + "print({'sympy', 'rich', 'matplotlib', 'scipy.integrate'} & sys.modules.keys())",
-        ],
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+    script = f"""
+import sys
+from holonom.cli.group import run
+sys.argv[1:] = {asked}
+run()
+print({{'sympy', 'rich', 'matplotlib', 'scipy.integrate'}} & sys.modules.keys())
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert done.stdout.endswith("}\nset()\n")
 
 

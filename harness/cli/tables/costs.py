@@ -14,11 +14,10 @@ if TYPE_CHECKING:
 NANOSECONDS = 1e9  # in a second
 
 
-def show_costs(console: Console, scene_file: str, costs: "MeasuredCosts") -> None:
+def show_costs(console: Console, costs: "MeasuredCosts") -> None:
     """Print the terms of (3) and (7) and the effects of a scene, with what each costs."""
-    title = f"{scene_file}: {costs.scene}" if costs.scene else scene_file
     unit = f"ns in {costs.measured_in}"
-    terms = Table("eq.", "term", "status", "operations", unit, title=title, title_justify="left")
+    terms = Table("eq.", "term", "status", "operations", unit, title=costs.scene, title_justify="left")
     for term in costs.terms:
         cost = (str(term.operations), _nanoseconds(term.seconds)) if term.status == "present" else ("", "")
         terms.add_row(term.equation, Text(term.term), styled(term.status), *cost)

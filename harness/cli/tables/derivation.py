@@ -29,8 +29,14 @@ def show_record(console: Console, record: "Record") -> None:
 
 
 def show_report(console: Console, scene: str, report: "CheckReport") -> None:
-    """Print the verdict on each equation of one scene file, and the disagreements in full."""
-    table = Table("no.", "equation", "verdict", "digits", "points", title=scene, title_justify="left")
+    """Print the verdicts on one scene file."""
+    console.print(scene, style="italic", soft_wrap=True, markup=False)
+    show_verdicts(console, report)
+
+
+def show_verdicts(console: Console, report: "CheckReport") -> None:
+    """Print the verdict on each equation, and the disagreements in full."""
+    table = Table("no.", "equation", "verdict", "digits", "points")
     for name, verdicts in groupby(report.verdicts, key=lambda verdict: verdict.scene):
         table.add_section()
         if name:

@@ -13,7 +13,7 @@ SHOWN_DIGITS = 12  # of numbers that would be longer than the next
 SHOWN_TEXT = 24  # characters of an exact number
 
 
-def show_series(console: Console, motion: "MotionSeries", values: "Values | None") -> None:
+def show_series(console: Console, motion: "MotionSeries", values: "Values | None" = None) -> None:
     """Print the power series of a motion, how far they hold, and values asked for."""
     from ...series.power_series import number
 

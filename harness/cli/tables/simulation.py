@@ -6,6 +6,8 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from rich.console import Console
+
     from ...simulation.result import Report, Simulation
 
 
@@ -33,14 +35,13 @@ def motion_progress(title: str) -> Iterator[Callable[[float], None] | None]:
         yield lambda fraction: shown.update(task, completed=fraction)
 
 
-def show_simulation(simulation: "Simulation") -> None:
+def show_simulation(console: "Console", simulation: "Simulation") -> None:
     """Print the end of a motion, and the report."""
     from rich.table import Table
 
     from ...simulation.document import report_document
-    from .text import make_console
 
-    console, report, document = make_console(), simulation.report, report_document(simulation.report)
+    report, document = simulation.report, report_document(simulation.report)
     console.print(f"{simulation.scene}: {simulation.title}, at t = {document['t']}", soft_wrap=True, markup=False)
     table = Table("", "", show_header=False)
     for group in ("coordinates", "velocities", "multipliers"):

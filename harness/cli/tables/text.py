@@ -1,9 +1,14 @@
 """The console, and how words, numbers and formulas are written on it."""
 
+import io
+from collections.abc import Callable
+
 from rich.console import Console
 from rich.text import Text
 
-PIPE_WIDTH = 160  # columns where there is no terminal to ask
+PIPE_WIDTH = 100_000  # columns where there is no terminal: no table is cut
+HTML_WIDTH = 110  # columns that fit a notebook's cell
+HTML = '<pre style="white-space: pre; overflow-x: auto; line-height: normal">{code}</pre>'
 STYLES = {
     "proved": "green",
     "agrees": "green",
@@ -24,6 +29,13 @@ def make_console() -> Console:
     if not console.is_terminal:
         console.width = PIPE_WIDTH
     return console
+
+
+def html_of(show: Callable[[Console], None]) -> str:
+    """What is shown on a console, as HTML for a notebook."""
+    console = Console(highlight=False, record=True, width=HTML_WIDTH, file=io.StringIO(), force_terminal=True)
+    show(console)
+    return console.export_html(inline_styles=True, code_format=HTML)
 
 
 def formula(expression: object) -> str:

@@ -1,0 +1,524 @@
+"""The front door: a scene as one object that can be asked for all that Holonom finds.
+
+What is asked for is computed when it is asked for, once; a scene does not change.
+"""
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from decimal import Decimal
+from enum import StrEnum
+from fractions import Fraction
+from functools import cache, cached_property
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any, TypeVar, overload
+
+from .confined import Limits
+from .failures import Failure, HolonomError
+from .files import write_files, write_whole
+from .program.motion_program import Program, Solve, read_program
+from .program.request import Request, program_document, read_settings
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from .crosscheck import CheckReport
+    from .free_motion import FreeMotion
+    from .program.c_function import CFunction
+    from .program.effects import MeasuredCosts
+    from .program.motion_problem import MotionProblem
+    from .program.numpy_function import NumpyFunction
+    from .record import Equation, Record, System
+    from .series.power_series import MotionSeries
+    from .simulation.result import Simulation
+    from .typeset.notebook import Letter
+
+Choice = TypeVar("Choice", bound=StrEnum)
+Number = int | float | Fraction | Decimal | str
+LOADS_THE_LIBRARY = re.compile(r"\bload\s*\(.*?holonom")
+
+
+def load(path: str | Path, scene: str | None = None, limits: Limits | None = None, **settings: Number) -> "Scene":
+    """Open a scene file.
+
+    Parameters
+    ----------
+    path : str or Path
+        A Maxima file that describes one system and any number of scenes.
+    scene : str or None
+        The name that the scene is assigned to; None for the last one in the file.
+    limits : Limits or None
+        What each run of Maxima may take; None for two minutes and 4 GiB.
+    **settings : int, float, Fraction, Decimal or str
+        Numbers for what the file leaves open and for parameters; a float counts as the decimal that prints it.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    HolonomError
+        There is no such file; a setting is no number.
+    """
+    file = Path(path)
+    if not file.is_file():
+        raise HolonomError(Failure.FILE_MISSING, file)
+    return Scene(file, scene, _settings(settings), limits or Limits())
+
+
+def system(text: str, scene: str | None = None, limits: Limits | None = None, **settings: Number) -> "Scene":
+    """Open a scene that is given as Maxima text.
+
+    Parameters
+    ----------
+    text : str
+        What a scene file holds; ``load("holonom.mac")`` may be left out.
+    scene, limits, **settings
+        As for `load`.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    HolonomError
+        A setting is no number.
+    """
+    directory = TemporaryDirectory(prefix="holonom-")
+    file = Path(directory.name, "system.mac")
+    library = "" if LOADS_THE_LIBRARY.search(text) else 'load("holonom.mac")$ '
+    file.write_text(library + text, encoding="utf-8")
+    opened = Scene(file, scene, _settings(settings), limits or Limits())
+    opened._directory = directory  # it is removed with the last scene that reads the file
+    return opened
+
+
+class Scene:
+    """A system put to work.
+
+    Parameters
+    ----------
+    file : Path
+    name : str or None
+    settings : mapping of str to str
+    limits : Limits
+    """
+
+    def __init__(self, file: Path, name: str | None, settings: Mapping[str, str], limits: Limits) -> None:
+        self.file, self.settings, self.limits = file, dict(settings), limits
+        self._name = name
+        self._directory: TemporaryDirectory[str] | None = None
+        self._problem = cache(self._ask_problem)
+
+    def with_settings(self, settings: Mapping[str, Number] | None = None, **more: Number) -> "Scene":
+        """The same scene with other numbers for what the file leaves open and for parameters."""
+        other = Scene(self.file, self._name, self.settings | _settings({**(settings or {}), **more}), self.limits)
+        other._directory = self._directory
+        return other
+
+    # ---- the derivation ----
+
+    @cached_property
+    def record(self) -> "Record":
+        """All that Maxima derives from the file."""
+        from .maxima import run_scene
+        from .record import read_record
+
+        return read_record(run_scene(self.file, self.limits, self.settings))
+
+    @property
+    def system(self) -> "System":
+        """The system as it is described, before anything is derived."""
+        return self.record.system
+
+    @cached_property
+    def equations(self) -> "Equations":
+        """The equations of the system with the scene's effects, (2) to (11), then those of its initial motion."""
+        record = self.record
+        named = [scene for scene in record.scenes if self._name in (None, scene.name)]
+        if self._name is not None and not named:
+            raise HolonomError(Failure.NO_SUCH_SCENE, self.file, self._name)
+        if not named:
+            return Equations(record.derivations[0].equations)
+        chosen = named[-1]
+        return Equations((*record.derivations[chosen.derivation].equations, *chosen.equations))
+
+    @cached_property
+    def symbols(self) -> Mapping[str, "Letter"]:
+        """SymPy symbols of the equations, by name: ``scene.symbols["dot(q1)"]``."""
+        from .typeset.notebook import letters
+
+        described = self.record.system
+        groups = ("coordinates", "velocities", "accelerations", "controls", "control_rates", "control_accelerations")
+        names = [name for group in (*groups, "parameters", "multipliers") for name in getattr(described, group)]
+        return letters([described.time, *names])
+
+    def check(self) -> "CheckReport":
+        """Compare every equation of the file with an independent SymPy evaluation."""
+        from .crosscheck import check_record
+
+        return check_record(self.record)
+
+    def free(self) -> "FreeMotion":
+        """When the motion is free: under its law, under which laws always, under which for one trajectory."""
+        from .free_motion import free_motion
+
+        return free_motion(self.file, self._name, self.settings, self.limits)
+
+    def effects(self) -> "MeasuredCosts":
+        """Which terms and effects there are, and what each costs in operations and in measured time."""
+        from .program.effects import measure_costs, read_costs
+        from .program.request import effects_document
+
+        return measure_costs(read_costs(effects_document(self.file, self._request("direct"), self.limits)))
+
+    # ---- the motion ----
+
+    def series(
+        self,
+        order: int = 20,
+        digits: int | str = "automatic",
+        precision: str | int | None = None,
+        until: Number | None = None,
+    ) -> "MotionSeries":
+        """Expand the initial motion in power series.
+
+        Parameters
+        ----------
+        order : int
+            Highest power of t - t0.
+        digits : int or str
+            Confirmed significant digits; ``exact`` for rationals or nothing; ``automatic``: exact where possible.
+        precision : str, int or None
+            Compute with heyoka instead, in ``double``, ``extended``, ``quadruple`` or so many digits.
+        until : number or None
+            Instant to which the motion is continued by further expansions.
+
+        Returns
+        -------
+        MotionSeries
+
+        Raises
+        ------
+        HolonomError
+            The control law is not analytic at t0, G is singular there, or the digits cannot be had.
+        """
+        from .series import heyoka_series, power_series
+
+        last = None if until is None else Fraction(str(until))
+        request = power_series.SeriesRequest(order, self._name, digits, last, self.settings)
+        if precision is None:
+            return power_series.compute_series(self.file, request, self.limits)
+        from .program.precision import read_precision
+
+        return heyoka_series.compute_series(self.file, request, read_precision(str(precision)), self.limits)
+
+    def simulate(
+        self,
+        until: Number | None = None,
+        samples: int | None = None,
+        tol: float | None = None,
+        precision: str | int = "double",
+        engine: str = "auto",
+        drift: str = "projection",
+        solve: str = "direct",
+        **parameters: Number,
+    ) -> "Simulation":
+        """Follow the motion in numbers.
+
+        Parameters
+        ----------
+        until : number or None
+            The last instant; None for the end of the scene's time span.
+        samples : int or None
+            So many equidistant instants; None for the engine's own steps.
+        tol : float or None
+            Tolerance of a step; None for what the precision holds.
+        precision : str or int
+            ``double``, ``extended``, ``quadruple`` or a number of digits.
+        engine : str
+            ``auto``, ``taylor``, ``runge-kutta`` or ``robust``.
+        drift : str
+            What keeps the constraints: ``projection``, ``baumgarte``, ``ggl`` or ``none``.
+        solve : str
+            ``direct`` or ``orthogonal``.
+        **parameters : number
+            Values in the place of the scene's; one that is named like an argument goes through `with_settings`.
+
+        Returns
+        -------
+        Simulation
+            ``motion["x"]`` is a series of samples, ``motion.to_pandas()`` all of them.
+
+        Raises
+        ------
+        HolonomError
+            The request cannot be met, or the motion cannot be followed so far.
+        """
+        if parameters:
+            return self.with_settings(parameters).simulate(until, samples, tol, precision, engine, drift, solve)
+        from .program.precision import read_precision
+        from .simulation.request import EngineName, SimulationRequest, Stabilization
+        from .simulation.simulate import simulate
+
+        last = None if until is None else Fraction(str(until))
+        problem = self._problem(solve, read_precision(str(precision)).digits)
+        follower, cure = _choice(EngineName, engine), _choice(Stabilization, drift)
+        request = SimulationRequest(tol, str(precision), follower, cure, last, samples)
+        return simulate(problem, request)
+
+    def rhs(self, solve: str = "direct") -> "RightHandSide":
+        """The equations of motion as f(t, y) for any integrator, y the coordinates and then the velocities.
+
+        The control law and the parameters are put in; nothing keeps the constraints but the accelerations.
+
+        Raises
+        ------
+        HolonomError
+            No order of pivots solves the equations of motion, as where constraints are redundant.
+        """
+        from .program.motion_problem import DOUBLE_DIGITS
+
+        return RightHandSide(self._problem(solve, DOUBLE_DIGITS))
+
+    def program(self, solve: str = "direct") -> "MotionProgram":
+        """The motion program: accelerations and multipliers of (t, q, dot q, u, dot u, ddot u)."""
+        return MotionProgram(self, self._request(solve))
+
+    def __repr__(self) -> str:
+        scene = f", scene={self._name!r}" if self._name else ""
+        settings = "".join(f", {name}={value}" for name, value in self.settings.items())
+        return f"<Scene {str(self.file)!r}{scene}{settings}>"
+
+    def _repr_html_(self) -> str | None:
+        return self.equations._repr_html_()
+
+    def _repr_latex_(self) -> str:
+        return self.equations._repr_latex_()
+
+    def _request(self, solve: str) -> Request:
+        return Request(self._name, _choice(Solve, solve), self.settings)
+
+    def _ask_problem(self, solve: str, digits: int) -> "MotionProblem":
+        from .program.motion_problem import motion_problem
+
+        return motion_problem(self.file, self._request(solve), self.limits, digits)
+
+
+class Equations(Sequence["Equation"]):
+    """Equations in the paper's order; a notebook shows them as typeset mathematics.
+
+    ``equations[0]`` is the first; ``equations["8"]`` are those with the paper's number (8), and
+    ``equations["multipliers"]`` the one of that name.
+    """
+
+    def __init__(self, equations: Iterable["Equation"]) -> None:
+        self._equations = tuple(equations)
+
+    def __len__(self) -> int:
+        return len(self._equations)
+
+    @overload
+    def __getitem__(self, key: int) -> "Equation": ...
+    @overload
+    def __getitem__(self, key: str | slice) -> "Equations": ...
+    def __getitem__(self, key: int | str | slice) -> "Equation | Equations":
+        if isinstance(key, int):
+            return self._equations[key]
+        if isinstance(key, slice):
+            return Equations(self._equations[key])
+        found = [equation for equation in self._equations if key in (equation.number, equation.name)]
+        if not found:
+            raise KeyError(f"no equation has the number or name {key!r}; there are {', '.join(self.titles())}")
+        return Equations(found)
+
+    def titles(self) -> Iterator[str]:
+        """Number and name of each."""
+        return (f"({equation.number}) {equation.name}" for equation in self._equations)
+
+    def solved_for(self, name: str) -> Any:
+        """The right side of the relation whose left side is the quantity of that name, in SymPy.
+
+        Raises
+        ------
+        KeyError
+            There is none.
+        """
+        from .typeset.notebook import in_letters
+
+        for equation in self._equations:
+            for relation in equation.relations:
+                if str(relation.left) == name:
+                    return in_letters(relation.right)
+        raise KeyError(name)
+
+    def __repr__(self) -> str:
+        return "\n".join(self.titles())
+
+    def _repr_html_(self) -> str | None:
+        from .typeset.notebook import equations_html
+
+        try:
+            return equations_html(self._equations)
+        except HolonomError:  # without latex2mathml the notebook takes the LaTeX
+            return None
+
+    def _repr_latex_(self) -> str:
+        from .typeset.notebook import equations_latex
+
+        return equations_latex(self._equations)
+
+
+class MotionProgram:
+    """The motion program of a scene, and the forms in which it can be taken elsewhere.
+
+    Parameters
+    ----------
+    scene : Scene
+    request : Request
+    """
+
+    def __init__(self, scene: Scene, request: Request) -> None:
+        self._scene, self._request = scene, request
+
+    @cached_property
+    def document(self) -> str:
+        """The program as one JSON document."""
+        return program_document(self._scene.file, self._request, self._scene.limits)
+
+    @cached_property
+    def program(self) -> Program:
+        """The program as objects."""
+        return read_program(self.document)
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of what it takes."""
+        return self.program.inputs
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of what it computes."""
+        return tuple(self.program.outputs)
+
+    @property
+    def operations(self) -> int:
+        """What one evaluation costs."""
+        return self.program.operations
+
+    def compile(self) -> "CFunction":
+        """A function of an array (inputs,) or (inputs, points), compiled by the system's C compiler."""
+        from .program.c_function import compile_c
+
+        return compile_c(self.program)
+
+    def lambdify(self) -> "NumpyFunction":
+        """The same function by NumPy alone."""
+        from .program.numpy_function import NumpyFunction
+
+        return NumpyFunction(self.program)
+
+    def to_python(self) -> str:
+        """A Python module that needs the standard library alone."""
+        from .program.python_source import python_source
+
+        return python_source(self.program)
+
+    def to_c(self, directory: str | Path, name: str | None = None, parameters: Sequence[str] = ()) -> None:
+        """Write a library in C11, as ``holonom program --to c`` does.
+
+        Parameters
+        ----------
+        directory : str or Path
+            It is made where it is missing.
+        name : str or None
+            What every public name begins with; None for the file's name.
+        parameters : sequence of str
+            Those that stay open although the scene gives them values.
+        """
+        from .program.c_library import c_library, default_name
+
+        write_files(Path(directory), c_library(self._model(parameters), name or default_name(self._scene.file)))
+
+    def to_fmu(self, file: str | Path, name: str | None = None, parameters: Sequence[str] = ()) -> None:
+        """Write an FMI 3.0 unit for model exchange; otherwise like `to_c`."""
+        from .program.c_library import default_name
+        from .program.fmu import write_fmu
+
+        write_whole(Path(file), write_fmu(self._model(parameters), name or default_name(self._scene.file)))
+
+    def __repr__(self) -> str:
+        return (
+            f"<MotionProgram of {len(self.inputs)} inputs, {len(self.outputs)} outputs, {self.operations} operations>"
+        )
+
+    def _model(self, parameters: Sequence[str]) -> Any:
+        from .program.model import scene_model
+
+        return scene_model(self._scene.file, self._request, parameters, self._scene.limits)
+
+
+@dataclass(frozen=True)
+class RightHandSide:
+    """f(t, y) of dy/dt = f(t, y), y the coordinates and then the velocities; arrays of states are columns.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+    """
+
+    problem: "MotionProblem"
+
+    def __post_init__(self) -> None:
+        if self.problem.motion is None:
+            raise HolonomError(Failure.NO_PIVOTS, detail=self.problem.obstacle)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What the components of y are."""
+        return self.problem.state
+
+    @property
+    def t0(self) -> float:
+        """The initial instant."""
+        return float(self.problem.start["t"])
+
+    @property
+    def y0(self) -> "NDArray":
+        """The initial state."""
+        import numpy as np
+
+        return np.array([float(self.problem.start[name]) for name in self.names])
+
+    @cached_property
+    def _accelerations(self) -> "NumpyFunction":
+        from .program.motion_problem import computing
+        from .program.numpy_function import NumpyFunction
+
+        program = computing(self.problem.motion, [f"ddot({name})" for name in self.problem.coordinates])
+        return NumpyFunction(replace(program, inputs=("t", *self.names)))
+
+    def __call__(self, t: float, y: "ArrayLike") -> "NDArray":
+        """The velocities and accelerations."""
+        import numpy as np
+
+        state = np.asarray(y, dtype=float)
+        instants = np.broadcast_to(np.asarray(t, dtype=float), state.shape[1:])
+        return np.concatenate([state[len(state) // 2 :], self._accelerations([instants, *state])])
+
+
+def _choice(choices: type[Choice], text: str) -> Choice:
+    """The member of an enumeration that is written so."""
+    try:
+        return choices(text)
+    except ValueError:
+        raise HolonomError(Failure.NOT_A_CHOICE, detail=f"{text}; there are {', '.join(choices)}") from None
+
+
+def _settings(settings: Mapping[str, Number]) -> dict[str, str]:
+    """Numbers in Maxima's notation."""
+    texts = {name: repr(value) if isinstance(value, float) else str(value) for name, value in settings.items()}
+    return read_settings(f"{name}={text.replace('e+', 'e').replace('E+', 'e')}" for name, text in texts.items())

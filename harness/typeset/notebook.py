@@ -1,0 +1,61 @@
+"""Equations and symbols as a notebook shows them: MathML where it can be made, LaTeX everywhere."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from html import escape
+from math import inf
+from typing import Any
+
+from sympy import Expr, Symbol
+
+from ..record import Equation
+from .equations import latex_equation
+from .mathml import mathml
+from .quantities import RATE, name_box
+
+WIDTH = 90  # digits of a formula's typeface that fit a notebook's cell
+
+
+class Letter(Symbol):
+    """A real quantity of a system that prints as its letter: dot(q1) with a dot and an index."""
+
+    def __new__(cls, name: str) -> "Letter":
+        """The one letter of that name."""
+        return Symbol.__new__(cls, name, real=True)
+
+    def __getnewargs_ex__(self) -> tuple[tuple[str], dict[str, Any]]:
+        return (self.name,), {}
+
+    def _latex(self, printer: Any) -> str:
+        return name_box(self.name).latex
+
+    def _pretty(self, printer: Any) -> Any:
+        rate = RATE.fullmatch(self.name)  # dot(q1) is q1dot to SymPy, which draws the dot
+        name = f"{rate[2]}{rate[1]}ot{rate[3]}" if rate else self.name
+        return printer._print_Symbol(Symbol(name))
+
+
+def in_letters(expression: Expr) -> Expr:
+    """An expression with `Letter` in the place of every symbol."""
+    return expression.xreplace({symbol: Letter(symbol.name) for symbol in expression.free_symbols})
+
+
+def letters(names: Iterable[str]) -> Mapping[str, Letter]:
+    """Each name with its letter."""
+    return {name: Letter(name) for name in names}
+
+
+def equations_html(equations: Iterable[Equation]) -> str:
+    """Equations under their numbers and names, formulas in MathML."""
+    return "\n".join(_html_parts(equations))
+
+
+def _html_parts(equations: Iterable[Equation]) -> Iterator[str]:
+    for equation in equations:
+        yield f"<p><b>({escape(equation.number)})</b> {escape(equation.name)}</p>"
+        yield from map(mathml, latex_equation(equation, WIDTH) if equation.relations else ())
+
+
+def equations_latex(equations: Iterable[Equation]) -> str:
+    """Equations one below the other, as LaTeX for a notebook's Markdown."""
+    formulas = (formula for equation in equations if equation.relations for formula in latex_equation(equation, inf))
+    return "\n".join(f"$$\n{formula}\n$$" for formula in formulas)

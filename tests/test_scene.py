@@ -1,0 +1,228 @@
+"""The front door: one object for all that a scene can be asked."""
+
+import subprocess
+import sys
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scipy.integrate
+import sympy
+
+import holonom
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+OSCILLATOR = """
+oscillator : holonomic_system(
+  coordinates      = [x],
+  parameters       = [m, k],
+  kinetic_energy   = m*dot(x)^2/2,
+  potential_energy = k*x^2/2,
+  constraints      = [])$
+released : holonomic_scene(oscillator,
+  parameter_values = [m = 1, k = 4],
+  initial_state    = [x = 1, dot(x) = 0],
+  time_span        = [0, 3])$
+pushed : holonomic_scene(oscillator,
+  parameter_values = [m = 1, k = 4],
+  initial_state    = [x = 0, dot(x) = 2],
+  time_span        = [0, 3])$
+"""
+
+
+@pytest.fixture(scope="module")
+def pendulum() -> holonom.Scene:
+    return holonom.load(EXAMPLES / "pendulum.mac", scene="lengthening_scene")
+
+
+@pytest.fixture(scope="module")
+def released() -> holonom.Scene:
+    return holonom.system(OSCILLATOR, scene="released")
+
+
+def run_python(code: str) -> str:
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+
+
+def test_importing_the_package_imports_and_changes_nothing():
+    code = """
+import os, sys
+before, environment = set(sys.modules), dict(os.environ)
+import holonom
+print({"numpy", "sympy", "click", "heyoka"} & (set(sys.modules) - before))
+print(os.environ == environment)
+"""
+    assert run_python(code).split() == ["set()", "True"]
+
+
+def test_heyoka_still_takes_sympy_after_a_simulation():
+    code = f"""
+import holonom
+holonom.load({str(EXAMPLES / "pendulum.mac")!r}).simulate(until=1, samples=2)
+import heyoka, sympy
+print(heyoka.from_sympy(sympy.Symbol("x") + 1))
+"""
+    assert "x" in run_python(code)
+
+
+def test_simulating_leaves_blas_its_threads(released):
+    from threadpoolctl import threadpool_info
+
+    before = threadpool_info()
+    released.simulate(samples=2)
+    assert [pool["num_threads"] for pool in threadpool_info()][: len(before)] == [p["num_threads"] for p in before]
+
+
+def test_all_public_names_are_there():
+    assert set(holonom.__all__) <= set(dir(holonom))
+    assert all(getattr(holonom, name) for name in holonom.__all__)
+    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
+        _ = holonom.nothing
+
+
+def test_equations_are_found_by_number_and_by_name(pendulum):
+    assert len(pendulum.equations["8"]) == 2
+    [multipliers] = pendulum.equations["multipliers"]
+    assert multipliers in list(pendulum.equations)
+    with pytest.raises(KeyError, match=r"\(8\) multipliers"):
+        pendulum.equations["multiplicators"]
+
+
+def test_the_multiplier_is_the_closed_form(pendulum):
+    m, g, x, y, vx, vy, u, du, ddu = (
+        pendulum.symbols[name] for name in ["m", "g", "x", "y", "dot(x)", "dot(y)", "u", "dot(u)", "ddot(u)"]
+    )
+    expected = m * (g * y + u * ddu + du**2 - vx**2 - vy**2) / (2 * (x**2 + y**2))
+    assert sympy.simplify(pendulum.equations.solved_for("lambda1") - expected) == 0
+
+
+def test_symbols_print_as_dotted_letters(pendulum):
+    rate = pendulum.symbols["dot(x)"]
+    assert sympy.latex(rate + 1) == r"\dot{x} + 1"
+    assert sympy.pretty(rate) == sympy.pretty(sympy.Symbol("xdot"))
+    assert str(rate) == "dot(x)"
+    assert rate.is_real
+
+
+def test_a_notebook_shows_typeset_equations(pendulum):
+    equations = pendulum.equations["multipliers"]
+    assert r"\lambda_{1} = \frac" in equations._repr_latex_()
+    assert '<math xmlns="http://www.w3.org/1998/Math/MathML"' in equations._repr_html_()
+    assert pendulum._repr_html_() == pendulum.equations._repr_html_()
+
+
+def test_without_latex2mathml_a_notebook_takes_the_latex(pendulum, monkeypatch):
+    monkeypatch.setitem(sys.modules, "latex2mathml.converter", None)
+    assert pendulum.equations["multipliers"]._repr_html_() is None
+
+
+def test_check_and_free_answer_what_the_commands_answer(pendulum):
+    assert pendulum.check().disagreements == 0
+    assert "proved" in pendulum.check()._repr_html_()
+    assert pendulum.free().scene == "lengthening_scene"
+    assert "condition of free motion" in pendulum.free()._repr_html_()
+
+
+def test_effects_names_gravity(pendulum):
+    costs = pendulum.effects()
+    assert "gravity" in {effect.name for effect in costs.effects}
+    assert "gravity" in costs._repr_html_()
+
+
+def test_the_series_of_the_oscillator_is_the_cosine(released):
+    found = released.series(order=8).coordinates["x"]
+    assert [Fraction(c) for c in found] == [Fraction(c) for c in (1, 0, -2, 0, "2/3", 0, "-4/45", 0, "2/315")]
+    assert "order" in released.series(order=2)._repr_html_()
+
+
+def test_the_motion_of_the_oscillator_is_the_cosine(released):
+    motion = released.simulate(until=3, samples=31)
+    assert motion["x"] == pytest.approx(np.cos(2 * motion["t"]), abs=1e-13)
+    assert motion.to_pandas()["x"].iloc[-1] == motion["x"][-1]
+    assert "energy error" in motion._repr_html_()
+    with pytest.raises(KeyError, match="the scene observes t, x"):
+        motion["y"]
+
+
+def test_a_parameter_takes_the_place_of_the_scenes(released):
+    assert released.simulate(until=1, samples=2, k=9)["x"][-1] == pytest.approx(np.cos(3), abs=1e-13)
+    assert released.simulate(until=1, samples=2, k=2.25)["x"][-1] == pytest.approx(np.cos(1.5), abs=1e-13)
+    assert released.with_settings({"m": 4}).simulate(until=1, samples=2)["x"][-1] == pytest.approx(np.cos(1), abs=1e-13)
+
+
+def test_a_scene_is_chosen_by_its_name_and_the_last_one_without():
+    assert holonom.system(OSCILLATOR).simulate(until=1, samples=2)["x"][-1] == pytest.approx(np.sin(2), abs=1e-13)
+    with pytest.raises(holonom.HolonomError, match="there is no scene 'nowhere'"):
+        holonom.system(OSCILLATOR, scene="nowhere").simulate()
+    with pytest.raises(holonom.HolonomError, match="there is no scene nowhere"):
+        _ = holonom.system(OSCILLATOR, scene="nowhere").equations
+
+
+def test_settings_reach_the_file():
+    chain = holonom.load(EXAMPLES / "chain.mac", N=3)
+    assert "ddot(y3)" in chain.program().outputs
+
+
+@pytest.mark.parametrize("value", ["quit()", float("inf"), "1 + 1"])
+def test_a_setting_that_is_no_number_is_refused(value):
+    with pytest.raises(holonom.HolonomError, match="sets nothing"):
+        holonom.system(OSCILLATOR, k=value)
+
+
+@pytest.mark.parametrize("choice", [{"engine": "warp"}, {"drift": "tape"}, {"solve": "guess"}])
+def test_what_is_no_choice_is_told_the_choices(released, choice):
+    with pytest.raises(holonom.HolonomError, match="there is no (warp|tape|guess); there are "):
+        released.simulate(**choice)
+
+
+def test_a_missing_file_is_refused_at_once():
+    with pytest.raises(holonom.HolonomError, match="there is no such file"):
+        holonom.load("nowhere.mac")
+
+
+def test_the_right_hand_side_serves_another_integrator(pendulum):
+    f = pendulum.rhs()
+    assert f.names == ("x", "y", "dot(x)", "dot(y)")
+    found = scipy.integrate.solve_ivp(f, (f.t0, 2), f.y0, method="DOP853", rtol=1e-12, atol=1e-12)
+    motion = pendulum.simulate(until=2, samples=2)
+    assert found.y[0, -1] == pytest.approx(motion["x"][-1], abs=1e-8)
+    assert f(0.0, np.stack([f.y0, f.y0], axis=1))[:, 1] == pytest.approx(f(0.0, f.y0), rel=1e-15)
+
+
+def test_redundant_constraints_have_no_right_hand_side():
+    with pytest.raises(holonom.HolonomError, match="cannot be solved"):
+        holonom.system("""
+            twice : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+                                     constraints = [x - y, x - y])$
+            slide : holonomic_scene(twice, initial_state = [x = 0, dot(x) = 1])$""").rhs()
+
+
+def test_every_form_of_the_program_gives_the_same_numbers(pendulum, tmp_path):
+    program = pendulum.program(solve="orthogonal")
+    point = np.random.default_rng(3).uniform(1, 2, size=len(program.inputs))
+    module = {}
+    exec(program.to_python(), module)
+    assert program.compile()(point) == pytest.approx(program.lambdify()(point), rel=1e-12)
+    assert module["motion"](point.tolist()) == pytest.approx(program.lambdify()(point), rel=1e-12)
+    program.to_c(tmp_path / "crane", name="crane", parameters=["m"])
+    assert {file.name for file in (tmp_path / "crane").iterdir()} >= {"crane.c", "crane.h", "CMakeLists.txt"}
+
+
+def test_a_motion_is_drawn_for_notebooks_and_files(pendulum, tmp_path):
+    picture = pendulum.simulate(until=1, samples=11).plot()
+    assert picture._repr_svg_().startswith("<?xml")
+    picture.save(tmp_path / "motion.png")
+    assert (tmp_path / "motion.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_text_of_a_system_is_removed_with_its_last_scene():
+    scene = holonom.system(OSCILLATOR)
+    file, other = scene.file, scene.with_settings(k=9)
+    del scene
+    assert file.exists()
+    del other
+    import gc
+
+    gc.collect()
+    assert not file.exists()
