@@ -1,0 +1,314 @@
+;;; Terms of the expression graph in numbers, at a point; and ranks of sparse matrices of them
+;;;
+;;; Values are rationals, rounded to 80 digits once they are longer. A sum is zero where its terms
+;;; cancel to a share of 10^-20: sin(x)^2 + cos(x)^2 - 1 is, x + 10^-15 is not, in whatever units.
+;;; No number is compared with a fixed size, so that scaling a row or a column changes no rank.
+;;;
+;;; The rank is found by elimination, a row at a time, with the pivot in the column that fewest
+;;; rows share; a point on the manifold f = 0 by Newton's method, each correction the shortest.
+;;; What f leaves of a zero is 10^-55 then, much less than what counts as zero; where f has no
+;;; simple zero, as (x - u)^2, Newton's method gets there as well, only slowly.
+
+(in-package :maxima)
+
+(defvar *digits-at-point* 80)
+
+(defvar *zero-share* (expt 10 -20) "Sums that cancel to less of their largest term are zero.")
+
+(defvar *zero-share-of-constraints* (expt 10 -55))
+
+(defvar *zero-share-of-floats* 1d-12)
+
+(defvar *small-coordinate* (expt 10 -20))
+
+(defvar *floating* nil "Whether numbers are floating-point ones, for a start.")
+
+(defvar *most-corrections* 400)
+
+(defvar *impatience* 40 "Corrections after which each must be smaller than the one before.")
+
+(defstruct sample-point
+  (symbols (make-hash-table))              ; symbol -> rational
+  (known (make-hash-table)))               ; node number -> rational
+
+(defun $sample_point (equations)
+  "The point with  name = rational number."
+  (let ((point (make-sample-point)))
+    (dolist (e (cdr equations) point)
+      (setf (gethash (second e) (sample-point-symbols point)) (rational-of (third e))))))
+
+;;; ---- values ------------------------------------------------------------------------------
+
+(defun value-at (term point)
+  (if (zero-term-p term)
+      0
+      (short-number (* (term-coefficient term) (node-value (term-node term) point)))))
+
+(defun node-value (node point)
+  (let ((known (sample-point-known point)))
+    (or (gethash (node-number node) known)
+        (setf (gethash (node-number node) known) (value-by-parts node point)))))
+
+(defun value-by-parts (node point)
+  (case (node-kind node)
+    (symbol (or (gethash (node-parts node) (sample-point-symbols point))
+                (number-from-maxima (node-parts node))))
+    (held (node-value (node-parts node) point))
+    (sum (sum-of-numbers (mapcar #'(lambda (term) (value-at term point)) (node-parts node))))
+    (product (let ((value 1))
+               (dolist (factor (node-parts node) value)
+                 (setq value (short-number
+                              (* value (whole-power (node-value (factor-node factor) point)
+                                                    (factor-exponent factor))))))))
+    (call (value-of-call (car (node-parts node))
+                         (mapcar #'(lambda (term) (value-at term point)) (cdr (node-parts node)))))))
+
+(defun sum-of-numbers (numbers)
+  (let ((sum (reduce #'+ numbers)))
+    (if (< (abs sum) (* *zero-share* (reduce #'max (mapcar #'abs numbers))))
+        0
+        (short-number sum))))
+
+(defun whole-power (number exponent)
+  (if (and (zerop number) (minusp exponent)) (irregular-point))
+  (expt number exponent))
+
+(defun value-of-call (operator numbers)
+  (let ((arguments (mapcar #'maxima-number numbers)))
+    (number-from-maxima
+     (if (eq operator '%exp)
+         (list '(mexpt) '$%e (car arguments))
+         (cons (list operator) arguments)))))
+
+(defun number-from-maxima (e)
+  (if *floating* (float-from-maxima e) (exact-from-maxima e)))
+
+(defun float-from-maxima (e)
+  (let* (($errormsg nil) (found (errset ($float (simplifya e nil)))))
+    (if (numberp (car found)) (car found) (irregular-point))))
+
+(defun exact-from-maxima (e)
+  (let* (($errormsg nil)
+         (fpprec (digits-in-bits (+ *digits-at-point* 10)))
+         (found (errset ($bfloat (simplifya e nil)))))
+    (cond ((integerp (car found)) (car found))
+          ((bigfloatp (car found))
+           (times-power-of-two (second (car found))
+                               (- (third (car found)) (car (last (caar found))))))
+          (t (irregular-point)))))
+
+(defun short-number (number)
+  (if (floatp number) number (short-rational number)))
+
+(defun short-rational (number)
+  (let ((bits (digits-in-bits *digits-at-point*)))
+    (if (< (+ (integer-length (numerator number)) (integer-length (denominator number))) (* 2 bits))
+        number
+        (let ((exponent (- (binary-magnitude number) bits)))
+          (times-power-of-two (nearest-integer number exponent) exponent)))))
+
+(defun digits-in-bits (digits) (ceiling (* digits (log 10d0 2d0))))
+
+(defun irregular-point () (throw 'irregular-point nil))
+
+(defun $rows_at_point (rows point)
+  "Sparse rows [[column, term], ...] in numbers, zeros left out; false where one has no real value."
+  (catch 'irregular-point
+    (cons '(mlist) (mapcar #'(lambda (row) (maxima-row (row-at-point row point))) (cdr rows)))))
+
+(defun row-at-point (row point)
+  "The entries (column . number) that are not zero, in the order of their columns."
+  (let ((entries nil))
+    (dolist (e (cdr row) (sort entries #'< :key #'car))
+      (let ((value (value-at (expression-term (third e)) point)))
+        (if (not (zerop value)) (push (cons (second e) value) entries))))))
+
+(defun maxima-row (row)
+  (cons '(mlist)
+        (mapcar #'(lambda (e) (list '(mlist) (car e) (maxima-number (cdr e)))) row)))
+
+(defun row-from-maxima (row)
+  (mapcar #'(lambda (e) (cons (second e) (rational-of (third e)))) (cdr row)))
+
+;;; ---- elimination -------------------------------------------------------------------------
+
+(defstruct echelon
+  pivots                                   ; list of (column . row), the last first
+  dependent)                               ; numbers of the rows that depend on those before them
+
+(defun echelon-of (rows)
+  "Elimination row by row. Column 0, if there is one, is a right-hand side."
+  (let ((rows (coerce rows 'vector)) (holders (make-hash-table)) (found (make-echelon)))
+    (dotimes (i (length rows))
+      (dolist (e (aref rows i)) (push i (gethash (car e) holders))))
+    (dotimes (i (length rows) found)
+      (let ((pivot (chosen-pivot (aref rows i) holders)))
+        (cond ((null pivot) (push (1+ i) (echelon-dependent found)))
+              (t (push (cons (car pivot) (aref rows i)) (echelon-pivots found))
+                 (eliminate-column pivot i rows holders)))))))
+
+(defun chosen-pivot (row holders)
+  "Of the entries that are not small in their row, the one that fewest rows share."
+  (let ((largest 0) (pivot nil) (fewest nil))
+    (dolist (e row) (if (plusp (car e)) (setq largest (max largest (abs (cdr e))))))
+    (dolist (e row pivot)
+      (if (and (plusp (car e)) (>= (* 10 (abs (cdr e))) largest))
+          (let ((count (length (gethash (car e) holders))))
+            (if (or (null fewest) (< count fewest)) (setq pivot e fewest count)))))))
+
+(defun eliminate-column (pivot i rows holders)
+  (dolist (k (gethash (car pivot) holders))
+    (let ((entry (if (> k i) (assoc (car pivot) (aref rows k)))))
+      (if entry
+          (setf (aref rows k)
+                (row-less-multiple (aref rows k) (short-number (/ (cdr entry) (cdr pivot)))
+                                   (aref rows i) (car pivot) k holders))))))
+
+(defun row-less-multiple (row multiple other column k holders)
+  "row - multiple*other, without the column that vanishes. New entries are told to the holders."
+  (let ((result nil))
+    (do () ((and (null row) (null other)) (nreverse result))
+      (cond ((or (null other) (and row (< (caar row) (caar other))))
+             (push (pop row) result))
+            ((or (null row) (< (caar other) (caar row)))
+             (push k (gethash (caar other) holders))
+             (push (cons (caar other) (short-number (- (* multiple (cdr (pop other)))))) result))
+            (t (let* ((e (pop row))
+                      (value (sum-of-numbers (list (cdr e) (- (* multiple (cdr (pop other))))))))
+                 (if (and (/= (car e) column) (not (zerop value)))
+                     (push (cons (car e) value) result))))))))
+
+(defun substituted-back (echelon values)
+  "Values of the pivots' columns, the others and that of the right-hand side, column 0, given."
+  (dolist (pivot (echelon-pivots echelon) values)
+    (let ((sum 0) (own nil))
+      (dolist (e (cdr pivot))
+        (if (eql (car e) (car pivot))
+            (setq own (cdr e))
+            (incf sum (* (cdr e) (gethash (car e) values 0)))))
+      (setf (gethash (car pivot) values) (short-number (/ (- sum) own))))))
+
+(defun $rank_of_rows (rows)
+  (length (echelon-pivots (echelon-of (mapcar #'row-from-maxima (cdr rows))))))
+
+(defun $independent_rows (rows)
+  "Numbers of the rows that do not depend on those before them."
+  (let ((dependent (echelon-dependent (echelon-of (mapcar #'row-from-maxima (cdr rows))))))
+    (cons '(mlist)
+          (remove-if #'(lambda (i) (member i dependent))
+                     (let ((numbers nil)) (dotimes (i (length (cdr rows)) (nreverse numbers)) (push (1+ i) numbers)))))))
+
+(defun $null_vector (rows size)
+  "A list x of so many numbers, not all of them zero, with  rows . x = 0; false where there is none."
+  (let* ((echelon (echelon-of (mapcar #'row-from-maxima (cdr rows))))
+         (bound (mapcar #'car (echelon-pivots echelon)))
+         (values (make-hash-table))
+         (open (do ((column 1 (1+ column))) ((or (> column size) (not (member column bound))) column))))
+    (if (<= open size)
+        (let ((x nil))
+          (setf (gethash open values) 1)
+          (substituted-back echelon values)
+          (dotimes (i size (cons '(mlist) (nreverse x)))
+            (push (maxima-number (gethash (1+ i) values 0)) x))))))
+
+;;; ---- a point on the manifold -------------------------------------------------------------
+
+(defun $point_on_manifold (point constraints jacobian coordinates)
+  "The point, its coordinates changed until the constraints hold; false where Newton's method does
+not get there. constraints: list of terms; jacobian: their gradients by the coordinates, sparse."
+  (let ((close (or (point-near-manifold point constraints jacobian coordinates) point))
+        (*zero-share* *zero-share-of-constraints*))
+    (catch 'irregular-point
+      (newton-iteration close constraints jacobian coordinates))))
+
+(defun point-near-manifold (point constraints jacobian coordinates)
+  "The same in floating point, which is quicker; nil where that does not get there."
+  (let* ((*floating* t)
+         (*zero-share* *zero-share-of-floats*)
+         (found (errset (catch 'irregular-point
+                          (newton-iteration (converted-point point #'float-of) constraints
+                                            jacobian coordinates)))))
+    (if (car found) (converted-point (car found) #'rational))))
+
+(defun float-of (number) (float number 1d0))
+
+(defun newton-iteration (point constraints jacobian coordinates)
+  (let ((last-size nil))
+    (dotimes (attempt (if *floating* *impatience* *most-corrections*) nil)
+      (let ((residuals (mapcar #'(lambda (f) (value-at (expression-term f) point)) (cdr constraints))))
+        (if (every #'zerop residuals) (return (converted-point point #'identity)))
+        (let* ((corrections (newton-corrections residuals jacobian point))
+               (size (largest-correction corrections)))
+          (if (and (> attempt *impatience*) last-size (>= size last-size)) (return nil))
+          (setq last-size size
+                point (corrected-point point corrections (cdr coordinates))))))))
+
+(defun newton-corrections (residuals jacobian point)
+  "The shortest change of the coordinates, column -> number: J^T x with J J^T x = -f."
+  (let* ((rows (mapcar #'(lambda (row) (row-at-point row point)) (cdr jacobian)))
+         (columns (columns-of rows))
+         (unknowns (make-hash-table))
+         (corrections (make-hash-table))
+         (beta 0))
+    (setf (gethash 0 unknowns) 1)
+    (substituted-back
+     (echelon-of (mapcar #'(lambda (residual row) (with-right-side residual (gram-row row columns)))
+                         residuals rows))
+     unknowns)
+    (dolist (row rows corrections)
+      (let ((x (gethash (incf beta) unknowns 0)))
+        (dolist (e row) (incf (gethash (car e) corrections 0) (* x (cdr e))))))))
+
+(defun columns-of (rows)
+  "column -> list of (row . number)"
+  (let ((columns (make-hash-table)) (beta 0))
+    (dolist (row rows columns)
+      (incf beta)
+      (dolist (e row) (push (cons beta (cdr e)) (gethash (car e) columns))))))
+
+(defun gram-row (row columns)
+  "The row of J J^T that a row of J gives, in the order of its columns."
+  (let ((products (make-hash-table)) (entries nil))
+    (dolist (e row)
+      (dolist (other (gethash (car e) columns))
+        (push (* (cdr e) (cdr other)) (gethash (car other) products))))
+    (maphash #'(lambda (beta numbers)
+                 (let ((value (sum-of-numbers numbers)))
+                   (if (not (zerop value)) (push (cons beta value) entries))))
+             products)
+    (sort entries #'< :key #'car)))
+
+(defun with-right-side (residual row)
+  (if (zerop residual) row (acons 0 residual row)))
+
+(defun largest-correction (corrections)
+  (let ((largest 0))
+    (maphash #'(lambda (column value) (declare (ignore column)) (setq largest (max largest (abs value))))
+             corrections)
+    largest))
+
+(defun corrected-point (point corrections coordinates)
+  (let ((corrected (converted-point point #'identity)) (column 0))
+    (dolist (q coordinates corrected)
+      (let ((correction (gethash (incf column) corrections 0)))
+        (setf (gethash q (sample-point-symbols corrected))
+              (landed (short-number (+ (gethash q (sample-point-symbols point)) correction))))))))
+
+;; A coordinate that gets so small is on its way to zero: the points are drawn nowhere near it.
+(defun landed (coordinate)
+  (if (< (abs coordinate) *small-coordinate*) 0 coordinate))
+
+(defun $moved_point (point coordinates)
+  "A point close by, its coordinates moved in a direction without symmetry."
+  (let ((moved (converted-point point #'identity)) (column 0))
+    (dolist (q (cdr coordinates) moved)
+      (incf (gethash q (sample-point-symbols moved))
+            (/ (1+ (mod (* 7 (incf column)) 11)) 10007)))))
+
+(defun converted-point (point conversion)
+  "The point, its numbers converted, and nothing else known of it."
+  (let ((copy (make-sample-point)))
+    (maphash #'(lambda (symbol value)
+                 (setf (gethash symbol (sample-point-symbols copy)) (funcall conversion value)))
+             (sample-point-symbols point))
+    copy))
