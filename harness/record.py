@@ -134,11 +134,14 @@ class Derivation:
     """The equations of the system with the effects named.
 
     `closed_form_operations` counts the operations of (8) and (11) as written; None where they are too long to read
-    and stay a linear system, which the motion program solves.
+    and stay a linear system, which the motion program solves. `mass_matrix` is ``regular``; or ``supported`` where it
+    is singular and the constraints make up for it: A + J^T J is in its place in what is solved, and J^T times (7) is
+    added to the equations of motion.
     """
 
     effects: tuple[str, ...]
     equations: tuple[Equation, ...]
+    mass_matrix: str
     closed_form_operations: int | None
 
 
@@ -262,6 +265,7 @@ def _derivation(derivation: dict[str, Any]) -> Derivation:
     return Derivation(
         tuple(derivation["effects"]),
         _each(_equation, derivation["equations"]),
+        derivation["mass_matrix"],
         derivation["closed_form_operations"],
     )
 

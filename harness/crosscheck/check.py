@@ -59,7 +59,8 @@ def check_record(record: Record) -> CheckReport:
 
 def _claims(record: Record, derived: Derivation) -> DerivationClaims:
     system = described_system(record.system, derived.effects)
-    return DerivationClaims(IndependentEquations(system), tuple(derived.equations))
+    supported = derived.mass_matrix == "supported"
+    return DerivationClaims(IndependentEquations(system, supported), tuple(derived.equations))
 
 
 def _check_derivation(claims: DerivationClaims) -> Iterator[EquationVerdict]:

@@ -17,7 +17,6 @@ import sympy as sp
 from ..record import Equation, Relation
 from .claims import Entries, NotComparable, entries_of, require_names, residual_pairs, solved_for
 from .independent import IndependentEquations
-from .linear import LinearEquations
 from .system import MechanicalSystem
 from .verdict import Comparison, Pair
 
@@ -103,15 +102,15 @@ def driven_accelerations(claims: DerivationClaims, relations: Relations) -> Comp
 
 
 def inverse_mass_matrix(claims: DerivationClaims, relations: Relations) -> Comparison:
-    """(5): A^ls A_sk is the unit matrix."""
+    """(5): A^ls A_sk is the unit matrix, or the inverse of A + J^T J where A is singular."""
     require_names(("A_inverse",), relations)
     n = len(claims.system.coordinates)
     inverse = entries_of("A_inverse", (n, n), relations)
-    A = LinearEquations(claims.system.accelerations, claims.known.kinetic).coefficients
+    A = claims.known.inverted
     return Comparison(
         tuple(
             Pair(
-                f"row {row + 1} of A_inverse, times column {k + 1} of A",
+                f"row {row + 1} of A_inverse, times column {k + 1} of what it inverts",
                 sp.Add(*(_entry(inverse, row, s) * A[s][k] for s in range(n))),
                 sp.Integer(row == k),
             )

@@ -22,9 +22,18 @@ from .system import MechanicalSystem
 
 @dataclass(frozen=True)
 class IndependentEquations:
-    """The equations of motion of one system, as residuals that vanish on every motion."""
+    """The equations of motion of one system, as residuals that vanish on every motion.
+
+    Attributes
+    ----------
+    system : MechanicalSystem
+    supported : bool
+        Whether J^T times the constraint accelerations is added where accelerations are solved for: for a mass matrix
+        that is singular, and regular together with the constraints.
+    """
 
     system: MechanicalSystem
+    supported: bool = False
 
     @cached_property
     def motion(self) -> tuple[sp.Expr, ...]:
@@ -66,14 +75,14 @@ class IndependentEquations:
     @cached_property
     def driven(self) -> LinearEquations:
         """Equations for the n accelerations, the multipliers given."""
-        return LinearEquations(self.system.accelerations, self.motion)
+        return LinearEquations(self.system.accelerations, self._solvable_motion)
 
     @cached_property
     def free(self) -> LinearEquations:
         """Equations for the n accelerations, every multiplier zero."""
         released = dict.fromkeys(self.system.multipliers, sp.Integer(0))
         return LinearEquations(
-            self.system.accelerations, tuple(residual.xreplace(released) for residual in self.motion)
+            self.system.accelerations, tuple(residual.xreplace(released) for residual in self._solvable_motion)
         )
 
     @cached_property
@@ -91,6 +100,22 @@ class IndependentEquations:
             (*self.system.jerks, *self.system.multiplier_rates),
             tuple(self.system.total_rate(residual) for residual in self.bordered.residuals),
         )
+
+    @cached_property
+    def _solvable_motion(self) -> tuple[sp.Expr, ...]:
+        """The n residuals of Lagrange's equations, the constraint accelerations added where A needs them."""
+        if not self.supported:
+            return self.motion
+        pairs = list(zip(self.system.constraints, self.constraint_accelerations, strict=True))
+        return tuple(
+            residual + sp.Add(*(f.diff(q) * rate for f, rate in pairs))
+            for q, residual in zip(self.system.coordinates, self.motion, strict=True)
+        )
+
+    @cached_property
+    def inverted(self) -> list[list[sp.Expr]]:
+        """The n x n matrix that is solved with: A, or A + J^T J."""
+        return self.driven.coefficients
 
     def _lagrangian_derivatives(self, function: sp.Expr) -> tuple[sp.Expr, ...]:
         """d/dt dX/d dot(q_s) - dX/dq_s, over s, of a function X of the state."""

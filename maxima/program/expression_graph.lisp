@@ -418,6 +418,8 @@
 
 ;;; ---- what the Maxima side calls ----------------------------------------------------------
 
+(defun $graph_variables () (hash-table-count (expression-graph-variables $expression_graph)))
+
 (defun $graph_term (e) (expression-term e))
 
 (defun $graph_sum (terms) (sum-of (mapcar #'expression-term (cdr terms))))

@@ -1,0 +1,42 @@
+"""A mass matrix that only the constraints make regular: derived, and every equation proved."""
+
+import dataclasses
+
+import pytest
+
+from holonom.crosscheck import Verdict, check_record
+from holonom.maxima import run_scene
+from holonom.record import Record, read_record
+
+# A spring on a massless hook, which a cart of mass m and a winch move: lambda1 = k z by the hook's own equation.
+MASSLESS_HOOK = """
+load("holonom.mac")$
+system : holonomic_system(
+  coordinates = [x, z], controls = [u], parameters = [m, k],
+  kinetic_energy = m*dot(x)^2/2, potential_energy = k*z^2/2, constraints = [z - x - u^2])$
+scene : holonomic_scene(system, control_law = [u = 1 + t], parameter_values = [m = 1, k = 2],
+  initial_state = [x = 1, dot(x) = 0], time_span = [0, 1])$
+"""
+
+
+@pytest.fixture
+def record(write_scene) -> Record:
+    return read_record(run_scene(write_scene(MASSLESS_HOOK)))
+
+
+def test_every_equation_is_proved(record):
+    report = check_record(record)
+    assert {found.verdict for found in report.verdicts if "SymPy" not in found.name} == {Verdict.PROVED}
+    assert not report.disagreements
+    assert {found.number for found in report.verdicts} >= {"4", "5", "8", "9", "10", "11", "13", "18"}
+
+
+def test_the_multiplier_is_the_spring_force(record):
+    (solved,) = [e for e in record.derivations[0].equations if e.name == "multipliers"]
+    assert [str(relation.right) for relation in solved.relations] == ["k*z"]
+
+
+def test_a_singular_mass_matrix_that_is_said_to_be_regular_is_found(record):
+    claimed = dataclasses.replace(record.derivations[0], mass_matrix="regular")
+    report = check_record(dataclasses.replace(record, derivations=(claimed,), scenes=()))
+    assert {found.number for found in report.verdicts if found.verdict is Verdict.DISAGREES} >= {"4", "5", "10"}
