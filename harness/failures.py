@@ -1,13 +1,17 @@
 """What can go wrong, each way with its sentence and its remedy."""
 
+import re
+from collections.abc import Collection
 from enum import Enum
 from pathlib import Path
+
+OPTION = re.compile(r"--[a-z-]+")
 
 
 class Failure(Enum):
     """A way to fail: the sentence that names it, in which {detail} stands for the case, and the remedy."""
 
-    FILE_MISSING = ("there is no such file", "give the path of a scene, for instance examples/paper/paper.mac")
+    FILE_MISSING = ("there is no such file{detail}", "give the path of a scene, for instance examples/paper/paper.mac")
     FILE_UNREADABLE = ("the file cannot be read: {detail}", "give the path of a readable Maxima file")
     NOT_UTF8 = ("the file is not UTF-8 text: byte {detail}", "save it as UTF-8")
     NOT_MAXIMA = (
@@ -57,7 +61,7 @@ class Failure(Enum):
     NOT_A_PARAMETER = ("{detail} cannot be the name of a parameter", "give names with commas between them, such as m,g")
     NOT_A_FILE = ("this form is no text for the terminal", "say where it goes: -o DIR for C, -o FILE.fmu for FMI")
     NOT_A_CHOICE = ("there is no {detail}", "")
-    NO_SUCH_SCENE = ("there is no scene {detail}", "give the name that a scene is assigned to")
+    NO_SUCH_SCENE = ("there is no scene {detail}", "")
     NOT_A_SCENE_NAME = ("{detail} cannot be the name of a scene", "give the name that the scene is assigned to")
     NOT_A_PROGRAM = ("this is not a motion program: {detail}", "write it anew with `holonom program`")
     NOT_COSTS = ("these are not the costs of a scene: {detail}", "compute them anew with `holonom effects`")
@@ -164,7 +168,20 @@ class HolonomError(Exception):
         self.command = command
 
     def __str__(self) -> str:
+        return self.sentence()
+
+    def sentence(self, options: Collection[str] | None = None) -> str:
+        """What went wrong, where, and what to do.
+
+        Parameters
+        ----------
+        options : collection of str or None
+            Options of the command that is told, such as ``--until``: advice to use others is left out.
+        """
         sentence, remedy = self.failure.value
         said, advised = (text.format(detail=self.detail) for text in (sentence, remedy))
+        if options is not None:
+            clauses = advised.split(", or ")
+            advised = ", or ".join(clause for clause in clauses if set(OPTION.findall(clause)) <= set(options))
         located = f"{self.place}: {said}" if self.place else said
         return located.rstrip(".") + (f"; {advised}." if advised else ".")

@@ -8,6 +8,7 @@ import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from difflib import get_close_matches
 from pathlib import Path
 
 from .failures import Failure, HolonomError
@@ -120,6 +121,16 @@ def _sweep(path: Path) -> None:
             _remove_private_directory(path)
         finally:
             os.close(lock)
+
+
+def near_file(missing: Path) -> str:
+    """What a file that is missing may have been meant to be, as the end of a sentence; empty where nothing is near."""
+    try:
+        names = [file.name for file in missing.parent.iterdir()]
+    except OSError:
+        return ""
+    near = get_close_matches(missing.name, names, n=1)
+    return f", but there is {missing.with_name(near[0])}" if near else ""
 
 
 def write_whole(path: Path, content: str | bytes) -> None:

@@ -26,7 +26,7 @@ import psutil
 
 from .confined import MIB, Confinement, LimitExceeded, Limits, Sandbox, run_confined
 from .failures import Failure, HolonomError
-from .files import private_directory
+from .files import near_file, private_directory
 
 LIBRARY = Path(__file__).resolve().parents[1] / "maxima"
 HEADLESS = Path(__file__).with_name("headless.lisp")
@@ -293,7 +293,7 @@ def read_maxima_text(file: Path) -> str:
             raise HolonomError(Failure.FILE_UNREADABLE, file, "it is no regular file")
         content = file.read_bytes()
     except FileNotFoundError:
-        raise HolonomError(Failure.FILE_MISSING, file) from None
+        raise HolonomError(Failure.FILE_MISSING, file, near_file(file)) from None
     except OSError as error:
         raise HolonomError(Failure.FILE_UNREADABLE, file, error.strerror or str(error)) from None
     try:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 from .confined import Limits
 from .failures import Failure, HolonomError
-from .files import write_files, write_whole
+from .files import near_file, write_files, write_whole
 from .program.motion_program import Program, Solve, read_program
 from .program.request import Request, program_document, read_settings
 
@@ -64,7 +64,7 @@ def load(path: str | Path, scene: str | None = None, limits: Limits | None = Non
     """
     file = Path(path)
     if not file.is_file():
-        raise HolonomError(Failure.FILE_MISSING, file)
+        raise HolonomError(Failure.FILE_MISSING, file, near_file(file))
     return Scene(file, scene, _settings(settings), limits or Limits())
 
 
@@ -140,7 +140,8 @@ class Scene:
         record = self.record
         named = [scene for scene in record.scenes if self._name in (None, scene.name)]
         if self._name is not None and not named:
-            raise HolonomError(Failure.NO_SUCH_SCENE, self.file, self._name)
+            names = ", ".join(scene.name for scene in record.scenes) or "none"
+            raise HolonomError(Failure.NO_SUCH_SCENE, self.file, f"{self._name}; the file has {names}")
         if not named:
             return Equations(record.derivations[0].equations)
         chosen = named[-1]

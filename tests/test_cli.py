@@ -5,9 +5,12 @@ import os
 import subprocess
 import sys
 import time
+from importlib import metadata
 from pathlib import Path
 
 import pytest
+
+from holonom.failures import Failure, HolonomError
 
 HOLONOM = [sys.executable, "-m", "holonom"]
 
@@ -129,3 +132,75 @@ def test_ctrl_c_leaves_quietly(write_scene):
     _, said = process.communicate(timeout=10)
     assert process.returncode == 130
     assert "Traceback" not in said
+
+
+@pytest.mark.parametrize(
+    ("arguments", "meant"),
+    [
+        (["simulat", "scene.mac"], "Did you mean simulate?"),
+        (["derive", "examples/pendulm.mac"], "but there is examples/pendulum.mac"),
+        (["series", "examples/pendulum.mac", "--ordr", "3"], "--order"),
+    ],
+)
+def test_a_name_that_is_nearly_right_is_told_the_right_one(arguments, meant):
+    done = holonom(*arguments, cwd=Path(__file__).parents[1])
+    assert done.returncode == 2
+    assert meant in done.stderr
+
+
+def test_a_scene_may_stand_on_standard_input(particle_scene):
+    text = particle_scene.read_text()
+    done = holonom("derive", "-", "--json", "-", input=text)
+    assert done.returncode == 0
+    assert json.loads(done.stdout) == json.loads(holonom("derive", particle_scene, "--json", "-").stdout)
+
+
+def test_quiet_prints_nothing_but_what_is_asked_for(particle_scene):
+    silent, asked = holonom("-q", "check", particle_scene), holonom("-q", "check", particle_scene, "--json", "-")
+    assert (silent.returncode, silent.stdout) == (0, "")
+    assert json.loads(asked.stdout)["disagreements"] == 0
+
+
+def test_tables_are_not_cut_in_a_pipe(write_scene):
+    name = "x" + "_very_long" * 30
+    scene = write_scene(f"""load("holonom.mac")$
+system : holonomic_system(coordinates = [{name}], kinetic_energy = dot({name})^2/2, constraints = [])$
+fall : holonomic_scene(system, initial_state = [{name} = 0, dot({name}) = 1], time_span = [0, 1])$""")
+    assert f"dot({name})" in holonom("simulate", scene, "--final").stdout
+    assert name in holonom("series", scene, "--order", "3").stdout
+
+
+def test_version_tells_all_that_decides_the_numbers():
+    told = dict(line.split(maxsplit=1) for line in holonom("--version").stdout.splitlines())
+    assert set(told) == {"holonom", "Maxima", "heyoka", "SymPy"}
+    assert told["Maxima"].startswith(f"{version_of_maxima()} on ")
+    assert told["SymPy"] == metadata.version("sympy")
+
+
+def version_of_maxima() -> str:
+    printed = subprocess.run(["maxima", "--version"], capture_output=True, text=True, check=True).stdout
+    return printed.split()[-1]
+
+
+def test_doctor_tells_what_is_missing_and_the_command_that_installs_it(tmp_path):
+    environment = {**os.environ, "PATH": f"{tmp_path}:{Path(sys.executable).parent}"}
+    done = holonom("doctor", "--json", "-", env=environment)
+    components = {each["name"]: each for each in json.loads(done.stdout)["components"]}
+    assert done.returncode == 1
+    assert components["maxima"]["version"] is None
+    assert "maxima" in components["maxima"]["remedy"]
+    assert components["sympy"]["version"] == metadata.version("sympy")
+    assert components["heyoka"]["remedy"] == "pip install 'holonom[motion]'"
+
+
+def test_doctor_finds_this_installation_whole():
+    done = holonom("doctor")
+    assert done.returncode == 0
+    assert metadata.version("heyoka") in done.stdout
+
+
+@pytest.mark.parametrize("failure", list(Failure))
+def test_advice_names_no_option_that_the_command_lacks(failure):
+    error = HolonomError(failure, "scene.mac", "detail")
+    assert "--" not in error.sentence(())
+    assert error.sentence({"--until", "--time-limit", "--engine", "--drift", "--precision"}).endswith(".")

@@ -9,13 +9,13 @@ import click
 from ..confined import Limits
 from ..failures import Failure, HolonomError
 from .group import holonom
-from .options import runs_scenes, takes_settings
+from .options import SceneFile, runs_scenes, takes_settings
 
 EXTRAS = ("jinja2", "latex2mathml", "matplotlib", "heyoka")
 
 
 @holonom.command()
-@click.argument("scenes", metavar="[SCENE...]", nargs=-1, type=click.Path(path_type=Path))
+@click.argument("scenes", metavar="[SCENE...]", nargs=-1, type=SceneFile())
 @click.option(
     "-o",
     "--output",

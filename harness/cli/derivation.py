@@ -9,7 +9,7 @@ import click
 
 from ..confined import Limits
 from .group import holonom
-from .options import STANDARD_OUTPUT, json_text, publish, runs_scenes, takes_settings, writes_json
+from .options import STANDARD_OUTPUT, SceneFile, json_text, publish, runs_scenes, takes_settings, writes_json
 
 if TYPE_CHECKING:
     from ..crosscheck import CheckReport
@@ -19,7 +19,7 @@ DISAGREEMENT = 1
 
 
 @holonom.command()
-@click.argument("scene", type=click.Path(path_type=Path))
+@click.argument("scene", type=SceneFile())
 @takes_settings
 @writes_json
 @click.option(
@@ -44,7 +44,7 @@ def derive(scene: Path, settings: Sequence[str], json_file: Path | None, tex_fil
 
 
 @holonom.command()
-@click.argument("scenes", metavar="SCENE...", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.argument("scenes", metavar="SCENE...", nargs=-1, required=True, type=SceneFile())
 @takes_settings
 @writes_json
 @runs_scenes

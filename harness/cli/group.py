@@ -4,6 +4,8 @@ import io
 import os
 import sys
 import traceback
+from collections.abc import Collection
+from difflib import get_close_matches
 from typing import Any
 
 import click
@@ -27,7 +29,7 @@ class Commands(click.Group):
         try:
             return super().invoke(ctx)
         except HolonomError as error:
-            return _refused(error, verbose)
+            return _refused(error, verbose, self._options(ctx))
         except BrokenPipeError:
             return PIPE_CLOSED
         except MemoryError:
@@ -39,15 +41,48 @@ class Commands(click.Group):
         except Exception as error:
             return _internal_error(error, verbose)
 
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Find the command; one that there is not is told what it may have been meant to be."""
+        try:
+            return super().resolve_command(ctx, args)
+        except click.UsageError as error:
+            if near := get_close_matches(args[0], self.list_commands(ctx)):
+                error.message += f" Did you mean {' or '.join(near)}?"
+            raise
+
+    def _options(self, ctx: click.Context) -> set[str]:
+        """Options of the command that runs."""
+        command = self.get_command(ctx, ctx.invoked_subcommand or "")
+        return {option for parameter in (command.params if command else ()) for option in parameter.opts}
+
 
 @click.group(cls=Commands)
 @click.option("-v", "--verbose", is_flag=True, help="On failure show Maxima's last lines and how to repeat the run.")
-@click.version_option(package_name="holonom")
-def holonom(verbose: bool) -> None:
+@click.option("-q", "--quiet", is_flag=True, help="Print no tables: only failures, and what `-` asks for.")
+@click.option(
+    "--version",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=lambda *arguments: _print_versions(*arguments),
+    help="Tell the versions of Holonom, Maxima and its Lisp, heyoka and SymPy.",
+)
+def holonom(verbose: bool, quiet: bool) -> None:
     """Controllable holonomic systems with redundant coordinates, derived by Maxima and checked by SymPy.
 
     A SCENE is a Maxima file that describes a system and what to do with it.
     """
+
+
+def _print_versions(ctx: click.Context, parameter: click.Parameter, wanted: bool) -> None:
+    if wanted and not ctx.resilient_parsing:
+        from ..installation import versions
+
+        for name, version in versions().items():
+            click.echo(f"{name} {version}")
+        ctx.exit()
 
 
 def main() -> None:
@@ -105,8 +140,8 @@ def _machine_refuses(error: OSError) -> int:
     return _told(f"this machine refuses: {what}; see to it, and run it again.", MACHINE_AT_FAULT)
 
 
-def _refused(error: HolonomError, verbose: bool) -> int:
-    _told(str(error), error.failure.status)
+def _refused(error: HolonomError, verbose: bool, options: Collection[str]) -> int:
+    _told(error.sentence(options), error.failure.status)
     if verbose:
         for line in error.last_lines:
             click.echo(f"  | {line}", err=True)

@@ -11,6 +11,7 @@ import click
 
 from ..confined import Limits, Sandbox, bubblewrap
 from ..failures import Failure, HolonomError
+from ..files import private_directory
 from ..supervisor import limit_time
 
 STANDARD_OUTPUT = Path("-")
@@ -20,6 +21,23 @@ UNWALLED = (
     "holonom: bubblewrap is missing or forbidden here: the scene is confined by limits alone and may reach your files; "
     "install it, or say --trust."
 )
+
+
+class SceneFile(click.Path):
+    """A scene file; ``-`` is what stands on standard input, kept in a file of its own while the command runs."""
+
+    name = "scene"
+
+    def __init__(self) -> None:
+        super().__init__(path_type=Path)
+
+    def convert(self, value: Any, parameter: click.Parameter | None, ctx: click.Context | None) -> Path:
+        """The path of the file."""
+        if value != str(STANDARD_OUTPUT) or ctx is None:
+            return super().convert(value, parameter, ctx)
+        file = Path(ctx.with_resource(private_directory()), "standard_input.mac")
+        file.write_bytes(click.get_binary_stream("stdin").read())
+        return file
 
 
 def writes_json(command: Callable[..., int]) -> Callable[..., int]:
@@ -44,7 +62,7 @@ def asks_one_scene(command: Callable[..., int]) -> Callable[..., int]:
     """Give a command a scene file, the name of a scene in it, and numbers for what the file leaves open."""
     command = takes_settings(command)
     command = click.option("--scene", metavar="NAME", help="The scene in the file; without it, the last one.")(command)
-    return click.argument("scene_file", metavar="SCENE", type=click.Path(path_type=Path))(command)
+    return click.argument("scene_file", metavar="SCENE", type=SceneFile())(command)
 
 
 def runs_scenes(command: Callable[..., int]) -> Callable[..., int]:

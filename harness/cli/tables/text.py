@@ -3,6 +3,7 @@
 import io
 from collections.abc import Callable
 
+import click
 from rich.console import Console
 from rich.text import Text
 
@@ -24,8 +25,9 @@ STYLES = {
 
 
 def make_console() -> Console:
-    """Console on standard output."""
-    console = Console(highlight=False)
+    """Console on standard output, silent where the command line says --quiet."""
+    ctx = click.get_current_context(silent=True)
+    console = Console(highlight=False, quiet=ctx is not None and bool(ctx.find_root().params.get("quiet")))
     if not console.is_terminal:
         console.width = PIPE_WIDTH
     return console

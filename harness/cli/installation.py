@@ -1,0 +1,25 @@
+"""The command about the installation: doctor."""
+
+from dataclasses import asdict
+from pathlib import Path
+
+from .group import holonom
+from .options import STANDARD_OUTPUT, json_text, publish, writes_json
+
+MISSING = 1
+
+
+@holonom.command()
+@writes_json
+def doctor(json_file: Path | None) -> int:
+    """Say what is installed, what is missing, and the command that installs it."""
+    from ..installation import components
+    from .tables.installation import show_components
+    from .tables.text import make_console
+
+    found = list(components())
+    document = {"format": "holonom-doctor", "version": 1, "components": [asdict(each) for each in found]}
+    publish(json_text(document), json_file)
+    if json_file != STANDARD_OUTPUT:
+        show_components(make_console(), found)
+    return MISSING if any(each.needed and each.version is None for each in found) else 0

@@ -1,0 +1,98 @@
+"""What of all that Holonom can use is installed, and how to install the rest."""
+
+import json
+import re
+import shutil
+from collections.abc import Iterator
+from dataclasses import dataclass
+from importlib import metadata
+
+from .failures import HolonomError
+from .maxima import LIBRARY, run_batch
+
+REQUIREMENT = re.compile(r"(?P<package>[\w.-]+)[^;]*(?:;.*extra\s*==\s*['\"](?P<extra>\w+)['\"])?")
+USERS_EXTRAS = ("motion", "sweep", "companion")  # the others are for those who develop Holonom
+# Names of the system's packages, by the command that installs them.
+INSTALLERS = {
+    "apt-get": ("apt-get install", {"maxima": "maxima", "cc": "gcc libc6-dev", "gsl-config": "libgsl-dev"}),
+    "dnf": ("dnf install", {"maxima": "maxima", "cc": "gcc", "gsl-config": "gsl-devel"}),
+    "pacman": ("pacman -S", {"maxima": "maxima", "cc": "gcc", "gsl-config": "gsl"}),
+    "brew": ("brew install", {"maxima": "maxima", "cc": "gcc", "gsl-config": "gsl"}),
+}
+PROGRAMS = {
+    "maxima": "everything: it derives the equations",
+    "cc": "compiled programs, --to fmu, the Runge-Kutta engine",
+    "gsl-config": "the Runge-Kutta engine",
+    "bwrap": "--sandbox",
+}
+NEEDED = "maxima"
+
+
+@dataclass(frozen=True)
+class Component:
+    """Something that Holonom uses.
+
+    Attributes
+    ----------
+    name : str
+    version : str or None
+        None where it is missing; empty where it does not tell.
+    purpose : str
+        What it serves.
+    needed : bool
+        Nothing works without it.
+    remedy : str
+        The command that installs it.
+    """
+
+    name: str
+    version: str | None
+    purpose: str
+    needed: bool
+    remedy: str
+
+
+def components() -> Iterator[Component]:
+    """All that Holonom uses, programs of the system first."""
+    for program, purpose in PROGRAMS.items():
+        version = None if shutil.which(program) is None else ""
+        if program == "maxima" and version is not None:
+            version = maxima_version()
+        yield Component(program, version, purpose, program == NEEDED, _install_program(program))
+    for requirement in metadata.requires("holonom") or ():
+        found = REQUIREMENT.match(requirement)
+        package, extra = found["package"], found["extra"]
+        if extra is None:
+            yield Component(package, _version(package), "the core", True, "pip install holonom")
+        elif extra in USERS_EXTRAS:
+            yield Component(package, _version(package), extra, False, f"pip install 'holonom[{extra}]'")
+
+
+def maxima_version() -> str | None:
+    """Maxima's version and its Lisp's; None where it does not run."""
+    try:
+        document = json.loads(run_batch(LIBRARY / "holonom.mac", "write_versions"))
+    except HolonomError:
+        return None
+    return f"{document['maxima']} on {document['lisp']} {document['lisp_version']}"
+
+
+def versions() -> dict[str, str]:
+    """Versions that decide what Holonom computes, by name; what is missing is said to be."""
+    packages = {name: _version(name.lower()) for name in ("heyoka", "SymPy")}
+    found = {"holonom": _version("holonom"), "Maxima": maxima_version(), **packages}
+    return {name: version or "not installed" for name, version in found.items()}
+
+
+def _version(package: str) -> str | None:
+    try:
+        return metadata.version(package)
+    except metadata.PackageNotFoundError:
+        return None
+
+
+def _install_program(program: str) -> str:
+    for installer, (command, packages) in INSTALLERS.items():
+        if shutil.which(installer):
+            return f"{command} {packages.get(program, 'bubblewrap')}"
+    return f"install {program} with the package manager of your system"
