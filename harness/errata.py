@@ -3,12 +3,11 @@
 Maxima does all of it, from `examples/paper/printed.mac`; this module runs that and reads the answer.
 """
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 
+from .documents import Document, ask, read
 from .mathjson import Tree
-from .maxima import run_batch
 
 PRINTED = Path(__file__).resolve().parents[1] / "examples" / "paper" / "printed.mac"
 
@@ -62,5 +61,5 @@ def errata() -> tuple[PrintedEquation, ...]:
     HolonomError
         Maxima is missing or refuses.
     """
-    document = json.loads(run_batch(PRINTED, "write_errata"))
+    document = read(Document.ERRATA, ask(Document.ERRATA, PRINTED))
     return tuple(PrintedEquation(**equation) for equation in document["equations"])

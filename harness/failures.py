@@ -47,6 +47,7 @@ class Failure(Enum):
     TOO_LONG = ("Maxima took longer than {detail}", "ask for less, or raise --time-limit")
     TOO_LARGE = ("Maxima took more memory than {detail}", "ask for less, or raise --memory-limit")
     TOO_MUCH_TEXT = ("Maxima printed more than {detail}", "print less")
+    NOT_A_DOCUMENT = ("this is no document {detail}", "write it anew with this version of holonom")
     NOT_A_RECORD = ("this is not a derivation record: {detail}", "derive it anew with `holonom derive`")
     NOT_AN_EXPRESSION = ("{detail} is not an expression that a derivation record can hold", "")
     UNWRITABLE = ("the output cannot be written: {detail}", "give a file in a directory that can be written")
@@ -64,7 +65,6 @@ class Failure(Enum):
     NO_SUCH_SCENE = ("there is no scene {detail}", "")
     NOT_A_SCENE_NAME = ("{detail} cannot be the name of a scene", "give the name that the scene is assigned to")
     NOT_A_PROGRAM = ("this is not a motion program: {detail}", "write it anew with `holonom program`")
-    NOT_COSTS = ("these are not the costs of a scene: {detail}", "compute them anew with `holonom effects`")
     NOT_AN_IDENTIFIER = ("{detail} cannot name a function in C and Python", "use letters, digits and underscores")
     INPUT_MISSING = ("nothing is given for {detail}", "give the controls a law and the parameters their values")
     COMPILER_MISSING = (
@@ -73,7 +73,6 @@ class Failure(Enum):
     )
     COMPILER_REFUSED = ("the C compiler refused the motion program: {detail}", "")
     EXTRA_MISSING = ("this needs {detail}, which is not installed", "run `make`, or `pip install {detail}`")
-    NOT_A_SERIES = ("this is not a power series: {detail}", "compute it anew with `holonom series`")
     BEYOND_RADIUS = ("{detail}", "ask for an earlier time, or continue the motion with --until")
     ORDER_TOO_HIGH = ("{detail}", "ask for a lower order, or for digits")
     NOT_A_PRECISION = ("{detail}", "take another one, or ask for --digits, which Maxima computes with")

@@ -3,7 +3,6 @@
 And the motion under prescribed reactions, of which free motion is the case zero.
 """
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,10 +13,8 @@ from .confined import Limits
 from .crosscheck.system import described_system
 from .crosscheck.universal_laws import LawOfControls, judge_law
 from .crosscheck.verdict import Judgement
-from .failures import Failure, HolonomError
+from .documents import Document, ask, read
 from .mathjson import to_sympy
-from .maxima import ask_scene
-from .program.request import scene_argument
 from .record import read_system
 from .shown import Show, Shown
 
@@ -189,10 +186,8 @@ def free_motion(file: Path, scene: str | None, settings: Mapping[str, str], limi
     ----------
     Chen, Guo & Mei (2019), section 2, eq. (10).
     """
-    writer = f"lambda([file], write_free_motion(file, {scene_argument(scene)}))"
-    document = json.loads(ask_scene(file, writer, limits, settings))
-    if document.get("format") != "holonom-free-motion":
-        raise HolonomError(Failure.NOT_A_RECORD, file, "it holds no free motion")
+    text = ask(Document.FREE_MOTION, file, scene, settings=settings, limits=limits)
+    document = read(Document.FREE_MOTION, text)
     law, trajectory, prescribed = (document[part] for part in ("law", "trajectory", "prescribed"))
     return FreeMotion(
         document["scene"],

@@ -1,23 +1,23 @@
 """The derivation record: what Maxima derived from one scene file, typed and frozen.
 
-This is the only module that knows the record's wire format. The shape is checked against `schemas/record.json`, the
-expressions by `holonom.mathjson`; what is read is data, and nothing in it is evaluated as code.
+This is the only module that knows the record's wire format. Its expressions are read by `holonom.mathjson`: data, of
+which nothing is evaluated as code.
 """
 
-import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
 
-import jsonschema
 from sympy import Expr
 
+from .confined import Limits
+from .documents import Document, ask, read
 from .failures import Failure, HolonomError
 from .mathjson import Tree, to_sympy
+from .maxima import DEFAULT_LIMITS, NO_SETTINGS
 
-SCHEMA = Path(__file__).with_name("schemas") / "record.json"
 NAMED_QUANTITIES = (
     "coordinates",
     "velocities",
@@ -191,6 +191,11 @@ class Record:
     scenes: tuple[Scene, ...]
 
 
+def derived_record(file: Path, settings: Mapping[str, str] = NO_SETTINGS, limits: Limits = DEFAULT_LIMITS) -> "Record":
+    """Derive a scene file; raises as `holonom.documents.ask` and `read_record`."""
+    return read_record(ask(Document.RECORD, file, settings=settings, limits=limits))
+
+
 def read_record(text: str) -> Record:
     """Read a derivation record.
 
@@ -209,8 +214,7 @@ def read_record(text: str) -> Record:
     HolonomError
         The text is not JSON, has not the shape of a record, or one of its expressions is malformed.
     """
-    document = _parsed(text)
-    _require_shape(document)
+    document = read(Document.RECORD, text)
     record = Record(
         maxima=document["maxima"],
         system=read_system(document["system"]),
@@ -221,22 +225,6 @@ def read_record(text: str) -> Record:
         if scene.derivation >= len(record.derivations):
             raise HolonomError(Failure.NOT_A_RECORD, detail=f"the scene {scene.name} has no derivation")
     return record
-
-
-def _parsed(text: str) -> Any:
-    try:
-        return json.loads(text)
-    except json.JSONDecodeError as error:
-        raise HolonomError(Failure.NOT_A_RECORD, detail=f"line {error.lineno} is not JSON, {error.msg}") from None
-    except (RecursionError, ValueError):
-        raise HolonomError(Failure.NOT_A_RECORD, detail="it is nested too deeply or holds too long a number") from None
-
-
-def _require_shape(document: Any) -> None:
-    schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
-    validator = jsonschema.Draft202012Validator(schema)
-    if error := jsonschema.exceptions.best_match(validator.iter_errors(document)):
-        raise HolonomError(Failure.NOT_A_RECORD, detail=f"at {error.json_path}, {error.message}")
 
 
 def read_system(system: dict[str, Any]) -> System:

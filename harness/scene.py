@@ -124,10 +124,9 @@ class Scene:
     @cached_property
     def record(self) -> "Record":
         """All that Maxima derives from the file."""
-        from .maxima import run_scene
-        from .record import read_record
+        from .record import derived_record
 
-        return read_record(run_scene(self.file, self.limits, self.settings))
+        return derived_record(self.file, self.settings, self.limits)
 
     @property
     def system(self) -> "System":
@@ -207,15 +206,11 @@ class Scene:
         HolonomError
             The control law is not analytic at t0, G is singular there, or the digits cannot be had.
         """
-        from .series import heyoka_series, power_series
+        from .series.power_series import SeriesRequest, compute_series
 
         last = None if until is None else Fraction(str(until))
-        request = power_series.SeriesRequest(order, self._name, digits, last, self.settings)
-        if precision is None:
-            return power_series.compute_series(self.file, request, self.limits)
-        from .program.precision import read_precision
-
-        return heyoka_series.compute_series(self.file, request, read_precision(str(precision)), self.limits)
+        request = SeriesRequest(order, self._name, digits, last, self.settings, precision)
+        return compute_series(self.file, request, self.limits)
 
     def simulate(
         self,

@@ -63,7 +63,7 @@ def test_a_disagreement_is_reported_and_leaves_with_one(particle_record, monkeyp
     wrong = json.loads(particle_record)
     multipliers = next(e for e in wrong["derivations"][0]["equations"] if e["name"] == "multipliers")
     multipliers["relations"][0]["right"] = ["Multiply", 2, multipliers["relations"][0]["right"]]
-    monkeypatch.setattr("holonom.maxima.run_scene", lambda *_: json.dumps(wrong))
+    monkeypatch.setattr("holonom.record.ask", lambda *_, **__: json.dumps(wrong))
     monkeypatch.setattr("sys.argv", ["holonom", "check", str(particle_scene)])
     from holonom.cli import run
 

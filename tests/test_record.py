@@ -26,7 +26,7 @@ def test_reads_what_maxima_writes(particle_record):
 def test_refuses_what_is_no_record(text):
     with pytest.raises(HolonomError) as raised:
         read_record(text)
-    assert raised.value.failure is Failure.NOT_A_RECORD
+    assert raised.value.failure is Failure.NOT_A_DOCUMENT
 
 
 @pytest.mark.parametrize(

@@ -28,13 +28,13 @@ DISAGREEMENT = 1
 @runs_scenes
 def derive(scene: Path, settings: Sequence[str], json_file: Path | None, tex_file: Path | None, limits: Limits) -> int:
     """Derive the equations of a SCENE, under the paper's numbers."""
-    from ..maxima import run_scene
+    from ..documents import Document, ask
     from ..program.request import read_settings
     from ..record import read_record
     from .tables.derivation import show_record
     from .tables.text import make_console
 
-    text = run_scene(scene, limits, read_settings(settings))
+    text = ask(Document.RECORD, scene, settings=read_settings(settings), limits=limits)
     record = read_record(text)
     _publish_document(record, tex_file)
     publish(text, json_file)
@@ -51,14 +51,13 @@ def derive(scene: Path, settings: Sequence[str], json_file: Path | None, tex_fil
 def check(scenes: Sequence[Path], settings: Sequence[str], json_file: Path | None, limits: Limits) -> int:
     """Derive each SCENE and compare every equation with an independent SymPy evaluation."""
     from ..crosscheck import check_record
-    from ..maxima import run_scene
     from ..program.request import read_settings
-    from ..record import read_record
+    from ..record import derived_record
     from .tables.derivation import show_report
     from .tables.text import make_console
 
     given = read_settings(settings)
-    reports = [(str(scene), check_record(read_record(run_scene(scene, limits, given)))) for scene in scenes]
+    reports = [(str(scene), check_record(derived_record(scene, given, limits))) for scene in scenes]
     documents = [_report_document(scene, report) for scene, report in reports]
     publish(json_text(documents[0] if len(documents) == 1 else documents), json_file)
     if json_file != STANDARD_OUTPUT:
@@ -73,12 +72,14 @@ def check(scenes: Sequence[Path], settings: Sequence[str], json_file: Path | Non
 @click.option("--svg", "svg_file", metavar="FILE", type=click.Path(path_type=Path), help="Also draw the table.")
 def errata(json_file: Path | None, svg_file: Path | None) -> int:
     """Compare every equation that the paper prints with the derived one."""
+    from ..documents import Document, published
     from ..errata import errata as compare
     from .tables.errata import draw_errata, show_errata
     from .tables.text import make_console
 
     equations = compare()
-    publish(json_text({"equations": [asdict(equation) for equation in equations]}), json_file)
+    content = {"equations": [asdict(equation) for equation in equations]}
+    publish(json_text(published(Document.ERRATA, content)), json_file)
     if svg_file is not None:
         publish(draw_errata(equations), svg_file)
     if json_file != STANDARD_OUTPUT:
@@ -94,7 +95,9 @@ def _publish_document(record: "Record", tex_file: Path | None) -> None:
 
 
 def _report_document(scene: str, report: "CheckReport") -> dict[str, Any]:
-    return {
+    from ..documents import Publication, published
+
+    content = {
         "scene": scene,
         "equations": [
             {
@@ -110,3 +113,4 @@ def _report_document(scene: str, report: "CheckReport") -> dict[str, Any]:
         ],
         "disagreements": report.disagreements,
     }
+    return published(Publication.CHECK, content)

@@ -47,9 +47,7 @@ def series(
     limits: Limits,
 ) -> int:
     """Expand the initial motion of a SCENE in power series, and say how far they hold."""
-    from ..program.precision import read_precision
     from ..program.request import read_settings
-    from ..series import heyoka_series
     from ..series.power_series import (
         AUTOMATIC,
         EXACT,
@@ -63,11 +61,9 @@ def series(
 
     if sum([exact, digits is not None, precision is not None]) > 1:
         raise click.UsageError("--exact, --digits and --precision exclude one another")
-    request = SeriesRequest(order, scene, EXACT if exact else digits or AUTOMATIC, until, read_settings(settings))
-    if precision is not None:
-        motion = heyoka_series.compute_series(scene_file, request, read_precision(precision), limits)
-    else:
-        motion = compute_series(scene_file, request, limits)
+    wanted = EXACT if exact else digits or AUTOMATIC
+    request = SeriesRequest(order, scene, wanted, until, read_settings(settings), precision)
+    motion = compute_series(scene_file, request, limits)
     values = None if at is None else values_at(motion, at)
     publish(json_text(series_document(motion, values)), json_file)
     if json_file != STANDARD_OUTPUT:

@@ -3,7 +3,6 @@
 They are performed by processes, not by threads: mpmath's precision belongs to the whole process.
 """
 
-import json
 import tempfile
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ProcessPoolExecutor, as_completed
@@ -15,13 +14,13 @@ from typing import Any
 
 from ..confined import Limits
 from ..crosscheck import CheckReport, check_record
+from ..documents import Document, ask, read
 from ..errata import errata
 from ..failures import HolonomError
 from ..free_motion import FreeMotion, free_motion
-from ..maxima import ask_scene, run_scene
 from ..program.motion_problem import motion_problem
 from ..program.request import Request
-from ..record import Record, read_record
+from ..record import Record, derived_record
 from ..series.power_series import MotionSeries, SeriesRequest, compute_series
 from ..simulation.request import SimulationRequest
 from ..simulation.result import Simulation
@@ -30,8 +29,6 @@ from .chapter import Run
 WORKERS = 2
 Settings = tuple[tuple[str, str], ...]
 NO_SETTINGS: Settings = ()
-# What Maxima writes: the names of the scenes, of those too that prescribe reactions and are not in the record.
-NAMES_OF_SCENES = "lambda([file], write_json(json_names(map('lhs, bound_structures('motion_scene))), file))"
 OWN_ORDER = 40  # of the series of somebody's own scenes
 DEFAULT_LIMITS = Limits()
 
@@ -155,7 +152,7 @@ def perform(runs: Iterable[Run], done: Callable[[], None]) -> dict[Run, Any]:
 
 
 def _derive(file: Path, settings: Settings, limits: Limits) -> Derived:
-    record = read_record(run_scene(file, limits, dict(settings)))
+    record = derived_record(file, dict(settings), limits)
     return Derived(record, check_record(record))
 
 
@@ -196,7 +193,8 @@ def _study(file: Path, settings: Settings, limits: Limits) -> Study:
 
 def names_of_scenes(file: Path, settings: Settings, limits: Limits) -> list[str]:
     """Names of a file's scenes, of those too that prescribe reactions."""
-    return json.loads(ask_scene(file, NAMES_OF_SCENES, limits, dict(settings)))
+    text = ask(Document.SCENES, file, settings=dict(settings), limits=limits)
+    return read(Document.SCENES, text)["scenes"]
 
 
 def or_refusal(compute: Callable[..., Any], *arguments: Any) -> Any:

@@ -5,18 +5,15 @@ without it; left out, what it would take more with it. A cost may be negative: w
 elimination may be needed.
 """
 
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from enum import StrEnum
-from functools import cache
 from itertools import count
-from pathlib import Path
 
-import jsonschema
 import numpy as np
 
+from ..documents import Document, read
 from ..failures import Failure, HolonomError
 from ..shown import Show, Shown
 from .c_function import compile_c
@@ -24,8 +21,6 @@ from .motion_program import Program, program_of
 from .numpy_function import NumpyFunction
 from .timing import Batch, Timer, python_batch, shortest_times
 
-SCHEMA = Path(__file__).parents[1] / "schemas" / "effects.json"
-SHOWN = 60  # characters of what is wrong that a refusal shows
 GOLDEN = 0.6180339887498949  # its multiples are spread evenly over the fractions and satisfy no short relation
 ATTEMPTS = 50  # points tried in search of one where the program's values are finite
 
@@ -143,13 +138,7 @@ def read_costs(text: str) -> Costs:
     HolonomError
         The text is not such a document, or one of its programs is none.
     """
-    try:
-        document = json.loads(text)
-        _validator().validate(document)
-    except (ValueError, RecursionError) as error:
-        raise HolonomError(Failure.NOT_COSTS, detail=str(error)) from None
-    except jsonschema.ValidationError as error:
-        raise HolonomError(Failure.NOT_COSTS, detail=f"{error.json_path}: {error.message[:SHOWN]}") from None
+    document = read(Document.EFFECTS, text)
     return Costs(
         program_of(document["program"]),
         tuple(Term(t["equation"], t["term"], _program_if_any(t["program"])) for t in document["terms"]),
@@ -233,8 +222,3 @@ def _points(names: Mapping[str, None]) -> Iterator[dict[str, float]]:
 
 def _program_if_any(document: object) -> Program | None:
     return None if document is None else program_of(document)
-
-
-@cache
-def _validator() -> jsonschema.Draft202012Validator:
-    return jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8")))

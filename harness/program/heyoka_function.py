@@ -5,10 +5,10 @@ A value used twice is one expression object used twice, so that heyoka finds aga
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from fractions import Fraction
 from types import ModuleType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -203,3 +203,8 @@ def import_heyoka() -> ModuleType:
     except ImportError:
         raise HolonomError(Failure.EXTRA_MISSING, detail="heyoka") from None
     return heyoka
+
+
+def zero_multipliers(names: Iterable[str], zero: Any) -> dict[str, Any]:
+    """Multipliers as inputs of a program that has them among its inputs and does not use them."""
+    return dict.fromkeys(names, import_heyoka().expression(zero))

@@ -3,18 +3,15 @@
 One JSON document from Maxima, `maxima/record/model.mac`; `maxima/program/model.mac` says what each program computes.
 """
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from ..confined import Limits
+from ..documents import NAME, Document, ask, read
 from ..failures import Failure, HolonomError
-from ..maxima import ask_scene
 from .motion_program import Program, program_of
-from .request import SCENE_NAME, Request, scene_argument
-
-SCHEMA = Path(__file__).parents[1] / "schemas" / "model.json"
+from .request import Request
 
 
 @dataclass(frozen=True)
@@ -87,11 +84,10 @@ def scene_model(file: Path, request: Request, parameters: Sequence[str], limits:
         solves its equations.
     """
     for name in parameters:
-        if not SCENE_NAME.fullmatch(name):
+        if not NAME.fullmatch(name):
             raise HolonomError(Failure.NOT_A_PARAMETER, detail=name)
-    arguments = f"{scene_argument(request.scene)}, '{request.solve}, [{', '.join(parameters)}]"
-    call = f"lambda([file], write_model(file, {arguments}))"
-    return read_model(ask_scene(file, call, limits, request.settings))
+    asked = (request.scene, request.solve, parameters)
+    return read_model(ask(Document.MODEL, file, *asked, settings=request.settings, limits=limits))
 
 
 def read_model(text: str) -> Model:
@@ -108,15 +104,10 @@ def read_model(text: str) -> Model:
 
     Raises
     ------
-    jsonschema.ValidationError
-        It is not such a document.
     HolonomError
-        One of its programs is no program.
+        It is no such document, or one of its programs is no program.
     """
-    from jsonschema import validate
-
-    document = json.loads(text)
-    validate(document, json.loads(SCHEMA.read_text(encoding="utf-8")))
+    document = read(Document.MODEL, text)
     names = {kind: tuple(document[kind]) for kind in ("coordinates", "multipliers", "controls", "parameters")}
     programs = {
         part: document[part] and program_of(document[part]) for part in ("law", "motion", "constraints", "projection")

@@ -4,16 +4,15 @@ One JSON document from Maxima, `maxima/record/motion_problem.mac`; `maxima/progr
 program computes.
 """
 
-import json
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..confined import Limits
-from ..maxima import ask_scene
+from ..documents import Document, ask, read
 from .motion_program import Program, count_operations, names_in, program_of
-from .request import Request, scene_argument
+from .request import Request
 
 if TYPE_CHECKING:
     from .drawing import Drawing
@@ -119,9 +118,8 @@ def problem_document(file: Path, request: Request, limits: Limits, digits: int =
     HolonomError
         As `motion_problem`.
     """
-    arguments = f"{scene_argument(request.scene)}, '{request.solve}, {digits}"
-    call = f"lambda([file], write_motion_problem(file, {arguments}))"
-    return ask_scene(file, call, limits, request.settings)
+    asked = (request.scene, request.solve, digits)
+    return ask(Document.MOTION_PROBLEM, file, *asked, settings=request.settings, limits=limits)
 
 
 def read_problem(text: str) -> MotionProblem:
@@ -139,9 +137,9 @@ def read_problem(text: str) -> MotionProblem:
     Raises
     ------
     HolonomError
-        One of its programs is no program.
+        It is no such document, or one of its programs is no program.
     """
-    document = json.loads(text)
+    document = read(Document.MOTION_PROBLEM, text)
     span = document["time_span"]
     return MotionProblem(
         system=document["system"]["title"],

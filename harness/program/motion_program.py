@@ -11,22 +11,19 @@ An expression is a MathJSON tree. It is kept as written, unlike in `holonom.math
 terms: its operations are what the program costs, and their order decides the last bits of the numbers.
 """
 
-import json
 import re
 from collections.abc import Mapping, Set
 from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
-from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..documents import Document, read, require
 from ..failures import Failure, HolonomError
 
 if TYPE_CHECKING:
-    from jsonschema import Draft202012Validator
+    pass
 
-SCHEMA = Path(__file__).parents[1] / "schemas" / "program.json"
 DEEPEST = 100  # levels of an expression: Maxima names what is deeper, and Python's recursion limit stays far away
 LONGEST_NUMBER = 4000  # characters of a number's digits; Python reads 4300
 SHOWN = 60  # characters of a refused fragment that its refusal shows
@@ -148,11 +145,7 @@ def read_program(text: str) -> Program:
     HolonomError
         The text is not such a document; names a value that nothing before it computes; computes one twice.
     """
-    try:
-        document = json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise _refusal(str(error)) from None
-    return program_of(document)
+    return _checked(read(Document.PROGRAM, text))
 
 
 def program_of(document: Any) -> Program:
@@ -172,14 +165,11 @@ def program_of(document: Any) -> Program:
     HolonomError
         As `read_program`.
     """
-    from jsonschema import ValidationError
+    require(Document.PROGRAM, document)
+    return _checked(document)
 
-    try:
-        _validator().validate(document)
-    except RecursionError as error:
-        raise _refusal(str(error)) from None
-    except ValidationError as error:
-        raise _refusal(f"{error.json_path}: {_shown(error.message)}") from None
+
+def _checked(document: Mapping[str, Any]) -> Program:
     program = Program(
         scene=document["scene"],
         solve=Solve(document["solve"]),
@@ -228,13 +218,6 @@ def names_in(expression: Expression) -> Set[str]:
             return set().union(*map(names_in, arguments))
         case _:
             return set()
-
-
-@cache
-def _validator() -> "Draft202012Validator":
-    from jsonschema import Draft202012Validator
-
-    return Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8")))
 
 
 def _expression(tree: object, levels: int) -> Expression:

@@ -7,12 +7,11 @@ from enum import StrEnum
 from pathlib import Path
 
 from ..confined import Limits
+from ..documents import Document, ask
 from ..failures import Failure, HolonomError
-from ..maxima import ask_scene
 from .motion_program import Solve, read_program
 from .python_source import python_source
 
-SCENE_NAME = re.compile(r"[^\W\d]\w*")
 SETTING = re.compile(r"([^\W\d]\w*)=(-?\d+(?:\.\d+)?(?:e-?\d+)?(?:/\d+)?)", re.IGNORECASE)
 
 
@@ -113,7 +112,7 @@ def program_document(file: Path, request: Request, limits: Limits) -> str:
     HolonomError
         As `holonom.maxima.ask_scene`; the request's scene has a name that no scene can have.
     """
-    return _document("write_program", file, request, limits)
+    return ask(Document.PROGRAM, file, request.scene, request.solve, settings=request.settings, limits=limits)
 
 
 def effects_document(file: Path, request: Request, limits: Limits) -> str:
@@ -137,24 +136,4 @@ def effects_document(file: Path, request: Request, limits: Limits) -> str:
     HolonomError
         As `program_document`.
     """
-    return _document("write_effects", file, request, limits)
-
-
-def _document(writer: str, file: Path, request: Request, limits: Limits) -> str:
-    call = f"lambda([file], {writer}(file, {scene_argument(request.scene)}, '{request.solve}))"
-    return ask_scene(file, call, limits, request.settings)
-
-
-def scene_argument(scene: str | None) -> str:
-    """Return the name of a scene as an argument of a Maxima function; without a name, false.
-
-    Raises
-    ------
-    HolonomError
-        No scene can have that name.
-    """
-    if scene is None:
-        return "false"
-    if not SCENE_NAME.fullmatch(scene):
-        raise HolonomError(Failure.NOT_A_SCENE_NAME, detail=scene)
-    return f"'{scene}"
+    return ask(Document.EFFECTS, file, request.scene, request.solve, settings=request.settings, limits=limits)

@@ -7,9 +7,8 @@ rate of an additional one, which starts from zero.
 A continuation is what the integrators are for: step by step, each step's tolerance the precision of the numbers.
 """
 
-import json
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from types import ModuleType
@@ -20,50 +19,17 @@ import numpy as np
 
 from ..confined import Limits
 from ..failures import Failure, HolonomError
-from ..maxima import ask_scene
-from ..program.heyoka_function import dynamics, heyoka_expressions, import_heyoka
-from ..program.motion_program import Program, program_of
-from ..program.precision import GUARD_DIGITS, Precision
-from ..program.request import scene_argument
+from ..program.heyoka_function import dynamics, heyoka_expressions, import_heyoka, zero_multipliers
+from ..program.motion_problem import MotionProblem, motion_problem
+from ..program.precision import GUARD_DIGITS, Precision, read_precision
+from ..program.request import Request
 from .power_series import Continuation, MotionSeries, Numbers, SeriesRequest
 
 MOST_STEPS = 10**6  # of a continuation
 ONCE, OFTEN = 0, 3  # LLVM's levels of optimisation: compiled in a tenth of the time, and run in half
 
 
-@dataclass(frozen=True)
-class InitialValueProblem:
-    """A motion as a program of (t, q, dot q) alone, and where it starts.
-
-    Attributes
-    ----------
-    title : str
-    start : mapping of str to str
-        The time, coordinates and velocities, as decimal digits.
-    program : Program
-    """
-
-    title: str
-    start: Mapping[str, str]
-    program: Program
-
-    @property
-    def coordinates(self) -> list[str]:
-        """Names of the coordinates."""
-        return [name for name in self.program.inputs if f"ddot({name})" in self.program.outputs]
-
-    @property
-    def state(self) -> list[str]:
-        """Names of the coordinates, then of the velocities."""
-        return [*self.coordinates, *(f"dot({name})" for name in self.coordinates)]
-
-    @property
-    def reactions(self) -> list[str]:
-        """Names of what is no state: multipliers and constraint forces."""
-        return [name for name in self.program.outputs if not name.startswith("ddot(")]
-
-
-def compute_series(file: Path, request: SeriesRequest, precision: Precision, limits: Limits) -> MotionSeries:
+def expand_by_heyoka(file: Path, request: SeriesRequest, limits: Limits) -> MotionSeries:
     """Expand a scene's motion with heyoka, and continue it where that is asked for.
 
     Parameters
@@ -71,8 +37,7 @@ def compute_series(file: Path, request: SeriesRequest, precision: Precision, lim
     file : Path
         The scene file.
     request : SeriesRequest
-        Its digits do not matter.
-    precision : Precision
+        With a precision; its digits do not matter.
     limits : Limits
         What Maxima may take to write the motion program.
 
@@ -83,29 +48,23 @@ def compute_series(file: Path, request: SeriesRequest, precision: Precision, lim
     Raises
     ------
     HolonomError
-        As `holonom.maxima.ask_scene`, `expand` and `continue_motion`.
+        As `motion_problem`, `expand` and `continue_motion`.
     """
-    arguments = f"{scene_argument(request.scene)}, {request.order}, {precision.digits + GUARD_DIGITS}"
-    call = f"lambda([file], write_initial_value_problem(file, {arguments}))"
-    problem = read_problem(ask_scene(file, call, limits, request.settings))
+    precision = read_precision(str(request.precision))
+    asked = Request(request.scene, settings=request.settings)
+    problem = motion_problem(file, asked, limits, precision.digits + GUARD_DIGITS)
     motion = expand(problem, request.order, precision)
     if request.until is None:
         return motion
     return replace(motion, continuation=continue_motion(problem, request.until, precision))
 
 
-def read_problem(text: str) -> InitialValueProblem:
-    """Read what Maxima writes."""
-    document = json.loads(text)
-    return InitialValueProblem(document["title"], document["start"], program_of(document["program"]))
-
-
-def expand(problem: InitialValueProblem, order: int, precision: Precision) -> MotionSeries:
+def expand(problem: MotionProblem, order: int, precision: Precision) -> MotionSeries:
     """Expand a motion in power series.
 
     Parameters
     ----------
-    problem : InitialValueProblem
+    problem : MotionProblem
     order : int
         2 or more.
     precision : Precision
@@ -127,10 +86,10 @@ def expand(problem: InitialValueProblem, order: int, precision: Precision) -> Mo
             Failure.ORDER_TOO_HIGH, detail=f"the coefficients leave the range of {precision.name} or are singular"
         )
     coordinates = zip(problem.coordinates, coefficients, strict=False)
-    rates = zip(problem.reactions, map(_rate, coefficients[len(problem.state) :]), strict=True)
+    rates = zip(_reactions(problem), map(_rate, coefficients[len(problem.state) :]), strict=True)
     reactions = {name: _texts(row, precision) for name, row in rates}
     return MotionSeries(
-        scene=problem.program.scene or "",
+        scene=problem.scene,
         title=problem.title,
         order=order,
         t0=problem.start["t"],
@@ -141,12 +100,12 @@ def expand(problem: InitialValueProblem, order: int, precision: Precision) -> Mo
     )
 
 
-def continue_motion(problem: InitialValueProblem, until: Fraction, precision: Precision) -> Continuation:
+def continue_motion(problem: MotionProblem, until: Fraction, precision: Precision) -> Continuation:
     """Follow a motion step by step.
 
     Parameters
     ----------
-    problem : InitialValueProblem
+    problem : MotionProblem
     until : Fraction
         The last instant.
     precision : Precision
@@ -177,12 +136,12 @@ def continue_motion(problem: InitialValueProblem, until: Fraction, precision: Pr
     return Continuation(precision.sure_digits, _texts(instants, precision), dict(rows[:n]), dict(rows[n:]))
 
 
-def expanding_integrator(problem: InitialValueProblem, order: int, precision: Precision, effort: int = ONCE) -> Any:
+def expanding_integrator(problem: MotionProblem, order: int, precision: Precision, effort: int = ONCE) -> Any:
     """Set up heyoka's integrator for one expansion; its state ends with the integrals of multipliers and forces.
 
     Parameters
     ----------
-    problem : InitialValueProblem
+    problem : MotionProblem
     order : int
         The coefficients of the multipliers reach it; those of the state go one further.
     precision : Precision
@@ -204,8 +163,8 @@ def expanding_integrator(problem: InitialValueProblem, order: int, precision: Pr
         )
     heyoka = import_heyoka()
     variables = {"t": heyoka.time, **{name: heyoka.expression(name) for name in problem.state}}
-    values = heyoka_expressions(problem.program, variables, precision.ratio)
-    integrals = [(heyoka.expression(f"integral of {name}"), values[name]) for name in problem.reactions]
+    values = heyoka_expressions(problem.motion, variables | _unused(problem, precision), precision.ratio)
+    integrals = [(heyoka.expression(f"integral of {name}"), values[name]) for name in _reactions(problem)]
     return _integrator(
         heyoka,
         problem,
@@ -216,12 +175,12 @@ def expanding_integrator(problem: InitialValueProblem, order: int, precision: Pr
     )
 
 
-def continuing_integrator(problem: InitialValueProblem, precision: Precision) -> Any:
+def continuing_integrator(problem: MotionProblem, precision: Precision) -> Any:
     """Set up heyoka's integrator of a motion, its tolerance the precision of the numbers.
 
     Parameters
     ----------
-    problem : InitialValueProblem
+    problem : MotionProblem
     precision : Precision
 
     Returns
@@ -237,17 +196,29 @@ def continuing_integrator(problem: InitialValueProblem, precision: Precision) ->
 
 
 def _integrator(
-    heyoka: ModuleType, problem: InitialValueProblem, precision: Precision, integrals: Sequence[tuple], **options: Any
+    heyoka: ModuleType, problem: MotionProblem, precision: Precision, integrals: Sequence[tuple], **options: Any
 ) -> Any:
     start = [precision.number(problem.start[name]) for name in problem.state]
     return heyoka.taylor_adaptive(
-        [*dynamics(problem.program, {}, precision.ratio), *integrals],
+        [
+            *dynamics(problem.motion, _unused(problem, precision), precision.ratio),
+            *integrals,
+        ],
         np.array(start + [precision.number("0")] * len(integrals)),
         time=precision.number(problem.start["t"]),
         compact_mode=True,  # the other mode's code grows with the square of the order: 30 s to compile at order 160
         **precision.options,
         **options,
     )
+
+
+def _reactions(problem: MotionProblem) -> list[str]:
+    """Names of what is no state: multipliers and constraint forces."""
+    return [name for name in problem.motion.outputs if not name.startswith("ddot(")]
+
+
+def _unused(problem: MotionProblem, precision: Precision) -> dict[str, Any]:
+    return zero_multipliers(problem.multipliers, precision.number("0"))
 
 
 def _rate(coefficients: Sequence[Any]) -> list[Any]:

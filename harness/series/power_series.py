@@ -4,7 +4,6 @@ Coefficients are kept as text: exact numbers as p/q, rounded ones as decimal dig
 as many digits, where something is computed from them.
 """
 
-import json
 import math
 import sys
 from collections.abc import Iterator, Mapping
@@ -17,9 +16,8 @@ from typing import Any
 import mpmath
 
 from ..confined import Limits
+from ..documents import Document, Publication, ask, published, read
 from ..failures import Failure, HolonomError
-from ..maxima import ask_scene
-from ..program.request import scene_argument
 from ..shown import Show, Shown
 from .radius import Radius, estimate_radius, truncation_error
 
@@ -47,6 +45,8 @@ class SeriesRequest:
         Instant to which the motion is continued by further expansions.
     settings : mapping of str to str
         Numbers for what the file leaves open and for parameters.
+    precision : str or int, or None
+        heyoka's numbers, as `holonom.program.precision.read_precision` takes them; None for Maxima's, with the digits.
     """
 
     order: int
@@ -54,6 +54,7 @@ class SeriesRequest:
     digits: int | str = AUTOMATIC
     until: Fraction | None = None
     settings: Mapping[str, str] = field(default_factory=dict)
+    precision: str | int | None = None
 
 
 @dataclass(frozen=True)
@@ -125,7 +126,7 @@ class Values:
 
 
 def compute_series(file: Path, request: SeriesRequest, limits: Limits) -> MotionSeries:
-    """Expand a scene's motion in Maxima.
+    """Expand a scene's motion, in Maxima or, where a precision is asked for, with heyoka.
 
     Parameters
     ----------
@@ -142,11 +143,15 @@ def compute_series(file: Path, request: SeriesRequest, limits: Limits) -> Motion
     Raises
     ------
     HolonomError
-        As `holonom.maxima.ask_scene`: among others, the control law is not analytic at t0, or G is singular there.
+        As `holonom.maxima.ask_scene`: among others, the control law is not analytic at t0, or G is singular there. As
+        `holonom.series.heyoka_series.expand_by_heyoka`.
     """
-    until = "false" if request.until is None else str(request.until)
-    arguments = f"{scene_argument(request.scene)}, {request.order}, {_digits_argument(request.digits)}, {until}"
-    return read_series(ask_scene(file, f"lambda([file], write_series(file, {arguments}))", limits, request.settings))
+    if request.precision is not None:
+        from .heyoka_series import expand_by_heyoka
+
+        return expand_by_heyoka(file, request, limits)
+    asked = (request.scene, request.order, request.digits, request.until)
+    return read_series(ask(Document.MOTION_SERIES, file, *asked, settings=request.settings, limits=limits))
 
 
 def read_series(text: str) -> MotionSeries:
@@ -166,22 +171,19 @@ def read_series(text: str) -> MotionSeries:
     HolonomError
         It is no such document.
     """
-    try:
-        document = json.loads(text)
-        continuation = document["continuation"]
-        return MotionSeries(
-            scene=document["scene"],
-            title=document["title"],
-            order=document["order"],
-            t0=document["t0"],
-            arithmetic=document["arithmetic"],
-            coordinates=_series(document["coordinates"]),
-            multipliers=_series(document["multipliers"]),
-            constraint_forces=_series(document["constraint_forces"]),
-            continuation=None if continuation is None else _continuation(continuation),
-        )
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-        raise HolonomError(Failure.NOT_A_SERIES, detail=str(error)) from None
+    document = read(Document.MOTION_SERIES, text)
+    continuation = document["continuation"]
+    return MotionSeries(
+        scene=document["scene"],
+        title=document["title"],
+        order=document["order"],
+        t0=document["t0"],
+        arithmetic=document["arithmetic"],
+        coordinates=_series(document["coordinates"]),
+        multipliers=_series(document["multipliers"]),
+        constraint_forces=_series(document["constraint_forces"]),
+        continuation=None if continuation is None else _continuation(continuation),
+    )
 
 
 def values_at(motion: MotionSeries, time: Fraction) -> Values:
@@ -221,8 +223,9 @@ def series_document(motion: MotionSeries, values: Values | None = None) -> dict[
     """What `holonom series --json` writes."""
     radius = motion.radius
     t0 = float(number(motion.t0))
-    document = {
+    content = {
         "scene": motion.scene,
+        "title": motion.title,
         "order": motion.order,
         "t0": _published(motion, motion.t0),
         "arithmetic": motion.arithmetic,
@@ -237,14 +240,14 @@ def series_document(motion: MotionSeries, values: Values | None = None) -> dict[
         },
     }
     if values is not None:
-        document["at"] = {
+        content["at"] = {
             "t": str(values.time),
             "values": {name: mpmath.nstr(value, motion.digits) for name, value in values.values.items()},
             "truncation_error": values.truncation_error,
         }
     if motion.continuation is not None:
-        document["continuation"] = vars(motion.continuation)
-    return document
+        content["continuation"] = vars(motion.continuation)
+    return published(Publication.SERIES, content)
 
 
 def number(text: str) -> mpmath.mpf:
@@ -264,10 +267,6 @@ def _decimal(text: str) -> mpmath.mpf:
     if len(text) <= sys.int_info.default_max_str_digits or not text.lstrip("-").isdigit():
         return mpmath.mpf(text)
     return mpmath.mpf(text[:kept]) * mpmath.mpf(10) ** (len(text) - kept)
-
-
-def _digits_argument(digits: int | str) -> str:
-    return str(digits) if isinstance(digits, int) else f"'{digits}"
 
 
 def _series(group: Mapping[str, Any]) -> dict[str, Numbers]:

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from ..documents import Publication, published
 from .diagnosis import engine_text, remarks
 from .result import Report, Simulation
 
@@ -24,7 +25,7 @@ def simulation_document(simulation: Simulation) -> dict[str, Any]:
     digits = simulation.report.digits
     columns = {name: published_list(samples, digits) for name, samples in simulation.columns()}
     named = {"scene": simulation.scene, "title": simulation.title}
-    return named | report_document(simulation.report) | {"samples": columns}
+    return report_document(simulation.report) | named | {"samples": columns}
 
 
 def report_document(report: Report) -> dict[str, Any]:
@@ -41,7 +42,7 @@ def report_document(report: Report) -> dict[str, Any]:
     """
     said = {"engine": engine_text(report.legs), "remarks": tuple(remarks(report.legs, report.cases))}
     attributes = vars(report) | {"legs": tuple(leg._asdict() for leg in report.legs)} | said
-    return {name: _published(value, report.digits) for name, value in attributes.items()}
+    return published(Publication.SIMULATION, {k: _published(value, report.digits) for k, value in attributes.items()})
 
 
 def published_list(samples: np.ndarray, digits: int) -> list[float | str]:

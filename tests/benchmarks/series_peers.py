@@ -22,10 +22,11 @@ from typing import Any
 import numpy as np
 
 from holonom.confined import Limits
-from holonom.maxima import run_batch
 from holonom.program.heyoka_function import import_heyoka
+from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.precision import read_precision
-from holonom.series.heyoka_series import OFTEN, InitialValueProblem, expanding_integrator, read_problem
+from holonom.program.request import Request
+from holonom.series.heyoka_series import OFTEN, expanding_integrator
 from holonom.series.power_series import SeriesRequest, compute_series
 
 PAPER = Path(__file__).parents[2] / "examples" / "paper" / "paper.mac"
@@ -76,8 +77,8 @@ def heyoka(order: int) -> Expansion:
 
 
 @cache
-def _problem() -> InitialValueProblem:
-    return read_problem(run_batch(PAPER, "lambda([file], write_initial_value_problem(file, false, 160, 27))"))
+def _problem() -> MotionProblem:
+    return motion_problem(PAPER, Request(), Limits(), digits=27)
 
 
 def heyoka_by_hand(order: int) -> Expansion:

@@ -15,8 +15,6 @@ from paper_series import START, paper_by_hand
 
 from holonom.confined import Limits
 from holonom.failures import HolonomError
-from holonom.program.precision import read_precision
-from holonom.series import heyoka_series
 from holonom.series.power_series import (
     MotionSeries,
     SeriesRequest,
@@ -47,9 +45,7 @@ def series(file: Path, order: int, digits: int | str = "exact", scene: str | Non
 def compiled(
     order: int, precision: str, file: Path = PAPER, scene: str | None = None, until: Fraction | None = None
 ) -> MotionSeries:
-    return heyoka_series.compute_series(
-        file, SeriesRequest(order, scene, until=until), read_precision(precision), Limits()
-    )
+    return compute_series(file, SeriesRequest(order, scene, until=until, precision=precision), Limits())
 
 
 def relative_digits(found: MotionSeries, exact: MotionSeries) -> float:
@@ -230,7 +226,7 @@ def test_long_exact_numbers_are_read():
 
 
 def test_what_is_no_series_is_refused():
-    with pytest.raises(HolonomError, match="not a power series"):
+    with pytest.raises(HolonomError, match="no document holonom-motion-series"):
         read_series('{"order": 3}')
 
 

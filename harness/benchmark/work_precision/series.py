@@ -6,7 +6,6 @@ precision ones are heyoka's.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -16,11 +15,11 @@ from typing import TYPE_CHECKING, Any
 
 import mpmath
 
-from ...maxima import ask_scene
+from ...documents import Document, ask, read
 from ...program.motion_problem import MotionProblem
 from ...program.precision import read_precision
-from ...program.request import Request, scene_argument
-from ...series.heyoka_series import InitialValueProblem, expand, expanding_integrator
+from ...program.request import Request
+from ...series.heyoka_series import expand, expanding_integrator
 from ...series.power_series import number, numbers
 from .candidates import Candidate, Group, Measurement, Prepared
 from .errors import WORKING_DIGITS, State, relative_error
@@ -43,19 +42,13 @@ class Expansion:
 
     Attributes
     ----------
-    problem : InitialValueProblem
-        Its program computes the accelerations alone.
+    problem : MotionProblem
+        Its motion program computes the accelerations alone.
     instant : Fraction
     """
 
-    problem: InitialValueProblem
+    problem: MotionProblem
     instant: Fraction
-
-
-def initial_value_problem(problem: MotionProblem) -> InitialValueProblem:
-    """The accelerations of a motion as a program of t, q, dot q."""
-    program = acceleration_program(problem)
-    return InitialValueProblem(problem.title, problem.start, replace(program, inputs=("t", *problem.state)))
 
 
 def expansion_of(problem: MotionProblem, until: Fraction) -> Expansion:
@@ -77,11 +70,11 @@ def expansion_of(problem: MotionProblem, until: Fraction) -> Expansion:
     HolonomError
         The motion cannot be expanded.
     """
-    ivp = initial_value_problem(problem)
-    radius = expand(ivp, ORDER_OF_RADIUS, read_precision("double")).radius
+    alone = replace(problem, motion=acceleration_program(problem))
+    radius = expand(alone, ORDER_OF_RADIUS, read_precision("double")).radius
     step = ENTIRE if radius.estimate is None else INSIDE * radius.estimate
     begin = Fraction(problem.start["t"])
-    return Expansion(ivp, begin + min(Fraction(f"{step:.2g}"), until - begin))
+    return Expansion(alone, begin + min(Fraction(f"{step:.2g}"), until - begin))
 
 
 def double_series(expansion: Expansion, orders: Sequence[int]) -> Iterator[Candidate]:
@@ -125,10 +118,9 @@ def maxima_series(
     HolonomError
         As `holonom.maxima.ask_scene`; there are no exact coefficients.
     """
-    asked = "'exact" if digits == EXACT else str(digits)
-    arguments = f"{scene_argument(request.scene)}, {list(orders)}, {asked}"
-    call = f"lambda([file], write_series_costs(file, {arguments}))"
-    for entry in json.loads(ask_scene(file, call, limits, request.settings)):
+    asked = (request.scene, orders, digits)
+    text = ask(Document.SERIES_COSTS, file, *asked, settings=request.settings, limits=limits)
+    for entry in read(Document.SERIES_COSTS, text)["expansions"]:
         with mpmath.workdps(WORKING_DIGITS):
             rows = [numbers(texts) for texts in entry["coordinates"].values()]
             found = _added_up(rows, _step(expansion))
@@ -140,7 +132,7 @@ def maxima_series(
             error=relative_error(found, reference.states[expansion.instant]),
             seconds=float(entry["seconds"]),
             preparation_seconds=None,
-            operations=expansion_operations(expansion.problem.program, entry["order"]),
+            operations=expansion_operations(expansion.problem.motion, entry["order"]),
         )
 
 

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from ...documents import Document, ask
 from ...failures import HolonomError
-from ...maxima import run_scene
 from ..chapter import Chapter, Page, Run
 from ..examples import PENDULUM
 from ..excerpts import excerpt
@@ -53,7 +53,7 @@ def refusal_of_the_change(file: Path, given: str, changed: str) -> str:
         copy = Path(directory) / file.name
         copy.write_text(_loading_the_library(text), encoding="utf-8")
         try:
-            run_scene(copy)
+            ask(Document.RECORD, copy)
         except HolonomError as error:
             return error.detail
     raise ValueError(f"{changed} is not refused")

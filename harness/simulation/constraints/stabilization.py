@@ -13,7 +13,7 @@ whose multipliers mu and nu, d = A^-1 J^T mu and e = A^-1 J^T nu, act here throu
 from fractions import Fraction
 from typing import Any
 
-from ...program.heyoka_function import dynamics, heyoka_expressions, import_heyoka
+from ...program.heyoka_function import dynamics, heyoka_expressions, import_heyoka, zero_multipliers
 from ...program.motion_problem import MotionProblem
 from ...program.motion_program import Program
 from ...program.precision import Precision
@@ -37,7 +37,7 @@ def equations_of_motion(problem: MotionProblem, program: Program, precision: Pre
     list of (expression, expression)
         Each coordinate and each velocity with its rate.
     """
-    return dynamics(program, _no_multipliers(problem, precision), precision.ratio)
+    return dynamics(program, zero_multipliers(problem.multipliers, precision.number("0")), precision.ratio)
 
 
 def stabilized_equations(
@@ -76,10 +76,5 @@ def stabilized_equations(
 def _corrections(problem: MotionProblem, precision: Precision) -> dict[str, Any]:
     heyoka = import_heyoka()
     variables = {name: heyoka.expression(name) for name in problem.state}
-    inputs = {"t": heyoka.time, **variables, **_no_multipliers(problem, precision)}
+    inputs = {"t": heyoka.time, **variables, **zero_multipliers(problem.multipliers, precision.number("0"))}
     return heyoka_expressions(problem.projection, inputs, precision.ratio)
-
-
-def _no_multipliers(problem: MotionProblem, precision: Precision) -> dict[str, Any]:
-    """Inputs of every program of a motion, which those of accelerations and projections do not use."""
-    return dict.fromkeys(problem.multipliers, import_heyoka().expression(precision.number("0")))

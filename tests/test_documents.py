@@ -1,0 +1,76 @@
+"""Documents: every one has a schema, keeps it, and is refused where it does not."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from jsonschema import Draft202012Validator
+
+from holonom.documents import SCHEMAS, Document, Publication, ask, read, schema
+from holonom.failures import Failure, HolonomError
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+PAPER, PENDULUM = EXAMPLES / "paper" / "paper.mac", EXAMPLES / "pendulum.mac"
+
+
+@pytest.mark.parametrize("name", [*Document, *Publication])
+def test_every_document_has_a_schema_that_names_its_format(name):
+    found = schema(name)
+    Draft202012Validator.check_schema(found)
+    assert found["properties"]["format"] == {"const": f"holonom-{name}"}
+    assert found["properties"]["version"] == {"const": 1}
+
+
+def test_every_schema_is_that_of_a_document():
+    documents = {str(name) for name in (*Document, *Publication)}
+    assert {file.stem for file in SCHEMAS.glob("*.json")} - documents <= {"work_precision"}
+
+
+@pytest.mark.parametrize(
+    ("document", "file", "arguments"),
+    [
+        (Document.RECORD, PENDULUM, ()),
+        (Document.SCENES, PAPER, ()),
+        (Document.PROGRAM, PENDULUM, (None, "direct")),
+        (Document.EFFECTS, PENDULUM, (None, "direct")),
+        (Document.MODEL, PENDULUM, (None, "direct", ("m",))),
+        (Document.MOTION_PROBLEM, PENDULUM, (None, "orthogonal", 17)),
+        (Document.MOTION_SERIES, PAPER, ("initial_motion_scene", 6, "exact", None)),
+        (Document.SERIES_COSTS, PAPER, (None, (2, 4), 20)),
+        (Document.FREE_MOTION, PAPER, (None,)),
+    ],
+)
+def test_maxima_writes_what_the_schema_says(document, file, arguments):
+    assert read(document, ask(document, file, *arguments))["format"] == f"holonom-{document}"
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("series", str(PAPER), "--order", "12", "--at", "1/10"),
+        ("series", str(PENDULUM), "--order", "12", "--precision", "double", "--until", "1"),
+        ("simulate", str(PENDULUM), "--samples", "5"),
+        ("simulate", str(EXAMPLES / "linkage.mac"), "--until", "1", "--final"),
+        ("check", str(PENDULUM)),
+    ],
+)
+def test_commands_publish_what_the_schema_says(command):
+    asked = [sys.executable, "-m", "holonom", *command, "--json", "-"]
+    done = subprocess.run(asked, capture_output=True, text=True, check=True)
+    content = json.loads(done.stdout)
+    Draft202012Validator(schema(content["format"].removeprefix("holonom-"))).validate(content)
+
+
+def test_what_has_another_shape_is_refused_where_it_differs():
+    with pytest.raises(HolonomError, match=r"holonom-scenes: at \$\.scenes\[1\], 2 is not of type") as raised:
+        read(Document.SCENES, '{"format": "holonom-scenes", "version": 1, "scenes": ["swing", 2]}')
+    assert raised.value.failure is Failure.NOT_A_DOCUMENT
+
+
+@pytest.mark.parametrize("scene", ["", "a b", "quit()", "1x", "x;", "x\ny"])
+def test_what_is_no_name_never_reaches_maxima(scene):
+    with pytest.raises(HolonomError) as raised:
+        ask(Document.FREE_MOTION, PAPER, scene)
+    assert raised.value.failure is Failure.NOT_A_SCENE_NAME
