@@ -41,11 +41,15 @@ class Document(StrEnum):
     SERIES_COSTS = "series-costs"
     FREE_MOTION = "free-motion"
     ERRATA = "errata"
+    VERSIONS = "versions"
 
     @property
     def writer(self) -> str:
         """The Maxima function."""
         return "write_" + self.value.replace("-", "_")
+
+
+NO_SCENE = frozenset({Document.ERRATA, Document.VERSIONS})  # the paper's file holds more than a system
 
 
 class Publication(StrEnum):
@@ -54,6 +58,7 @@ class Publication(StrEnum):
     CHECK = "check"
     SERIES = "series"
     SIMULATION = "simulation"
+    DOCTOR = "doctor"
 
 
 def ask(
@@ -87,7 +92,7 @@ def ask(
         As `holonom.maxima.ask_scene`; a string can be no name.
     """
     call = ", ".join(["file", *map(_maxima_text, arguments)])
-    run = run_batch if document is Document.ERRATA else ask_scene  # the paper's file holds more than a system
+    run = run_batch if document in NO_SCENE else ask_scene
     return run(file, f"lambda([file], {document.writer}({call}))", limits, settings)
 
 

@@ -1,14 +1,14 @@
 """What of all that Holonom can use is installed, and how to install the rest."""
 
-import json
 import re
 import shutil
 from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib import metadata
 
+from .documents import Document, ask, read
 from .failures import HolonomError
-from .maxima import LIBRARY, run_batch
+from .maxima import LIBRARY
 
 REQUIREMENT = re.compile(r"(?P<package>[\w.-]+)[^;]*(?:;.*extra\s*==\s*['\"](?P<extra>\w+)['\"])?")
 USERS_EXTRAS = ("motion", "sweep", "companion")  # the others are for those who develop Holonom
@@ -71,7 +71,7 @@ def components() -> Iterator[Component]:
 def maxima_version() -> str | None:
     """Maxima's version and its Lisp's; None where it does not run."""
     try:
-        document = json.loads(run_batch(LIBRARY / "holonom.mac", "write_versions"))
+        document = read(Document.VERSIONS, ask(Document.VERSIONS, LIBRARY / "holonom.mac"))
     except HolonomError:
         return None
     return f"{document['maxima']} on {document['lisp']} {document['lisp_version']}"

@@ -13,13 +13,13 @@ MISSING = 1
 @writes_json
 def doctor(json_file: Path | None) -> int:
     """Say what is installed, what is missing, and the command that installs it."""
+    from ..documents import Publication, published
     from ..installation import components
     from .tables.installation import show_components
     from .tables.text import make_console
 
     found = list(components())
-    document = {"format": "holonom-doctor", "version": 1, "components": [asdict(each) for each in found]}
-    publish(json_text(document), json_file)
+    publish(json_text(published(Publication.DOCTOR, {"components": [asdict(each) for each in found]})), json_file)
     if json_file != STANDARD_OUTPUT:
         show_components(make_console(), found)
     return MISSING if any(each.needed and each.version is None for each in found) else 0

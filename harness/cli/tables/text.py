@@ -35,7 +35,10 @@ def make_console() -> Console:
 
 def html_of(show: Callable[[Console], None]) -> str:
     """What is shown on a console, as HTML for a notebook."""
-    console = Console(highlight=False, record=True, width=HTML_WIDTH, file=io.StringIO(), force_terminal=True)
+    kept = io.StringIO()
+    console = Console(
+        highlight=False, record=True, width=HTML_WIDTH, file=kept, force_terminal=True, force_jupyter=False
+    )
     show(console)
     return console.export_html(inline_styles=True, code_format=HTML)
 

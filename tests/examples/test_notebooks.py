@@ -1,0 +1,30 @@
+"""The notebooks run, and show what they showed."""
+
+from pathlib import Path
+
+import nbformat
+import pytest
+from nbclient import NotebookClient
+
+NOTEBOOKS = sorted((Path(__file__).parents[2] / "examples" / "notebooks").glob("*.ipynb"))
+
+
+def shown(notebook: nbformat.NotebookNode) -> list[list[str]]:
+    """What kinds of output each cell has, in which forms."""
+    cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    return [[str(sorted(output.get("data", [output.output_type]))) for output in cell.outputs] for cell in cells]
+
+
+def test_there_are_three():
+    assert [file.stem for file in NOTEBOOKS] == ["numbers_and_code", "own_system", "paper"]
+
+
+@pytest.mark.parametrize("file", NOTEBOOKS, ids=lambda file: file.stem)
+def test_a_notebook_runs_and_shows_what_it_showed(file):
+    kept = nbformat.read(file, as_version=4)
+    ran = nbformat.read(file, as_version=4)
+    NotebookClient(
+        ran, timeout=120, kernel_name="python3", resources={"metadata": {"path": str(file.parent)}}
+    ).execute()
+    assert all(cell.execution_count for cell in kept.cells if cell.cell_type == "code")
+    assert shown(ran) == shown(kept)

@@ -1,0 +1,72 @@
+"""Every snippet of the README runs as it stands there."""
+
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from holonom.cli import holonom
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+BLOCKS = re.findall(r"^```(\w*)\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
+LONG = ("companion", "accuracy", "stability")  # commands that other tests run; here, that they take their arguments
+
+
+def blocks(language: str) -> list[str]:
+    return [text for kind, text in BLOCKS if kind == language]
+
+
+def commands() -> list[list[str]]:
+    lines = "".join(blocks("sh")).splitlines()
+    return [words for line in lines if (words := shlex.split(line, comments=True))]
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory) -> Path:
+    """A directory with the README's scene and the examples."""
+    directory = tmp_path_factory.mktemp("readme")
+    [scene] = blocks("maxima")
+    (directory / "my_pendulum.mac").write_text(scene, encoding="utf-8")
+    for name in ("examples", "maxima"):
+        (directory / name).symlink_to(ROOT / name)
+    return directory
+
+
+def test_there_are_snippets_of_each_kind():
+    assert {kind for kind, _ in BLOCKS} == {"sh", "python", "maxima"}
+
+
+@pytest.mark.parametrize("command", commands(), ids=" ".join)
+def test_a_command_of_the_readme_runs(command, place):
+    program, *arguments = command
+    if program == "make":
+        targets = re.findall(r"^(\w+):", (ROOT / "Makefile").read_text(), re.MULTILINE)
+        assert set(arguments) <= set(targets)
+    elif program == "holonom" and arguments[0] in LONG:
+        subcommand = holonom.get_command(None, arguments[0])
+        subcommand.make_context(arguments[0], arguments[1:])
+    else:
+        run = [sys.executable, "-m", "holonom"] if program == "holonom" else [program]
+        done = subprocess.run([*run, *arguments], cwd=place, capture_output=True, text=True, timeout=120, check=False)
+        assert done.returncode == 0, done.stderr
+        assert "Traceback" not in done.stderr
+        assert " error" not in done.stdout.replace("energy error", "")
+
+
+def test_the_python_of_the_readme_runs(place, monkeypatch):
+    monkeypatch.chdir(place)
+    names: dict[str, object] = {}
+    for text in blocks("python"):
+        exec(compile(text, "README.md", "exec"), names)
+    assert names["numbers"] == pytest.approx(names["same"], rel=1e-12)
+    assert names["motion"]["x"][0] == 0.6
+    assert (place / "swing.svg").exists()
+
+
+def test_what_the_readme_points_to_is_there():
+    targets = re.findall(r"\]\(([^)#:]+)\)", README)
+    assert [target for target in targets if not (ROOT / target).exists()] == []
