@@ -113,10 +113,15 @@ class TrajectoryControl:
     Attributes
     ----------
     kind : str
-        ``closed form`` (in the initial data q1_0, dot(q1)_0), ``numeric`` (with the scene's numbers, along its time
-        span), ``series`` (with the scene's numbers, at the initial instant) or ``none``.
+        ``closed form`` (in letters, the initial data q1_0, dot(q1)_0, or in the scene's numbers), ``numeric`` (with the
+        scene's numbers, along its time span), ``series`` (with the scene's numbers, at the initial instant), ``any
+        control``, ``none`` (there is none) or ``not determined``.
     law : Law
-        By control; the series where the kind is ``numeric``.
+        By control; a truncated series where there is an order.
+    free : tuple of str
+        Controls that stay free functions of the time; a closed form may contain them.
+    order : int or None
+        To which the law is a series; None where it is closed.
     motion : Law
         The free motion by coordinate, where its closed form is known.
     samples : tuple of tuple of float
@@ -126,6 +131,8 @@ class TrajectoryControl:
 
     kind: str
     law: Law
+    free: tuple[str, ...]
+    order: int | None
     motion: Law
     samples: tuple[tuple[float, ...], ...]
     reason: str
@@ -197,6 +204,8 @@ def free_motion(file: Path, scene: str | None, settings: Mapping[str, str], limi
         TrajectoryControl(
             trajectory["kind"],
             _law(trajectory["law"]),
+            tuple(trajectory["free"]),
+            trajectory["order"],
             _law(trajectory["motion"]),
             tuple(tuple(map(float, sample)) for sample in trajectory["samples"]),
             trajectory["reason"],

@@ -64,8 +64,10 @@ def _free_motion_document(found: "FreeMotion") -> dict[str, Any]:
             "reason": universal.reason,
         },
         "trajectory": {
-            "law": law_text(trajectory.law) or None,
             "kind": trajectory.kind,
+            "law": law_text(trajectory.law) or None if trajectory.order is None else None,
+            "series": None if trajectory.order is None else law_text(trajectory.law) | {"order": trajectory.order},
+            "free": trajectory.free,
             "samples": trajectory.samples or None,
             "reason": trajectory.reason,
         },

@@ -1,9 +1,9 @@
 """The laws that are said to make every motion free, tried once more on the equations of motion.
 
-Under such a law the free accelerations, those of the forces alone, keep the constraints: at every state on the
-constraint manifold d^2 f/dt^2 = 0 with the accelerations that solve Lagrange's equations without multipliers. States
-are drawn at random and moved onto the manifold by Newton's method, position first, velocity after it; nothing that
-Maxima derived is used, neither (10) nor a solution of the constraints.
+Under such a law every multiplier is zero: at every state on the constraint manifold the bordered equations, Lagrange's
+with multipliers and d^2 f/dt^2 = 0, have the solution lambda = 0. States are drawn at random and moved onto the
+manifold by Newton's method, position first, velocity after it; nothing that Maxima derived is used, neither (10) nor a
+solution of the constraints.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import sympy as sp
 from mpmath import mp
 
 from .independent import IndependentEquations
+from .linear import LinearEquations
 from .points import IrregularPoint, Valuation, random_point
 from .report import Verdict
 from .system import MechanicalSystem, dotted
@@ -44,7 +45,7 @@ class LawOfControls:
 
 
 def judge_law(system: MechanicalSystem, values: Mapping[sp.Symbol, sp.Expr], law: LawOfControls) -> Judgement:
-    """Verdict on a law: whether the free accelerations keep the constraints in random states.
+    """Verdict on a law: whether the multipliers vanish in random states.
 
     Parameters
     ----------
@@ -100,16 +101,17 @@ class _MovedByLaw:
         self.coordinates, self.velocities = system.coordinates, system.velocities
         self.constraints = under_law(system.constraints)
         self.rates = under_law(equations.constraint_rates)
-        self.second_rates = under_law(equations.constraint_accelerations)
         self.jacobian = [[f.diff(q) for q in self.coordinates] for f in self.constraints]
-        self.free = type(equations.free)(system.accelerations, under_law(equations.free.residuals))
+        self.multipliers = system.multipliers
+        self.motion = LinearEquations(equations.bordered.unknowns, under_law(equations.bordered.residuals))
         self.positive = under_law(law.positive)
-        everything = (*self.constraints, *self.rates, *self.second_rates, *self.free.residuals, *self.positive)
+        everything = (*self.constraints, *self.rates, *self.motion.residuals, *self.positive)
         symbols = set().union(*(expression.free_symbols for expression in everything))
-        self.names = sorted(s.name for s in (symbols | {*self.coordinates, *self.velocities}) - {*system.accelerations})
+        state = {*self.coordinates, *self.velocities}
+        self.names = sorted(symbol.name for symbol in (symbols | state) - {*self.motion.unknowns})
 
     def residual(self, point: Mapping[sp.Symbol, sp.Rational]) -> str:
-        """Tell the first constraint that the free accelerations do not keep; empty where they keep all."""
+        """Tell the first multiplier that is not zero; empty where all are."""
         if any(Valuation(point)(expression) <= 0 for expression in self.positive):
             raise IrregularPoint
         state: dict[sp.Symbol, mp.mpf] = {symbol: mp.mpf(number.p) / number.q for symbol, number in point.items()}
@@ -119,14 +121,11 @@ class _MovedByLaw:
         else:
             raise IrregularPoint
         self._corrected(state, self.velocities, self.rates)
-        value = _valuation(state)
-        for acceleration, number in self.free.solution(value).items():
-            value.define(acceleration, number)
-            state[acceleration] = number
-        scale = max(1, *(abs(number) for number in state.values())) ** 2
-        for beta, second_rate in enumerate(self.second_rates, start=1):
-            if abs(left := value(second_rate)) > mp.mpf(10) ** -DIGITS * scale:
-                return f"the free accelerations leave constraint {beta} with the second rate {mp.nstr(left, 12)}"
+        found = self.motion.solution(_valuation(state))
+        scale = max(1, *(abs(number) for number in (*state.values(), *found.values()))) ** 2
+        for multiplier in self.multipliers:
+            if abs(left := found[multiplier]) > mp.mpf(10) ** -DIGITS * scale:
+                return f"{multiplier} is {mp.nstr(left, 12)}"
         return ""
 
     def _corrected(

@@ -22,9 +22,9 @@ def show_free_motion(console: Console, found: "FreeMotion") -> None:
     _show_universal(console, found.universal)
     trajectory = found.trajectory
     samples = [_sample(sample, trajectory.law) for sample in trajectory.samples if trajectory.kind == "numeric"]
-    _show_list(
-        console, f"control for one trajectory: {trajectory.kind}", [_law(trajectory.law), trajectory.reason, *samples]
-    )
+    law = _law(trajectory.law) if trajectory.order is None else _series(trajectory.law, trajectory.order)
+    free = f"{', '.join(trajectory.free)} any function of the time" if trajectory.free else ""
+    _show_list(console, f"control for one trajectory: {trajectory.kind}", [law, free, trajectory.reason, *samples])
     if found.prescribed is not None:
         reactions, controls = _law(found.prescribed.reactions), _law(found.prescribed.controls)
         _show_list(console, f"controls under the prescribed reactions {reactions}", [controls])
@@ -72,6 +72,10 @@ def _show_list(console: Console, title: str, lines: Iterable[str]) -> None:
 
 def _sample(sample: Iterable[float], law: "Law") -> str:
     return "  ".join(f"{name} = {value:<12.6g}" for name, value in zip(("t", *law), sample, strict=True)).rstrip()
+
+
+def _series(law: "Law", order: int) -> str:
+    return ", ".join(f"{control} begins with {formula(value)}, to order {order}" for control, value in law.items())
 
 
 def _law(law: "Law") -> str:

@@ -10,7 +10,7 @@ from ..excerpts import excerpt
 from ..runs import derived, free
 
 SOURCE = "maxima/free_motion/trajectory.mac"
-FUNCTIONS = ("trajectory_control", "obstacle_to_trajectory_law", "integrated_motion", "law_along")
+FUNCTIONS = ("trajectory_control", "law_along", "solved_along", "freed_scene")
 FILES = {
     "paper": PAPER,
     "pendulum": PENDULUM,

@@ -20,7 +20,8 @@ def chapter(prefix: str, file: Path, study: Run) -> Chapter:
             {"name": name, "title": title, "answer": found.free[name], "cards": scene_cards_of(found, ["10"], name)}
             for name, title in found.titles.items()
         ]
-        return Page({"cards": cards, "scenes": scenes}, sources=files_of(cards))
+        controlled = bool(found.derived.record.system.controls)
+        return Page({"cards": cards, "scenes": scenes, "controlled": controlled}, sources=files_of(cards))
 
     return Chapter(
         slug=f"{prefix}free-motion",
