@@ -37,7 +37,7 @@ def test_free_motion_and_series_are_answered(own):
 def test_an_answer_that_mathematics_refuses_is_replaced_by_the_reason(tmp_path):
     outcome, directory = made(tmp_path, ROUGH)
     assert outcome.return_value == 0
-    assert "There is no answer: " in (shown := pages.words(directory / "initial-motion.html"))
+    assert "No answer was found: " in (shown := pages.words(directory / "initial-motion.html"))
     assert "not analytic" in shown
 
 
