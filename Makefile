@@ -31,7 +31,7 @@ setup: have-maxima have-compiler have-gsl have-bubblewrap $(STAMP) ## Install wh
 
 bench: export OPENBLAS_NUM_THREADS = 1
 bench: setup ## Time the motion program, the power series and simulations against their peers: tables and figures
-	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,motion,companion,bench]'
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,motion,sweep,companion,bench]'
 	$(BIN)/python tests/benchmarks/run.py build/benchmarks
 	$(BIN)/python tests/benchmarks/series.py build/benchmarks
 	$(BIN)/python tests/benchmarks/simulation.py build/benchmarks
@@ -90,5 +90,5 @@ $(STAMP): pyproject.toml constraints.txt | have-python
 	@test -n "$(PYTHON)" || { echo "Holonom needs Python 3.11 or later: please install it." >&2; exit 2; }
 	@$(PYTHON) -c 'import ensurepip' 2>/dev/null || $(call install,$(notdir $(PYTHON))-venv)
 	$(PYTHON) -m venv --clear .venv
-	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,motion,companion]'
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,motion,sweep,companion]'
 	@touch $@

@@ -4,12 +4,12 @@ Maxima does all of it, from `examples/paper/printed.mac`; this module runs that 
 """
 
 from dataclasses import dataclass
-from pathlib import Path
 
 from .documents import Document, ask, read
+from .files import shared
 from .mathjson import Tree
 
-PRINTED = Path(__file__).resolve().parents[1] / "examples" / "paper" / "printed.mac"
+PRINTED = shared("examples") / "paper" / "printed.mac"
 
 
 @dataclass(frozen=True)

@@ -72,7 +72,7 @@ class Failure(Enum):
         "install one, for instance the package `gcc` of your distribution, or name one in the variable CC",
     )
     COMPILER_REFUSED = ("the C compiler refused the motion program: {detail}", "")
-    EXTRA_MISSING = ("this needs {detail}, which is not installed", "run `make`, or `pip install {detail}`")
+    EXTRA_MISSING = ("this needs {detail}", "")
     BEYOND_RADIUS = ("{detail}", "ask for an earlier time, or continue the motion with --until")
     ORDER_TOO_HIGH = ("{detail}", "ask for a lower order, or for digits")
     NOT_A_PRECISION = ("{detail}", "take another one, or ask for --digits, which Maxima computes with")
@@ -184,3 +184,12 @@ class HolonomError(Exception):
             advised = ", or ".join(clause for clause in clauses if set(OPTION.findall(clause)) <= set(options))
         located = f"{self.place}: {said}" if self.place else said
         return located.rstrip(".") + (f"; {advised}." if advised else ".")
+
+
+def missing_package(package: str) -> HolonomError:
+    """The refusal to go on without a package, with the command that installs the extra that it belongs to."""
+    from .installation import extra_of
+
+    extra = extra_of(package)
+    named = f"holonom[{extra}]" if extra else package
+    return HolonomError(Failure.EXTRA_MISSING, detail=f"{package}, which is not installed; run `pip install '{named}'`")

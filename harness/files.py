@@ -18,6 +18,15 @@ PRIVATE = ".holonom-run-"
 PRIVATE_NAME = re.compile(re.escape(PRIVATE) + r"[a-z0-9_]{8}")
 
 
+def shared(folder: str) -> Path:
+    """A folder that travels with the package, ``maxima`` or ``examples``: inside it where a wheel has put it.
+
+    In the repository, where the package is used in place, it lies beside the package.
+    """
+    inside = Path(__file__).resolve().with_name("share") / folder
+    return inside if inside.is_dir() else Path(__file__).resolve().parents[1] / folder
+
+
 @contextmanager
 def private_directory() -> Iterator[Path]:
     """A directory for temporary files, gone at the end. While it is in use it is locked.

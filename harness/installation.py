@@ -68,6 +68,12 @@ def components() -> Iterator[Component]:
             yield Component(package, _version(package), extra, False, f"pip install 'holonom[{extra}]'")
 
 
+def extra_of(package: str) -> str | None:
+    """The extra that installs a package; None where none does."""
+    found = (REQUIREMENT.match(requirement) for requirement in metadata.requires("holonom") or ())
+    return next((each["extra"] for each in found if each["package"].lower() == package.lower()), None)
+
+
 def maxima_version() -> str | None:
     """Maxima's version and its Lisp's; None where it does not run."""
     try:

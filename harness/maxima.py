@@ -26,9 +26,9 @@ import psutil
 
 from .confined import MIB, Confinement, LimitExceeded, Limits, Sandbox, run_confined
 from .failures import Failure, HolonomError
-from .files import near_file, private_directory
+from .files import near_file, private_directory, shared
 
-LIBRARY = Path(__file__).resolve().parents[1] / "maxima"
+LIBRARY = shared("maxima")
 HEADLESS = Path(__file__).with_name("headless.lisp")
 DESCRIPTION = Path(__file__).with_name("description.lisp")
 DEFAULT_LIMITS = Limits()

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from ..confined import Limits
-from ..failures import Failure, HolonomError
+from ..failures import missing_package
 from .group import holonom
 from .options import SceneFile, runs_scenes, takes_settings
 
@@ -56,4 +56,4 @@ def require_extras() -> None:
     """
     for package in EXTRAS:
         if find_spec(package) is None:
-            raise HolonomError(Failure.EXTRA_MISSING, detail=package)
+            raise missing_package(package)

@@ -10,7 +10,7 @@ from typing import Any
 
 import click
 
-from ..failures import HolonomError
+from ..failures import HolonomError, missing_package
 from ..supervisor import supervise
 
 MACHINE_AT_FAULT = 3
@@ -38,6 +38,13 @@ class Commands(click.Group):
             return _machine_refuses(error)
         except (click.ClickException, click.Abort, click.exceptions.Exit):
             raise
+        except ModuleNotFoundError as error:
+            from ..installation import extra_of
+
+            package = str(error.name).partition(".")[0]
+            if extra_of(package) is None:
+                return _internal_error(error, verbose)
+            return _refused(missing_package(package), verbose, self._options(ctx))
         except Exception as error:
             return _internal_error(error, verbose)
 

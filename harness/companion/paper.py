@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from ..files import shared
 from .book import APPENDICES, Book
 from .chapters import (
     effects,
@@ -24,7 +25,7 @@ from .chapters import (
     work_precision as accuracy,
 )
 
-REPOSITORY = Path(__file__).resolve().parents[2]
+REPOSITORY = shared("maxima").parent
 
 CHAPTERS = {
     "The paper": (the_system, equations_of_motion, free_motion, initial_motion, worked_example),

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..confined import Limits
+from ..files import shared
 from ..series.power_series import SeriesRequest, compute_series
 from ..series.radius import ENTIRE, Radius
 from .style import BLUE, GREEN, INK, VERMILION, figure_style, new_figure, write_figure
@@ -23,7 +24,7 @@ from .style import BLUE, GREEN, INK, VERMILION, figure_style, new_figure, write_
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-PAPER = Path(__file__).parents[2] / "examples" / "paper" / "paper.mac"
+PAPER = shared("examples") / "paper" / "paper.mac"
 LINEAR, EXPONENTIAL = "initial_motion_scene", "free_motion_scene"  # u = u0 + t, u = u0 exp(t)
 CONTROLS = [Fraction(k, 4) for k in range(-8, 9)]
 ORDERS = (26, 160)  # few, so that the uncertainty shows; and many

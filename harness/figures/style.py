@@ -22,7 +22,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
 
-from ..failures import Failure, HolonomError
+from ..failures import missing_package
 from ..files import write_whole
 
 if TYPE_CHECKING:
@@ -173,5 +173,5 @@ def import_matplotlib() -> ModuleType:
     try:
         import matplotlib
     except ImportError:
-        raise HolonomError(Failure.EXTRA_MISSING, detail="matplotlib") from None
+        raise missing_package("matplotlib") from None
     return matplotlib

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..failures import Failure, HolonomError
+from ..failures import Failure, HolonomError, missing_package
 from .arithmetic import Arithmetic, run_program
 from .motion_program import Constant, Operation, Program
 
@@ -201,7 +201,7 @@ def import_heyoka() -> ModuleType:
     try:
         import heyoka
     except ImportError:
-        raise HolonomError(Failure.EXTRA_MISSING, detail="heyoka") from None
+        raise missing_package("heyoka") from None
     return heyoka
 
 

@@ -11,7 +11,7 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
-from ..failures import Failure, HolonomError
+from ..failures import Failure, HolonomError, missing_package
 from ..files import write_whole
 from .document import published_list
 from .result import Simulation
@@ -125,7 +125,7 @@ def _import_parquet() -> tuple[ModuleType, ModuleType]:
         import pyarrow
         from pyarrow import parquet
     except ImportError:
-        raise HolonomError(Failure.EXTRA_MISSING, detail="pyarrow") from None
+        raise missing_package("pyarrow") from None
     return pyarrow, parquet
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
 
-from ..failures import Failure, HolonomError
+from ..failures import missing_package
 from ..shown import Show, Shown
 from .diagnosis import HardCase
 from .engines.switching import Leg
@@ -125,7 +125,7 @@ class Simulation(Shown):
         try:
             from pandas import DataFrame
         except ImportError:
-            raise HolonomError(Failure.EXTRA_MISSING, detail="pandas") from None
+            raise missing_package("pandas") from None
         return DataFrame(dict(self.columns())).set_index("t")
 
     def plot(self) -> "Picture":

@@ -8,7 +8,7 @@ from itertools import pairwise
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
-from ..failures import Failure, HolonomError
+from ..failures import missing_package
 
 NAMESPACE = "http://www.w3.org/1998/Math/MathML"
 COLOURS = ("misprint", "correction")
@@ -63,7 +63,7 @@ def _by_latex2mathml(latex: str, display: str) -> str:
     try:
         from latex2mathml.converter import convert
     except ImportError:
-        raise HolonomError(Failure.EXTRA_MISSING, detail="latex2mathml") from None
+        raise missing_package("latex2mathml") from None
     return convert(latex, display=display)
 
 

@@ -3,12 +3,12 @@
 from collections.abc import Mapping
 from fractions import Fraction
 from functools import cache
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from ...confined import Limits
+from ...files import shared
 from ...program.motion_problem import MotionProblem, motion_problem
 from ...program.motion_program import Solve
 from ...program.request import Request
@@ -17,7 +17,7 @@ from ...simulation.matrices import Vector
 from ...simulation.request import FINAL_STATE_ALONE, SimulationRequest
 from ...simulation.simulate import simulate
 
-EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
+EXAMPLES = shared("examples")
 
 
 class Arrived(NamedTuple):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ...failures import Failure, HolonomError
+from ...failures import Failure, HolonomError, missing_package
 from .candidates import Candidate, Group, Prepared
 from .errors import State, numbers_of
 from .right_hand_side import RightHandSide, acceleration_program, compiled_right_hand_side
@@ -78,7 +78,7 @@ def sundials_solver(method: str, motion: RightHandSide, span: tuple[float, float
     try:
         from sksundae.cvode import CVODE
     except ImportError:
-        raise HolonomError(Failure.EXTRA_MISSING, detail="scikit-sundae") from None
+        raise missing_package("scikit-sundae") from None
     solver = CVODE(motion.fill, method=method, rtol=tol, atol=tol, max_num_steps=MOST_STEPS)
     solution = solver.solve(np.array(span), start)
     if not solution.success:
