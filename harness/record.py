@@ -161,6 +161,11 @@ class Scene:
         The controls as functions of the time and the parameters as numbers, by name.
     initial_state : mapping of str to Expr
         All coordinates and velocities at the initial instant, by name.
+    given : tuple of str
+        Coordinates and velocities whose initial values the scene gives; the others follow from the constraints.
+    correction : (str, str) or None
+        The given value that missed the constraints in its last digits and was corrected most, and the size of the
+        correction in decimal digits.
     time_span : pair of Expr or None
         First and last instant.
     observe : tuple of str
@@ -176,6 +181,8 @@ class Scene:
     control_law: Mapping[str, Expr]
     parameter_values: Mapping[str, Expr]
     initial_state: Mapping[str, Expr]
+    given: tuple[str, ...]
+    correction: tuple[str, str] | None
     time_span: tuple[Expr, Expr] | None
     observe: tuple[str, ...]
     equations: tuple[Equation, ...]
@@ -268,6 +275,8 @@ def _scene(scene: dict[str, Any]) -> Scene:
         control_law=_values(scene["control_law"]),
         parameter_values=_values(scene["parameter_values"]),
         initial_state=_values(scene["initial_state"]),
+        given=tuple(scene["given"]),
+        correction=scene["correction"] and (scene["correction"]["name"], scene["correction"]["size"]),
         time_span=None if span is None else (to_sympy(span[0]), to_sympy(span[1])),
         observe=tuple(scene["observe"]),
         equations=_each(_equation, scene["equations"]),

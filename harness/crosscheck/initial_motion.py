@@ -7,7 +7,7 @@ initial jerks from the bordered system differentiated once more along the motion
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence, Set
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -125,19 +125,45 @@ def initial_state(claims: SceneClaims, relations: Relations) -> Comparison:
 
 
 def determined_initial_values(claims: SceneClaims, relations: Relations) -> Comparison:
-    """(19): with the values put in, the constraints they come from vanish identically."""
+    """(19): all values left out are there; with them put in, the constraints they come from vanish identically.
+
+    A value that is a number, in constraints that contain other initial values besides, is one for the scene's own
+    numbers only: it is compared with the initial state, for which (12) has the constraints.
+    """
     fixed = {relation.left: relation.right for relation in relations}
-    if len(fixed) < len(relations) or not fixed.keys() <= set(map(initial, claims.state)):
-        raise NotComparable("values of something else than the initial state")
-    q = {q for q in claims.system.coordinates if initial(q) in fixed}
-    v = {v for v in claims.system.velocities if initial(v) in fixed}
+    left_out = {initial(symbol) for symbol in claims.state if symbol.name not in claims.scene.given}
+    if len(fixed) < len(relations) or fixed.keys() != left_out:
+        raise NotComparable(f"values of {_names(fixed)} where the scene leaves out {_names(left_out)}")
+    stated = {initial(sp.Symbol(x, real=True)): y for x, y in claims.scene.initial_state.items()}
+    residuals = [
+        *_for_all_states(claims.system.coordinates, claims.system.constraints, fixed),
+        *_for_all_states(claims.system.velocities, claims.known.constraint_rates, fixed),
+    ]
+    numbers = [name for name, value in fixed.items() if value.is_number]
     return Comparison(
         (
-            *_vanishing("constraint", _containing(q, claims.system.constraints)),
-            *_vanishing("rate of constraint", _containing(v, claims.known.constraint_rates)),
+            *_vanishing("constraint", residuals),
+            *(Pair(name.name, fixed[name], stated[name]) for name in numbers if stated[name].is_number),
         ),
         given={**fixed, **claims.start},
     )
+
+
+def _for_all_states(
+    symbols: Iterable[sp.Symbol], residuals: Iterable[sp.Expr], fixed: Mapping[sp.Symbol, sp.Expr]
+) -> Iterable[sp.Expr]:
+    """Residuals that contain fixed symbols, and no symbol that is fixed for the scene's numbers only."""
+    symbols = set(symbols)
+    known = {symbol for symbol in symbols if initial(symbol) in fixed}
+    numbers = {symbol for symbol in known if fixed[initial(symbol)].is_number}
+    for residual in residuals:
+        present = residual.free_symbols & symbols
+        if present & known and not (present & numbers and present - numbers):
+            yield residual
+
+
+def _names(symbols: Iterable[sp.Symbol]) -> str:
+    return ", ".join(sorted(symbol.name for symbol in symbols)) or "nothing"
 
 
 def initial_accelerations(claims: SceneClaims, relations: Relations) -> Comparison:
@@ -172,10 +198,6 @@ def initial_series(claims: SceneClaims, relations: Relations) -> Comparison:
         solves=(claims.known.bordered, claims.known.bordered_rates),
         certificate=claims.certificate(highest),
     )
-
-
-def _containing(symbols: Set[sp.Symbol], expressions: Iterable[sp.Expr]) -> list[sp.Expr]:
-    return [expression for expression in expressions if expression.free_symbols & symbols]
 
 
 def _vanishing(what: str, expressions: Iterable[sp.Expr]) -> Iterable[Pair]:

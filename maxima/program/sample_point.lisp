@@ -232,12 +232,14 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
 
 (defun float-of (number) (float number 1d0))
 
-(defun newton-iteration (point constraints jacobian coordinates)
+(defun newton-iteration (point constraints jacobian coordinates &optional metric)
   (let ((last-size nil))
     (dotimes (attempt (if *floating* *impatience* *most-corrections*) nil)
       (let ((residuals (mapcar #'(lambda (f) (value-at (expression-term f) point)) (cdr constraints))))
         (if (every #'zerop residuals) (return (converted-point point #'identity)))
-        (let* ((corrections (newton-corrections residuals jacobian point))
+        (let* ((corrections (if metric
+                                (corrections-in-metric residuals jacobian metric point (length (cdr coordinates)))
+                                (newton-corrections residuals jacobian point)))
                (size (largest-correction corrections)))
           (if (and (> attempt *impatience*) last-size (>= size last-size)) (return nil))
           (setq last-size size
@@ -245,7 +247,7 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
 
 (defun newton-corrections (residuals jacobian point)
   "The shortest change of the coordinates, column -> number: J^T x with J J^T x = -f."
-  (let* ((rows (mapcar #'(lambda (row) (row-at-point row point)) (cdr jacobian)))
+  (let* ((rows (numeric-rows jacobian point))
          (columns (columns-of rows))
          (unknowns (make-hash-table))
          (corrections (make-hash-table))
@@ -258,6 +260,29 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
     (dolist (row rows corrections)
       (let ((x (gethash (incf beta) unknowns 0)))
         (dolist (e row) (incf (gethash (car e) corrections 0) (* x (cdr e))))))))
+
+(defun numeric-rows (rows point)
+  (mapcar #'(lambda (row) (row-at-point row point)) (cdr rows)))
+
+(defun corrections-in-metric (residuals jacobian metric point size)
+  "The change x that is shortest in the metric A: A x + J^T y = 0, J x = -f."
+  (let* ((rows (numeric-rows jacobian point))
+         (unknowns (make-hash-table))
+         (columns (columns-of rows))
+         (s 0))
+    (setf (gethash 0 unknowns) 1)
+    (substituted-back
+     (echelon-of (append (mapcar #'(lambda (row) (append row (multiplier-entries (gethash (incf s) columns) size)))
+                                 (numeric-rows metric point))
+                         (mapcar #'with-right-side residuals rows)))
+     unknowns)
+    (let ((corrections (make-hash-table)))
+      (dotimes (s size corrections)
+        (setf (gethash (1+ s) corrections) (gethash (1+ s) unknowns 0))))))
+
+(defun multiplier-entries (column size)
+  (mapcar #'(lambda (e) (cons (+ size (car e)) (cdr e)))
+          (sort (copy-list column) #'< :key #'car)))
 
 (defun columns-of (rows)
   "column -> list of (row . number)"
@@ -312,3 +337,36 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
                  (setf (gethash symbol (sample-point-symbols copy)) (funcall conversion value)))
              (sample-point-symbols point))
     copy))
+
+;;; ---- an initial state --------------------------------------------------------------------
+
+(defun $values_near (point constraints jacobian metric names)
+  "Values of the names, near those of the point in the metric, that make the constraints vanish;
+false where Newton's method does not get there."
+  (let ((*zero-share* *zero-share-of-constraints*) (*small-coordinate* *zero-share-of-constraints*))
+    (catch 'irregular-point
+      (let ((found (newton-iteration point constraints jacobian names metric)))
+        (if found
+            (cons '(mlist)
+                  (mapcar #'(lambda (x) (maxima-number (plain-number (gethash x (sample-point-symbols found)))))
+                          (cdr names))))))))
+
+(defvar *kept-digits* 60)
+
+(defun plain-number (number)
+  "The fraction of few digits that the number agrees with; else its decimal digits."
+  (or (simple-fraction number)
+      (let ((unit (expt 10 (- *kept-digits* (floor (* (log 2d0 10d0) (binary-magnitude number)))))))
+        (/ (round (* number unit)) unit))))
+
+(defun simple-fraction (number)
+  "The first convergent of the continued fraction that is as near as the kept digits tell."
+  (let ((rest (abs number)) (p 1) (p-before 0) (q 0) (q-before 1) (size (abs number)))
+    (do () ((> q (expt 10 (floor *kept-digits* 4))))
+      (let ((whole (floor rest)))
+        (psetq p (+ (* whole p) p-before) p-before p
+               q (+ (* whole q) q-before) q-before q)
+        (if (<= (abs (- size (/ p q))) (* size (expt 10 (- 10 *kept-digits*))))
+            (return (* (signum number) (/ p q))))
+        (if (= rest whole) (return nil))
+        (setq rest (/ 1 (- rest whole)))))))

@@ -1,0 +1,70 @@
+"""Wrong starts: what a record says of the initial state, changed or left out, is found by the check."""
+
+import dataclasses
+
+import pytest
+
+from holonom.crosscheck import Verdict, check_record
+from holonom.maxima import run_scene
+from holonom.record import Equation, Record, Relation, Scene, read_record
+
+# X is fixed by the control alone, y by a root that the guess chooses, w by nothing that has a closed form.
+START = """
+load("holonom.mac")$
+system : holonomic_system(
+  coordinates = [X, y, z, v, w], controls = [u],
+  kinetic_energy = (dot(X)^2 + dot(y)^2 + dot(z)^2 + dot(v)^2 + dot(w)^2)/2,
+  constraints = [X - u, y^2 + z^2 - 1, w + sin(w)/2 - v])$
+scene : holonomic_scene(system, control_law = [u = 2 + t], initial_state = [z = 0.6, v = 1, dot(z) = 0, dot(v) = 0],
+  initial_guess = [X = 0, y = -1, w = 1, dot(X) = 0, dot(y) = 0, dot(w) = 0], time_span = [0, 1])$
+"""
+
+
+@pytest.fixture(scope="module")
+def record(tmp_path_factory) -> Record:
+    file = tmp_path_factory.mktemp("start") / "scene.mac"
+    file.write_text(START)
+    return read_record(run_scene(file))
+
+
+def verdicts(record: Record, scene: Scene) -> dict[str, Verdict]:
+    """Verdicts on (12) and (19) alone."""
+    alone = dataclasses.replace(scene, equations=tuple(e for e in scene.equations if e.number in ("12", "19")))
+    nothing = dataclasses.replace(record.derivations[0], equations=())
+    report = check_record(dataclasses.replace(record, derivations=(nothing,), scenes=(alone,)))
+    return {found.number: found.verdict for found in report.verdicts if found.scene and found.name != "(missing)"}
+
+
+def fixed_values(scene: Scene) -> Equation:
+    return next(equation for equation in scene.equations if equation.number == "19")
+
+
+def with_relations(scene: Scene, relations: tuple[Relation, ...]) -> Scene:
+    changed = dataclasses.replace(fixed_values(scene), relations=relations)
+    equations = tuple(changed if equation.number == "19" else equation for equation in scene.equations)
+    return dataclasses.replace(scene, equations=equations)
+
+
+def test_all_values_left_out_are_listed(record):
+    (scene,) = record.scenes
+    listed = {str(relation.left) for relation in fixed_values(scene).relations}
+    assert listed == {"X_0", "y_0", "w_0", "dot(X)_0", "dot(y)_0", "dot(w)_0"}
+    assert verdicts(record, scene) == {"12": Verdict.AGREES, "19": Verdict.PROVED}
+
+
+def test_each_wrong_or_missing_value_is_found(record):
+    (scene,) = record.scenes
+    relations = fixed_values(scene).relations
+    for i, relation in enumerate(relations):
+        larger = Relation(relation.left_tree, ["Add", relation.right_tree, ["Rational", 1, 1000]])
+        for changed in ((larger,), ()):
+            wrong = with_relations(scene, (*relations[:i], *changed, *relations[i + 1 :]))
+            assert verdicts(record, wrong)["19"] is Verdict.DISAGREES, relation.left
+
+
+def test_a_start_off_the_constraints_is_found(record):
+    (scene,) = record.scenes
+    for name in scene.initial_state:
+        moved = {**scene.initial_state, name: scene.initial_state[name] + 1}
+        wrong = dataclasses.replace(scene, initial_state=moved)
+        assert verdicts(record, wrong)["12"] is Verdict.DISAGREES, name
