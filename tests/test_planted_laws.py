@@ -1,0 +1,230 @@
+"""Laws that are known to make motions free, hidden by a random change of coordinates and controls.
+
+A system whose laws are known is written in other coordinates and other controls: shears, linear and quadratic, that
+move with the time, and factors that depend on it. The changes are invertible, so the law is still there: the answer may
+be that nothing was decided, but never that there is none, that the motion is not free, or that these are all when the
+planted one is missing. Where the system is known to have no law, none may be shown.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+import sympy as sp
+from scipy.optimize import least_squares
+
+from holonom.confined import Limits
+from holonom.crosscheck import Verdict
+from holonom.free_motion import UniversalLaw, free_motion
+
+t = sp.Symbol("t", real=True)
+Change = Mapping[sp.Symbol, sp.Expr]
+
+
+@dataclass(frozen=True)
+class Base:
+    """A system of unit masses in Cartesian coordinates, with a law that makes motions free, or with none.
+
+    Under ``law`` the scene moves; ``universal`` says whether it makes every motion free, or no law does.
+    """
+
+    coordinates: tuple[sp.Symbol, ...]
+    controls: tuple[sp.Symbol, ...]
+    forces: tuple[sp.Expr, ...]
+    constraints: tuple[sp.Expr, ...]
+    law: Change
+    state: Mapping[sp.Symbol, tuple[sp.Expr, sp.Expr]]
+    universal: bool = True
+
+
+def real(names: str) -> tuple[sp.Symbol, ...]:
+    return sp.symbols(names, real=True, seq=True)
+
+
+def speed(x: sp.Symbol) -> sp.Symbol:
+    return sp.Symbol(f"dot({x.name})", real=True)
+
+
+a, b, c = real("a b c")
+u, w = real("u w")
+half, third = sp.Rational(1, 2), sp.Rational(1, 3)
+SPRING_AND_DAMPING = (-a - b, -2 * (speed(a) + speed(b)), sp.Integer(0))
+
+BASES = {
+    "paper": Base(
+        (a, b, c), (u,), SPRING_AND_DAMPING, (c - u * (a + b),), {u: third * sp.exp(t)},
+        {a: (sp.Integer(1), half), b: (sp.Integer(2), -third), c: (sp.Integer(1), sp.Rational(19, 18))},
+    ),
+    "hoist": Base(
+        (a, b), (u, w), (sp.Integer(-8), sp.Integer(0)), (a - u - w, b - u + w),
+        {u: 1 + t - 2 * t**2, w: t - 2 * t**2},
+        {a: (sp.Integer(1), sp.Integer(2)), b: (sp.Integer(1), sp.Integer(0))},
+    ),
+    "driven": Base(
+        (a, b), (u, w), (-a, a), (a - u, b - w), {u: sp.cos(t), w: 1 - sp.cos(t)},
+        {a: (sp.Integer(1), sp.Integer(0)), b: (sp.Integer(0), sp.Integer(0))},
+    ),
+    "beside the wall": Base(
+        (a, b), (u,), (sp.Integer(-3), b), (a - u,), {u: 1 - 3 * t**2 / 2},
+        {a: (sp.Integer(1), sp.Integer(0)), b: (half, third)},
+    ),
+    "two controls for one": Base(
+        (a, b), (u, w), (-a, sp.Integer(0)), (a - u - w,), {u: sp.sin(t) + t, w: -t},
+        {a: (sp.Integer(0), sp.Integer(1)), b: (half, third)},
+    ),
+    "two weights on one floor": Base(
+        (a, b), (u,), (sp.Integer(-1), sp.Integer(-2)), (a - u, b - u - 1), {u: sp.Integer(0)},
+        {a: (sp.Integer(0), sp.Integer(0)), b: (sp.Integer(1), sp.Integer(0))}, universal=False,
+    ),
+    "pulled by another": Base(
+        (a, b), (u,), (b**2, sp.Integer(0)), (a - u,), {u: sp.Integer(0)},
+        {a: (sp.Integer(0), sp.Integer(0)), b: (sp.Integer(1), sp.Integer(0))}, universal=False,
+    ),
+    "paper, one motion": Base(
+        (a, b, c), (u,), SPRING_AND_DAMPING, (c - u * (a + b),),
+        {u: (1 + 2 * t) * sp.exp(t) / (3 + sp.Rational(19, 6) * t)},
+        {a: (sp.Integer(1), half), b: (sp.Integer(2), -third), c: (sp.Integer(1), sp.Integer(2))},
+    ),
+}  # fmt: skip
+
+ONE_MOTION = {"paper, one motion"}
+"""Bases whose law frees the motion from the state, not every motion."""
+
+
+@dataclass(frozen=True)
+class Hidden:
+    """A base in other coordinates and controls: old ones in terms of new ones, and the other way."""
+
+    base: Base
+    coordinates: Change
+    new_coordinates: Change
+    controls: Change
+    new_controls: Change
+
+    def scene_file(self) -> str:
+        base = self.base
+        q, v = base.coordinates, [speed(x) for x in base.coordinates]
+        rates = {speed(x): _rate(self.coordinates[x], q) for x in q}
+        old = {**self.coordinates, **self.controls, **rates}
+        forces = [force.subs(old, simultaneous=True) for force in base.forces]
+        generalized = [sum(f * self.coordinates[x].diff(y) for f, x in zip(forces, q, strict=True)) for y in q]
+        energy = sum(rate**2 for rate in rates.values()) / 2
+        start = {x: base.state[x][0] for x in q} | {speed(x): base.state[x][1] for x in q}
+        positions = {x: self.new_coordinates[x].subs({**start, t: 0}) for x in q}
+        motions = {speed(x): _rate(self.new_coordinates[x], q).subs(start).subs(t, 0) for x in q}
+        state = [f"{x} = {maxima(value)}" for x, value in {**positions, **motions}.items()]
+        given = [f"{x} = {maxima(value)}" for x, value in self.law.items()]
+        return f"""
+            load("holonom.mac")$
+            closed_form_size : 2000$
+            system : holonomic_system(
+              coordinates = [{", ".join(map(str, q))}], controls = [{", ".join(map(str, base.controls))}],
+              kinetic_energy = {maxima(energy.subs(dict(zip(v, v, strict=True))))},
+              forces = [{", ".join(map(maxima, generalized))}],
+              constraints = [{", ".join(maxima(f.subs(old, simultaneous=True)) for f in base.constraints)}])$
+            hidden_scene : holonomic_scene(system, control_law = [{", ".join(given)}],
+              initial_state = [{", ".join(state)}])$
+        """
+
+    @property
+    def law(self) -> Change:
+        """The law of the old controls, as one of the new."""
+        law = self.base.law
+        return {x: sp.simplify(self.new_controls[x].subs(law, simultaneous=True)) for x in self.base.controls}
+
+
+def _rate(expression: sp.Expr, q: Sequence[sp.Symbol]) -> sp.Expr:
+    return expression.diff(t) + sum(expression.diff(x) * speed(x) for x in q)
+
+
+def maxima(expression: sp.Expr) -> str:
+    return str(sp.expand(expression)).replace("**", "^")
+
+
+def shears(names: Sequence[sp.Symbol], draw: random.Random, terms) -> tuple[Change, Change]:
+    """A change of variables and its inverse: one variable after the other gains a function of the others."""
+    old, new = {x: x for x in names}, {x: x for x in names}
+    for _ in range(draw.choice([1, 2])):
+        x = draw.choice(names)
+        gained = draw.choice(terms([y for y in names if y != x]))
+        old = {y: value.subs(x, x + gained) for y, value in old.items()}
+        new[x] = new[x] - gained.subs(new, simultaneous=True)
+    return old, new
+
+
+def hidden(base: Base, seed: int) -> Hidden:
+    draw = random.Random(seed)
+    size = draw.choice([1, 2, -1])
+    q = shears(
+        base.coordinates,
+        draw,
+        lambda others: [size * y for y in others] + [size * y**2 for y in others] + [size * t, 0 * t],
+    )
+    r = shears(base.controls, draw, lambda others: [size * y for y in others] + [t, t**2])
+    if draw.random() < 1 / 3:
+        x, factor = draw.choice(base.controls), draw.choice([1 + t**2, sp.exp(t), sp.Integer(3)])
+        r = {y: value.subs(x, x * factor) for y, value in r[0].items()}, {**r[1], x: r[1][x] / factor}
+    return Hidden(base, *q, *r)
+
+
+def contains(law: UniversalLaw, planted: Change) -> bool:
+    """Whether some constants make the planted law one of the family."""
+    instants = np.linspace(-0.6, 0.7, 11)
+    symbols = real(" ".join(law.constants)) if law.constants else ()
+    free = {sp.Symbol(name, real=True): planted[sp.Symbol(name, real=True)] for name in law.free}
+    differences = [
+        expression.subs(free) - planted[sp.Symbol(name, real=True)] for name, expression in law.controls.items()
+    ]
+    evaluate = sp.lambdify((t, *symbols), differences, "numpy")
+
+    def residual(values):
+        return np.concatenate([np.broadcast_to(each, instants.shape) for each in evaluate(instants, *values)])
+
+    if not symbols:
+        return bool(np.abs(residual([])).max() < 1e-9)
+    return any(least_squares(residual, [start] * len(symbols)).cost < 1e-16 for start in (1.0, -0.7))
+
+
+def require_no_false_verdict(name: str, seed: int, tmp_path: Path) -> None:
+    disguise = hidden(BASES[name], seed)
+    file = tmp_path / "hidden.mac"
+    file.write_text(disguise.scene_file(), encoding="utf-8")
+    found = free_motion(file, None, {}, Limits())
+    universal = found.universal
+    assert all(law.check.verdict is Verdict.AGREES for law in universal.laws)
+    if not disguise.base.universal:
+        assert universal.verdict in ("none", "undecided")
+        return
+    assert found.verdict.satisfies != "no"
+    if name in ONE_MOTION:
+        return
+    assert universal.verdict != "none", universal.reason
+    assert universal.verdict != "all" or any(contains(law, disguise.law) for law in universal.laws), disguise.law
+
+
+@pytest.mark.parametrize("name", BASES)
+def test_no_change_of_coordinates_and_controls_makes_a_verdict_false(name, tmp_path):
+    require_no_false_verdict(name, 1, tmp_path)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", range(2, 17))
+@pytest.mark.parametrize("name", BASES)
+def test_none_of_many_changes_makes_a_verdict_false(name, seed, tmp_path):
+    require_no_false_verdict(name, seed, tmp_path)
+
+
+def test_changes_are_undone_by_their_inverses():
+    for name, base in BASES.items():
+        for seed in range(20):
+            disguise = hidden(base, seed)
+            for old, new in (
+                (disguise.coordinates, disguise.new_coordinates),
+                (disguise.controls, disguise.new_controls),
+            ):
+                assert all(sp.simplify(old[x].subs(new, simultaneous=True) - x) == 0 for x in old), (name, seed)
