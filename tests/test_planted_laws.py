@@ -121,7 +121,6 @@ class Hidden:
         given = [f"{x} = {maxima(value)}" for x, value in self.law.items()]
         return f"""
             load("holonom.mac")$
-            closed_form_size : 2000$
             system : holonomic_system(
               coordinates = [{", ".join(map(str, q))}], controls = [{", ".join(map(str, base.controls))}],
               kinetic_energy = {maxima(energy.subs(dict(zip(v, v, strict=True))))},
@@ -130,6 +129,13 @@ class Hidden:
             hidden_scene : holonomic_scene(system, control_law = [{", ".join(given)}],
               initial_state = [{", ".join(state)}])$
         """
+
+    def mentions_all_controls(self) -> bool:
+        """Whether each new control occurs in a constraint; one that does not is refused."""
+        names = set().union(
+            *(sp.expand(f.subs(self.controls, simultaneous=True)).free_symbols for f in self.base.constraints)
+        )
+        return names >= set(self.base.controls)
 
     @property
     def law(self) -> Change:
@@ -143,13 +149,13 @@ def _rate(expression: sp.Expr, q: Sequence[sp.Symbol]) -> sp.Expr:
 
 
 def maxima(expression: sp.Expr) -> str:
-    return str(sp.expand(expression)).replace("**", "^")
+    return str(expression).replace("**", "^")
 
 
 def shears(names: Sequence[sp.Symbol], draw: random.Random, terms) -> tuple[Change, Change]:
     """A change of variables and its inverse: one variable after the other gains a function of the others."""
     old, new = {x: x for x in names}, {x: x for x in names}
-    for _ in range(draw.choice([1, 2])):
+    for _ in range(1 if len(names) > 2 else draw.choice([1, 2])):  # what Maxima still writes out
         x = draw.choice(names)
         gained = draw.choice(terms([y for y in names if y != x]))
         old = {y: value.subs(x, x + gained) for y, value in old.items()}
@@ -169,7 +175,8 @@ def hidden(base: Base, seed: int) -> Hidden:
     if draw.random() < 1 / 3:
         x, factor = draw.choice(base.controls), draw.choice([1 + t**2, sp.exp(t), sp.Integer(3)])
         r = {y: value.subs(x, x * factor) for y, value in r[0].items()}, {**r[1], x: r[1][x] / factor}
-    return Hidden(base, *q, *r)
+    disguise = Hidden(base, *q, *r)
+    return disguise if disguise.mentions_all_controls() else hidden(base, seed + 1000)
 
 
 def contains(law: UniversalLaw, planted: Change) -> bool:
