@@ -18,6 +18,7 @@ paper: setup $(RECORDS) companion ## Derive and check every scene, compare the p
 
 companion: setup ## Make the textbook companion: build/companion/index.html
 	$(BIN)/holonom companion -o build/companion
+	$(BIN)/python -m holonom.reference.manual build/holonom.1
 
 check: setup ## Lint, then run the tests, Maxima's own rtest files among them
 	$(BIN)/ruff check .

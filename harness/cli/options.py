@@ -58,6 +58,17 @@ def takes_settings(command: Callable[..., int]) -> Callable[..., int]:
     )(command)
 
 
+def chooses_solve(command: Callable[..., int]) -> Callable[..., int]:
+    """Give a command the option --solve."""
+    return click.option(
+        "--solve",
+        type=click.Choice(["direct", "orthogonal"]),
+        default="direct",
+        show_default=True,
+        help="How the multipliers are solved for; orthogonal keeps more digits near singular configurations.",
+    )(command)
+
+
 def asks_one_scene(command: Callable[..., int]) -> Callable[..., int]:
     """Give a command a scene file, the name of a scene in it, and numbers for what the file leaves open."""
     command = takes_settings(command)

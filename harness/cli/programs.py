@@ -9,13 +9,20 @@ import click
 from ..confined import Limits
 from ..failures import Failure, HolonomError
 from .group import holonom
-from .options import STANDARD_OUTPUT, asks_one_scene, json_text, publish, runs_scenes, writes_json
+from .options import STANDARD_OUTPUT, asks_one_scene, chooses_solve, json_text, publish, runs_scenes, writes_json
 
 
 @holonom.command()
 @asks_one_scene
-@click.option("--solve", type=click.Choice(["direct", "orthogonal"]), default="direct", show_default=True)
-@click.option("--to", "form", type=click.Choice(["c", "fmu", "python", "json"]), default="json", show_default=True)
+@chooses_solve
+@click.option(
+    "--to",
+    "form",
+    type=click.Choice(["c", "fmu", "python", "json"]),
+    default="json",
+    show_default=True,
+    help="What is written.",
+)
 @click.option("--name", help="With c and fmu: what every public name begins with; without it, the file's name.")
 @click.option(
     "--parameters",
@@ -79,7 +86,7 @@ def program(
 
 @holonom.command()
 @asks_one_scene
-@click.option("--solve", type=click.Choice(["direct", "orthogonal"]), default="direct", show_default=True)
+@chooses_solve
 @writes_json
 @runs_scenes
 def effects(

@@ -15,6 +15,7 @@ from .group import OWN_PROCESS, holonom
 from .options import (
     STANDARD_OUTPUT,
     asks_one_scene,
+    chooses_solve,
     json_text,
     publish,
     read_instant,
@@ -49,7 +50,7 @@ SAMPLES_OF_A_PLOT = 1001
     show_default=True,
     help="What keeps the constraints; baumgarte and ggl with the Taylor engine.",
 )
-@click.option("--solve", type=click.Choice(["direct", "orthogonal"]), default="direct", show_default=True)
+@chooses_solve
 @click.option("--compact/--no-compact", default=None, help="heyoka's compact mode; without it, what pays.")
 @click.option("--until", metavar="T", callback=read_instant, help="The last instant, in place of the scene's.")
 @click.option("--samples", metavar="N", type=click.IntRange(min=2), help="Keep N equidistant instants, not the steps.")

@@ -10,7 +10,7 @@ from typing import Any
 from ..failures import Failure, HolonomError
 from ..files import write_whole_directory
 from .chapter import Chapter, Page, Run
-from .pages import STYLE, Contents, Entry, Part, chapter_page, index_page, source_name, source_page
+from .pages import STYLE, Contents, Entry, Part, chapter_page, index_page, source_name, source_page, topic_page
 from .runs import Derived, Study, perform
 
 APPENDICES = "Appendices"  # title of the part whose chapters have letters
@@ -108,6 +108,8 @@ def pages(book: Book, results: Mapping[Run, Any]) -> dict[str, str]:
     for chapter, page in made.items():
         files[f"{chapter.slug}.html"] = chapter_page(contents, chapter, page.content)
         files |= {f"figures/{name}.svg": svg for name, svg in page.figures.items()}
+    for topic in (topic for page in made.values() for topic in page.topics):
+        files[f"reference/{topic.slug}.html"] = topic_page(contents, topic)
     for file in dict.fromkeys(source for page in made.values() for source in page.sources):
         files[source_name(file)] = source_page(contents, file, (book.root / file).read_text(encoding="utf-8"))
     return files

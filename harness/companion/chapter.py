@@ -4,6 +4,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from ..reference.topics import Topic
+
 
 @dataclass(frozen=True)
 class Run:
@@ -33,11 +35,14 @@ class Page:
         Text of each SVG file, by its name.
     sources : tuple of str
         Maxima files that the page refers to, relative to the book's root; each becomes a page of its own.
+    topics : tuple of Topic
+        Pages of the reference that the page leads to.
     """
 
     content: Mapping[str, Any]
     figures: Mapping[str, str] = field(default_factory=dict)
     sources: tuple[str, ...] = ()
+    topics: tuple[Topic, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

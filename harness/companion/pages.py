@@ -10,6 +10,7 @@ from xml.etree import ElementTree
 import jinja2
 from markupsafe import Markup, escape
 
+from ..reference.topics import Topic
 from ..series.power_series import number
 from ..simulation.diagnosis import engine_text, remarks
 from . import mathematics
@@ -121,6 +122,11 @@ def chapter_page(book: Contents, chapter: Chapter, content: Mapping[str, Any]) -
 def source_page(book: Contents, file: str, text: str) -> str:
     """A Maxima file with numbered lines."""
     return _rendered("source.html", book=book, file=file, lines=text.splitlines())
+
+
+def topic_page(book: Contents, topic: Topic) -> str:
+    """A page of the reference."""
+    return _rendered("topic.html", book=book, topic=topic)
 
 
 def source_name(file: str) -> str:

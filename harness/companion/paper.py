@@ -15,6 +15,7 @@ from .chapters import (
     notation,
     prescribed_reactions,
     radius_of_convergence,
+    reference,
     the_system,
     trajectory_control,
     universal_controls,
@@ -38,7 +39,7 @@ CHAPTERS = {
         hard_cases,
         effects,
     ),
-    APPENDICES: (misprints, notation, your_own_system, gallery),
+    APPENDICES: (misprints, notation, your_own_system, gallery, reference),
 }
 
 

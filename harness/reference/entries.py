@@ -1,0 +1,88 @@
+"""Entries of holonomic_system and holonomic_scene, as `entries.toml` explains them."""
+
+import tomllib
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+TEXT = Path(__file__).with_name("entries.toml")
+FUNCTIONS = ("holonomic_system", "holonomic_scene")
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """An entry that is refused, and a part of the sentence that says why."""
+
+    given: str
+    said: str
+    also: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class EntryText:
+    """What there is to know about an entry.
+
+    Attributes
+    ----------
+    function, name, type, default, text, example : str
+    also : tuple of str
+        Entries that the example needs beside it.
+    refused : tuple of Refusal
+    """
+
+    function: str
+    name: str
+    type: str
+    default: str
+    text: str
+    example: str
+    also: tuple[str, ...]
+    refused: tuple[Refusal, ...]
+
+
+@dataclass(frozen=True)
+class FunctionText:
+    """What there is to know about a function of the description.
+
+    Attributes
+    ----------
+    name, summary, call : str
+    context : tuple of str
+        Entries of a complete example.
+    entries : tuple of EntryText
+    """
+
+    name: str
+    summary: str
+    call: str
+    context: tuple[str, ...]
+    entries: tuple[EntryText, ...]
+
+    def with_entries(self, *replacing: str) -> str:
+        """The entries of the example, those given in the place of the ones of the same names."""
+        by_name = {_name_of(entry): entry for entry in (*self.context, *replacing)}
+        return ",\n  ".join(by_name.values())
+
+
+@cache
+def function_texts() -> tuple[FunctionText, ...]:
+    """The two functions with their entries."""
+    described = tomllib.loads(TEXT.read_text(encoding="utf-8"))
+    return tuple(_function(name, described[name]) for name in FUNCTIONS)
+
+
+def _function(name: str, described: dict) -> FunctionText:
+    entries = tuple(
+        EntryText(
+            function=name,
+            also=tuple(entry.pop("also", ())),
+            refused=tuple(Refusal(r["given"], r["said"], tuple(r.get("also", ()))) for r in entry.pop("refused")),
+            **entry,
+        )
+        for entry in described["entry"]
+    )
+    return FunctionText(name, described["summary"], described["call"], tuple(described["context"]), entries)
+
+
+def _name_of(entry: str) -> str:
+    return entry.partition("=")[0].strip()

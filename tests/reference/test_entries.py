@@ -1,0 +1,68 @@
+"""The text on the entries is true: Maxima accepts each example, and refuses what is refused in the words given."""
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from holonom.maxima import LIBRARY
+from holonom.reference.entries import EntryText, FunctionText, function_texts
+
+SYSTEM, SCENE = function_texts()
+
+
+def call(function: FunctionText, *replacing: str) -> str:
+    first = "base, " if function is SCENE else ""
+    return f"{function.name}({first}{function.with_entries(*replacing)})"
+
+
+CASES = [
+    *((call(function, entry.example, *entry.also), None) for function in (SYSTEM, SCENE) for entry in function.entries),
+    *(
+        (call(function, refusal.given, *refusal.also), refusal.said)
+        for function in (SYSTEM, SCENE)
+        for entry in function.entries
+        for refusal in entry.refused
+    ),
+]
+
+
+@pytest.fixture(scope="module")
+def answers(tmp_path_factory) -> list[str]:
+    """What Maxima says of each case, all in one run."""
+    lines = [f'load("{LIBRARY}/holonom.mac")$ linel : 100000$ base : {call(SYSTEM)}$']
+    lines += [
+        f'print("CASE")$ print(if errcatch({case}) = [] then "refused" else "accepted")$ kill(done)$'
+        for case, _ in CASES
+    ]
+    file = tmp_path_factory.mktemp("entries") / "cases.mac"
+    file.write_text("\n".join(lines) + '\nprint("CASE")$', encoding="utf-8")
+    command = ["maxima", "--very-quiet", "--init=/dev/null", f'--batch-string=batchload("{file}")$']
+    done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120, check=True)
+    return [" ".join(part.split()) for part in done.stdout.split("CASE")[1:-1]]
+
+
+@pytest.mark.parametrize("number", range(len(CASES)), ids=lambda number: " ".join(str(CASES[number][1]).split()[:6]))
+def test_maxima_answers_as_the_text_says(answers, number):
+    case, said = CASES[number]
+    assert len(answers) == len(CASES)
+    if said is None:
+        assert answers[number] == "accepted", case
+    else:
+        assert answers[number].endswith("refused"), case
+        assert said in answers[number]
+
+
+@pytest.mark.parametrize("function", [SYSTEM, SCENE], ids=lambda function: function.name)
+def test_every_entry_that_maxima_reads_is_explained(function):
+    source = "\n".join(file.read_text(encoding="utf-8") for file in Path(LIBRARY).glob("*.mac"))
+    reading = re.search(rf'read_entries\("{function.name}", entries,\s*\[(.*?)\],\s*\[(.*?)\]\)', source, re.DOTALL)
+    known = re.findall(r"'(\w+) =", reading[1]) + re.findall(r"'(\w+)", reading[2])
+    assert sorted(entry.name for entry in function.entries) == sorted(known)
+
+
+def test_an_entry_says_all_that_there_is_to_say():
+    assert all(isinstance(entry, EntryText) for entry in SYSTEM.entries)
+    for entry in (*SYSTEM.entries, *SCENE.entries):
+        assert all((entry.type, entry.default, entry.text, entry.example))
