@@ -1,10 +1,11 @@
-"""Free motion of a scene: its condition, its control law, universal controls, the control for one trajectory.
+"""Free motion of a scene: its condition, the verdict on its motion, universal controls, the control for one trajectory.
 
 And the motion under prescribed reactions, of which free motion is the case zero.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import StrEnum
 from pathlib import Path
 
 from sympy import Expr, Symbol
@@ -21,22 +22,55 @@ from .shown import Show, Shown
 Law = Mapping[str, Expr]
 
 
+class Free(StrEnum):
+    """What is known of a motion."""
+
+    FREE = "free"
+    NOT_FREE = "not free"
+    UNDECIDED = "undecided"
+
+
 @dataclass(frozen=True)
-class LawVerdict:
-    """What the scene's control law does.
+class FirstCoefficient:
+    """The first coefficient of a multiplier's power series that is not zero.
 
     Attributes
     ----------
-    satisfies : str
-        ``all states``, ``this state`` or ``no``.
-    residual : tuple of Expr
-        What the law leaves of the condition; empty where it leaves nothing.
-    reason : str
+    multiplier : str
+    order : int
+        The power of t - t0.
+    value : str
+        ``p/q`` where the data are exact, else a decimal number of 30 digits.
     """
 
-    satisfies: str
-    residual: tuple[Expr, ...]
-    reason: str
+    multiplier: str
+    order: int
+    value: str
+
+
+@dataclass(frozen=True)
+class MotionVerdict:
+    """Whether the motion of the scene is free.
+
+    Attributes
+    ----------
+    verdict : Free
+        Free only where that is proved.
+    states : str
+        ``all states``, where every motion under the scene's law is free, or ``this state``.
+    evidence : str
+        What shows it, or what is in the way of a proof: one sentence.
+    order : int or None
+        Where undecided, the order to which all coefficients of the multipliers vanish; None where there are none.
+    first : FirstCoefficient or None
+        What shows that the motion is not free.
+    """
+
+    verdict: Free
+    states: str
+    evidence: str
+    order: int | None
+    first: FirstCoefficient | None
 
 
 @dataclass(frozen=True)
@@ -150,12 +184,14 @@ class PrescribedReactions:
 class FreeMotion(Shown):
     """The answers about one scene.
 
-    ``verdict`` is None where the scene has no control law, ``prescribed`` where it prescribes no reactions.
+    ``condition`` is None where (10) is not written out, and ``left_out`` says why; ``prescribed`` is None where the
+    scene prescribes no reactions.
     """
 
     scene: str
-    condition: tuple[Expr, ...]
-    verdict: LawVerdict | None
+    condition: tuple[Expr, ...] | None
+    left_out: str | None
+    motion: MotionVerdict
     universal: UniversalControls
     trajectory: TrajectoryControl
     prescribed: PrescribedReactions | None
@@ -166,7 +202,9 @@ class FreeMotion(Shown):
         return show_free_motion
 
 
-def free_motion(file: Path, scene: str | None, settings: Mapping[str, str], limits: Limits) -> FreeMotion:
+def free_motion(
+    file: Path, scene: str | None, settings: Mapping[str, str], limits: Limits, order: int | None = None
+) -> FreeMotion:
     """Ask Maxima about the free motion of a scene.
 
     Parameters
@@ -179,6 +217,9 @@ def free_motion(file: Path, scene: str | None, settings: Mapping[str, str], limi
         Numbers for what the file leaves open.
     limits : Limits
         What Maxima may take.
+    order : int or None
+        Up to which order the power series of the multipliers are looked at, 2 or more; None for Maxima's
+        ``verdict_order``.
 
     Returns
     -------
@@ -193,13 +234,20 @@ def free_motion(file: Path, scene: str | None, settings: Mapping[str, str], limi
     ----------
     Chen, Guo & Mei (2019), section 2, eq. (10).
     """
-    text = ask(Document.FREE_MOTION, file, scene, settings=settings, limits=limits)
+    text = ask(Document.FREE_MOTION, file, scene, order, settings=settings, limits=limits)
     document = read(Document.FREE_MOTION, text)
-    law, trajectory, prescribed = (document[part] for part in ("law", "trajectory", "prescribed"))
+    motion, trajectory, prescribed = (document[part] for part in ("motion", "trajectory", "prescribed"))
     return FreeMotion(
         document["scene"],
-        _expressions(document["condition"]),
-        law and LawVerdict(law["satisfies"], _expressions(law["residual"]), law["reason"]),
+        None if document["condition"] is None else _expressions(document["condition"]),
+        document["left_out"],
+        MotionVerdict(
+            Free(motion["verdict"]),
+            motion["for"],
+            motion["evidence"],
+            motion["order"],
+            motion["first"] and FirstCoefficient(**motion["first"]),
+        ),
         _universal(document),
         TrajectoryControl(
             trajectory["kind"],

@@ -163,7 +163,7 @@ class Scene:
         return check_record(self.record)
 
     def free(self) -> "FreeMotion":
-        """When the motion is free: under its law, under which laws always, under which for one trajectory."""
+        """When the motion is free: as it is, under which laws always, under which for one trajectory."""
         from .free_motion import free_motion
 
         return free_motion(self.file, self._name, self.settings, self.limits)

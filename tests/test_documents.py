@@ -39,7 +39,7 @@ def test_every_schema_is_that_of_a_document():
         (Document.MOTION_PROBLEM, PENDULUM, (None, "orthogonal", 17)),
         (Document.MOTION_SERIES, PAPER, ("initial_motion_scene", 6, "exact", None)),
         (Document.SERIES_COSTS, PAPER, (None, (2, 4), 20)),
-        (Document.FREE_MOTION, PAPER, (None,)),
+        (Document.FREE_MOTION, PAPER, (None, None)),
     ],
 )
 def test_maxima_writes_what_the_schema_says(document, file, arguments):

@@ -1,8 +1,11 @@
 """The command about free motion: free."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import click
 
 from ..confined import Limits
 from .group import holonom
@@ -14,16 +17,29 @@ if TYPE_CHECKING:
 
 @holonom.command()
 @asks_one_scene
+@click.option(
+    "--order",
+    metavar="N",
+    type=click.IntRange(min=2),
+    help="Up to which power of the time the multipliers are looked at, 40 unless asked otherwise.",
+)
 @writes_json
 @runs_scenes
-def free(scene_file: Path, scene: str | None, settings: Sequence[str], json_file: Path | None, limits: Limits) -> int:
-    """Find when the motion of a SCENE is free: under its law, under which laws, under which for one trajectory."""
+def free(
+    scene_file: Path,
+    scene: str | None,
+    order: int | None,
+    settings: Sequence[str],
+    json_file: Path | None,
+    limits: Limits,
+) -> int:
+    """Find when the motion of a SCENE is free: as it is, under which laws, under which for one trajectory."""
     from ..free_motion import free_motion
     from ..program.request import read_settings
     from .tables.free_motion import show_free_motion
     from .tables.text import make_console
 
-    found = free_motion(scene_file, scene, read_settings(settings), limits)
+    found = free_motion(scene_file, scene, read_settings(settings), limits, order)
     publish(json_text(_free_motion_document(found)), json_file)
     if json_file != STANDARD_OUTPUT:
         show_free_motion(make_console(), found)
@@ -36,15 +52,17 @@ def _free_motion_document(found: "FreeMotion") -> dict[str, Any]:
     def law_text(law: Mapping[str, Any]) -> dict[str, str]:
         return {control: formula(value) for control, value in law.items()}
 
-    verdict, universal, trajectory, prescribed = found.verdict, found.universal, found.trajectory, found.prescribed
+    motion, universal, trajectory, prescribed = found.motion, found.universal, found.trajectory, found.prescribed
     return {
         "scene": found.scene,
-        "condition": [formula(each) for each in found.condition],
-        "law": verdict
-        and {
-            "satisfies": verdict.satisfies,
-            "residual": [formula(each) for each in verdict.residual] or None,
-            "reason": verdict.reason,
+        "condition": None if found.condition is None else [formula(each) for each in found.condition],
+        "left_out": found.left_out,
+        "motion": {
+            "verdict": motion.verdict,
+            "for": motion.states,
+            "evidence": motion.evidence,
+            "order": motion.order,
+            "first": motion.first and asdict(motion.first),
         },
         "universal": {
             "verdict": universal.verdict,

@@ -17,10 +17,12 @@ MAXIMAS = {
     "lambda",
     "errormsg",
     "fpprec",
+    "fpprintprec",
     "linel",
     "ratprint",
     "ratepsilon",
     "bftorat",
+    "algebraic",
     "algexact",
     "scalarmatrixp",
     "trigexpandplus",
@@ -48,6 +50,16 @@ load("holonom.mac")$
   constraints = [{third} - {fourth}*{second}])$
 scene : holonomic_scene({first}, control_law = [{fourth} = 1 + t*({sum})], parameter_values = [{values}],
   initial_state = [{second} = 1, dot({second}) = 2])$
+"""
+
+UNPUSHED = """
+load("holonom.mac")$
+{first} : holonomic_system(coordinates = [{second}, {third}], controls = [{fourth}], parameters = [{parameters}],
+  kinetic_energy = (1 + {product})*(dot({second})^2 + dot({third})^2)/2,
+  constraints = [{second}^2 + {third}^2 - {fourth}^2])$
+scene : holonomic_scene({first}, control_law = [{fourth} = sqrt((1 + t*({sum}))^2 + t^2)],
+  parameter_values = [{values}],
+  initial_state = [{second} = 1, {third} = 0, dot({second}) = {sum}, dot({third}) = 1])$
 """
 
 PRESCRIBED = SCENE.replace(
@@ -101,15 +113,21 @@ def test_names_of_the_derivation_are_the_users_too(names: list[str], tmp_path: P
 
 @pytest.mark.parametrize("names", groups(local_names("free_motion")), ids=" ".join)
 def test_names_of_the_free_motion_are_the_users_too(names: list[str], tmp_path: Path):
-    writer = "lambda([file], (free_motion_order : 2, write_free_motion(file, false)))"
+    writer = "lambda([file], (free_motion_order : 2, write_free_motion(file, false, 4)))"
     free = json.loads(run_batch(scene_with(names, tmp_path), writer))
     assert free["universal"]["laws"] == [{names[3]: 0}]
     assert free["trajectory"]["kind"] == "closed form"
 
 
+@pytest.mark.parametrize("names", groups(local_names("free_motion")), ids=" ".join)
+def test_names_of_the_proof_are_the_users_too(names: list[str], tmp_path: Path):
+    writer = "lambda([file], write_json(json_verdict_on_motion(motion_verdict(false, [], scene, 4)), file))"
+    assert json.loads(run_batch(scene_with(names, tmp_path, UNPUSHED), writer))["verdict"] == "free"
+
+
 @pytest.mark.parametrize("names", groups(local_names("free_motion", "program")), ids=" ".join)
 def test_names_of_prescribed_reactions_are_the_users_too(names: list[str], tmp_path: Path):
-    writer = "lambda([file], (free_motion_order : 2, write_free_motion(file, false)))"
+    writer = "lambda([file], (free_motion_order : 2, write_free_motion(file, false, 4)))"
     free = json.loads(run_batch(scene_with(names, tmp_path, PRESCRIBED), writer))
     assert free["prescribed"]["controls"].keys() == {f"ddot({names[3]})"}
     assert free["trajectory"]["kind"] == "closed form"

@@ -6,19 +6,20 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 from rich.text import Text
 
+from .series import short_number
 from .text import formula
 
 if TYPE_CHECKING:
-    from ...free_motion import FreeMotion, Law, UniversalControls, UniversalLaw
+    from ...free_motion import FreeMotion, Law, MotionVerdict, UniversalControls, UniversalLaw
 
 
 def show_free_motion(console: Console, found: "FreeMotion") -> None:
     """Print the condition of free motion and the controls that satisfy it."""
-    _show_list(console, "condition of free motion (10)", [f"{formula(e)} = 0" for e in found.condition])
-    if found.verdict is not None:
-        satisfied = {"no": "not free"}.get(found.verdict.satisfies, f"free for {found.verdict.satisfies}")
-        left = [f"leaves {formula(e)}" for e in found.verdict.residual]
-        _show_list(console, f"{found.scene}: motion is {satisfied}", [found.verdict.reason, *left])
+    if found.condition is None:
+        _show_list(console, "condition of free motion (10): not written out", [found.left_out or ""])
+    else:
+        _show_list(console, "condition of free motion (10)", [f"{formula(e)} = 0" for e in found.condition])
+    _show_list(console, f"{found.scene}: {_verdict(found.motion)}", [_first(found.motion), found.motion.evidence])
     _show_universal(console, found.universal)
     trajectory = found.trajectory
     samples = [_sample(sample, trajectory.law) for sample in trajectory.samples if trajectory.kind == "numeric"]
@@ -68,6 +69,24 @@ def _show_list(console: Console, title: str, lines: Iterable[str]) -> None:
     for line in lines:
         if line:
             console.print(f"    {line}", soft_wrap=True, markup=False)
+
+
+def _verdict(motion: "MotionVerdict") -> str:
+    match motion.verdict, motion.states:
+        case "free", "all states":
+            return "every motion is free"
+        case "free", _:
+            return "motion is free for this state"
+        case verdict, _:
+            return f"motion is {verdict}"
+
+
+def _first(motion: "MotionVerdict") -> str:
+    """``lambda1 = 132*(t - t0)^10 + ...``, numbers of many digits shortened."""
+    if motion.first is None:
+        return ""
+    power = {0: "", 1: "*(t - t0)"}.get(motion.first.order, f"*(t - t0)^{motion.first.order}")
+    return f"{motion.first.multiplier} = {short_number(motion.first.value)}{power} + ..."
 
 
 def _sample(sample: Iterable[float], law: "Law") -> str:

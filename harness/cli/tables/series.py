@@ -15,14 +15,12 @@ SHOWN_TEXT = 24  # characters of an exact number
 
 def show_series(console: Console, motion: "MotionSeries", values: "Values | None" = None) -> None:
     """Print the power series of a motion, how far they hold, and values asked for."""
-    from ...series.power_series import number
-
     table = Table("order", title=f"{motion.scene}: {motion.title}, about t = {motion.t0}", title_justify="left")
     columns = dict(motion.all_series())
     for name in columns:
         table.add_column(name)
     for n, row in enumerate(zip(*columns.values(), strict=True)):
-        table.add_row(str(n), *(text if _is_short_and_exact(text) else _rounded(number(text)) for text in row))
+        table.add_row(str(n), *map(short_number, row))
     console.print(table)
     radius = motion.radius
     size = "" if radius.estimate is None else f"{radius.estimate:.8g}, known to {radius.uncertainty:.1g}; "
@@ -46,8 +44,11 @@ def _show_continuation(console: Console, continuation: "Continuation") -> None:
     console.print(table)
 
 
-def _is_short_and_exact(text: str) -> bool:
-    return len(text) <= SHOWN_TEXT and "." not in text
+def short_number(text: str) -> str:
+    """A number in ``p/q`` or decimal notation: as it is where it is exact and short, else rounded."""
+    from ...series.power_series import number
+
+    return text if len(text) <= SHOWN_TEXT and "." not in text else _rounded(number(text))
 
 
 def _rounded(value: mpmath.mpf) -> str:
