@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from sympy import Expr
 
@@ -129,20 +129,37 @@ class System:
     constraints: tuple[Expr, ...]
 
 
+class LeftOut(NamedTuple):
+    """Equations that were not made.
+
+    Attributes
+    ----------
+    numbers : tuple of str
+        The paper's.
+    size, limit : int
+        How long their closed forms were predicted to be, and the `closed_form_size` that this is beyond.
+    """
+
+    numbers: tuple[str, ...]
+    size: int
+    limit: int
+
+
 @dataclass(frozen=True)
 class Derivation:
     """The equations of the system with the effects named.
 
     `closed_form_operations` counts the operations of (8) and (11) as written; None where they are too long to read
-    and stay a linear system, which the motion program solves. `mass_matrix` is ``regular``; or ``supported`` where it
-    is singular and the constraints make up for it: A + J^T J is in its place in what is solved, and J^T times (7) is
-    added to the equations of motion.
+    and stay a linear system, which the motion program solves; `left_out` names them. `mass_matrix` is ``regular``; or
+    ``supported`` where it is singular and the constraints make up for it: A + J^T J is in its place in what is solved,
+    and J^T times (7) is added to the equations of motion.
     """
 
     effects: tuple[str, ...]
     equations: tuple[Equation, ...]
     mass_matrix: str
     closed_form_operations: int | None
+    left_out: LeftOut | None = None
 
 
 @dataclass(frozen=True)
@@ -172,6 +189,8 @@ class Scene:
         What to compute.
     equations : tuple of Equation
         The equations of its initial motion.
+    left_out : LeftOut or None
+        Those of them that were not made.
     """
 
     name: str
@@ -186,6 +205,7 @@ class Scene:
     time_span: tuple[Expr, Expr] | None
     observe: tuple[str, ...]
     equations: tuple[Equation, ...]
+    left_out: LeftOut | None = None
 
 
 @dataclass(frozen=True)
@@ -198,9 +218,22 @@ class Record:
     scenes: tuple[Scene, ...]
 
 
-def derived_record(file: Path, settings: Mapping[str, str] = NO_SETTINGS, limits: Limits = DEFAULT_LIMITS) -> "Record":
+def derived_record(
+    file: Path,
+    settings: Mapping[str, str] = NO_SETTINGS,
+    limits: Limits = DEFAULT_LIMITS,
+    closed_form_size: int | None = None,
+) -> "Record":
     """Derive a scene file; raises as `holonom.documents.ask` and `read_record`."""
-    return read_record(ask(Document.RECORD, file, settings=settings, limits=limits))
+    return read_record(ask(Document.RECORD, file, closed_form_size, settings=settings, limits=limits))
+
+
+def why_left_out(left_out: LeftOut) -> str:
+    """The sentence that says why equations were not made, and how to get them."""
+    return (
+        f"closed forms of {left_out.size} terms are expected, more than closed_form_size = {left_out.limit}; "
+        f"--closed-form-size {left_out.size} makes them, if time and memory suffice"
+    )
 
 
 def read_record(text: str) -> Record:
@@ -262,7 +295,12 @@ def _derivation(derivation: dict[str, Any]) -> Derivation:
         _each(_equation, derivation["equations"]),
         derivation["mass_matrix"],
         derivation["closed_form_operations"],
+        _left_out(derivation["left_out"]),
     )
+
+
+def _left_out(found: dict[str, Any] | None) -> LeftOut | None:
+    return found and LeftOut(tuple(found["numbers"]), found["size"], found["limit"])
 
 
 def _scene(scene: dict[str, Any]) -> Scene:
@@ -280,6 +318,7 @@ def _scene(scene: dict[str, Any]) -> Scene:
         time_span=None if span is None else (to_sympy(span[0]), to_sympy(span[1])),
         observe=tuple(scene["observe"]),
         equations=_each(_equation, scene["equations"]),
+        left_out=_left_out(scene["left_out"]),
     )
 
 

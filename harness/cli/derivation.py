@@ -17,16 +17,31 @@ if TYPE_CHECKING:
 
 DISAGREEMENT = 1
 
+limits_closed_forms = click.option(
+    "--closed-form-size",
+    metavar="N",
+    type=click.IntRange(min=1),
+    help="Make closed forms up to so many terms; without it, what the library finds readable.",
+)
+
 
 @holonom.command()
 @click.argument("scene", type=SceneFile())
 @takes_settings
+@limits_closed_forms
 @writes_json
 @click.option(
     "--tex", "tex_file", metavar="FILE|-", type=click.Path(path_type=Path), help="Also write it as a LaTeX document."
 )
 @runs_scenes
-def derive(scene: Path, settings: Sequence[str], json_file: Path | None, tex_file: Path | None, limits: Limits) -> int:
+def derive(
+    scene: Path,
+    settings: Sequence[str],
+    closed_form_size: int | None,
+    json_file: Path | None,
+    tex_file: Path | None,
+    limits: Limits,
+) -> int:
     """Derive the equations of a SCENE, under the paper's numbers."""
     from ..documents import Document, ask
     from ..program.request import read_settings
@@ -34,7 +49,7 @@ def derive(scene: Path, settings: Sequence[str], json_file: Path | None, tex_fil
     from .tables.derivation import show_record
     from .tables.text import make_console
 
-    text = ask(Document.RECORD, scene, settings=read_settings(settings), limits=limits)
+    text = ask(Document.RECORD, scene, closed_form_size, settings=read_settings(settings), limits=limits)
     record = read_record(text)
     _publish_document(record, tex_file)
     publish(text, json_file)
@@ -46,9 +61,16 @@ def derive(scene: Path, settings: Sequence[str], json_file: Path | None, tex_fil
 @holonom.command()
 @click.argument("scenes", metavar="SCENE...", nargs=-1, required=True, type=SceneFile())
 @takes_settings
+@limits_closed_forms
 @writes_json
 @runs_scenes
-def check(scenes: Sequence[Path], settings: Sequence[str], json_file: Path | None, limits: Limits) -> int:
+def check(
+    scenes: Sequence[Path],
+    settings: Sequence[str],
+    closed_form_size: int | None,
+    json_file: Path | None,
+    limits: Limits,
+) -> int:
     """Derive each SCENE and compare every equation with an independent SymPy evaluation."""
     from ..crosscheck import check_record
     from ..program.request import read_settings
@@ -57,7 +79,7 @@ def check(scenes: Sequence[Path], settings: Sequence[str], json_file: Path | Non
     from .tables.text import make_console
 
     given = read_settings(settings)
-    reports = [(str(scene), check_record(derived_record(scene, given, limits))) for scene in scenes]
+    reports = [(str(scene), check_record(derived_record(scene, given, limits, closed_form_size))) for scene in scenes]
     documents = [_report_document(scene, report) for scene, report in reports]
     publish(json_text(documents[0] if len(documents) == 1 else documents), json_file)
     if json_file != STANDARD_OUTPUT:
@@ -95,6 +117,7 @@ def _publish_document(record: "Record", tex_file: Path | None) -> None:
 
 
 def _report_document(scene: str, report: "CheckReport") -> dict[str, Any]:
+    from ..crosscheck import Verdict
     from ..documents import Publication, published
 
     content = {
@@ -111,6 +134,9 @@ def _report_document(scene: str, report: "CheckReport") -> dict[str, Any]:
             }
             for found in report.verdicts
         ],
+        "made": len(report.verdicts) - report.count(Verdict.LEFT_OUT),
+        "left_out": report.count(Verdict.LEFT_OUT),
+        "agreed": report.count(Verdict.PROVED, Verdict.AGREES),
         "disagreements": report.disagreements,
     }
     return published(Publication.CHECK, content)

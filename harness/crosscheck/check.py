@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from math import factorial
 from typing import TypeVar
 
-from ..record import Derivation, Equation, Record, Relation
+from ..record import Derivation, Equation, LeftOut, Record, Relation, why_left_out
 from . import derivation, initial_motion, lagranges_method
 from .claims import NotComparable
 from .derivation import DerivationClaims
@@ -52,8 +52,10 @@ def check_record(record: Record) -> CheckReport:
     """
     claims = [_claims(record, derived) for derived in record.derivations]
     verdicts = [found for each in claims for found in _check_derivation(each)]
+    verdicts += [found for each in record.derivations for found in _left_out(each.left_out, None)]
     for scene in record.scenes:
         verdicts += _check_scene(SceneClaims(scene, claims[scene.derivation]))
+        verdicts += _left_out(scene.left_out, scene.name)
     return CheckReport(tuple(verdicts))
 
 
@@ -99,6 +101,12 @@ def _judged(number: str, name: str, scene: str | None, comparison: Comparison) -
 
 def _refused(number: str, name: str, scene: str | None, reason: str) -> EquationVerdict:
     return EquationVerdict(number, name, scene, Verdict.DISAGREES, None, None, reason)
+
+
+def _left_out(left_out: LeftOut | None, scene: str | None) -> Iterator[EquationVerdict]:
+    if left_out is not None:
+        for number in left_out.numbers:
+            yield EquationVerdict(number, "(not made)", scene, Verdict.LEFT_OUT, None, None, why_left_out(left_out))
 
 
 def _missing(expected: Iterable[str], present: Iterable[Equation], scene: str | None) -> Iterator[EquationVerdict]:

@@ -17,6 +17,10 @@ class Verdict(StrEnum):
     """The difference vanishes, to the digits stated, at the random points stated."""
     DISAGREES = "disagrees"
     """The difference does not vanish, or the equation is not there."""
+    NOTHING = "nothing to check"
+    """The equation states nothing of this system."""
+    LEFT_OUT = "left out"
+    """The equation was not made, for a reason that the record states."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +37,8 @@ class EquationVerdict:
     digits, points : int or None
         Significant digits demanded and random points tried; None where nothing was evaluated.
     detail : str
-        For a disagreement the relation, the difference and the point; empty otherwise.
+        For a disagreement the relation, the difference and the point; for what was left out the reason; empty
+        otherwise.
     """
 
     number: str
@@ -54,7 +59,11 @@ class CheckReport(Shown):
     @property
     def disagreements(self) -> int:
         """Number of equations that disagree or are missing."""
-        return sum(found.verdict is Verdict.DISAGREES for found in self.verdicts)
+        return self.count(Verdict.DISAGREES)
+
+    def count(self, *verdicts: Verdict) -> int:
+        """Number of equations with one of these verdicts."""
+        return sum(found.verdict in verdicts for found in self.verdicts)
 
     def _table(self) -> Show:
         from ..cli.tables.derivation import show_verdicts

@@ -72,8 +72,8 @@ class Judgement(NamedTuple):
     """A verdict, the digits and points that support it, and the difference found."""
 
     verdict: Verdict
-    digits: int
-    points: int
+    digits: int | None
+    points: int | None
     detail: str = ""
 
 
@@ -86,6 +86,8 @@ def judge(comparison: Comparison, seed: str) -> Judgement:
     seed : str
         Makes the random points; the same points for the same seed.
     """
+    if not comparison.pairs:
+        return Judgement(Verdict.NOTHING, None, None)
     names = _free_names(comparison)
     points = POINTS if names else 1
     digits = _digits(comparison)

@@ -64,3 +64,8 @@ def test_the_same_seed_gives_the_same_point() -> None:
     details = {judge(compared(X, Y), "seed").detail for _ in range(3)}
     assert len(details) == 1
     assert judge(compared(X, Y), "other seed").detail not in details
+
+
+def test_a_verdict_on_nothing_was_called_proved():
+    found = judge(Comparison(()), seed="(19)")
+    assert (found.verdict, found.digits, found.points) == (Verdict.NOTHING, None, None)

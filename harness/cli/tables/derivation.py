@@ -12,7 +12,7 @@ from .text import counted, formula, styled
 
 if TYPE_CHECKING:
     from ...crosscheck import CheckReport
-    from ...record import Equation, Record
+    from ...record import Equation, LeftOut, Record
 
 
 def show_record(console: Console, record: "Record") -> None:
@@ -23,9 +23,11 @@ def show_record(console: Console, record: "Record") -> None:
     for derivation in record.derivations:
         console.print(f"\nDerivation with {_listed(derivation.effects)}", style="bold")
         _show_equations(console, derivation.equations)
+        _show_left_out(console, derivation.left_out)
     for scene in record.scenes:
         console.print(f"\n{scene.name}: {scene.title}", style="bold")
         _show_equations(console, scene.equations)
+        _show_left_out(console, scene.left_out)
 
 
 def show_report(console: Console, scene: str, report: "CheckReport") -> None:
@@ -47,7 +49,22 @@ def show_verdicts(console: Console, report: "CheckReport") -> None:
     for found in report.verdicts:
         if found.verdict == "disagrees":
             console.print(f"({found.number}) {found.name}: {found.detail}", soft_wrap=True, markup=False)
-    console.print(f"{len(report.verdicts)} equations, {counted(report.disagreements, 'disagreement')}")
+    left_out = {found.detail: found for found in report.verdicts if found.verdict == "left out"}
+    for reason in left_out:
+        numbers = [f"({found.number})" for found in report.verdicts if found.detail == reason]
+        console.print(f"{', '.join(dict.fromkeys(numbers))} left out: {reason}.", soft_wrap=True, markup=False)
+    console.print(_sum(report))
+
+
+def _sum(report: "CheckReport") -> str:
+    from ...crosscheck.report import Verdict
+
+    left_out, empty = report.count(Verdict.LEFT_OUT), report.count(Verdict.NOTHING)
+    agreed = report.count(Verdict.PROVED, Verdict.AGREES)
+    parts = [f"{len(report.verdicts) - left_out} equations made", f"{left_out} left out", f"{agreed} agreed"]
+    if empty:
+        parts.append(f"{empty} with nothing to check")
+    return ", ".join([*parts, counted(report.disagreements, "disagreement")])
 
 
 def _show_equations(console: Console, equations: Iterable["Equation"]) -> None:
@@ -57,6 +74,14 @@ def _show_equations(console: Console, equations: Iterable["Equation"]) -> None:
             console.print(f"    {formula(relation.left)} = {formula(relation.right)}", soft_wrap=True, markup=False)
         if not equation.relations:
             console.print("    none", style="dim")
+
+
+def _show_left_out(console: Console, left_out: "LeftOut | None") -> None:
+    if left_out is not None:
+        from ...record import why_left_out
+
+        numbers = ", ".join(f"({number})" for number in left_out.numbers)
+        console.print(f"{numbers} not made: {why_left_out(left_out)}.", style="yellow", soft_wrap=True)
 
 
 def _number(count: int | None) -> str:

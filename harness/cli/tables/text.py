@@ -14,6 +14,8 @@ STYLES = {
     "proved": "green",
     "agrees": "green",
     "disagrees": "bold red",
+    "nothing to check": "dim",
+    "left out": "yellow",
     "differs": "bold red",
     "present": "green",
     "absent by choice": "yellow",
