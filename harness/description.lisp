@@ -20,7 +20,8 @@
 
 (defvar *described-operators*
   '(mplus mtimes mexpt mlist mequal rat $matrix
-    mgreaterp mgeqp mnotequal $equal $kind
+    mcond mgreaterp mgeqp mlessp mleqp mand mor mnot mnotequal $equal $kind
+    $max %max $min %min $unit_step %unit_step $hstep %hstep
     $point $segment $polyline $circle $mechanical_system $motion_scene)
   "What a description may hold besides the functions that documents know.")
 

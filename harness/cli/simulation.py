@@ -24,6 +24,7 @@ from .options import (
 )
 
 SAMPLES_OF_A_PLOT = 1001
+FAILED = 1  # exit status of a result that is none
 
 
 @holonom.command()
@@ -53,6 +54,7 @@ SAMPLES_OF_A_PLOT = 1001
 @chooses_solve
 @click.option("--compact/--no-compact", default=None, help="heyoka's compact mode; without it, what pays.")
 @click.option("--until", metavar="T", callback=read_instant, help="The last instant, in place of the scene's.")
+@click.option("--max-step", metavar="H", type=click.FloatRange(min=0, min_open=True), help="No step is to be longer.")
 @click.option("--samples", metavar="N", type=click.IntRange(min=2), help="Keep N equidistant instants, not the steps.")
 @click.option("--final", is_flag=True, help="Of the motion, only the final state goes into the JSON document.")
 @writes_json
@@ -77,6 +79,7 @@ def simulate(
     solve: str,
     compact: bool | None,
     until: Fraction | None,
+    max_step: float | None,
     samples: int | None,
     final: bool,
     json_file: Path | None,
@@ -85,7 +88,12 @@ def simulate(
     settings: Sequence[str],
     limits: Limits,
 ) -> int:
-    """Follow the motion of a SCENE in numbers, and say how well it was followed."""
+    """Follow the motion of a SCENE in numbers, and say how well it was followed.
+
+    What depends on the time alone is looked at before, so that no step passes over what lasts longer than 1/32768 of
+    the time span. The exit status is 1 where the constraints or the energy are missed out of proportion to the
+    tolerance.
+    """
     from ..program.motion_problem import problem_document, read_problem
     from ..program.motion_program import Solve
     from ..program.request import Request, read_settings
@@ -98,14 +106,16 @@ def simulate(
     from ..simulation.output import require_formats, write_files
     from ..simulation.request import FINAL_STATE_ALONE, EngineName, SimulationRequest, Stabilization
     from ..simulation.simulate import simulate as follow
-    from .tables.simulation import motion_progress, show_simulation
+    from .tables.simulation import distrust, motion_progress, show_simulation
 
     require_formats(output, plot_file)
     if final and output is None and plot_file is None:
         samples = FINAL_STATE_ALONE
     elif samples is None and plot_file is not None:
         samples = SAMPLES_OF_A_PLOT
-    wanted = SimulationRequest(tol, precision, EngineName(engine), Stabilization(drift), until, samples, compact)
+    wanted = SimulationRequest(
+        tol, precision, EngineName(engine), Stabilization(drift), until, samples, compact, max_step
+    )
     with motion_progress(problem.title) as progress:
         simulation = follow(problem, wanted, progress)
     write_files(simulation, output, plot_file)
@@ -115,7 +125,9 @@ def simulate(
         from .tables.text import make_console
 
         show_simulation(make_console(), simulation)
-    return 0
+    for doubt in simulation.report.doubts:
+        click.echo(distrust(doubt), err=True)
+    return 0 if simulation.report.trusted else FAILED
 
 
 def _digits_of(precision: str) -> int:

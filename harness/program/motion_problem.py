@@ -6,8 +6,9 @@ program computes.
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..confined import Limits
 from ..documents import Document, ask, read
@@ -20,9 +21,36 @@ if TYPE_CHECKING:
 DOUBLE_DIGITS = 17  # decimal digits that tell any two doubles apart
 
 
+class By(StrEnum):
+    """What a switching function is of, the highest of these."""
+
+    TIME = "time"
+    CONFIGURATION = "configuration"
+    VELOCITY = "velocity"
+
+
+class Sign(NamedTuple):
+    """A sign that a motion depends on.
+
+    Attributes
+    ----------
+    name : str
+        The input of the programs that stands for it.
+    of : str
+        The switching function whose sign it is, as Maxima prints it.
+    by : By
+    """
+
+    name: str
+    of: str
+    by: By
+
+
 @dataclass(frozen=True)
 class MotionProblem:
-    """A motion to follow. Every program takes t, the coordinates, the velocities and the multipliers, in this order.
+    """A motion to follow.
+
+    Every program takes t, the coordinates, the velocities, the multipliers and the signs, in this order.
 
     Attributes
     ----------
@@ -51,6 +79,11 @@ class MotionProblem:
         ``energy``, the energy function, and ``power``, its rate along the motion; they need the multipliers.
     drawing : Drawing or None
         How the system looks; None where it does not say.
+    signs : tuple of Sign
+        Of the functions whose changes of sign switch the motion; empty where it is analytic.
+    switching : Program or None
+        ``switch[i]``, the functions, with what decides how the motion passes their zeros, ``switch_rate[i]``,
+        ``drive[i]`` and ``grip[i]``, and ``momentum[s]``; None without signs.
     """
 
     system: str
@@ -68,6 +101,8 @@ class MotionProblem:
     matrices: Program
     energy: Program
     drawing: "Drawing | None"
+    signs: tuple[Sign, ...] = ()
+    switching: Program | None = None
 
     @property
     def state(self) -> tuple[str, ...]:
@@ -157,6 +192,8 @@ def read_problem(text: str) -> MotionProblem:
         matrices=program_of(document["matrices"]),
         energy=program_of(document["energy"]),
         drawing=_drawing(document["drawing"]),
+        signs=tuple(Sign(sign["name"], sign["of"], By(sign["by"])) for sign in document["signs"]),
+        switching=_optional(document["switching"]),
     )
 
 

@@ -38,10 +38,12 @@ def report_document(report: Report) -> dict[str, Any]:
     Returns
     -------
     dict
-        Its attributes; beside the legs and the cases the sentences that people read, ``engine`` and ``remarks``.
+        Its attributes; ``trusted``; and beside the legs and the cases the sentences that people
+        read, ``engine`` and ``remarks``.
     """
     said = {"engine": engine_text(report.legs), "remarks": tuple(remarks(report.legs, report.cases))}
-    attributes = vars(report) | {"legs": tuple(leg._asdict() for leg in report.legs)} | said
+    lists = {name: tuple(each._asdict() for each in getattr(report, name)) for name in ("legs", "switchings", "doubts")}
+    attributes = vars(report) | lists | said | {"trusted": report.trusted}
     return published(Publication.SIMULATION, {k: _published(value, report.digits) for k, value in attributes.items()})
 
 

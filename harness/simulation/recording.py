@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from .diagnostics import EnergyBalance
 from .engines.engine import Piece
 from .evaluation import Numbers
+from .piecewise import PiecewiseMotion
 
 
 class Recording:
@@ -16,7 +16,7 @@ class Recording:
 
     Parameters
     ----------
-    balance : EnergyBalance
+    motion : PiecewiseMotion
     instants : sequence of numbers, or None
         In order; None for the ends of the pieces.
     zero : number
@@ -31,8 +31,8 @@ class Recording:
         Work done in all.
     """
 
-    def __init__(self, balance: EnergyBalance, instants: Sequence[Any] | None, zero: Any) -> None:
-        self._balance, self._waiting = balance, None if instants is None else deque(instants)
+    def __init__(self, motion: PiecewiseMotion, instants: Sequence[Any] | None, zero: Any) -> None:
+        self._motion, self._waiting = motion, None if instants is None else deque(instants)
         self.instants: list[Any] = []
         self.states: list[Numbers] = []
         self.works: list[Any] = []
@@ -52,7 +52,7 @@ class Recording:
             It begins where the last one ended.
         """
         for part in self._parts(piece):
-            self.work = self.work + self._balance.work(part)
+            self.work = self.work + self._motion.work(part)
             if self._wanted(part.end):
                 self._keep(part.end, part.states(np.array([part.end]))[:, 0])
 

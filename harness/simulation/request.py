@@ -51,6 +51,8 @@ class SimulationRequest:
         engine's own steps.
     compact : bool or None
         Whether heyoka compiles in its compact mode; None to choose by what the compilation takes and the run gains.
+    max_step : float or None
+        Time that no step is to exceed; None where the engine alone decides.
     """
 
     tol: float | None = None
@@ -60,3 +62,4 @@ class SimulationRequest:
     until: Fraction | None = None
     samples: int | None = None
     compact: bool | None = None
+    max_step: float | None = None

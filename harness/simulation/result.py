@@ -10,6 +10,8 @@ from ..failures import missing_package
 from ..shown import Show, Shown
 from .diagnosis import HardCase
 from .engines.switching import Leg
+from .piecewise import Switching
+from .trust import Doubt
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -50,6 +52,10 @@ class Report:
     compile_seconds, run_seconds : float
     cases : tuple of HardCase
         Kinds of hard case that the motion is.
+    switchings : tuple of Switching
+        Instants at which the motion is not analytic, and how it passed them.
+    doubts : tuple of Doubt
+        What is out of proportion to the tolerance; a motion with any is no result.
     """
 
     t: Any
@@ -68,6 +74,13 @@ class Report:
     compile_seconds: float
     run_seconds: float
     cases: tuple[HardCase, ...]
+    switchings: tuple[Switching, ...]
+    doubts: tuple[Doubt, ...]
+
+    @property
+    def trusted(self) -> bool:
+        """Whether nothing is out of proportion to the tolerance."""
+        return not self.doubts
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,6 @@
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -12,16 +11,16 @@ from ..failures import Failure, HolonomError
 from ..program.motion_problem import MotionProblem
 from ..program.precision import Precision, read_precision
 from ..threads import one_blas_thread
-from .constraints.singularity import require_gradient, shortly_before, vanishing_instants
-from .diagnosis import HardCase, Instant, dependence, hard_cases
-from .diagnostics import EnergyBalance, condition, residuals
+from .diagnosis import HardCase, Instant, hard_cases
+from .diagnostics import condition, residuals
 from .engines.engine import Piece, Solutions
-from .engines.switching import SwitchingEngine
 from .evaluation import Numbers, as_floats
-from .matrices import MotionMatrices, Vector, start_of
+from .matrices import Matrices, Vector
+from .piecewise import PiecewiseMotion
 from .recording import Recording
 from .request import FINAL_STATE_ALONE, SimulationRequest
 from .result import Report, Samples, Simulation
+from .trust import doubts, energy_scale
 
 Progress = Callable[[float], None]
 
@@ -85,23 +84,19 @@ class _Simulation:
         self.start = self.precision.number(problem.start["t"])
         self.end = last_instant(problem, request.until, self.precision)
         begun = time.perf_counter()
-        self.matrices = MotionMatrices(problem)
-        obstacle = problem.obstacle or dependence(self.matrices, Instant(*start_of(problem)))
-        self.doubtful = vanishing_instants(problem, self.matrices, float(self.end))
-        self.engine = SwitchingEngine(replace(problem, obstacle=obstacle), request, self.precision, self.end)
-        self.first = self.engine.state.copy()
-        self.balance = EnergyBalance(problem, self._multipliers, self.precision)
-        self.compile_seconds = time.perf_counter() - begun - self.engine.compile_seconds
-        self.recording = Recording(self.balance, self._wanted_instants(), self.precision.number("0"))
+        self.motion = PiecewiseMotion(problem, request, self.precision, self.end)
+        self.first = self.motion.state.copy()
+        self.compile_seconds = time.perf_counter() - begun - self.motion.compile_seconds
+        self.recording = Recording(self.motion, self._wanted_instants(), self.precision.number("0"))
 
     def run(self, progress: Progress | None) -> Simulation:
-        begun, compiled = time.perf_counter(), self.engine.compile_seconds
+        begun, compiled = time.perf_counter(), self.motion.compile_seconds
         self.recording.begin(self.start, self.first)
         self._follow(self._take(progress))
-        self.recording.end(self.end, self.engine.state)
-        seconds = time.perf_counter() - begun - (self.engine.compile_seconds - compiled)
+        self.recording.end(self.end, self.motion.state)
+        seconds = time.perf_counter() - begun - (self.motion.compile_seconds - compiled)
         instants, states = np.array(self.recording.instants), np.array(self.recording.states).T
-        solutions = self.engine.solutions(instants, states)
+        solutions = self.motion.solutions(instants, states)
         energies = self._energies(instants, states)
         return Simulation(
             scene=self.problem.scene,
@@ -110,20 +105,13 @@ class _Simulation:
             **self._motion(states, solutions),
             energy=energies if "energy" in self.problem.observe else {},
             residuals=self._residual_samples(instants, states, solutions),
-            report=self._report(solutions, float(energies["energy_error"][-1]), seconds),
+            report=self._report(solutions, energies, seconds),
         )
 
     def _follow(self, take: Callable[[Piece], None] | None) -> None:
-        for t in self.doubtful:
-            self._go_on(self.precision.number(repr(shortly_before(t, float(self.start)))), take)
-            at = Instant(float(self.engine.time), as_floats(self.engine.state))
-            require_gradient(self.problem, self.matrices, t, at)
-        self._go_on(self.end, take)
-
-    def _go_on(self, until: Any, take: Callable[[Piece], None] | None) -> None:
         if take is None:
-            return self.engine.advance(until)
-        for piece in self.engine.pieces(until):
+            return self.motion.advance(self.end)
+        for piece in self.motion.pieces(self.end):
             take(piece)
 
     def _wanted_instants(self) -> Sequence[Any] | None:
@@ -135,7 +123,7 @@ class _Simulation:
 
     def _take(self, progress: Progress | None) -> Callable[[Piece], None] | None:
         """What is done with each piece; None where nothing has to be."""
-        if self.samples == FINAL_STATE_ALONE and self.balance.conservative and progress is None:
+        if self.samples == FINAL_STATE_ALONE and self.motion.conservative and progress is None:
             return None
         if progress is None:
             return self.recording.take
@@ -146,13 +134,10 @@ class _Simulation:
 
         return take
 
-    def _multipliers(self, instants: Numbers, states: Numbers) -> Numbers:
-        return self.engine.solutions(instants, states).multipliers
-
     def _energies(self, instants: Numbers, states: Numbers) -> Samples:
         """Energies at the samples, and what they differ by from the energy at the start and the work done since."""
-        start = self.balance.energy(np.array([self.start]), self.first[:, None])
-        energy = self.balance.energy(instants, states)
+        start = self.motion.energy(np.array([self.start]), self.first[:, None])
+        energy = self.motion.energy(instants, states)
         return {"energy": energy, "energy_error": energy - start - np.array(self.recording.works)}
 
     def _motion(self, states: Numbers, solutions: Solutions) -> Mapping[str, Samples]:
@@ -176,35 +161,46 @@ class _Simulation:
         return {name: np.array([each[name] for each in found]) for name in found[0]}
 
     def _residuals(self, instant: Any, state: Numbers, accelerations: Numbers) -> Mapping[str, float]:
-        at = self.matrices(float(instant), as_floats(state))
+        at = self.motion.matrices(float(instant), as_floats(state))
         return residuals(at, as_floats(state), as_floats(accelerations))
 
-    def _report(self, solutions: Solutions, energy_error: float, seconds: float) -> Report:
-        state, n = self.engine.state.copy(), len(self.problem.coordinates)
+    def _report(self, solutions: Solutions, energies: Samples, seconds: float) -> Report:
+        state, n = self.motion.state.copy(), len(self.problem.coordinates)
         observed = self.problem.multipliers if "multipliers" in self.problem.observe else ()
-        at = self.matrices(float(self.end), as_floats(state))
+        at = self.motion.matrices(float(self.end), as_floats(state))
+        left = residuals(at, as_floats(state), as_floats(solutions.accelerations[:, -1]))
         return Report(
             t=self.end,
             coordinates=dict(zip(self.problem.coordinates, state[:n], strict=True)),
             velocities=dict(zip(self.problem.state[n:], state[n:], strict=True)),
             multipliers=dict(zip(observed, solutions.multipliers[:, -1], strict=False)),
-            residuals=residuals(at, as_floats(state), as_floats(solutions.accelerations[:, -1])),
-            energy_error=energy_error,
+            residuals=left,
+            energy_error=float(energies["energy_error"][-1]),
             condition=condition(at),
-            steps=self.engine.steps,
-            legs=tuple(self.engine.legs),
-            code=self.engine.code,
+            steps=self.motion.steps,
+            legs=tuple(self.motion.legs),
+            code=self.motion.code,
             precision=self.precision.name,
             digits=self.precision.digits,
-            tol=self.engine.tol,
-            compile_seconds=self.compile_seconds + self.engine.compile_seconds,
+            tol=self.motion.tol,
+            compile_seconds=self.compile_seconds + self.motion.compile_seconds,
             run_seconds=seconds,
             cases=self._cases(state, as_floats(solutions.multipliers[:, -1])),
+            switchings=tuple(self.motion.switchings),
+            doubts=tuple(doubts(left, *self._energy_missed(at, energies), self.motion.tol, self.motion.steps)),
         )
+
+    def _energy_missed(self, at: Matrices, energies: Samples) -> tuple[float, float]:
+        """The largest energy error on the way, and the size of the energies that it is an error of."""
+        first, last = as_floats(self.first), as_floats(self.motion.state)
+        work = float(np.max(np.abs(as_floats(np.array(self.recording.works)))))
+        scale = max(energy_scale(self.motion.matrices(float(self.start), first), first), energy_scale(at, last))
+        exchanged = np.max(np.abs(as_floats(energies["energy"] - energies["energy"][0])))
+        return float(np.max(np.abs(as_floats(energies["energy_error"])))), max(scale, work, float(exchanged))
 
     def _cases(self, state: Numbers, multipliers: Vector) -> tuple[HardCase, ...]:
         """Those that the robust engine was called for, then those that the ends tell; each once."""
         start, end = Instant(float(self.start), as_floats(self.first)), Instant(float(self.end), as_floats(state))
-        called_for = [leg.case for leg in self.engine.legs if leg.case is not None]
-        found = hard_cases(self.matrices, start, end, multipliers, self.engine.steps)
+        called_for = [leg.case for leg in self.motion.legs if leg.case is not None]
+        found = hard_cases(self.motion.matrices, start, end, multipliers, self.motion.steps)
         return tuple(dict.fromkeys([*called_for, *found]))

@@ -1,14 +1,18 @@
 """A simulation on the console: the end of the motion, and how well it was followed to there."""
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
+
+LISTED = 3  # instants that are told one by one
 
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from ...simulation.piecewise import Switching
     from ...simulation.result import Report, Simulation
+    from ...simulation.trust import Doubt
 
 
 @contextmanager
@@ -64,3 +68,34 @@ def _quality(report: "Report") -> Iterator[str]:
     code = f" {report.code} code" if report.code else ""
     yield f"{report.compile_seconds:.3f} s to compile{code}, {report.run_seconds:.3g} s to run"
     yield from remarks(report.legs, report.cases)
+    yield from _switchings(report.switchings)
+
+
+def _switchings(switchings: "Sequence[Switching]") -> Iterator[str]:
+    """What happened where the motion is not analytic."""
+    for switching in switchings[:LISTED]:
+        yield f"At t = {switching.t:.10g} the surface {switching.function} = 0 is {_passed(switching.passage)}."
+    if len(switchings) > LISTED:
+        yield f"The motion switches {len(switchings)} times in all, the last time at t = {switchings[-1].t:.10g}."
+
+
+def _passed(passage: str) -> str:
+    return {"held": "reached, and held on to", "released": "left again"}.get(passage, passage)
+
+
+def distrust(doubt: "Doubt") -> str:
+    """The sentence that says why a motion is no result.
+
+    Parameters
+    ----------
+    doubt : Doubt
+
+    Returns
+    -------
+    str
+    """
+    what = "the energy" if doubt.quantity == "energy" else f"the {doubt.quantity} that the constraints allow"
+    return (
+        f"holonom: this is no result: {what} is missed by {doubt.missed:.1e} of its size, where the tolerance lets "
+        f"expect {doubt.expected:.1e} at most; take a smaller --max-step, another --engine or more --precision."
+    )

@@ -102,6 +102,11 @@ class SwitchingEngine:
         """Tolerance of the engine that began."""
         return self._first.tol
 
+    def restart(self, instant: Any, state: Numbers) -> None:
+        """Go on from another instant and state, shape (2n,), with the engine that began."""
+        self._first.restart(instant, state)
+        self._current, self._begun = self._first, float(instant)
+
     def advance(self, until: Any) -> None:
         """Follow the motion to an instant, each engine at its fastest.
 

@@ -1,0 +1,203 @@
+"""Programs of a motion whose signs are known: each is a number, or what keeps the motion on its surface.
+
+A motion that is not analytic everywhere comes with signs as inputs of its programs (`maxima/program/switching.mac`).
+While they stay the same it is an analytic motion like any other: its problem is the same one with the signs put in.
+A sign that holds the motion on its surface is a value along the way, -drive(0)/grip.
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
+
+from .motion_problem import MotionProblem, computing
+from .motion_program import Call, Constant, Expression, Name, Operation, Program, count_operations, names_in
+
+ZERO, ONE = Fraction(0), Fraction(1)
+HELD = "held"  # stands in a pattern for the sign that keeps the motion on its surface
+Pattern = Mapping[str, int | str]
+
+
+def problem_in(problem: MotionProblem, pattern: Pattern) -> MotionProblem:
+    """The analytic motion of one pattern of signs.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+    pattern : mapping of str to int or str
+        1, -1 or `HELD` for each sign; one at most is held, of those that `holdable` names.
+
+    Returns
+    -------
+    MotionProblem
+        Without signs.
+    """
+    return replace(
+        problem,
+        motion=problem.motion and program_in(problem, problem.motion, pattern),
+        projection=problem.projection and program_in(problem, problem.projection, pattern),
+        matrices=program_in(problem, problem.matrices, pattern),
+        energy=program_in(problem, problem.energy, pattern),
+        drawing=problem.drawing and replace(
+            problem.drawing, program=program_in(problem, problem.drawing.program, pattern)
+        ),
+        signs=(),
+        switching=None,
+    )  # fmt: skip
+
+
+def program_in(problem: MotionProblem, program: Program, pattern: Pattern) -> Program:
+    """A program of the motion with the signs of a pattern.
+
+    Parameters
+    ----------
+    problem, pattern
+        As for `problem_in`.
+    program : Program
+
+    Returns
+    -------
+    Program
+        Its inputs are the time, the coordinates, the velocities and the multipliers alone.
+    """
+    for name, sign in pattern.items():
+        if sign == HELD:
+            program = _preceded(_holding(problem, name), program)
+    return with_numbers(program, {name: Fraction(sign) for name, sign in pattern.items() if sign != HELD})
+
+
+def holdable(problem: MotionProblem, name: str) -> bool:
+    """Whether a sign can hold the motion on its surface: forces alone contain it, and linearly."""
+    return problem.switching is not None and f"grip[{_index(problem, name)}]" in problem.switching.outputs
+
+
+def drive(problem: MotionProblem, name: str, sign: int, pattern: Pattern) -> Program:
+    """The rate that a sign contributes to of its own function, for one value of it.
+
+    Parameters
+    ----------
+    problem, pattern
+        As for `problem_in`.
+    name : str
+        One of the signs, that `holdable` is true of.
+    sign : int
+
+    Returns
+    -------
+    Program
+        Its one output is ``drive``.
+    """
+    output = f"drive[{_index(problem, name)}]"
+    program = program_in(problem, computing(problem.switching, {output}), {**pattern, name: sign})
+    return replace(program, outputs={"drive": program.outputs[output]})
+
+
+def with_numbers(program: Program, numbers: Mapping[str, Fraction]) -> Program:
+    """A program with numbers for some of its inputs; what is multiplied by zero is dropped.
+
+    Parameters
+    ----------
+    program : Program
+    numbers : mapping of str to Fraction
+
+    Returns
+    -------
+    Program
+        Without these inputs.
+    """
+    known: dict[str, Expression] = dict(numbers)
+    kept = []
+    for name, expression in program.assignments:
+        value = _substituted(expression, known)
+        if isinstance(value, Fraction | Name | Constant):
+            known[name] = value
+        else:
+            kept.append((name, value))
+    part = replace(
+        program,
+        inputs=tuple(name for name in program.inputs if name not in numbers),
+        assignments=tuple(kept),
+        outputs={name: _substituted(value, known) for name, value in program.outputs.items()},
+    )
+    return replace(part, operations=count_operations(part))
+
+
+def _index(problem: MotionProblem, name: str) -> int:
+    return 1 + [sign.name for sign in problem.signs].index(name)
+
+
+def _holding(problem: MotionProblem, name: str) -> Program:
+    """The program of a sign that holds the motion on its surface: its one output has the sign's name."""
+    index = _index(problem, name)
+    program = with_numbers(computing(problem.switching, {f"drive[{index}]", f"grip[{index}]"}), {name: ZERO})
+    value = Call(Operation.DIVIDE, (
+        Call(Operation.NEGATE, (program.outputs[f"drive[{index}]"],)), program.outputs[f"grip[{index}]"],
+    ))  # fmt: skip
+    return replace(program, assignments=(*program.assignments, (name, value)), outputs={name: Name(name)})
+
+
+def _preceded(first: Program, program: Program) -> Program:
+    """A program after another one has computed one of its inputs; both take the same inputs otherwise."""
+    (sign,) = first.outputs
+    taken = {name for name, _ in program.assignments} | set(program.inputs)
+    own = {name: _untaken(f"{sign}_{name}", taken) for name, _ in first.assignments if name != sign}
+    names: dict[str, Expression] = {name: Name(renamed) for name, renamed in own.items()}
+    before = tuple((own.get(name, name), _substituted(value, names)) for name, value in first.assignments)
+    joined = replace(
+        program,
+        inputs=tuple(name for name in program.inputs if name != sign),
+        assignments=(*before, *program.assignments),
+    )
+    return replace(joined, operations=count_operations(joined))
+
+
+def _untaken(name: str, taken: set[str]) -> str:
+    return _untaken(f"{name}_", taken) if name in taken else name
+
+
+def _substituted(expression: Expression, known: Mapping[str, Expression]) -> Expression:
+    match expression:
+        case Name(text):
+            return known.get(text, expression)
+        case Call(operation, arguments) if not names_in(expression).isdisjoint(known):
+            return _folded(operation, [_substituted(argument, known) for argument in arguments])
+        case _:
+            return expression
+
+
+def _folded(operation: Operation, arguments: list[Expression]) -> Expression:
+    """The operation on its arguments, done where it is arithmetic of numbers alone."""
+    match operation, arguments:
+        case Operation.ADD, _:
+            return _collected(operation, arguments, ZERO)
+        case Operation.MULTIPLY, _:
+            return ZERO if ZERO in arguments else _collected(operation, arguments, ONE)
+        case Operation.NEGATE, [Fraction() as a]:
+            return -a
+        case Operation.SUBTRACT, [Fraction() as a, Fraction() as b]:
+            return a - b
+        case Operation.SUBTRACT, [a, Fraction(numerator=0)]:
+            return a
+        case Operation.SUBTRACT, [Fraction(numerator=0), b]:
+            return Call(Operation.NEGATE, (b,))
+        case Operation.DIVIDE, [Fraction() as a, Fraction() as b] if b:
+            return a / b
+        case Operation.DIVIDE, [Fraction(numerator=0), _]:
+            return ZERO
+        case Operation.POWER, [Fraction() as a, Fraction(denominator=1) as n] if a or n >= 0:
+            return a ** int(n)
+        case _:
+            return Call(operation, tuple(arguments))
+
+
+def _collected(operation: Operation, arguments: list[Expression], neutral: Fraction) -> Expression:
+    """A sum or product with its numbers taken together."""
+    number, rest = neutral, []
+    for argument in arguments:
+        if isinstance(argument, Fraction):
+            number = number + argument if operation is Operation.ADD else number * argument
+        else:
+            rest.append(argument)
+    if not rest:
+        return number
+    parts = rest if number == neutral else [number, *rest]
+    return parts[0] if len(parts) == 1 else Call(operation, tuple(parts))

@@ -1,0 +1,452 @@
+"""A motion that is analytic in parts: followed in each by the engines, and led from one to the next.
+
+While the signs in its equations stay the same a motion is analytic. An engine follows it with these signs; where a
+switching function leaves its sign, the step is cut, and what the equations say on both sides decides how it goes on:
+
+- where both sides lead across the surface, it is crossed;
+- where both lead back to it, the motion is held on it, as dry friction sticks, until one of them does not
+  (Filippov, Differential Equations with Discontinuous Righthand Sides, section 4);
+- where a law's rate jumps, the velocities do: the momenta dL/d dot(q) change along the constraints' gradients alone, by
+  the impulse that makes the new velocities keep the constraints (Pars, A Treatise on Analytical Dynamics, chapter 14).
+
+What mechanics does not decide is refused: a law that jumps in a constraint, an energy that does as a function of the
+state, an impulse of a surface whose law of impact nobody has given.
+"""
+
+from bisect import bisect_left, bisect_right
+from collections import deque
+from collections.abc import Iterator
+from dataclasses import replace
+from enum import StrEnum
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..failures import Failure, HolonomError
+from ..program.motion_problem import By, MotionProblem, Sign, computing
+from ..program.precision import Precision
+from ..program.sign_pattern import HELD, Pattern, drive, holdable, problem_in, program_in
+from .constraints.program_projection import ProgramProjection
+from .constraints.projection import project
+from .constraints.singularity import require_gradient, shortly_before, vanishing_instants
+from .diagnosis import Instant, dependence
+from .diagnostics import EnergyBalance, residuals
+from .engines.engine import Piece, Solutions
+from .engines.switching import Leg, SwitchingEngine
+from .evaluation import Numbers, as_floats, evaluation
+from .matrices import Matrices, MotionMatrices, Vector, start_of
+from .request import SimulationRequest
+from .surfaces import Crossing, Surfaces
+from .time_dependence import time_dependence
+
+ZERO = 1e-12  # of a switching function or its rate, in terms of the state: no sign
+CONTINUOUS = 1e-9  # relative change at an instant that is rounding
+CROWD, CROWDED = 64, 1e-7  # so many switchings in such a part of the time span have no end
+SOON = 1e-9  # of the time span: how far ahead the sign of a function of the time is looked for where it vanishes
+
+
+class Passage(StrEnum):
+    """How a motion passes a surface."""
+
+    CROSSED = "crossed"
+    HELD = "held"
+    RELEASED = "released"
+    IMPULSE = "crossed with an impulse"
+
+
+class Switching(NamedTuple):
+    """An instant at which a motion is not analytic.
+
+    Attributes
+    ----------
+    t : float
+    function : str
+        What changes its sign there, as Maxima prints it.
+    passage : Passage
+    """
+
+    t: float
+    function: str
+    passage: Passage
+
+
+class Part:
+    """The analytic motion of one pattern of signs, and what follows it.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        Its start is where the motion first has this pattern.
+    pattern : Pattern
+    request, precision, end
+        As for `PiecewiseMotion`.
+    """
+
+    def __init__(
+        self, problem: MotionProblem, pattern: Pattern, request: SimulationRequest, precision: Precision, end: Any
+    ) -> None:
+        self._whole, self.pattern, self._precision = problem, pattern, precision
+        analytic = problem_in(problem, pattern)
+        self.matrices = MotionMatrices(analytic)
+        obstacle = analytic.obstacle or dependence(self.matrices, Instant(*start_of(analytic)))
+        self.problem = replace(analytic, obstacle=obstacle)
+        self.engine = SwitchingEngine(self.problem, request, precision, end)
+        self.balance = EnergyBalance(self.problem, self._multipliers, precision)
+        self._start, self._end = float(problem.start["t"]), float(end)
+        self.doubtful = vanishing_instants(self.problem, self.matrices, self._end)
+        self.by_time = time_dependence(self.problem.matrices, self._start, self._end)
+        ends = () if self.by_time.end is None else (self.by_time.end,)
+        before = (shortly_before(t, self._start) for t in self.doubtful)
+        self.stops = sorted({*self.by_time.stops, *ends, *before})
+
+    @cached_property
+    def surfaces(self) -> Surfaces:
+        """The surfaces on which the pattern ends."""
+        return Surfaces(self._whole, self.pattern, self._precision)
+
+    @cached_property
+    def momenta(self) -> Any:
+        """dL/d dot(q) as a function of the state."""
+        wanted = {name for name in self._whole.switching.outputs if name.startswith("momentum[")}
+        program = program_in(self._whole, computing(self._whole.switching, wanted), self.pattern)
+        return evaluation(program, self._precision)
+
+    @cached_property
+    def projection(self) -> ProgramProjection:
+        """What projects states in the numbers of the run."""
+        return ProgramProjection(self.problem, self._precision)
+
+    def require_way_on(self, at: Instant) -> None:
+        """Refuse to go on where a constraint loses its gradient, or an expression of the time its smoothness."""
+        for t in self.doubtful:
+            if shortly_before(t, self._start) == at.t:
+                require_gradient(self.problem, self.matrices, t, at)
+
+    def _multipliers(self, instants: Numbers, states: Numbers) -> Numbers:
+        return self.engine.solutions(instants, states).multipliers
+
+
+class Phase(NamedTuple):
+    """A part at work from an instant on."""
+
+    start: Any
+    part: Part
+
+
+class PiecewiseMotion:
+    """A motion followed through its switchings, and no farther in one step than it may depend on the time.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+    request : SimulationRequest
+    precision : Precision
+    end : number
+        The last instant.
+
+    Attributes
+    ----------
+    phases : list of Phase
+    switchings : list of Switching
+
+    Raises
+    ------
+    HolonomError
+        As `SwitchingEngine`; the motion starts where the equations leave open how it goes on.
+    """
+
+    def __init__(self, problem: MotionProblem, request: SimulationRequest, precision: Precision, end: Any) -> None:
+        self._problem, self._request, self._precision, self._end = problem, request, precision, end
+        self._signs = {sign.name: sign for sign in problem.signs}
+        self._parts: dict[tuple[Any, ...], Part] = {}
+        self._span = float(end) - float(problem.start["t"])
+        self._left: tuple[str, ...] = ()
+        self._jump = precision.number("0")
+        self.switchings: list[Switching] = []
+        start = np.array([precision.number(problem.start[name]) for name in problem.state])
+        pattern = self._first_pattern(precision.number(problem.start["t"]), start)
+        self.phases = [Phase(precision.number(problem.start["t"]), self._part(pattern, problem))]
+
+    @property
+    def part(self) -> Part:
+        """The part at work."""
+        return self.phases[-1].part
+
+    @property
+    def time(self) -> Any:
+        """The instant that is reached."""
+        return self.part.engine.time
+
+    @property
+    def state(self) -> Numbers:
+        """The state at this instant."""
+        return self.part.engine.state
+
+    @property
+    def steps(self) -> int:
+        """Steps taken so far."""
+        return sum(part.engine.steps for part in self._parts.values())
+
+    @property
+    def tol(self) -> float:
+        """Tolerance of the engine that began."""
+        return self.part.engine.tol
+
+    @property
+    def code(self) -> str:
+        """How heyoka compiled the engine that began."""
+        return self.part.engine.code
+
+    @property
+    def compile_seconds(self) -> float:
+        """Time that the compilation of the engines took."""
+        return sum(part.engine.compile_seconds for part in self._parts.values())
+
+    @property
+    def conservative(self) -> bool:
+        """Whether there is no work to integrate."""
+        return not self._problem.signs and self.part.balance.conservative
+
+    @property
+    def legs(self) -> list[Leg]:
+        """Which engine followed the motion from when to when."""
+        ends = [*(float(phase.start) for phase in self.phases[1:]), float(self.time)]
+        found: list[Leg] = []
+        for phase, end in zip(self.phases, ends, strict=True):
+            for leg in phase.part.engine.legs:
+                cut = leg._replace(start=max(leg.start, float(phase.start)), end=min(leg.end, end))
+                if cut.start < cut.end:
+                    if found and found[-1]._replace(start=cut.start, end=cut.end) == cut:
+                        cut = cut._replace(start=found.pop().start)
+                    found.append(cut)
+        return found
+
+    def advance(self, until: Any) -> None:
+        """Follow the motion to an instant.
+
+        Raises
+        ------
+        HolonomError
+            The motion cannot be followed so far.
+        """
+        if self._problem.signs:
+            deque(self.pieces(until), maxlen=0)
+            return
+        while self.time != until:
+            self.part.engine.advance(self._next_stop(until))
+            self._require_way_on(until)
+
+    def pieces(self, until: Any) -> Iterator[Piece]:
+        """Follow the motion to an instant, step by step; raises as `advance`."""
+        while self.time != until:
+            yield from self._to_stop(self._next_stop(until))
+            self._require_way_on(until)
+
+    def solutions(self, instants: Numbers, states: Numbers) -> Solutions:
+        """What the equations of motion determine at states of the motion, each in its phase."""
+        found = [part.engine.solutions(instants[here], states[:, here]) for part, here in self._by_phase(instants)]
+        return Solutions(*(np.concatenate(rows, axis=1) for rows in zip(*found, strict=True)))
+
+    def energy(self, instants: Numbers, states: Numbers) -> Numbers:
+        """The energy function at states of the motion, shape (k,)."""
+        return np.concatenate(
+            [part.balance.energy(instants[here], states[:, here]) for part, here in self._by_phase(instants)]
+        )
+
+    def matrices(self, t: float, state: Vector) -> Matrices:
+        """The matrices at a state of the motion, in its phase."""
+        phase = max(0, bisect_left([float(phase.start) for phase in self.phases], t) - 1)
+        return self.phases[phase].part.matrices(t, state)
+
+    def work(self, piece: Piece) -> Any:
+        """Work of a piece of the phase at work, with that of the impulse at its beginning."""
+        jump, self._jump = self._jump, self._precision.number("0")
+        return jump + self.part.balance.work(piece)
+
+    def _by_phase(self, instants: Numbers) -> Iterator[tuple[Part, slice]]:
+        """The instants, in order, by the phases that end with them or hold them."""
+        ends = [phase.start for phase in self.phases[1:]]
+        bounds = [0, *(int(np.searchsorted(as_floats(instants), float(end), side="right")) for end in ends)]
+        for phase, first, last in zip(self.phases, bounds, [*bounds[1:], len(instants)], strict=True):
+            if first < last:
+                yield phase.part, slice(first, last)
+
+    # ---- steps ----
+
+    def _next_stop(self, until: Any) -> Any:
+        stops, step = self.part.stops, self._request.max_step
+        ahead = stops[bisect_right(stops, float(self.time)) :][:1]
+        limits = [self.time + self._precision.number(repr(step))] if step is not None else []
+        return min([until, *limits, *(self._precision.number(repr(t)) for t in ahead)])
+
+    def _require_way_on(self, until: Any) -> None:
+        by_time = self.part.by_time
+        if by_time.end is not None and float(self.time) >= by_time.end and self.time != until:
+            raise HolonomError(Failure.NO_WAY_ON, detail=f"{by_time.end:.10g}, where {by_time.reason}")
+        self.part.require_way_on(Instant(float(self.time), as_floats(self.state)))
+
+    def _to_stop(self, stop: Any) -> Iterator[Piece]:
+        part = self.part
+        if not self._problem.signs:
+            yield from part.engine.pieces(stop)
+            return
+        for piece in part.engine.pieces(stop):
+            crossing = part.surfaces.first_crossing(piece, self._left)
+            if crossing is None:
+                yield piece
+                self._left = ()
+            else:
+                if crossing.t > piece.start:
+                    yield Piece(piece.start, crossing.t, piece.states)
+                self._switch(crossing, piece.states(np.array([crossing.t]))[:, 0])
+                return
+
+    # ---- switching ----
+
+    def _switch(self, crossing: Crossing, state: Numbers) -> None:
+        t, sign, before = crossing.t, self._signs[crossing.name], self.part
+        again = t == self.phases[-1].start and crossing.name in self._left
+        if again or self._crowded(t):
+            self._refuse(t, f"{sign.of} changes its sign again and again")
+        pattern = {**before.pattern, sign.name: crossing.to}
+        held = before.pattern[sign.name] == HELD
+        if not held and sign.by is not By.TIME:
+            pattern[sign.name] = self._behind(sign, pattern, t, state, crossing.to)
+        after = self._part(pattern, self._started_at(t, state))
+        moved = self._passed(before, after, sign, t, state)
+        after.engine.restart(t, moved)
+        self.phases.append(Phase(t, after))
+        self._left = (*self._left, sign.name) if t == self.phases[-2].start else (sign.name,)
+        self._jump = self._jump + (self._energy(after, t, moved) - self._energy(before, t, state))
+        if held:
+            passage = Passage.RELEASED
+        elif pattern[sign.name] == HELD:
+            passage = Passage.HELD
+        else:
+            passage = Passage.CROSSED if _close(moved, state) else Passage.IMPULSE
+        self.switchings.append(Switching(float(t), sign.of, passage))
+
+    def _behind(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers, to: int) -> int | str:
+        """The sign with which a motion goes on from a surface of the state."""
+        if sign.by is By.CONFIGURATION and abs(self._output("switch_rate", sign, pattern, t, state)) > ZERO * _size(
+            state
+        ):
+            return to
+        if not holdable(self._problem, sign.name):
+            return to
+        return self._decided(sign, pattern, t, state)
+
+    def _decided(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> int | str:
+        """What the motions on both sides of a surface say about the sign of the motion that is on it."""
+        above, below = (self._drive(sign, to, pattern, t, state) for to in (1, -1))
+        if above * below > 0:
+            return 1 if above > 0 else -1
+        if above < 0 < below:
+            if other := next((name for name, value in pattern.items() if value == HELD and name != sign.name), None):
+                self._refuse(t, f"{self._signs[other].of} and {sign.of} are both held at zero")
+            return HELD
+        if above > 0 > below:
+            self._refuse(t, f"{sign.of} is zero, and the motion may leave to either side")
+        return 1 if above >= 0 and below >= 0 else -1
+
+    def _passed(self, before: Part, after: Part, sign: Sign, t: Any, state: Numbers) -> Numbers:
+        """The state behind an instant of switching."""
+        floats, n = as_floats(state), len(state) // 2
+        old, new = before.matrices(float(t), floats), after.matrices(float(t), floats)
+        if residuals(new, floats, np.zeros(n))["position"] > CONTINUOUS or not _close(new.mass, old.mass):
+            self._refuse(t, f"the constraints or the masses jump as {sign.of} changes its sign")
+        kick = as_floats(self._momenta(before, t, state)) - as_floats(self._momenta(after, t, state))
+        moved = state.copy()
+        if np.max(np.abs(kick), initial=0.0) > CONTINUOUS * _size(state):
+            if self._precision.name != "double":
+                self._refuse(t, f"momenta jump as {sign.of} changes its sign, which takes double precision")
+            moved[n:] += np.linalg.solve(new.mass, kick)
+        if after.problem.projection is None:
+            moved = project(after.matrices, float(t), as_floats(moved))
+        else:
+            after.projection.project(t, moved)
+        if sign.by is not By.TIME:
+            jump = abs(float(self._energy(after, t, state) - self._energy(before, t, state)))
+            if not _close(moved, state):
+                self._refuse(t, f"an impact decides how the motion goes on as {sign.of} changes its sign")
+            if jump > CONTINUOUS * max(1.0, abs(float(self._energy(before, t, state)))):
+                self._refuse(t, f"the energy jumps as {sign.of} changes its sign")
+        return moved
+
+    def _first_pattern(self, t: Any, state: Numbers) -> Pattern:
+        """Signs at the start, each function after those that it may contain."""
+        pattern: dict[str, int | str] = dict.fromkeys(self._signs, 1)
+        for sign in self._problem.signs:
+            found = self._output("switch", sign, pattern, t, state)
+            if abs(found) <= ZERO * _size(state):
+                pattern[sign.name] = self._leaving(sign, pattern, t, state)
+                self._left = (*self._left, sign.name)
+            else:
+                pattern[sign.name] = 1 if found > 0 else -1
+        return pattern
+
+    def _leaving(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> int | str:
+        """The sign with which a motion starts from a surface."""
+        if sign.by is By.TIME:
+            soon = t + self._precision.number(repr(SOON * self._span))
+            return 1 if self._output("switch", sign, pattern, soon, state) >= 0 else -1
+        if sign.by is By.CONFIGURATION:
+            rate = self._output("switch_rate", sign, pattern, t, state)
+            if abs(rate) > ZERO * _size(state):
+                return 1 if rate > 0 else -1
+        if not holdable(self._problem, sign.name):
+            self._refuse(t, f"{sign.of} is zero, and not in forces alone, which leaves open how the motion goes on")
+        return self._decided(sign, pattern, t, state)
+
+    def _crowded(self, t: Any) -> bool:
+        return len(self.phases) > CROWD and float(t - self.phases[-CROWD].start) < CROWDED * self._span
+
+    def _refuse(self, t: Any, reason: str) -> None:
+        raise HolonomError(Failure.NO_WAY_ON, detail=f"{float(t):.10g}, where {reason}")
+
+    # ---- numbers at an instant ----
+
+    def _output(self, name: str, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> float:
+        output = f"{name}[{1 + self._problem.signs.index(sign)}]"
+        return self._evaluated(
+            program_in(self._problem, computing(self._problem.switching, {output}), pattern), t, state
+        )
+
+    def _drive(self, sign: Sign, to: int, pattern: Pattern, t: Any, state: Numbers) -> float:
+        return self._evaluated(drive(self._problem, sign.name, to, pattern), t, state)
+
+    def _evaluated(self, program: Any, t: Any, state: Numbers) -> float:
+        return float(evaluation(program, self._precision)(self._inputs(t, state))[0])
+
+    def _momenta(self, part: Part, t: Any, state: Numbers) -> Numbers:
+        return part.momenta(self._inputs(t, state))
+
+    def _energy(self, part: Part, t: Any, state: Numbers) -> Any:
+        return part.balance.energy(np.array([t]), state[:, None])[0]
+
+    def _inputs(self, t: Any, state: Numbers) -> Numbers:
+        unused = [self._precision.number("0")] * len(self._problem.multipliers)
+        return np.array([t, *state, *unused])
+
+    # ---- parts ----
+
+    def _part(self, pattern: Pattern, problem: MotionProblem) -> Part:
+        key = tuple(pattern.values())
+        if key not in self._parts:
+            self._parts[key] = Part(problem, pattern, self._request, self._precision, self._end)
+        return self._parts[key]
+
+    def _started_at(self, t: Any, state: Numbers) -> MotionProblem:
+        numbers = (self._precision.text(number) for number in (t, *state))
+        return replace(self._problem, start=dict(zip(("t", *self._problem.state), numbers, strict=True)))
+
+
+def _size(state: Numbers) -> float:
+    return max(1.0, float(np.max(np.abs(as_floats(state)))))
+
+
+def _close(numbers: Numbers, others: Numbers) -> bool:
+    """Whether two arrays of numbers differ by rounding alone."""
+    a, b = (np.asarray(each, dtype=float).ravel() for each in (numbers, others))
+    return bool(np.max(np.abs(a - b), initial=0.0) <= CONTINUOUS * max(1.0, float(np.max(np.abs(b), initial=0.0))))

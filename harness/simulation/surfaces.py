@@ -1,0 +1,156 @@
+"""Switching functions along a motion: where the first of them changes its sign within a step.
+
+They are sampled at Chebyshev's points of a step and interpolated between, by polynomials of degree 32; a step of an
+engine is resolved by fewer. The instant is found by halving, to the last bit of its numbers.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from ..program.motion_problem import MotionProblem, computing
+from ..program.motion_program import Program
+from ..program.precision import Precision
+from ..program.sign_pattern import HELD, Pattern, drive, program_in
+from .engines.engine import Piece
+from .evaluation import Numbers, as_floats, evaluation, zeros
+
+DEGREE, FINE = 32, 256
+NODES = np.concatenate([[0.0], np.sort(1 + chebyshev.chebpts1(DEGREE + 1)) / 2, [1.0]])
+PLACES = np.linspace(0.0, 1.0, FINE + 1)
+INTERPOLATED = chebyshev.chebvander(2 * PLACES - 1, DEGREE) @ np.linalg.inv(
+    chebyshev.chebvander(2 * NODES[1:-1] - 1, DEGREE)
+)
+
+
+class Crossing(NamedTuple):
+    """An instant at which a motion reaches the end of its pattern of signs.
+
+    Attributes
+    ----------
+    t : number
+    name : str
+        The sign that changes.
+    to : int
+        Its value then.
+    """
+
+    t: Any
+    name: str
+    to: int
+
+
+class Surfaces:
+    """The surfaces on which a pattern of signs ends.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        With signs.
+    pattern : Pattern
+    precision : Precision
+    """
+
+    def __init__(self, problem: MotionProblem, pattern: Pattern, precision: Precision) -> None:
+        self._precision, self._unused = precision, len(problem.multipliers)
+        self._rows: list[tuple[str, int, int]] = []
+        programs = []
+        for index, sign in enumerate(problem.signs, start=1):
+            if (value := pattern[sign.name]) == HELD:
+                for to in (1, -1):
+                    self._rows.append((sign.name, to, -to))
+                    programs.append(_alone(drive(problem, sign.name, to, pattern), len(programs)))
+            else:
+                self._rows.append((sign.name, -value, value))
+                function = computing(problem.switching, {f"switch[{index}]"})
+                programs.append(_alone(program_in(problem, function, pattern), len(programs)))
+        self._functions = [evaluation(program, precision) for program in programs]
+
+    def values(self, instants: Numbers, states: Numbers) -> Numbers:
+        """How far inside of its pattern the motion is, by each surface; negative outside.
+
+        Parameters
+        ----------
+        instants : ndarray, shape (k,)
+        states : ndarray, shape (2n, k)
+
+        Returns
+        -------
+        ndarray of float, shape (surfaces, k)
+        """
+        unused = zeros(self._precision, self._unused, len(instants))
+        inputs = np.ascontiguousarray(np.concatenate([np.reshape(instants, (1, -1)), states, unused]))
+        found = [as_floats(function(inputs)[0]) for function in self._functions]
+        inside = np.array([side for *_, side in self._rows], dtype=float)
+        return inside[:, None] * np.reshape(found, (len(self._rows), len(instants)))
+
+    def first_crossing(self, piece: Piece, left: Sequence[str]) -> Crossing | None:
+        """Where the motion first leaves its pattern within a step.
+
+        Parameters
+        ----------
+        piece : Piece
+        left : sequence of str
+            Signs whose surfaces the motion has just left at the beginning of the step, where rounding decides.
+
+        Returns
+        -------
+        Crossing or None
+        """
+        places, values = self._samples(piece, NODES)
+        for row, (name, *_) in enumerate(self._rows):
+            if name in left:
+                values[row, 0] = max(values[row, 0], 0.0)
+        found = [self._in_row(piece, row, places, values[row]) for row in range(len(self._rows))]
+        return min((crossing for crossing in found if crossing), key=lambda crossing: crossing.t, default=None)
+
+    def _in_row(self, piece: Piece, row: int, places: Numbers, values: Numbers) -> Crossing | None:
+        name, to, _ = self._rows[row]
+        negative = np.flatnonzero(values < 0)
+        last = negative[0] if negative.size else len(values)
+        if last == 0:
+            return Crossing(piece.start, name, to)
+        before, after = (places[last - 1], places[last]) if negative.size else (None, None)
+        dip = self._dip(piece, row, values, NODES[last] if negative.size else 1.0)
+        if dip is not None:
+            before, after = dip
+        return None if after is None else Crossing(self._halved(piece, row, before, after), name, to)
+
+    def _dip(self, piece: Piece, row: int, values: Numbers, end: float) -> tuple[Any, Any] | None:
+        """Between two samples, instants between which the function becomes negative to rise again."""
+        inner = values[1:-1]
+        if not np.isfinite(inner).all() or np.min(inner) > np.ptp(inner):
+            return None
+        between = INTERPOLATED @ inner
+        places = np.flatnonzero((between < 0) & (PLACES > 0) & (end > PLACES))
+        if not places.size:
+            return None
+        instants, found = self._samples(piece, PLACES[[places[0] - 1, places[0]]])
+        return tuple(instants) if found[row, 0] >= 0 > found[row, 1] else None
+
+    def _samples(self, piece: Piece, places: Numbers) -> tuple[Numbers, Numbers]:
+        """Instants of a step, and the functions there, shape (surfaces, k)."""
+        numbers = np.array([self._precision.number(repr(float(place))) for place in places])
+        instants = piece.start + (piece.end - piece.start) * numbers
+        if places[-1] == 1.0:
+            instants[-1] = piece.end
+        return instants, self.values(instants, piece.states(instants))
+
+    def _halved(self, piece: Piece, row: int, before: Any, after: Any) -> Any:
+        half = self._precision.number("0.5")
+        while before < (middle := before + half * (after - before)) < after:
+            at = np.array([middle])
+            if self.values(at, piece.states(at))[row, 0] < 0:
+                after = middle
+            else:
+                before = middle
+        return before
+
+
+def _alone(program: Program, index: int) -> Program:
+    """The program with its one output under another name."""
+    (value,) = program.outputs.values()
+    return replace(program, outputs={f"surface[{index}]": value})

@@ -1,0 +1,216 @@
+"""Where a motion depends on the time by itself: how fast, and how long it does so smoothly.
+
+An integrator chooses its steps by what it meets at their beginnings and stages. A pulse that is over before the next
+step begins does not exist for it. So the expressions of t alone in the equations of motion are looked at before: the
+time span is halved until a polynomial of degree 32 represents each of them on every part, to `RESOLVED` of its largest
+value, and none lies still in the first half of a part to move in the second. Where parts are much shorter than others,
+or differ from their neighbours, steps are to end at their boundaries.
+
+What is guaranteed: no feature of such an expression is passed over that lasts longer than 1/32768 of the time span and
+is larger than `RESOLVED` of the expression's largest value. Shorter ones show if they come near one of the samples.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from ..program.motion_program import Call, Expression, Name, Program, names_in
+from ..program.numpy_function import NumpyFunction
+from .matrices import Vector
+
+DEGREE = 32
+SAMPLES = 2**15  # of the time span, at least
+HIDDEN = 1e-3  # of what an expression does in the second half of a part: too little in the first to announce it
+FAINT = 1e-14  # of the largest value: what need not be announced
+FRESH = 64  # samples of a part, at least
+RESOLVED = 1e-11
+FINEST = 40  # halvings; what is not resolved then is no smooth function
+MOST = 2**13  # parts of the same length that are looked at
+MUCH = 8  # times shorter than the longest part
+EPSILON = 1e-14  # relative rounding of a time, with a margin
+JUMP = 1e-3  # of the largest value: an error that is no rounding
+SHOWN = 1e-6  # relative error of a polynomial that shows how large an expression is
+BEYOND = 1e6  # times what an expression usually is: it has no bound
+
+NODES = chebyshev.chebpts1(DEGREE + 1)
+TO_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(NODES, DEGREE))
+
+
+class TimeDependence(NamedTuple):
+    """How a motion depends on the time by itself.
+
+    Attributes
+    ----------
+    stops : tuple of float
+        Instants at which steps are to end, in order.
+    end : float or None
+        The first instant at which an expression of the time has no value, no bound, or jumps; None where there is none.
+    reason : str
+        A clause about that instant.
+    """
+
+    stops: tuple[float, ...] = ()
+    end: float | None = None
+    reason: str = ""
+
+
+def time_dependence(program: Program, start: float, end: float) -> TimeDependence:
+    """Look at what a program computes from the time alone.
+
+    Parameters
+    ----------
+    program : Program
+        One of its inputs is ``t``.
+    start, end : float
+
+    Returns
+    -------
+    TimeDependence
+    """
+    expressions = time_expressions(program)
+    if not start < end:
+        return TimeDependence()
+    return _Scan(NumpyFunction(expressions), start, end).result() if expressions.outputs else TimeDependence()
+
+
+def time_expressions(program: Program) -> Program:
+    """What a program computes from the time alone, as far as anything else is computed from it.
+
+    Parameters
+    ----------
+    program : Program
+
+    Returns
+    -------
+    Program
+        Its one input is ``t``.
+    """
+    known, kept, used = {"t"}, [], {}
+    for name, expression in program.assignments:
+        if (names := names_in(expression)) and names <= known:
+            known.add(name)
+            kept.append((name, expression))
+        else:
+            used |= dict.fromkeys(_largest_parts(expression, known))
+    outputs = {name: value for name, value in program.outputs.items() if names_in(value) & known}
+    used |= dict.fromkeys(outputs.values())
+    used.pop(Name("t"), None)
+    named = [(f"of_time[{index}]", expression) for index, expression in enumerate(used)]
+    return replace(
+        program,
+        inputs=("t",),
+        assignments=(*kept, *named),
+        outputs={name: Name(name) for name, _ in named},
+    )
+
+
+def _largest_parts(expression: Expression, known: set[str]) -> Iterator[Expression]:
+    """The largest parts of an expression that are of the time alone."""
+    names = names_in(expression)
+    if names and names <= known:
+        yield expression
+    elif isinstance(expression, Call) and not names.isdisjoint(known):
+        for argument in expression.arguments:
+            yield from _largest_parts(argument, known)
+
+
+class _Scan:
+    """Halves the time span until every part is resolved."""
+
+    def __init__(self, function: NumpyFunction, start: float, end: float) -> None:
+        self._function, self._start, self._last = function, start, end
+        self._ending: tuple[float, str] | None = None
+        cells = (np.arange(SAMPLES) + 0.5) / SAMPLES
+        values = function([start + (end - start) * cells])
+        finite = np.isfinite(values).all(axis=0)
+        if not finite.all():
+            first = int(np.argmin(finite))
+            self._last = self._last_value(start + (end - start) * max(0.0, cells[first] - 1 / SAMPLES), cells[first])
+            self._ending = self._last, "an expression of the time in the equations of motion has no real, finite value"
+            values = function([start + (self._last - start) * cells])
+        self._grid = values
+        self._scale = np.max(np.abs(values), axis=1)
+        self._usual = np.median(np.abs(values), axis=1)
+
+    def result(self) -> TimeDependence:
+        parts = sorted(self._parts())
+        longest = max((length for _, length in parts), default=0.0)
+        stops = [
+            start
+            for (_, before), (start, length) in pairwise(parts)
+            if before != length or min(before, length) * MUCH <= longest
+        ]
+        end, reason = self._ending or (None, "")
+        return TimeDependence(tuple(float(t) for t in stops if end is None or t < end), end and float(end), reason)
+
+    def _parts(self) -> Iterator[tuple[float, float]]:
+        """Start and length of each part."""
+        places = np.array([0])
+        for level in range(FINEST + 1):
+            length = (self._last - self._start) / 2**level
+            error, open_ = self._errors(places, level)
+            if level == FINEST:
+                self._look_at(places[open_], length, error[:, open_])
+            if level == FINEST or 2 * open_.sum() > MOST:
+                open_[:] = False
+            yield from ((self._start + place * length, length) for place in places[~open_])
+            places = np.concatenate([2 * places[open_], 2 * places[open_] + 1])
+            if not places.size:
+                return
+
+    def _errors(self, places: np.ndarray, level: int) -> tuple[np.ndarray, np.ndarray]:
+        """Errors of the polynomials on parts of one length, shape (expressions, parts); which are to be halved."""
+        values = self._values(places, level, (NODES + 1) / 2)
+        count = SAMPLES >> level
+        if count >= FRESH:
+            cells = (np.arange(count) + 0.5) / count
+            expected = self._grid.reshape(len(self._grid), 2**level, count)[:, places]
+        else:
+            cells = (np.arange(FRESH) + 0.5) / FRESH
+            expected = self._values(places, level, cells)
+        between = (chebyshev.chebvander(2 * cells - 1, DEGREE) @ TO_COEFFICIENTS).T
+        with np.errstate(all="ignore"):
+            found = values @ between
+            error = np.max(np.abs(found - expected), axis=2)
+            largest = np.max(np.abs(values), axis=2)
+            counts = np.isfinite(largest) & (error <= SHOWN * largest)  # a pole's values never do
+            self._scale = np.fmax(self._scale, np.max(np.where(counts, largest, 0.0), axis=1))
+            scale = np.fmax(largest, self._scale[:, None])
+            rounding = EPSILON * max(abs(self._start), abs(self._last)) * np.ptp(values, axis=2) * 2**level
+            allowed = RESOLVED * scale + rounding / (self._last - self._start)
+            early, late = (np.ptp(half, axis=2) for half in (values[..., : DEGREE // 2], values[..., DEGREE // 2 :]))
+            hidden = (early < HIDDEN * late) & (late > FAINT * scale)
+        error = np.where(np.isfinite(error), error, np.inf)
+        return error, ((error > np.where(np.isfinite(allowed), allowed, 0.0)) | hidden).any(axis=0)
+
+    def _values(self, places: np.ndarray, level: int, cells: Vector) -> np.ndarray:
+        """At the same places in each part, shape (expressions, parts, cells)."""
+        return self._function([self._start + (self._last - self._start) * (places[:, None] + cells) / 2**level])
+
+    def _look_at(self, places: np.ndarray, length: float, error: np.ndarray) -> None:
+        """Where no polynomial comes near, tell a pole and a jump from rounding."""
+        for place, missed in sorted(zip(places, error.T, strict=True)):
+            t = self._start + place * length
+            if (missed > BEYOND * self._usual).any():
+                reason = "an expression of the time in the equations of motion grows beyond all bounds"
+            elif (missed > JUMP * self._scale).any():
+                reason = "an expression of the time in the equations of motion is not smooth"
+            else:
+                continue
+            if self._ending is None or t < self._ending[0]:
+                self._ending = float(t), reason
+            return
+
+    def _last_value(self, before: float, cell: float) -> float:
+        """The last instant at which all is finite, from one at which it is to one at which it is not."""
+        after = self._start + (self._last - self._start) * cell
+        while before < (middle := (before + after) / 2) < after:
+            if np.isfinite(self._function([np.array([middle])])).all():
+                before = middle
+            else:
+                after = middle
+        return before

@@ -1,0 +1,109 @@
+;;; Functions that are analytic while certain signs stay the same, written with these signs
+;;;
+;;;     |g| = s g             max(a, b) = (a + b + s (a - b))/2        unit_step(g) = (1 + s)/2
+;;;     signum(g) = s         min(a, b) = (a + b - s (a - b))/2        if a < b then X else Y
+;;;                                                                     = (1 + s)/2 X + (1 - s)/2 Y
+;;;
+;;; where s is the sign of g, of a - b, of b - a. Each such g is a switching function, and a symbol
+;;; stands for its sign. Those met so far are kept in the order of their symbols, in which a
+;;; function may contain the symbols before it.
+
+(in-package :maxima)
+
+(defvar *sign-prefix* '$sign)
+
+(defvar *signs-met* nil "List of (symbol . switching function), last first.")
+
+(defun $written_with_signs (expressions prefix)
+  "[[[sign1, g1], ...], the expressions with the symbols prefix1, ... for the signs of g1, ...]."
+  (let* ((*sign-prefix* prefix) (*signs-met* nil) (written (with-signs expressions)))
+    (list '(mlist)
+          (cons '(mlist) (mapcar #'(lambda (met) (list '(mlist) (car met) (cdr met)))
+                                 (reverse *signs-met*)))
+          written)))
+
+(defun with-signs (e)
+  (if (or (atom e) (member 'array (car e)))
+      e
+      (let ((operator (caar e)))
+        (cond ((eq operator 'mcond) (conditional-with-signs (cdr e)))
+              ((eq operator 'mabs) (let ((g (with-signs (second e)))) (mul g (sign-of-function g))))
+              ((eq operator '%signum) (sign-of-function (with-signs (second e))))
+              ((member operator '($max %max)) (extremum 1 (mapcar #'with-signs (cdr e))))
+              ((member operator '($min %min)) (extremum -1 (mapcar #'with-signs (cdr e))))
+              ((member operator '($unit_step %unit_step $hstep %hstep))
+               (weight-of-sign (sign-of-function (with-signs (second e)))))
+              (t (let ((parts (mapcar #'with-signs (cdr e))))
+                   (if (every #'eq parts (cdr e))
+                       e
+                       (simplifya (cons (list operator) parts) t))))))))
+
+(defun extremum (side arguments)
+  (reduce #'(lambda (a b)
+              (let ((difference (sub a b)))
+                (div (add a b (mul side (sign-of-function difference) difference)) 2)))
+          arguments))
+
+(defun weight-of-sign (sign) (div (add 1 sign) 2))
+
+;; A branch of weight zero is dropped by whoever puts the signs in.
+(defun conditional-with-signs (clauses)
+  "Clauses are condition, value, condition, value, ... as Maxima keeps them."
+  (let ((weight (condition-weight (first clauses))) (value (with-signs (second clauses))))
+    (if (eql weight 1)
+        value
+        (add (mul weight value)
+             (mul (sub 1 weight) (conditional-with-signs (cddr clauses)))))))
+
+(defun condition-weight (condition)
+  "1 where the condition holds, 0 where it does not."
+  (cond ((eq condition t) 1)
+        ((null condition) 0)
+        ((atom condition) (refuse-condition condition))
+        (t (let ((parts (cdr condition)))
+             (case (caar condition)
+               ((mgreaterp mgeqp) (comparison-weight (first parts) (second parts)))
+               ((mlessp mleqp) (comparison-weight (second parts) (first parts)))
+               (mand (muln (mapcar #'condition-weight parts) nil))
+               (mor (sub 1 (muln (mapcar #'(lambda (part) (sub 1 (condition-weight part))) parts) nil)))
+               (mnot (sub 1 (condition-weight (first parts))))
+               (t (refuse-condition condition)))))))
+
+(defun comparison-weight (greater less)
+  (weight-of-sign (sign-of-function (with-signs (sub greater less)))))
+
+(defun refuse-condition (condition)
+  (merror (intl:gettext "the condition ~M compares nothing by < or >; a motion cannot be switched by it") condition))
+
+(defun sign-of-function (g)
+  "The sign of g, by a number and the symbols of the functions that it is a product of."
+  (with-sign-symbols (simplifya (list '(%signum) g) nil)))
+
+(defun with-sign-symbols (sign)
+  (cond ((atom sign) sign)
+        ((eq (caar sign) '%signum) (sign-symbol (second sign)))
+        (t (simplifya (cons (list (caar sign)) (mapcar #'with-sign-symbols (cdr sign))) t))))
+
+(defun sign-symbol (g)
+  (let ((met (find-if #'(lambda (met) (alike1 (cdr met) g)) *signs-met*)))
+    (if met
+        (car met)
+        (let ((symbol ($concat *sign-prefix* (1+ (length *signs-met*)))))
+          (push (cons symbol g) *signs-met*)
+          symbol))))
+
+;;; 1/cosh(x) decays where cosh(x) leaves the range of numbers: as 2 E/(1 + E^2) with E = exp(-|x|) it is small there,
+;;; and so are its rates.
+
+(defun $decaying (e)
+  "The expression with the reciprocals of cosh in it written by what decays."
+  (cond ((or (atom e) (member 'array (car e))) e)
+        ((and (eq (caar e) 'mexpt) (consp (second e)) (eq (caar (second e)) '%cosh)
+              (integerp (third e)) (minusp (third e)))
+         (power (decaying-sech ($decaying (second (second e)))) (- (third e))))
+        ((eq (caar e) '%sech) (decaying-sech ($decaying (second e))))
+        (t (simplifya (cons (list (caar e)) (mapcar #'$decaying (cdr e))) nil))))
+
+(defun decaying-sech (x)
+  (let ((decay (power '$%e (neg (take '(mabs) x)))))
+    (div (mul 2 decay) (add 1 (power decay 2)))))

@@ -1,0 +1,180 @@
+"""Motions that are not analytic everywhere, against piecewise integrations by mpmath in polar coordinates.
+
+The pendulum of the README in the angle phi, x = u sin(phi): between switchings it is one differential equation, and at
+a kink of u the impulse is radial, so that dot(phi) does not jump.
+"""
+
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pytest
+
+from holonom.confined import Limits
+from holonom.failures import Failure, HolonomError
+from holonom.program.motion_problem import MotionProblem, motion_problem
+from holonom.program.request import Request
+from holonom.simulation.piecewise import Passage
+from holonom.simulation.request import EngineName, SimulationRequest
+from holonom.simulation.result import Report
+from holonom.simulation.simulate import simulate
+
+ENGINES = [EngineName.TAYLOR, EngineName.RUNGE_KUTTA, EngineName.ROBUST]
+DIGITS = {EngineName.TAYLOR: 5e-13, EngineName.RUNGE_KUTTA: 1e-11, EngineName.ROBUST: 1e-9}
+
+PENDULUM = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [m, g],
+  kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2, potential_energy = [gravity = m*g*y{potential}],
+  forces = [{forces}], constraints = [x^2 + y^2 - u^2])$
+swing : holonomic_scene(system, control_law = [u = {law}], parameter_values = [m = 1, g = 981/100],
+  initial_state = [{start}, dot(x) = 0], time_span = [0, {end}])$
+"""
+MASS = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, potential_energy = {potential},
+  forces = [{force}])$
+slide : holonomic_scene(system, initial_state = [x = {x}, dot(x) = {v}], time_span = [0, {end}])$
+"""
+
+
+@cache
+def asked(text: str) -> MotionProblem:
+    with TemporaryDirectory() as directory:
+        file = Path(directory) / "scene.mac"
+        file.write_text(text, encoding="utf-8")
+        return motion_problem(file, Request(), Limits(), 40)
+
+
+def pendulum(potential="", forces="0, 0", law="1 + t/10", start="x = 3/5, y = -4/5", end="1") -> MotionProblem:
+    return asked(PENDULUM.format(potential=potential, forces=forces, law=law, start=start, end=end))
+
+
+def mass(force="0", potential="0", x="0", v="0", end="1") -> MotionProblem:
+    return asked(MASS.format(force=force, potential=potential, x=x, v=v, end=end))
+
+
+def end_of(problem: MotionProblem, engine: EngineName = EngineName.TAYLOR, **wanted) -> Report:
+    return simulate(problem, SimulationRequest(samples=0, engine=engine, **wanted)).report
+
+
+def passages(report: Report) -> list[Passage]:
+    return [switching.passage for switching in report.switchings]
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_potential_with_a_kink_gave_0_6266(engine):
+    report = end_of(pendulum(potential=" + 20*abs(x)"), engine)
+    assert report.coordinates["x"] == pytest.approx(0.5961010442662413546, abs=DIGITS[engine])
+    assert [s.t for s in report.switchings] == pytest.approx([0.241223089019445, 0.724039911056838], abs=1e-9)
+    assert report.trusted
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_force_that_jumps_at_a_place_gave_0_6266(engine):
+    report = end_of(pendulum(forces="-20*signum(x), 0"), engine)
+    assert report.coordinates["x"] == pytest.approx(0.5961010442662413546, abs=DIGITS[engine])
+    assert passages(report) == [Passage.CROSSED, Passage.CROSSED]
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_dry_friction_gave_minus_0_43423(engine):
+    report = end_of(pendulum(forces="-signum(dot(x)), 0"), engine)
+    assert report.coordinates["x"] == pytest.approx(-0.4279510709884412871, abs=DIGITS[engine])
+    assert report.trusted
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_friction_that_sticks_from_the_start_gave_0_46239(engine):
+    """7.36 at first and 6.39 at the end is all that holding x takes, of 12: x stays where it is."""
+    report = end_of(pendulum(forces="-12*signum(dot(x)), 0"), engine)
+    assert report.coordinates["x"] == pytest.approx(0.6, abs=DIGITS[engine])
+    assert report.velocities["dot(x)"] == pytest.approx(0.0, abs=DIGITS[engine])
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_quadratic_drag_switches_where_the_velocity_turns(engine):
+    report = end_of(pendulum(forces="0, -dot(y)*abs(dot(y))"), engine)
+    assert report.coordinates["x"] == pytest.approx(-0.5998452322132196187, abs=DIGITS[engine])
+    assert [s.t for s in report.switchings] == pytest.approx([0.552522907210528], abs=1e-9)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_law_with_a_kink_left_a_residual_of_0_04(engine):
+    problem = pendulum(law="5 - abs(t - 3)/4", start="x = 3, y = -sqrt(145)/4", end="6")
+    report = end_of(problem, engine)
+    assert report.coordinates["x"] == pytest.approx(-1.92623973081555933, abs=10 * DIGITS[engine])
+    assert report.coordinates["y"] == pytest.approx(-3.78841662168083112, abs=10 * DIGITS[engine])
+    assert [(s.t, s.passage) for s in report.switchings] == [(3.0, Passage.IMPULSE)]
+    assert report.trusted
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_pulse_of_3_ms_was_skipped(engine):
+    law = "if t > 1/2 and t < 503/1000 then 1 + (t - 1/2)*(503/1000 - t)*10000 else 1"
+    report = end_of(pendulum(law=law), engine)
+    assert report.coordinates["x"] == pytest.approx(-0.597929713958746253, abs=DIGITS[engine])
+    assert passages(report) == [Passage.IMPULSE, Passage.IMPULSE]
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_narrow_smooth_feature_was_stepped_over(engine):
+    report = end_of(pendulum(law="1 + exp(-(1000*(t - 1/2))^2)/10"), engine)
+    assert report.coordinates["x"] == pytest.approx(-0.59792649978278629, abs=DIGITS[engine])
+    assert report.switchings == ()
+    assert report.trusted
+
+
+def test_a_law_that_decays_like_one_over_cosh_overflowed():
+    report = end_of(pendulum(law="1 + 1/cosh(1000*(t - 1/2))"))
+    assert report.coordinates["x"] == pytest.approx(-0.5979952624087093629942783, abs=1e-12)
+    assert report.trusted
+
+
+def test_switchings_keep_the_digits_of_a_longer_precision():
+    x = end_of(pendulum(potential=" + 20*abs(x)"), precision="quadruple").coordinates["x"]
+    assert str(x).startswith("0.59610104426624135462")
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_dry_friction_holds_until_the_force_is_as_large(engine):
+    """Truth: x'' = t - 1/2 from t = 1/2 on, where the force has grown to the friction; x(1) = 1/48."""
+    report = end_of(mass(force="t - signum(dot(x))/2"), engine)
+    assert report.coordinates["x"] == pytest.approx(1 / 48, abs=1e-10)
+    assert passages(report) == [Passage.RELEASED]
+    assert report.switchings[0].t == pytest.approx(0.5, abs=1e-9)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_dry_friction_stops_a_mass_and_holds_it(engine):
+    """Truth: x'' = -5 from v = 1 ends at t = 1/5, x = 1/10."""
+    report = end_of(mass(force="-5*signum(dot(x))", v="1"), engine)
+    assert report.coordinates["x"] == pytest.approx(0.1, abs=1e-10)
+    assert [(s.passage) for s in report.switchings] == [Passage.HELD]
+    assert report.switchings[0].t == pytest.approx(0.2, abs=1e-9)
+
+
+def test_a_mass_rests_at_the_bottom_of_a_kink():
+    assert end_of(mass(potential="abs(x)")).coordinates["x"] == pytest.approx(0.0, abs=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("problem", "said"),
+    [
+        (lambda: pendulum(law="1 + unit_step(t - 1/2)"), "0.5, where the constraints or the masses jump"),
+        (lambda: mass(potential="signum(x)", v="-1", x="1/2"), "0.5, where the energy jumps as x"),
+        (lambda: mass(potential="-abs(x)"), "0, where x is zero, and the motion may leave to either side"),
+        (lambda: pendulum(law="1/(2 - t)", start="x = 3/10, y = -2/5", end="3"), "2, where"),
+        (lambda: pendulum(law="1 + sqrt(1 - t)", start="x = 6/5, y = -8/5", end="3"), "1, where"),
+        (lambda: mass(force="sqrt(1 - t)", end="3"), "1, where an expression of the time"),
+    ],
+)
+def test_what_mechanics_does_not_decide_is_refused_with_its_instant(problem, said):
+    with pytest.raises(HolonomError) as refused:
+        end_of(problem(), EngineName.AUTO)
+    assert refused.value.failure is Failure.NO_WAY_ON
+    assert said in refused.value.detail
+
+
+def test_no_step_is_longer_than_asked_for():
+    problem = mass(force="-x", v="1")
+    motion = simulate(problem, SimulationRequest(max_step=0.01))
+    assert max(later - earlier for earlier, later in zip(motion.instants, motion.instants[1:], strict=False)) < 0.0101

@@ -1,0 +1,63 @@
+"""What a motion makes of the time alone, against features whose places are known."""
+
+from fractions import Fraction
+
+import pytest
+
+from holonom.program.motion_program import Call, Name, Operation, Program, Solve
+from holonom.simulation.time_dependence import TimeDependence, time_dependence, time_expressions
+
+T, X = Name("t"), Name("x")
+
+
+def program(expression) -> Program:
+    return Program(None, Solve.DIRECT, "composed", 0, ("t", "x"), (("w1", expression),), {"h[1]": Name("w1")})
+
+
+def of(operation: Operation, *arguments) -> Call:
+    return Call(operation, arguments)
+
+
+def shifted(by: Fraction) -> Call:
+    return of(Operation.SUBTRACT, T, by)
+
+
+def pulse(at: Fraction, width: Fraction) -> Call:
+    square = of(Operation.POWER, of(Operation.DIVIDE, shifted(at), width), Fraction(2))
+    return of(Operation.EXP, of(Operation.NEGATE, square))
+
+
+def test_what_is_smooth_on_the_scale_of_the_time_span_needs_no_stops():
+    for expression in (T, of(Operation.SIN, T), of(Operation.EXP, T)):
+        assert time_dependence(program(expression), 0.0, 10.0) == TimeDependence()
+
+
+@pytest.mark.parametrize("width", [Fraction(1, 100), Fraction(1, 1000), Fraction(1, 20000)])
+def test_steps_stop_around_a_pulse_however_narrow(width):
+    found = time_dependence(program(of(Operation.MULTIPLY, X, pulse(Fraction(1, 3), width))), 0.0, 1.0)
+    near = [t for t in found.stops if abs(t - 1 / 3) < 8 * width]
+    assert min(near) < 1 / 3 < max(near)
+    assert found.end is None
+
+
+@pytest.mark.parametrize(
+    ("expression", "end", "reason"),
+    [
+        (of(Operation.SQRT, of(Operation.SUBTRACT, Fraction(3, 10), T)), 0.3, "no real, finite value"),
+        (of(Operation.DIVIDE, Fraction(1), of(Operation.SUBTRACT, T, Fraction(3, 10))), 0.3, "beyond all bounds"),
+        (of(Operation.DIVIDE, Fraction(1), of(Operation.SUBTRACT, T, Fraction(1, 2))), 0.5, "beyond all bounds"),
+        (of(Operation.SIGN, of(Operation.SUBTRACT, T, Fraction(3, 10))), 0.3, "not smooth"),
+    ],
+)
+def test_the_instant_is_found_at_which_an_expression_ends(expression, end, reason):
+    found = time_dependence(program(expression), 0.0, 1.0)
+    assert found.end == pytest.approx(end, abs=1e-10)
+    assert reason in found.reason
+
+
+def test_only_the_largest_expressions_of_the_time_alone_are_looked_at():
+    expression = of(Operation.ADD, X, of(Operation.MULTIPLY, X, of(Operation.SIN, of(Operation.COS, T))))
+    assert time_expressions(program(expression)).assignments == (
+        ("of_time[0]", of(Operation.SIN, of(Operation.COS, T))),
+    )
+    assert time_expressions(program(of(Operation.SIN, X))).outputs == {}
