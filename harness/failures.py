@@ -62,6 +62,8 @@ class Failure(Enum):
     NOT_A_PARAMETER = ("{detail} cannot be the name of a parameter", "give names with commas between them, such as m,g")
     NOT_A_FILE = ("this form is no text for the terminal", "say where it goes: -o DIR for C, -o FILE.fmu for FMI")
     NOT_A_CHOICE = ("there is no {detail}", "")
+    NOT_AN_INSTANT = ("{detail} is no instant", "write a number such as 0.75 or 3/4")
+    TOO_FEW_SAMPLES = ("a motion has two samples or more, not {detail}", "")
     NO_SUCH_SCENE = ("there is no scene {detail}", "")
     NOT_A_SCENE_NAME = ("{detail} cannot be the name of a scene", "give the name that the scene is assigned to")
     NOT_A_PROGRAM = ("this is not a motion program: {detail}", "write it anew with `holonom program`")

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 
 Choice = TypeVar("Choice", bound=StrEnum)
 Number = int | float | Fraction | Decimal | str
+FEWEST_SAMPLES = 2  # the first instant and the last
 LOADS_THE_LIBRARY = re.compile(r"\bload\s*\(.*?holonom")
 
 
@@ -208,7 +209,7 @@ class Scene:
         """
         from .series.power_series import SeriesRequest, compute_series
 
-        last = None if until is None else Fraction(str(until))
+        last = _instant(until)
         request = SeriesRequest(order, self._name, digits, last, self.settings, precision)
         return compute_series(self.file, request, self.limits)
 
@@ -260,7 +261,9 @@ class Scene:
         from .simulation.request import EngineName, SimulationRequest, Stabilization
         from .simulation.simulate import simulate
 
-        last = None if until is None else Fraction(str(until))
+        if samples is not None and samples < FEWEST_SAMPLES:
+            raise HolonomError(Failure.TOO_FEW_SAMPLES, detail=str(samples))
+        last = _instant(until)
         problem = self._problem(solve, read_precision(str(precision)).digits)
         follower, cure = _choice(EngineName, engine), _choice(Stabilization, drift)
         request = SimulationRequest(tol, str(precision), follower, cure, last, samples)
@@ -504,6 +507,14 @@ class RightHandSide:
         state = np.asarray(y, dtype=float)
         instants = np.broadcast_to(np.asarray(t, dtype=float), state.shape[1:])
         return np.concatenate([state[len(state) // 2 :], self._accelerations([instants, *state])])
+
+
+def _instant(until: Number | None) -> Fraction | None:
+    """An instant, exactly as it is written."""
+    try:
+        return None if until is None else Fraction(str(until))
+    except (ValueError, ZeroDivisionError):
+        raise HolonomError(Failure.NOT_AN_INSTANT, detail=str(until)) from None
 
 
 def _choice(choices: type[Choice], text: str) -> Choice:

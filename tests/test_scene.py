@@ -176,6 +176,12 @@ def test_what_is_no_choice_is_told_the_choices(released, choice):
         released.simulate(**choice)
 
 
+@pytest.mark.parametrize("asked", [{"until": "noon"}, {"until": float("nan")}, {"until": "1/0"}, {"samples": 1}])
+def test_an_end_or_samples_that_make_no_motion_are_refused(released, asked):
+    with pytest.raises(holonom.HolonomError, match="is no instant|two samples or more"):
+        released.simulate(**asked)
+
+
 def test_a_missing_file_is_refused_at_once():
     with pytest.raises(holonom.HolonomError, match="there is no such file"):
         holonom.load("nowhere.mac")

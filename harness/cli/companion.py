@@ -35,6 +35,7 @@ def companion(scenes: Sequence[Path], directory: Path, settings: Sequence[str], 
     from ..companion.paper import book_of_the_paper
     from ..program.request import read_settings
     from .tables.progress import progress
+    from .tables.text import make_console
 
     given = tuple(read_settings(settings).items())
     if given and not scenes:
@@ -42,7 +43,8 @@ def companion(scenes: Sequence[Path], directory: Path, settings: Sequence[str], 
     book = book_of_scenes(scenes, given, limits) if scenes else book_of_the_paper()
     with progress(f"Making {directory}", len(book.runs)) as done:
         make_book(book, directory, done)
-    click.echo(f"The companion is in {directory}: open {directory / 'index.html'} in a browser.")
+    done_line = f"The companion is in {directory}: open {directory / 'index.html'} in a browser."
+    make_console().print(done_line, soft_wrap=True, markup=False)
     return 0
 
 
