@@ -113,7 +113,8 @@ def command_topics() -> Iterator[Topic]:
         Code("Completion in a shell", COMPLETION),
         Code("The manual page", "man ./build/holonom.1    # made by make"),
     )
-    summary = f"{_sentence(cli.__doc__)} {_help(root)}"
+    status = _sentence((cli.__doc__ or "").split("\n\n")[1])
+    summary = f"{_help(root)} {status}"
     yield Topic(COMMANDS, "holonom", "holonom", summary, overview)
     for name, command in sorted(root.commands.items()):
         yield Topic(COMMANDS, f"holonom-{name}", f"holonom {name}", _help(command), _usage(command, f"holonom {name}"))
@@ -158,7 +159,7 @@ def _first_line(command: click.Command) -> str:
 
 
 def _sentence(text: str | None) -> str:
-    return " ".join((text or "").partition("\n\nModules ")[0].split())
+    return " ".join((text or "").split())
 
 
 # ---- documents --------------------------------------------------------------------------------------------------
