@@ -98,6 +98,10 @@ class Failure(Enum):
     )
     TOLERANCE_UNHELD = ("{detail}", "ask for another tolerance, or the Taylor engine for more digits with --precision")
     NO_MOTION_PROGRAM = ("there is no motion program to measure: {detail}", "take constraints that are independent")
+    NOT_ANALYTIC = (
+        "the motion is not analytic where {detail} changes its sign",
+        "follow it with `holonom simulate`, which steps to such instants",
+    )
     METHOD_GAVE_UP = ("{detail}", "ask for a larger tolerance, or for another method")
     MASS_SINGULAR = (
         "the mass matrix is singular along a direction that the constraints leave free",

@@ -472,8 +472,11 @@ class RightHandSide:
     problem: "MotionProblem"
 
     def __post_init__(self) -> None:
+        from .program.motion_problem import require_analytic
+
         if self.problem.motion is None:
             raise HolonomError(Failure.NO_PIVOTS, detail=self.problem.obstacle)
+        require_analytic(self.problem)
 
     @property
     def names(self) -> tuple[str, ...]:

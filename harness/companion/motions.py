@@ -11,6 +11,7 @@ from ..figures.drawing import animation, film_of, strip
 from ..figures.motion import draw_motion
 from ..program.motion_problem import motion_problem
 from ..program.request import Request
+from ..program.sign_pattern import drawing_at_any_time
 from ..simulation.request import SimulationRequest
 from ..simulation.result import Report
 from ..simulation.simulate import simulate
@@ -103,7 +104,7 @@ def follow(file: Path, scene: str | None, until: Fraction | None, settings: Sett
     """
     problem = replace(motion_problem(file, Request(scene, settings=dict(settings)), limits), observe=SHOWN)
     simulation = simulate(problem, SimulationRequest(until=until, samples=SAMPLES))
-    shown = film_of(simulation, problem.drawing) if problem.drawing else None
+    shown = film_of(simulation, drawing_at_any_time(problem)) if problem.drawing else None
     return Motion(
         problem.system,
         problem.source,

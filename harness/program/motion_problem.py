@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..confined import Limits
 from ..documents import Document, ask, read
+from ..failures import Failure, HolonomError
 from .motion_program import Program, count_operations, names_in, program_of
 from .request import Request
 
@@ -108,6 +109,17 @@ class MotionProblem:
     def state(self) -> tuple[str, ...]:
         """Names of the coordinates, then of the velocities."""
         return (*self.coordinates, *(f"dot({name})" for name in self.coordinates))
+
+
+def require_analytic(problem: MotionProblem) -> None:
+    """Refuse a motion whose signs are still open to whoever follows one analytic motion alone.
+
+    Raises
+    ------
+    HolonomError
+    """
+    if problem.signs:
+        raise HolonomError(Failure.NOT_ANALYTIC, problem.scene, problem.signs[0].of)
 
 
 def motion_problem(file: Path, request: Request, limits: Limits, digits: int = DOUBLE_DIGITS) -> MotionProblem:

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 
+from .drawing import Drawing
 from .motion_problem import MotionProblem, computing
 from .motion_program import Call, Constant, Expression, Name, Operation, Program, count_operations, names_in
 
@@ -63,6 +64,28 @@ def program_in(problem: MotionProblem, program: Program, pattern: Pattern) -> Pr
         if sign == HELD:
             program = _preceded(_holding(problem, name), program)
     return with_numbers(program, {name: Fraction(sign) for name, sign in pattern.items() if sign != HELD})
+
+
+def drawing_at_any_time(problem: MotionProblem) -> Drawing:
+    """How the system looks, each sign as it is at the state drawn.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        With a drawing.
+
+    Returns
+    -------
+    Drawing
+        Its program takes the time, the coordinates, the velocities and the multipliers alone.
+    """
+    program = problem.drawing.program
+    for index, sign in reversed(list(enumerate(problem.signs, start=1))):
+        function = computing(problem.switching, {f"switch[{index}]"})
+        value = Call(Operation.SIGN, (function.outputs[f"switch[{index}]"],))
+        assignments = (*function.assignments, (sign.name, value))
+        program = _preceded(replace(function, assignments=assignments, outputs={sign.name: Name(sign.name)}), program)
+    return replace(problem.drawing, program=program)
 
 
 def holdable(problem: MotionProblem, name: str) -> bool:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..program.motion_problem import MotionProblem
+from ..program.motion_problem import MotionProblem, require_analytic
 from ..program.precision import read_precision
 from .evaluation import evaluation
 
@@ -56,6 +56,7 @@ class MotionMatrices:
     """
 
     def __init__(self, problem: MotionProblem) -> None:
+        require_analytic(problem)
         n, g = len(problem.coordinates), len(problem.multipliers)
         shapes = {"A": (n, n), "h": (n,), "J": (g, n), "c": (g,), "residual": (g,), "residual_rate": (g,)}
         ends = np.cumsum([math.prod(shape) for shape in shapes.values()])

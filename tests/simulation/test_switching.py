@@ -13,7 +13,10 @@ import pytest
 from holonom.confined import Limits
 from holonom.failures import Failure, HolonomError
 from holonom.program.motion_problem import MotionProblem, motion_problem
+from holonom.program.numpy_function import NumpyFunction
 from holonom.program.request import Request
+from holonom.program.sign_pattern import drawing_at_any_time
+from holonom.simulation.engines.taylor import TaylorEngine
 from holonom.simulation.piecewise import Passage
 from holonom.simulation.request import EngineName, SimulationRequest
 from holonom.simulation.result import Report
@@ -33,6 +36,12 @@ MASS = """load("holonom.mac")$
 system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, potential_energy = {potential},
   forces = [{force}])$
 slide : holonomic_scene(system, initial_state = [x = {x}, dot(x) = {v}], time_span = [0, {end}])$
+"""
+
+LIFT = """load("holonom.mac")$
+system : holonomic_system(coordinates = [z], controls = [u], kinetic_energy = dot(z)^2/2, constraints = [z - u],
+  drawing = [point([0, u])])$
+rise : holonomic_scene(system, control_law = [u = max(t, 1)], initial_state = [], time_span = [0, 2])$
 """
 
 
@@ -178,3 +187,16 @@ def test_no_step_is_longer_than_asked_for():
     problem = mass(force="-x", v="1")
     motion = simulate(problem, SimulationRequest(max_step=0.01))
     assert max(later - earlier for earlier, later in zip(motion.instants, motion.instants[1:], strict=False)) < 0.0101
+
+
+def test_who_follows_one_analytic_motion_alone_is_told_where_it_ends():
+    with pytest.raises(HolonomError) as refused:
+        TaylorEngine(pendulum(potential=" + 20*abs(x)"))
+    assert (refused.value.failure, refused.value.detail) == (Failure.NOT_ANALYTIC, "x")
+
+
+def test_a_drawing_takes_each_sign_as_it_is_where_it_is_drawn():
+    problem = asked(LIFT)
+    draw = NumpyFunction(drawing_at_any_time(problem).program)
+    assert draw([0.5, 0.0, 0.0, 0.0]).tolist() == [0.0, 1.0]
+    assert draw([2.0, 0.0, 0.0, 0.0]).tolist() == [0.0, 2.0]

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ...confined import Limits
 from ...failures import Failure, HolonomError
-from ...program.motion_problem import MotionProblem, motion_problem
+from ...program.motion_problem import MotionProblem, motion_problem, require_analytic
 from ...program.motion_program import Solve
 from ...program.precision import read_precision
 from ...program.request import Request
@@ -115,6 +115,7 @@ def _problems(file: Path, request: Request, limits: Limits, plan: Plan) -> tuple
     problem = motion_problem(file, request, limits, digits)
     if problem.obstacle is not None:
         raise HolonomError(Failure.NO_MOTION_PROGRAM, file, problem.obstacle)
+    require_analytic(problem)
     other = next(solve for solve in Solve if solve is not request.solve)
     by_other = motion_problem(file, replace(request, solve=other), limits, digits)
     if by_other.obstacle is not None:

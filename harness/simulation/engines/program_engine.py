@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...failures import Failure, HolonomError
-from ...program.motion_problem import MotionProblem
+from ...program.motion_problem import MotionProblem, require_analytic
 from ...program.precision import Precision
 from ..constraints.singularity import Watch, no_gradient
 from ..diagnosis import HardCase
@@ -92,6 +92,7 @@ class ProgramEngine:
     _first_block = FIRST_BLOCK
 
     def __init__(self, problem: MotionProblem, precision: Precision, failed: object) -> None:
+        require_analytic(problem)
         self.precision, self._failed = precision, failed
         self.steps, self._longest, self._usual = 0, 0.0, 0.0
         self._problem = problem
