@@ -213,7 +213,7 @@ def run_rtest(rtest: Path, limits: Limits = DEFAULT_LIMITS) -> int:
         raise HolonomError(Failure.RTEST_UNPAIRED, rtest)
     with _new_run(LIBRARY / "holonom.mac", limits, NO_SETTINGS) as run:
         shutil.copy(rtest, run.directory)  # for Maxima leaves a list of errors beside the file it tests
-        test = _quoted(f"batch({_quoted(rtest.name)}, test)$")
+        test = _quoted(f"(open_namespace(), batch({_quoted(rtest.name)}, test))$")
         printed = _run(run, f"run-file {_copy(run)} {test}", test)
     if re.findall(r"(\d+)/(\d+) tests passed", printed) != [(str(tests), str(tests))]:
         raise HolonomError(Failure.RTEST_FAILED, rtest, str(tests), last_lines=tuple(printed.splitlines()))

@@ -8,8 +8,6 @@
 
 (in-package :maxima)
 
-(defvar *library-functions* (make-hash-table))
-
 (defvar *partial-rates* nil "What scene text has differentiated by t as if it were constant, last first.")
 
 (defvar *plain-diff* (symbol-function '$diff))
@@ -26,13 +24,8 @@
 
 (defun scene-text-p ()
   "Whether no function of the library is being called: each call leaves its name on Maxima's stack."
-  (notany #'(lambda (entry) (and (symbolp entry) (gethash entry *library-functions*)))
+  (notany #'(lambda (entry) (and (symbolp entry) (or (private-twin-p entry) (public-name-p entry))))
           *mlambda-call-stack*))
-
-(defun $note_library_functions ()
-  "From now on the functions defined so far are those of the library."
-  (dolist (f (cdr $functions) '$done)
-    (setf (gethash (caar f) *library-functions*) t)))
 
 (defun $partial_rates ()
   "The list of what scene text has differentiated by t since it was last asked for."

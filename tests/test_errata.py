@@ -46,7 +46,8 @@ SLIPS = [
 # Compares each of the texts with the derived equation at its place; writes the places in `texts` that agree.
 COMPARISON = """
 load("{printed}")$
-derived : append(general_equations(), example_equations(system, initial_motion_scene))$
+open_namespace()$
+derived : append(general_equations(), as_the_library_reads(example_equations(system, initial_motion_scene)))$
 texts : [{texts}]$
 agreeing(texts) := sublist(makelist(x, x, length(texts)), lambda([x],
   is(size_of_difference(second(texts[x]), derived_counterpart(printed_equations[first(texts[x])], derived)) = 0)))$

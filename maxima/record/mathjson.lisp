@@ -125,4 +125,4 @@
 
 (defun mathjson-symbol (symbol)
   (or (cdr (assoc symbol *mathjson-constants*))
-      (maybe-invert-string-case (subseq (symbol-name symbol) 1))))
+      (maybe-invert-string-case (subseq (symbol-name (plain-name symbol)) 1))))

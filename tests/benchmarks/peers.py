@@ -24,6 +24,7 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "chain.mac"
 
 EQUATIONS = """
 load("holonom.mac")$
+open_namespace()$
 scalarmatrixp : false$
 q : create_list(concat(axis, k), k, makelist(k, k, links), axis, ['x, 'y])$
 v : map('dot, q)$

@@ -1,4 +1,4 @@
-"""A system may use any name that the library uses for itself: Maxima's variables have dynamic scope."""
+"""A scene may use any name that the library uses for itself, and loading the library takes nothing of Maxima's away."""
 
 import json
 import re
@@ -7,137 +7,136 @@ from pathlib import Path
 import pytest
 
 from holonom.crosscheck import check_record
-from holonom.maxima import LIBRARY, run_batch, run_scene
+from holonom.maxima import run_batch, run_scene
 from holonom.record import read_record
 
-BOUND = re.compile(r"\bblock\(\s*\[([^\]]*)\]|^\w+\(([\w, \[\]]*)\)\s*:=|lambda\(\[([^\]]*)\]", re.MULTILINE)
-NAME = re.compile(r"[A-Za-z]\w*")
-MAXIMAS = {
-    "t",
-    "lambda",
-    "errormsg",
-    "fpprec",
-    "fpprintprec",
-    "linel",
-    "ratprint",
-    "ratepsilon",
-    "bftorat",
-    "algebraic",
-    "algexact",
-    "scalarmatrixp",
-    "trigexpandplus",
-    "trigexpandtimes",
-    "linsolve_params",
-    "linsolvewarn",
-}
-ENTRIES = {
-    "coordinates",
-    "parameters",
-    "parameter_values",
-    "initial_state",
-    "title",
-    "effects",
-    "settings",
-    "expression_graph",
-}
-AT_ONCE = 12  # names in one system
+HOLONOM = 'load("holonom.mac")$'
 
-SCENE = """
-load("holonom.mac")$
-{first} : holonomic_system(coordinates = [{second}, {third}], controls = [{fourth}], parameters = [{parameters}],
-  kinetic_energy = (dot({second})^2 + (1 + {product}*t)*dot({third})^2)/2,
-  potential_energy = {sum}*{second},
-  constraints = [{third} - {fourth}*{second}])$
-scene : holonomic_scene({first}, control_law = [{fourth} = 1 + t*({sum})], parameter_values = [{values}],
-  initial_state = [{second} = 1, dot({second}) = 2])$
+BALL = """
+system : holonomic_system(
+  coordinates = [east, north], controls = [reach], parameters = [mass, weight],
+  kinetic_energy = [moving = mass*(dot(east)^2 + dot(north)^2)/2],
+  potential_energy = [falling = weight*north], forces = [drag = [-dot(east)/9, -dot(north)/9]],
+  constraints = [east^2 + north^2 - reach^2],
+  drawing = [segment([0, 0], [east, north])])$
+fling : holonomic_scene(system, control_law = [reach = 1 + t/10], parameter_values = [mass = 2, weight = 981/50],
+  initial_state = [east = 3/5, north = -4/5, dot(east) = 0], time_span = [0, 3])$
+pulled : holonomic_scene(system, prescribed_reactions = [lambda1 = -t], parameter_values = [mass = 2, weight = 981/50],
+  initial_state = [east = 3/5, north = -4/5, dot(east) = 0, reach = 1, dot(reach) = 0])$
 """
 
-UNPUSHED = """
-load("holonom.mac")$
-{first} : holonomic_system(coordinates = [{second}, {third}], controls = [{fourth}], parameters = [{parameters}],
-  kinetic_energy = (1 + {product})*(dot({second})^2 + dot({third})^2)/2,
-  constraints = [{second}^2 + {third}^2 - {fourth}^2])$
-scene : holonomic_scene({first}, control_law = [{fourth} = sqrt((1 + t*({sum}))^2 + t^2)],
-  parameter_values = [{values}],
-  initial_state = [{second} = 1, {third} = 0, dot({second}) = {sum}, dot({third}) = 1])$
-"""
-
-PRESCRIBED = SCENE.replace(
-    "control_law = [{fourth} = 1 + t*({sum})]", "prescribed_reactions = [lambda1 = 1 + t*({sum})]"
+WRITERS = (
+    "write_record",
+    "lambda([it], write_program(it, 'fling, 'direct))",
+    "lambda([it], write_program(it, 'pulled, 'orthogonal))",
+    "lambda([it], write_effects(it, 'fling, 'direct))",
+    "lambda([it], write_motion_series(it, 'fling, 6, 'exact, false))",
+    "lambda([it], write_motion_problem(it, 'pulled, 'direct, 16))",
+    "lambda([it], write_free_motion(it, 'fling, 6))",
 )
-PRESCRIBED = PRESCRIBED.replace("initial_state = [", "initial_state = [{fourth} = 1, dot({fourth}) = 1, ")
+
+# What a user's name may stand for: a function of any arguments, an indexed name, a value.
+TAKEN = """
+{name}([anything]) := error("this is the user's", '{name})$
+{name}[i] := error("this is the user's", '{name})$
+{name} : "the user's value of {name}"$
+"""
+
+# Every function of Maxima's, in its own language or in Lisp's, and every variable with its value.
+LEDGER = """
+(in-package :maxima)
+(defvar *ledger* nil)
+(defun meaning (name)
+  (cond ((special-operator-p name) nil)
+        ((macro-function name))
+        ((fboundp name) (symbol-function name))
+        (t (mget name 'mexpr))))
+(defun $open_ledger ()
+  (do-symbols (name :maxima '$done)
+    (push (list name (meaning name) (and (boundp name) (atom (symbol-value name)) (list (symbol-value name))))
+          *ledger*)))
+(defun $changed_names ()
+  (cons '(mlist)
+        (loop for (name meaning value) in *ledger*
+              unless (and (or (null meaning) (eq meaning (meaning name)))
+                          (or (null value) (not (maxima-name-p name)) (equal (car value) (symbol-value name))))
+              collect (print-invert-case name))))
+"""
+DELIBERATELY = {"$diff"}  # notes what a scene differentiates by t (partial_rates.lisp)
 
 
-def local_names(*folders: str) -> list[str]:
-    """Every name that a function in these folders of the library binds."""
-    files = [file for folder in folders for file in (LIBRARY / folder).glob("*.mac")]
-    text = "\n".join(path.read_text() for path in files)
-    bound = {
-        match[0]
-        for groups in BOUND.findall(text)
-        for part in re.split(r",", ",".join(groups))
-        if (match := NAME.match(part.strip(" []\n")))
-    }
-    return sorted(bound - MAXIMAS - ENTRIES)
-
-
-def groups(names: list[str]) -> list[list[str]]:
-    """All names, `AT_ONCE` at a time; the last ones fill up the last group."""
-    return [names[max(0, min(start, len(names) - AT_ONCE)) :][:AT_ONCE] for start in range(0, len(names), AT_ONCE)]
-
-
-def scene_with(names: list[str], directory: Path, template: str = SCENE) -> Path:
-    first, second, third, fourth, *parameters = names
-    file = directory / "scene.mac"
+@pytest.fixture(scope="module")
+def internal_names(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+    """The names that the library keeps to itself, errata and all."""
+    file = tmp_path_factory.mktemp("names") / "names.mac"
     file.write_text(
-        template.format(
-            first=first,
-            second=second,
-            third=third,
-            fourth=fourth,
-            parameters=", ".join(parameters),
-            product="*".join(parameters),
-            sum=" + ".join(parameters),
-            values=", ".join(f"{name} = {place}/7" for place, name in enumerate(parameters, 1)),
-        )
+        f'{HOLONOM}\nload("paper/errata.mac")$\nopen_namespace()$\n'
+        "write_names(file) := write_json(json_list(string, internal_names()), file)$\n"
     )
-    return file
+    return [name for name in json.loads(run_batch(file, "write_names")) if not re.search(rf"\b{name}\b", BALL)]
 
 
-@pytest.mark.parametrize("names", groups(local_names(".", "derivation", "record")), ids=" ".join)
-def test_names_of_the_derivation_are_the_users_too(names: list[str], tmp_path: Path):
-    report = check_record(read_record(run_scene(scene_with(names, tmp_path))))
+def documents(text: str, directory: Path) -> list[object]:
+    """All documents about a scene file, its text and the library in one Maxima."""
+    file = directory / "scene.mac"
+    file.write_text(text)
+    return [json.loads(run_batch(file, writer)) for writer in WRITERS]
+
+
+@pytest.mark.parametrize("order", ["before", "after"])
+def test_a_scene_may_define_every_name_of_the_library(order: str, internal_names: list[str], tmp_path: Path):
+    taken = "".join(TAKEN.format(name=name) for name in internal_names)
+    scene = f"{taken}{HOLONOM}{BALL}" if order == "before" else f"{HOLONOM}{taken}{BALL}"
+    assert len(internal_names) > 700
+    assert documents(scene, tmp_path) == documents(HOLONOM + BALL, tmp_path)
+
+
+def test_a_scene_may_call_its_coordinates_by_the_papers_letters(tmp_path: Path):
+    letters = {"east": "A", "north": "B", "reach": "T0", "mass": "christoffel", "weight": "Lambda", "fling": "J"}
+    scene = BALL
+    for word, letter in letters.items():
+        scene = re.sub(rf"\b{word}\b", letter, scene)
+    (file := tmp_path / "scene.mac").write_text(HOLONOM + scene)
+    report = check_record(read_record(run_scene(file)))
     assert report.verdicts
     assert report.disagreements == 0
 
 
-@pytest.mark.parametrize("names", groups(local_names("free_motion")), ids=" ".join)
-def test_names_of_the_free_motion_are_the_users_too(names: list[str], tmp_path: Path):
-    writer = "lambda([file], (free_motion_order : 2, write_free_motion(file, false, 4)))"
-    free = json.loads(run_batch(scene_with(names, tmp_path), writer))
-    assert free["universal"]["laws"] == [{names[3]: 0}]
-    assert free["trajectory"]["kind"] == "series"
+def test_a_function_of_the_users_is_the_users(tmp_path: Path):
+    # gradient(V) was taken for the library's own, and three equations disagreed
+    (file := tmp_path / "scene.mac").write_text(
+        f"""{HOLONOM}
+gradient(V) := [diff(V, x), diff(V, y)]$
+field : g*y + k*(x^2 + y^2)/2$
+system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [m, g, k],
+  kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2, forces = [field = -gradient(field)], constraints = [x^2 + y^2 - u^2])$
+""".replace("[field =", "[pull =")
+    )
+    report = check_record(read_record(run_batch(file, "write_record")))
+    assert report.verdicts
+    assert report.disagreements == 0
 
 
-@pytest.mark.parametrize("names", groups(local_names("free_motion")), ids=" ".join)
-def test_names_of_the_proof_are_the_users_too(names: list[str], tmp_path: Path):
-    writer = "lambda([file], write_json(json_verdict_on_motion(motion_verdict(false, [], scene, 4)), file))"
-    assert json.loads(run_batch(scene_with(names, tmp_path, UNPUSHED), writer))["verdict"] == "free"
+def test_loading_the_library_changes_nothing_of_maximas(tmp_path: Path):
+    (tmp_path / "ledger.lisp").write_text(LEDGER)
+    (file := tmp_path / "load.mac").write_text(
+        f'load("{tmp_path}/ledger.lisp")$\nopen_ledger()$\n{HOLONOM}\nload("paper/errata.mac")$\n'
+        "changed : changed_names()$\nopen_namespace()$\n"
+        "write_changed(file) := write_json(json_list(lambda([x], x), changed), file)$\n"
+    )
+    assert set(json.loads(run_batch(file, "write_changed"))) - DELIBERATELY == set()
 
 
-@pytest.mark.parametrize("names", groups(local_names("free_motion", "program")), ids=" ".join)
-def test_names_of_prescribed_reactions_are_the_users_too(names: list[str], tmp_path: Path):
-    writer = "lambda([file], (free_motion_order : 2, write_free_motion(file, false, 4)))"
-    free = json.loads(run_batch(scene_with(names, tmp_path, PRESCRIBED), writer))
-    assert free["prescribed"]["controls"].keys() == {f"ddot({names[3]})"}
-    assert free["trajectory"]["kind"] == "series"
+def test_eliminate_is_maximas_own(tmp_path: Path):
+    (file := tmp_path / "load.mac").write_text(
+        f"{HOLONOM}\nwrite_eliminated(file) := write_json(string(eliminate([x + y = 1, x - y = 3], [x])), file)$\n"
+    )
+    assert json.loads(run_batch(file, "write_eliminated")) in ("[-2*(y+1)]", "[-(2*(y+1))]")
 
 
-@pytest.mark.parametrize("names", groups(local_names("program")), ids=" ".join)
-def test_names_of_the_program_are_the_users_too(names: list[str], tmp_path: Path):
-    neutral = [f"neutral{place}x" for place in range(len(names))]
-    writer = "lambda([file], write_program(file, false, 'direct))"
-    theirs = json.loads(run_batch(scene_with(names, tmp_path), writer))
-    ours = json.loads(run_batch(scene_with(neutral, tmp_path), writer))
-    assert theirs["operations"] == ours["operations"]
-    assert len(theirs["inputs"]) == len(ours["inputs"])
+def test_the_library_is_not_in_the_users_lists(tmp_path: Path):
+    # kill(all) took the library away, and with it all that a scene could still ask
+    (file := tmp_path / "load.mac").write_text(
+        f"{HOLONOM}\nmade : [functions, values, structures]$\nkept : string(made)$\nkill(all)$\n{BALL}\n"
+    )
+    assert json.loads(run_batch(file, "write_record"))["system"]["coordinates"] == ["east", "north"]
