@@ -55,14 +55,17 @@ class Equation:
 
     Parameters
     ----------
+    id : str
+        What programs know it by, ``multipliers`` for instance.
     number : str
         The number that the paper gives it; several items may share one.
     name : str
-        What it is.
+        What it is, for people.
     relations : tuple of Relation
         Its components.
     """
 
+    id: str
     number: str
     name: str
     relations: tuple[Relation, ...]
@@ -323,7 +326,7 @@ def _scene(scene: dict[str, Any]) -> Scene:
 
 
 def _equation(equation: dict[str, Any]) -> Equation:
-    return Equation(equation["number"], equation["name"], _each(_relation, equation["relations"]))
+    return Equation(equation["id"], equation["number"], equation["name"], _each(_relation, equation["relations"]))
 
 
 def _relation(relation: dict[str, Any]) -> Relation:

@@ -329,7 +329,7 @@ class Equations(Sequence["Equation"]):
             return self._equations[key]
         if isinstance(key, slice):
             return Equations(self._equations[key])
-        found = [equation for equation in self._equations if key in (equation.number, equation.name)]
+        found = [equation for equation in self._equations if key in (equation.id, equation.number, equation.name)]
         if not found:
             raise KeyError(f"no equation has the number or name {key!r}; there are {', '.join(self.titles())}")
         return Equations(found)

@@ -62,7 +62,7 @@ def test_check_of_several_scenes_is_an_array(particle_scene):
 
 def test_a_disagreement_is_reported_and_leaves_with_one(particle_record, monkeypatch, capsys, particle_scene):
     wrong = json.loads(particle_record)
-    multipliers = next(e for e in wrong["derivations"][0]["equations"] if e["name"] == "multipliers")
+    multipliers = next(e for e in wrong["derivations"][0]["equations"] if e["id"] == "multipliers")
     multipliers["relations"][0]["right"] = ["Multiply", 2, multipliers["relations"][0]["right"]]
     monkeypatch.setattr("holonom.record.ask", lambda *_, **__: json.dumps(wrong))
     monkeypatch.setattr("sys.argv", ["holonom", "check", str(particle_scene)])

@@ -124,8 +124,10 @@ def _report_document(scene: str, report: "CheckReport") -> dict[str, Any]:
         "scene": scene,
         "equations": [
             {
+                "id": found.id,
                 "number": found.number,
                 "name": found.name,
+                "derivation": found.derivation,
                 "scene_name": found.scene,
                 "verdict": found.verdict,
                 "digits": found.digits,

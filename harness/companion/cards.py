@@ -5,15 +5,14 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..crosscheck import EquationVerdict
+from ..crosscheck import EquationVerdict, Verdict
+from ..crosscheck.lagranges_method import OPINION
 from ..errata import PrintedEquation
 from ..record import Equation, Scene
 from .excerpts import Excerpt
 from .explanations import words
 from .runs import Derived
 from .steps import step
-
-MISSING = "(missing)"  # what the report calls an equation that is not there
 
 
 @dataclass(frozen=True)
@@ -109,11 +108,11 @@ def scene_cards(
 
 
 def named_equations(derived: Derived, scene: str | None = None) -> dict[str, Equation]:
-    """The equations of a derivation, of all its effects, or of a scene, by the names that they have in the record."""
+    """The equations of a derivation, of all its effects, or of a scene, by id."""
     record = derived.record
     whole = max(record.derivations, key=lambda each: len(each.effects))
     found = whole.equations if scene is None else scene_named(derived, scene).equations
-    return {equation.name: equation for equation in found}
+    return {equation.id: equation for equation in found}
 
 
 def scene_named(derived: Derived, name: str) -> Scene:
@@ -123,12 +122,12 @@ def scene_named(derived: Derived, name: str) -> Scene:
 
 def verdicts_on(derived: Derived, equation: Equation, scene: str | None) -> tuple[EquationVerdict, ...]:
     """The verdicts on an equation of a scene or, without a scene, of the derivation."""
-    return tuple(found for found in derived.report.verdicts if found.scene == scene and _same(found, equation))
+    return tuple(found for found in derived.report.verdicts if found.scene == scene and found.id == equation.id)
 
 
 def missing(derived: Derived) -> list[EquationVerdict]:
     """The verdicts on equations that a record should hold and does not: they have no card."""
-    return [found for found in derived.report.verdicts if found.name == MISSING]
+    return [found for found in derived.report.verdicts if not found.held and found.verdict is Verdict.DISAGREES]
 
 
 def files_of(cards: Iterable[Card]) -> tuple[str, ...]:
@@ -164,48 +163,38 @@ def _cards(
             anchor=place,
             number=equation.number,
             name=equation.name,
-            words=words(equation.number, equation.name),
+            words=words(equation.id),
             printed=tuple(each for each in printed if _same(each, equation)),
-            instances=tuple(each for group in instances for each in group if _same(each.equation, equation)),
-            lines=step(root, equation.number, equation.name),
+            instances=tuple(each for group in instances for each in group if each.equation.id == equation.id),
+            lines=step(root, equation.id),
         )
         for place, equation in zip(anchors(equations, prefix), equations, strict=True)
     ]
 
 
 def _distinct(equations: Iterable[Equation]) -> list[Equation]:
-    return list({(equation.number, equation.name): equation for equation in equations}.values())
+    return list({equation.id: equation for equation in equations}.values())
 
 
-def _same(one: Equation | PrintedEquation | EquationVerdict, other: Equation) -> bool:
+def _same(one: PrintedEquation, other: Equation) -> bool:
+    """Whether a derived equation is the one printed; the print bears its number and its name."""
     return (one.number, one.name) == (other.number, other.name)
 
 
 def _derivation_instances(derived: Derived) -> list[Instance]:
     """The equations of all derivations of a record, those with most effects first."""
     record = derived.record
-    parts = list(zip(record.derivations, _verdicts_by_derivation(derived), strict=True))
-    parts.sort(key=lambda part: len(part[0].effects), reverse=True)
+    report = [found for found in derived.report.verdicts if found.scene is None]
+    parts = sorted(enumerate(record.derivations), key=lambda part: len(part[1].effects), reverse=True)
     return [
         Instance(
             record.system.title if len(parts) == 1 else f"{record.system.title}, with {', '.join(derivation.effects)}",
             equation,
-            tuple(found for found in verdicts if _same(found, equation) or _third_opinion(found, equation)),
+            tuple(found for found in report if found.derivation == place and _speaks_of(found, equation)),
         )
-        for derivation, verdicts in parts
+        for place, derivation in parts
         for equation in derivation.equations
     ]
-
-
-def _verdicts_by_derivation(derived: Derived) -> list[list[EquationVerdict]]:
-    """The report goes through one derivation after the other; each begins with (1)."""
-    parts: list[list[EquationVerdict]] = []
-    for found in derived.report.verdicts:
-        if found.scene is None:
-            if found.number == "1":
-                parts.append([])
-            parts[-1].append(found)
-    return parts
 
 
 def _scene_instances(derived: Derived, name: str) -> list[Instance]:
@@ -213,6 +202,6 @@ def _scene_instances(derived: Derived, name: str) -> list[Instance]:
     return [Instance(scene.title, equation, verdicts_on(derived, equation, name)) for equation in scene.equations]
 
 
-def _third_opinion(found: EquationVerdict, equation: Equation) -> bool:
-    """SymPy's own LagrangesMethod speaks of equation (2), under a name of its own."""
-    return found.number == equation.number == "2" and found.name != equation.name
+def _speaks_of(found: EquationVerdict, equation: Equation) -> bool:
+    """Whether a verdict is one on an equation; SymPy's own LagrangesMethod speaks of equation (2)."""
+    return found.id == equation.id or (found.id, equation.id) == (OPINION.id, "lagrange_equations")

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import replace
 from math import factorial
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 from ..record import Derivation, Equation, LeftOut, Record, Relation, why_left_out
 from . import derivation, initial_motion, lagranges_method
@@ -17,15 +17,31 @@ from .report import CheckReport, EquationVerdict, Verdict
 from .system import MechanicalSystem, described_system
 from .verdict import Comparison, judge
 
-STATED = ("1", "2", "3a", "3", "6", "7")
-"""Equations that every derivation holds."""
+STATED = {
+    "constraints": "1",
+    "lagrange_equations": "2",
+    "kinetic_energy": "3a",
+    "christoffel_symbols": "6",
+    "expanded_equations": "3",
+    "constraint_accelerations": "7",
+}
+"""Equations that every derivation holds: their ids, and the paper's numbers."""
 
-SOLVED = ("4", "5", "8", "8", "9", "10", "11")
+SOLVED = {
+    "inverse_mass_matrix": "5",
+    "driven_accelerations": "4",
+    "multiplier_equations": "8",
+    "multipliers": "8",
+    "constraint_forces": "9",
+    "free_motion_condition": "10",
+    "accelerations": "11",
+}
 """Equations that a derivation holds, all or none, where their closed form is readable."""
 
-STATED_IN_SCENE = ("12", "19")
-SOLVED_IN_SCENE = ("13",)
-SERIES_IN_SCENE = ("18",)
+STATED_IN_SCENE = {"initial_state": "12", "determined_initial_values": "19"}
+SOLVED_IN_SCENE = {"initial_accelerations": "13"}
+SERIES_IN_SCENE = {"initial_series": "18"}
+UNDER_LAW_IN_SCENE = {"free_motion_residual": "10"}
 
 Claims = TypeVar("Claims", DerivationClaims, SceneClaims)
 Compare = Callable[[Claims, tuple[Relation, ...]], Comparison]
@@ -35,6 +51,13 @@ READABLE = 220
 
 READABLE_SERIES = 100
 """Up to this many operations in (8) and (11) together, (18), which differentiates them, must be there."""
+
+
+class Place(NamedTuple):
+    """Where a verdict belongs: a derivation, by its place in the record, and a scene of it or none."""
+
+    derivation: int
+    scene: str | None = None
 
 
 def check_record(record: Record) -> CheckReport:
@@ -48,14 +71,16 @@ def check_record(record: Record) -> CheckReport:
     -------
     CheckReport
         Verdicts in the record's order. An equation that should be there and is not disagrees,
-        and so does one under a number that has no comparison.
+        and so does one whose id has no comparison.
     """
     claims = [_claims(record, derived) for derived in record.derivations]
-    verdicts = [found for each in claims for found in _check_derivation(each)]
-    verdicts += [found for each in record.derivations for found in _left_out(each.left_out, None)]
+    verdicts = [found for place, each in enumerate(claims) for found in _check_derivation(Place(place), each)]
+    for place, each in enumerate(record.derivations):
+        verdicts += _left_out(Place(place), each.left_out)
     for scene in record.scenes:
-        verdicts += _check_scene(SceneClaims(scene, claims[scene.derivation]))
-        verdicts += _left_out(scene.left_out, scene.name)
+        place = Place(scene.derivation, scene.name)
+        verdicts += _check_scene(place, SceneClaims(scene, claims[scene.derivation]))
+        verdicts += _left_out(place, scene.left_out)
     return CheckReport(tuple(verdicts))
 
 
@@ -65,70 +90,73 @@ def _claims(record: Record, derived: Derivation) -> DerivationClaims:
     return DerivationClaims(IndependentEquations(system, supported), tuple(derived.equations))
 
 
-def _check_derivation(claims: DerivationClaims) -> Iterator[EquationVerdict]:
+def _check_derivation(place: Place, claims: DerivationClaims) -> Iterator[EquationVerdict]:
     for equation in claims.equations:
-        yield _verdict(equation, None, claims, derivation.COMPARISONS)
-    yield from _missing(_expected(claims), claims.equations, None)
+        yield _verdict(place, equation, claims, derivation.COMPARISONS)
+    yield from _missing(place, _expected(claims), claims.equations)
     if lagranges_method.can_take(claims.system):
-        third = lagranges_method.compare(claims.known)
-        yield _judged(lagranges_method.NUMBER, lagranges_method.NAME, None, third)
+        yield _judged(place, lagranges_method.OPINION, lagranges_method.compare(claims.known))
 
 
-def _check_scene(claims: SceneClaims) -> Iterator[EquationVerdict]:
-    name = claims.scene.name
+def _check_scene(place: Place, claims: SceneClaims) -> Iterator[EquationVerdict]:
     for equation in claims.scene.equations:
-        yield _verdict(equation, name, claims, initial_motion.COMPARISONS)
-    yield from _missing(_expected_in_scene(claims), claims.scene.equations, name)
+        yield _verdict(place, equation, claims, initial_motion.COMPARISONS)
+    yield from _missing(place, _expected_in_scene(claims), claims.scene.equations)
 
 
 def _verdict(
-    equation: Equation, scene: str | None, claims: Claims, comparisons: Mapping[str, Compare[Claims]]
+    place: Place, equation: Equation, claims: Claims, comparisons: Mapping[str, Compare[Claims]]
 ) -> EquationVerdict:
-    compare = comparisons.get(equation.number)
+    compare = comparisons.get(equation.id)
     if compare is None:
-        return _refused(equation.number, equation.name, scene, "no comparison has this number")
+        return _refused(place, equation, "there is no comparison for this equation")
     try:
         comparison = compare(claims, equation.relations)
     except NotComparable as reason:
-        return _refused(equation.number, equation.name, scene, f"the record holds {reason}")
-    return _judged(equation.number, equation.name, scene, comparison)
+        return _refused(place, equation, f"the record holds {reason}")
+    return _judged(place, equation, comparison)
 
 
-def _judged(number: str, name: str, scene: str | None, comparison: Comparison) -> EquationVerdict:
-    found = judge(comparison, seed=f"{number} {name}")
-    return EquationVerdict(number, name, scene, found.verdict, found.digits, found.points, found.detail)
+def _judged(place: Place, equation: Equation, comparison: Comparison) -> EquationVerdict:
+    found = judge(comparison, seed=f"{equation.number} {equation.name}")
+    what = (equation.id, equation.number, equation.name)
+    return EquationVerdict(*what, *place, found.verdict, found.digits, found.points, found.detail)
 
 
-def _refused(number: str, name: str, scene: str | None, reason: str) -> EquationVerdict:
-    return EquationVerdict(number, name, scene, Verdict.DISAGREES, None, None, reason)
+def _refused(place: Place, equation: Equation, reason: str) -> EquationVerdict:
+    what = (equation.id, equation.number, equation.name)
+    return EquationVerdict(*what, *place, Verdict.DISAGREES, None, None, reason)
 
 
-def _left_out(left_out: LeftOut | None, scene: str | None) -> Iterator[EquationVerdict]:
+def _left_out(place: Place, left_out: LeftOut | None) -> Iterator[EquationVerdict]:
     if left_out is not None:
         for number in left_out.numbers:
-            yield EquationVerdict(number, "(not made)", scene, Verdict.LEFT_OUT, None, None, why_left_out(left_out))
+            what, why = ("", number, "(not made)"), why_left_out(left_out)
+            yield EquationVerdict(*what, *place, Verdict.LEFT_OUT, None, None, why, held=False)
 
 
-def _missing(expected: Iterable[str], present: Iterable[Equation], scene: str | None) -> Iterator[EquationVerdict]:
-    absent = Counter(expected) - Counter(equation.number for equation in present)
-    for number in absent.elements():
-        yield _refused(number, "(missing)", scene, "the record does not hold this equation")
+def _missing(place: Place, expected: Mapping[str, str], present: Iterable[Equation]) -> Iterator[EquationVerdict]:
+    held = {equation.id for equation in present}
+    for each, number in expected.items():
+        if each not in held:
+            absent = Equation(each, number, "(missing)", ())
+            yield replace(_refused(place, absent, "the record does not hold this equation"), held=False)
 
 
-def _expected(claims: DerivationClaims) -> tuple[str, ...]:
-    holds_some = {equation.number for equation in claims.equations} & set(SOLVED)
-    return STATED + SOLVED if holds_some or _predicted_size(claims.system) <= READABLE else STATED
+def _expected(claims: DerivationClaims) -> Mapping[str, str]:
+    holds_some = any(equation.id in SOLVED for equation in claims.equations)
+    return STATED | SOLVED if holds_some or _predicted_size(claims.system) <= READABLE else STATED
 
 
-def _expected_in_scene(claims: SceneClaims) -> tuple[str, ...]:
+def _expected_in_scene(claims: SceneClaims) -> Mapping[str, str]:
     motion = claims.derivation.motion()
     if motion is None:
         return STATED_IN_SCENE
-    law = ("10",) if claims.scene.control_law else ()
-    holds_series = any(equation.number in SERIES_IN_SCENE for equation in claims.scene.equations)
+    law = UNDER_LAW_IN_SCENE if claims.scene.control_law else {}
+    holds_series = any(equation.id in SERIES_IN_SCENE for equation in claims.scene.equations)
     operations = sum(int(expression.count_ops()) for expression in motion.values())
-    series = SERIES_IN_SCENE if holds_series or operations <= READABLE_SERIES else ()
-    return STATED_IN_SCENE + SOLVED_IN_SCENE + series + law
+    series = SERIES_IN_SCENE if holds_series or operations <= READABLE_SERIES else {}
+    return STATED_IN_SCENE | SOLVED_IN_SCENE | series | law
 
 
 def _predicted_size(system: MechanicalSystem) -> int:

@@ -38,7 +38,7 @@ class DerivationClaims:
 
     def driven_accelerations(self) -> Solution | None:
         """Accelerations with multipliers (4), where the record holds them."""
-        return self._solution("4", self.system.accelerations)
+        return self._solution("driven_accelerations", self.system.accelerations)
 
     def free_accelerations(self) -> Solution | None:
         """Accelerations (4) with every multiplier zero."""
@@ -48,19 +48,19 @@ class DerivationClaims:
 
     def multipliers(self) -> Solution | None:
         """Multipliers in closed form (8), where the record holds them."""
-        return self._solution("8", self.system.multipliers)
+        return self._solution("multipliers", self.system.multipliers)
 
     def motion(self) -> Solution | None:
         """Accelerations (11) and multipliers (8) together."""
-        accelerations = self._solution("11", self.system.accelerations)
+        accelerations = self._solution("accelerations", self.system.accelerations)
         multipliers = self.multipliers()
         if accelerations is None or multipliers is None:
             return None
         return {**accelerations, **multipliers}
 
-    def _solution(self, number: str, symbols: Sequence[sp.Symbol]) -> Solution | None:
+    def _solution(self, name: str, symbols: Sequence[sp.Symbol]) -> Solution | None:
         for equation in self.equations:
-            if equation.number == number:
+            if equation.id == name:
                 try:
                     return solved_for(symbols, equation.relations)
                 except NotComparable:
@@ -196,13 +196,6 @@ def accelerations(claims: DerivationClaims, relations: Relations) -> Comparison:
     )
 
 
-def multiplier_equation(claims: DerivationClaims, relations: Relations) -> Comparison:
-    """(8), whichever of its two forms the relations have: solved, or still to be solved."""
-    if relations and all(relation.left in claims.system.multipliers for relation in relations):
-        return multipliers(claims, relations)
-    return equations_for_multipliers(claims, relations)
-
-
 def _solved_pairs(solution: Solution) -> tuple[Pair, ...]:
     return tuple(Pair(symbol.name, value, symbol) for symbol, value in solution.items())
 
@@ -213,17 +206,18 @@ def _entry(entries: Entries, *indices: int) -> sp.Expr:
 
 
 COMPARISONS = {
-    "1": constraints,
-    "2": equations_of_motion,
-    "3a": split_kinetic_energy,
-    "3": equations_of_motion,
-    "4": driven_accelerations,
-    "5": inverse_mass_matrix,
-    "6": christoffel_symbols,
-    "7": constraint_accelerations,
-    "8": multiplier_equation,
-    "9": constraint_forces,
-    "10": free_motion_condition,
-    "11": accelerations,
+    "constraints": constraints,
+    "lagrange_equations": equations_of_motion,
+    "kinetic_energy": split_kinetic_energy,
+    "expanded_equations": equations_of_motion,
+    "driven_accelerations": driven_accelerations,
+    "inverse_mass_matrix": inverse_mass_matrix,
+    "christoffel_symbols": christoffel_symbols,
+    "constraint_accelerations": constraint_accelerations,
+    "multiplier_equations": equations_for_multipliers,
+    "multipliers": multipliers,
+    "constraint_forces": constraint_forces,
+    "free_motion_condition": free_motion_condition,
+    "accelerations": accelerations,
 }
-"""The comparison that decides each numbered equation."""
+"""The comparison that decides each equation, by its id."""

@@ -206,10 +206,10 @@ def _vanishing(what: str, expressions: Iterable[sp.Expr]) -> Iterable[Pair]:
 
 
 COMPARISONS = {
-    "10": free_motion_condition,
-    "12": initial_state,
-    "13": initial_accelerations,
-    "18": initial_series,
-    "19": determined_initial_values,
+    "free_motion_residual": free_motion_condition,
+    "initial_state": initial_state,
+    "initial_accelerations": initial_accelerations,
+    "initial_series": initial_series,
+    "determined_initial_values": determined_initial_values,
 }
-"""The comparison that decides each numbered equation of a scene."""
+"""The comparison that decides each equation of a scene, by its id."""

@@ -29,8 +29,10 @@ class EquationVerdict:
 
     Attributes
     ----------
-    number, name : str
-        The paper's number of the equation and the record's name for it.
+    id, number, name : str
+        The equation's id, empty where it was not made; its number in the paper; the record's name for it.
+    derivation : int
+        The derivation that it belongs to: its place in the record, from 0.
     scene : str or None
         Name of the scene the equation belongs to; None for an equation of a derivation.
     verdict : Verdict
@@ -39,15 +41,20 @@ class EquationVerdict:
     detail : str
         For a disagreement the relation, the difference and the point; for what was left out the reason; empty
         otherwise.
+    held : bool
+        Whether the record holds the equation.
     """
 
+    id: str
     number: str
     name: str
+    derivation: int
     scene: str | None
     verdict: Verdict
     digits: int | None
     points: int | None
     detail: str
+    held: bool = True
 
 
 @dataclass(frozen=True)

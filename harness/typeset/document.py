@@ -156,7 +156,7 @@ def _display(rows: Sequence[str], number: str) -> str:
 
 
 def _named(name: str, relations: Sequence[Relation]) -> str:
-    [rows] = blocks(Equation("", name, tuple(relations)), WIDTH)
+    [rows] = blocks(Equation("", "", name, tuple(relations)), WIDTH)
     return f"{text(name)}:\n{_display(rows, '')}"
 
 

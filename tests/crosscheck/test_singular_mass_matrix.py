@@ -33,7 +33,7 @@ def test_every_equation_is_proved(record):
 
 
 def test_the_multiplier_is_the_spring_force(record):
-    (solved,) = [e for e in record.derivations[0].equations if e.name == "multipliers"]
+    (solved,) = [e for e in record.derivations[0].equations if e.id == "multipliers"]
     assert [str(relation.right) for relation in solved.relations] == ["k*z"]
 
 

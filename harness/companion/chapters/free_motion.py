@@ -8,7 +8,7 @@ from ...errata import PrintedEquation
 from ..cards import Card, anchor, derivation_cards, files_of, named_equations, scene_cards
 from ..chapter import Chapter, Page
 from ..examples import BOB, CABIN, FREE_SCENE, INITIAL_SCENE, PAPER, PENDULUM
-from ..explanations import words
+from ..explanations import words_on_print
 from ..runs import derived, free, printed
 
 PARABOLIC_FLIGHT = "parabolic_flight_scene"
@@ -61,4 +61,4 @@ def chapter(root: Path) -> Chapter:
 def unpushed_card(equations: tuple[PrintedEquation, ...]) -> Card:
     """The card of Lagrange's equations without reactions, which the paper prints without a number."""
     found = next(each for each in equations if each.name == UNPUSHED)
-    return Card(anchor("", found), found.number, found.name, words(found.number, found.name), (found,), (), ())
+    return Card(anchor("", found), found.number, found.name, words_on_print(found.number, found.name), (found,), (), ())

@@ -70,7 +70,7 @@ def chapter(root: Path) -> Chapter:
 
 def denominator(paper: Derived) -> Expr:
     """What the accelerations (11) are divided by."""
-    accelerations = named_equations(paper)["accelerations, multipliers eliminated"].relations
+    accelerations = named_equations(paper)["accelerations"].relations
     return sympy.fraction(sympy.together(accelerations[0].right))[1]
 
 

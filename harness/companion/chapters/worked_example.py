@@ -1,7 +1,7 @@
 """The worked example of section 4: each equation as printed, and as derived."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import dropwhile
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,7 @@ from ..cards import Card, Instance, anchors, files_of, named_equations, scene_na
 from ..chapter import Chapter, Page
 from ..examples import FREE_SCENE, INITIAL_SCENE, PAPER
 from ..excerpts import excerpt
-from ..explanations import words
+from ..explanations import words_on_print
 from ..expressions import right_side, under, zeros
 from ..runs import Derived, derived, free, printed
 from ..steps import step
@@ -44,20 +44,20 @@ class Counterpart:
 
 COUNTERPARTS = {
     "constraint": Counterpart("constraints"),
-    "condition of free motion of the example": Counterpart("condition of free motion"),
+    "condition of free motion of the example": Counterpart("free_motion_condition"),
     "multiplier": Counterpart("multipliers"),
     **{
         f"{name} {coordinate}": Counterpart(equation, place, scene)
         for place, coordinate in enumerate(("q1", "q2", "q3"))
         for name, equation, scene in (
-            ("equation of motion of", "accelerations, with multipliers", None),
-            ("acceleration of", "accelerations, multipliers eliminated", None),
-            ("initial acceleration of", "initial accelerations", INITIAL_SCENE),
-            ("initial motion of", "initial motion, as a series", INITIAL_SCENE),
+            ("equation of motion of", "driven_accelerations", None),
+            ("acceleration of", "accelerations", None),
+            ("initial acceleration of", "initial_accelerations", INITIAL_SCENE),
+            ("initial motion of", "initial_series", INITIAL_SCENE),
         )
     },
-    "initial value q3_0": Counterpart("initial values that the constraints fix", 0, INITIAL_SCENE),
-    "initial value dot(q3_0)": Counterpart("initial values that the constraints fix", 1, INITIAL_SCENE),
+    "initial value q3_0": Counterpart("determined_initial_values", 0, INITIAL_SCENE),
+    "initial value dot(q3_0)": Counterpart("determined_initial_values", 1, INITIAL_SCENE),
 }
 
 SECTIONS = {
@@ -110,8 +110,8 @@ def _cards(example: list[PrintedEquation], paper: Derived, laws: tuple, root: Pa
     cards: list[Card] = []
     for each, place in zip(example, anchors(example), strict=True):
         instances, lines = _derived(each, paper, laws, root)
-        plain = words(each.number, each.name)
-        said = "" if cards and words(cards[-1].number, cards[-1].name) == plain else plain
+        plain = words_on_print(each.number, each.name)
+        said = "" if cards and words_on_print(cards[-1].number, cards[-1].name) == plain else plain
         cards.append(Card(place, each.number, each.name, said, (each,), instances, lines))
     return cards
 
@@ -127,19 +127,19 @@ def _derived(each: PrintedEquation, paper: Derived, laws: tuple, root: Path) -> 
     if (found := COUNTERPARTS.get(each.name)) is None:
         return (), ()
     equation = named_equations(paper, found.scene)[found.equation]
-    one = Equation(equation.number, equation.name, (equation.relations[found.place],))
+    one = replace(equation, relations=(equation.relations[found.place],))
     title = f"({equation.number}) {equation.name}"
-    return (Instance(title, one, verdicts_on(paper, equation, found.scene)),), step(
-        root, equation.number, equation.name
-    )
+    return (Instance(title, one, verdicts_on(paper, equation, found.scene)),), step(root, equation.id)
 
 
 def _law(laws: tuple, paper: Derived) -> Instance:
     """The law found, with the verdict that it leaves nothing of the condition (10)."""
     relations = tuple(Relation(control, from_sympy(value)) for law in laws for control, value in law.controls.items())
-    condition = named_equations(paper, FREE_SCENE)["condition of free motion under the control law"]
+    condition = named_equations(paper, FREE_SCENE)["free_motion_residual"]
     verdicts = verdicts_on(paper, condition, FREE_SCENE)
-    return Instance("the laws under which (10) vanishes for every state", Equation("15", "law", relations), verdicts)
+    return Instance(
+        "the laws under which (10) vanishes for every state", Equation("law", "15", "law", relations), verdicts
+    )
 
 
 def _sections(cards: list[Card]) -> list[tuple[str, list[Card]]]:
