@@ -11,7 +11,7 @@ from ..failures import Failure, HolonomError
 from ..files import write_whole_directory
 from .chapter import Chapter, Page, Run
 from .pages import STYLE, Contents, Entry, Part, chapter_page, index_page, source_name, source_page, topic_page
-from .runs import Derived, Study, perform
+from .runs import Derived, FileAnswers, perform
 
 APPENDICES = "Appendices"  # title of the part whose chapters have letters
 GENERATOR = '<meta name="generator" content="Holonom companion" />'
@@ -126,7 +126,7 @@ def _contents(book: Book, results: Mapping[Run, Any]) -> Contents:
         subtitle=book.subtitle,
         foreword=book.foreword,
         command=book.command,
-        maxima=next(found.record.maxima for found in results.values() if isinstance(found, Derived | Study)),
+        maxima=next(found.record.maxima for found in results.values() if isinstance(found, Derived | FileAnswers)),
         parts=tuple(
             Part(title, tuple(_entries(chapters, letters if title == APPENDICES else numbers)))
             for title, chapters in book.parts

@@ -23,7 +23,7 @@ SHOWN = ("trajectory", "multipliers")
 
 
 @dataclass(frozen=True)
-class Film:
+class MovingPicture:
     """A drawing in motion.
 
     Attributes
@@ -51,7 +51,7 @@ class Motion:
     ----------
     system, source, title : str
         Title of the system, where it comes from, and title of the scene.
-    film : Film or None
+    film : MovingPicture or None
         None where the system does not say how it looks.
     curves : str
         SVG: coordinates and multipliers against the time.
@@ -62,7 +62,7 @@ class Motion:
     system: str
     source: str
     title: str
-    film: Film | None
+    film: MovingPicture | None
     curves: str
     report: Report
 
@@ -109,7 +109,7 @@ def follow(file: Path, scene: str | None, until: Fraction | None, settings: Sett
         problem.system,
         problem.source,
         problem.title,
-        shown and Film(animation(shown), strip(shown), *map(float, shown.instants[[0, -1]]), shown.pace),
+        shown and MovingPicture(animation(shown), strip(shown), *map(float, shown.instants[[0, -1]]), shown.pace),
         drawn(partial(draw_motion, replace(simulation, velocities={}))),
         simulation.report,
     )

@@ -49,7 +49,7 @@ class Refusal:
 
 
 @dataclass(frozen=True)
-class Study:
+class FileAnswers:
     """Answers about one scene file; where mathematics refuses one, the reason is the answer.
 
     A scene that prescribes reactions is not in the record, but it has its free motion and its series.
@@ -114,7 +114,7 @@ def figure(draw: Callable[[Path], None]) -> Run:
 
 
 def study(file: Path, settings: Settings, limits: Limits) -> Run:
-    """All that is asked of somebody's own scene file: a `Study`."""
+    """All that is asked of somebody's own scene file: a `FileAnswers`."""
     return Run(_study, (file, settings, limits))
 
 
@@ -181,10 +181,10 @@ def drawn(draw: Callable[[Path], None]) -> str:
         return file.read_text(encoding="utf-8")
 
 
-def _study(file: Path, settings: Settings, limits: Limits) -> Study:
+def _study(file: Path, settings: Settings, limits: Limits) -> FileAnswers:
     found = _derive(file, settings, limits)
     names = names_of_scenes(file, settings, limits)
-    return Study(
+    return FileAnswers(
         found,
         {name: or_refusal(_free, file, name, settings, limits) for name in names},
         {name: or_refusal(_series, file, name, OWN_ORDER, settings, limits) for name in names},

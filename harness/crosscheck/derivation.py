@@ -21,7 +21,7 @@ from .system import MechanicalSystem
 from .verdict import Comparison, Pair
 
 Relations = Sequence[Relation]
-Solution = Mapping[sp.Symbol, sp.Expr]
+ClosedForm = Mapping[sp.Symbol, sp.Expr]
 
 
 @dataclass(frozen=True)
@@ -36,21 +36,21 @@ class DerivationClaims:
         """The system that the derivation is of."""
         return self.known.system
 
-    def driven_accelerations(self) -> Solution | None:
+    def driven_accelerations(self) -> ClosedForm | None:
         """Accelerations with multipliers (4), where the record holds them."""
         return self._solution("driven_accelerations", self.system.accelerations)
 
-    def free_accelerations(self) -> Solution | None:
+    def free_accelerations(self) -> ClosedForm | None:
         """Accelerations (4) with every multiplier zero."""
         driven = self.driven_accelerations()
         released = dict.fromkeys(self.system.multipliers, sp.Integer(0))
         return driven and {a: value.xreplace(released) for a, value in driven.items()}
 
-    def multipliers(self) -> Solution | None:
+    def multipliers(self) -> ClosedForm | None:
         """Multipliers in closed form (8), where the record holds them."""
         return self._solution("multipliers", self.system.multipliers)
 
-    def motion(self) -> Solution | None:
+    def motion(self) -> ClosedForm | None:
         """Accelerations (11) and multipliers (8) together."""
         accelerations = self._solution("accelerations", self.system.accelerations)
         multipliers = self.multipliers()
@@ -58,7 +58,7 @@ class DerivationClaims:
             return None
         return {**accelerations, **multipliers}
 
-    def _solution(self, name: str, symbols: Sequence[sp.Symbol]) -> Solution | None:
+    def _solution(self, name: str, symbols: Sequence[sp.Symbol]) -> ClosedForm | None:
         for equation in self.equations:
             if equation.id == name:
                 try:
@@ -196,7 +196,7 @@ def accelerations(claims: DerivationClaims, relations: Relations) -> Comparison:
     )
 
 
-def _solved_pairs(solution: Solution) -> tuple[Pair, ...]:
+def _solved_pairs(solution: ClosedForm) -> tuple[Pair, ...]:
     return tuple(Pair(symbol.name, value, symbol) for symbol, value in solution.items())
 
 

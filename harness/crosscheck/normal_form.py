@@ -38,7 +38,7 @@ class Quotient(NamedTuple):
     denominators: Mapping[PolyElement, int]
 
 
-class Relation(NamedTuple):
+class RootRelation(NamedTuple):
     """generator^degree = value, where the value contains earlier generators only."""
 
     generator: sp.Expr
@@ -175,7 +175,7 @@ class NormalForms:
             raise AllowanceSpent
         return left * right
 
-    def _reduced(self, polynomial: PolyElement, relation: Relation) -> PolyElement:
+    def _reduced(self, polynomial: PolyElement, relation: RootRelation) -> PolyElement:
         """Numerator of a polynomial after generator^degree has been replaced throughout."""
         position = self._position[relation.generator]
         by_exponent: dict[int, dict] = {}
@@ -226,16 +226,16 @@ def _root_and_exponent(expression: sp.Expr) -> tuple[sp.Expr, int]:
             return expression, 1
 
 
-def _relations_of(generator: sp.Expr) -> list[Relation]:
+def _relations_of(generator: sp.Expr) -> list[RootRelation]:
     match generator:
         case sp.sin(args=(x,)):
-            return [Relation(generator, 2, 1 - sp.cos(x) ** 2)]
+            return [RootRelation(generator, 2, 1 - sp.cos(x) ** 2)]
         case sp.cosh(args=(x,)):
-            return [Relation(generator, 2, 1 + sp.sinh(x) ** 2)]
+            return [RootRelation(generator, 2, 1 + sp.sinh(x) ** 2)]
         case sp.Abs(args=(x,)):
-            return [Relation(generator, 2, x**2)]
+            return [RootRelation(generator, 2, x**2)]
         case sp.Pow(args=(base, sp.Rational() as exponent)) if exponent.p == 1:
-            return [Relation(generator, int(exponent.q), base)]
+            return [RootRelation(generator, int(exponent.q), base)]
         case _:
             return []
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..benchmark.hard_cases.case import CaseReport, Result, Sweep, Verdict
+from ..benchmark.hard_cases.case import CaseReport, Outcome, Result, Sweep
 from .style import BLUE, LINES, MARKERS, PALETTE, VERMILION, figure_style, new_figure, write_figure
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def _rows(report: CaseReport) -> list[Result | str]:
 
 def _draw_digits(axes: "Axes", rows: Sequence[Result | str]) -> None:
     shown = {place: row for place, row in enumerate(rows) if isinstance(row, Result)}
-    for verdicts, colour, marker in (({Verdict.HOLDS}, BLUE, "o"), ({Verdict.LOSES, Verdict.FAILS}, VERMILION, "X")):
+    for verdicts, colour, marker in (({Outcome.HOLDS}, BLUE, "o"), ({Outcome.LOSES, Outcome.FAILS}, VERMILION, "X")):
         digits = {place: result.digits for place, result in shown.items() if result.verdict in verdicts}
         axes.hlines(list(digits), 0, list(digits.values()), color=colour, alpha=0.4, linewidth=3)
         axes.plot(list(digits.values()), list(digits), marker, color=colour, clip_on=False)

@@ -41,7 +41,7 @@ class Measure(StrEnum):
 
 
 @dataclass(frozen=True)
-class Term:
+class TermProgram:
     """A term of one of the paper's equations.
 
     Attributes
@@ -57,7 +57,7 @@ class Term:
 
 
 @dataclass(frozen=True)
-class Effect:
+class EffectProgram:
     """An effect of the system.
 
     Attributes
@@ -79,8 +79,8 @@ class Costs:
     """The programs by which a scene's costs are found."""
 
     program: Program
-    terms: tuple[Term, ...]
-    effects: tuple[Effect, ...]
+    terms: tuple[TermProgram, ...]
+    effects: tuple[EffectProgram, ...]
 
 
 @dataclass(frozen=True)
@@ -141,8 +141,8 @@ def read_costs(text: str) -> Costs:
     document = read(Document.EFFECTS, text)
     return Costs(
         program_of(document["program"]),
-        tuple(Term(t["equation"], t["term"], _program_if_any(t["program"])) for t in document["terms"]),
-        tuple(Effect(e["name"], e["called"], _program_if_any(e["otherwise"])) for e in document["effects"]),
+        tuple(TermProgram(t["equation"], t["term"], _program_if_any(t["program"])) for t in document["terms"]),
+        tuple(EffectProgram(e["name"], e["called"], _program_if_any(e["otherwise"])) for e in document["effects"]),
     )
 
 
@@ -178,13 +178,13 @@ def measure_costs(costs: Costs) -> MeasuredCosts:
     )
 
 
-def _term_cost(term: Term, seconds: Mapping[int, float]) -> TermCost:
+def _term_cost(term: TermProgram, seconds: Mapping[int, float]) -> TermCost:
     if term.program is None:
         return TermCost(term.equation, term.name, Status.ABSENT_BY_STRUCTURE, 0, 0.0)
     return TermCost(term.equation, term.name, Status.PRESENT, term.program.operations, seconds[id(term.program)])
 
 
-def _effect_cost(effect: Effect, whole: Program, seconds: Mapping[int, float]) -> EffectCost:
+def _effect_cost(effect: EffectProgram, whole: Program, seconds: Mapping[int, float]) -> EffectCost:
     status = Status.PRESENT if effect.called else Status.ABSENT_BY_CHOICE
     if effect.otherwise is None:
         return EffectCost(effect.name, status, None, None)

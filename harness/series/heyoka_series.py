@@ -23,7 +23,7 @@ from ..program.heyoka_function import dynamics, heyoka_expressions, import_heyok
 from ..program.motion_problem import MotionProblem, motion_problem
 from ..program.precision import GUARD_DIGITS, Precision, read_precision
 from ..program.request import Request
-from .power_series import Continuation, MotionSeries, Numbers, SeriesRequest
+from .power_series import Continuation, MotionSeries, NumberTexts, SeriesRequest
 
 MOST_STEPS = 10**6  # of a continuation
 ONCE, OFTEN = 0, 3  # LLVM's levels of optimisation: compiled in a tenth of the time, and run in half
@@ -226,7 +226,7 @@ def _rate(coefficients: Sequence[Any]) -> list[Any]:
     return [coefficients[n] * n for n in range(1, len(coefficients))]
 
 
-def _texts(row: Sequence[Any], precision: Precision) -> Numbers:
+def _texts(row: Sequence[Any], precision: Precision) -> NumberTexts:
     return tuple(map(precision.text, row))
 
 

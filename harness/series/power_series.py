@@ -26,7 +26,7 @@ AUTOMATIC = "automatic"
 WORKING_DIGITS = 50  # for what is computed from exact coefficients
 MORE_DIGITS = 10  # than the coefficients have, for what is computed from rounded ones
 
-Numbers = tuple[str, ...]
+NumberTexts = tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -62,9 +62,9 @@ class Continuation:
     """States of a motion at the instants where it was expanded anew, the last at the instant asked for."""
 
     digits: int
-    instants: Numbers
-    coordinates: Mapping[str, Numbers]
-    velocities: Mapping[str, Numbers]
+    instants: NumberTexts
+    coordinates: Mapping[str, NumberTexts]
+    velocities: Mapping[str, NumberTexts]
 
 
 @dataclass(frozen=True)
@@ -88,9 +88,9 @@ class MotionSeries(Shown):
     order: int
     t0: str
     arithmetic: str
-    coordinates: Mapping[str, Numbers]
-    multipliers: Mapping[str, Numbers]
-    constraint_forces: Mapping[str, Numbers]
+    coordinates: Mapping[str, NumberTexts]
+    multipliers: Mapping[str, NumberTexts]
+    constraint_forces: Mapping[str, NumberTexts]
     continuation: Continuation | None = None
 
     @property
@@ -110,7 +110,7 @@ class MotionSeries(Shown):
 
         return show_series
 
-    def all_series(self) -> Iterator[tuple[str, Numbers]]:
+    def all_series(self) -> Iterator[tuple[str, NumberTexts]]:
         """Name and coefficients of each series."""
         for group in (self.coordinates, self.multipliers, self.constraint_forces):
             yield from group.items()
@@ -256,7 +256,7 @@ def number(text: str) -> mpmath.mpf:
     return _decimal(numerator) / _decimal(denominator or "1")
 
 
-def numbers(texts: Numbers) -> list[mpmath.mpf]:
+def numbers(texts: NumberTexts) -> list[mpmath.mpf]:
     """The values of several."""
     return [number(text) for text in texts]
 
@@ -269,7 +269,7 @@ def _decimal(text: str) -> mpmath.mpf:
     return mpmath.mpf(text[:kept]) * mpmath.mpf(10) ** (len(text) - kept)
 
 
-def _series(group: Mapping[str, Any]) -> dict[str, Numbers]:
+def _series(group: Mapping[str, Any]) -> dict[str, NumberTexts]:
     return {name: tuple(map(str, coefficients)) for name, coefficients in group.items()}
 
 
@@ -299,5 +299,5 @@ def _published(motion: MotionSeries, text: str) -> str | float:
     return float(text) if motion.arithmetic == "double" else text
 
 
-def _published_series(motion: MotionSeries, group: Mapping[str, Numbers]) -> dict[str, list[str | float]]:
+def _published_series(motion: MotionSeries, group: Mapping[str, NumberTexts]) -> dict[str, list[str | float]]:
     return {name: [_published(motion, text) for text in coefficients] for name, coefficients in group.items()}

@@ -75,7 +75,7 @@ PARTIAL, TOTAL, TIME = word(r"\partial", 1), word("d", 1), word("t", 1)
 
 
 @dataclass(frozen=True)
-class Term:
+class SignedTerm:
     """A term of a sum: its sign, what stands behind the sign, and the colour of the sign if it has one."""
 
     sign: str
@@ -146,7 +146,7 @@ def sum_lines(tree: Tree, room: float) -> list[Box]:
     return rows
 
 
-def signed_terms(tree: Tree) -> list[Term]:
+def signed_terms(tree: Tree) -> list[SignedTerm]:
     """The terms of a sum with their signs; anything else is its own only term."""
     match tree:
         case ["Marked", colour, inner]:
@@ -154,32 +154,32 @@ def signed_terms(tree: Tree) -> list[Term]:
         case ["Add", *terms]:
             return [signed for term in terms for signed in _summand(term)]
         case ["Subtract", first, second]:
-            return [*signed_terms(first), Term("-", second)]
+            return [*signed_terms(first), SignedTerm("-", second)]
         case ["Negate", inner]:
-            return [Term("-", inner)]
+            return [SignedTerm("-", inner)]
         case int() if tree < 0:
-            return [Term("-", -tree)]
+            return [SignedTerm("-", -tree)]
         case {"num": str(number)} if number.startswith("-"):
-            return [Term("-", {"num": number[1:]})]
+            return [SignedTerm("-", {"num": number[1:]})]
         case _:
-            return [Term("+", tree)]
+            return [SignedTerm("+", tree)]
 
 
-def _marked_term(term: Term, colour: str) -> Term:
-    return Term(term.sign, ["Marked", colour, term.content], colour if term.sign == "-" else None)
+def _marked_term(term: SignedTerm, colour: str) -> SignedTerm:
+    return SignedTerm(term.sign, ["Marked", colour, term.content], colour if term.sign == "-" else None)
 
 
-def _summand(term: Tree) -> list[Term]:
-    return [Term("+", term)] if _head(term) == "Add" else signed_terms(term)
+def _summand(term: Tree) -> list[SignedTerm]:
+    return [SignedTerm("+", term)] if _head(term) == "Add" else signed_terms(term)
 
 
-def _sign(term: Term, place: int) -> Box:
+def _sign(term: SignedTerm, place: int) -> Box:
     """The sign of a term, which is left out before a first term that is added."""
     mark = SIGNS[term.sign] if place else PREFIX_MINUS if term.sign == "-" else NOTHING
     return coloured(mark, term.sign_colour) if term.sign_colour else mark
 
 
-def _term_lines(term: Term, place: int, room: float) -> list[Box]:
+def _term_lines(term: SignedTerm, place: int, room: float) -> list[Box]:
     """A term, on several lines if it is a product to be broken or its brackets would be too high."""
     sign = _sign(term, place)
     first, *others = _factor_lines(term.content, room - sign.width)

@@ -14,7 +14,7 @@ class Extent(StrEnum):
     FULL = "full"
 
 
-class Verdict(StrEnum):
+class Outcome(StrEnum):
     """What a method made of a case: ours hold or fail; one that is there for comparison may lose it."""
 
     HOLDS = "holds"
@@ -31,13 +31,13 @@ class Result:
     method, quantity : str
     digits : float or None
         Decimal digits kept; None where the question is whether, not how much.
-    verdict : Verdict
+    verdict : Outcome
     """
 
     method: str
     quantity: str
     digits: float | None
-    verdict: Verdict
+    verdict: Outcome
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ class CaseReport:
     @property
     def fails(self) -> bool:
         """Whether a method of ours does not hold what it should."""
-        return any(result.verdict is Verdict.FAILS for result in self.findings.results)
+        return any(result.verdict is Outcome.FAILS for result in self.findings.results)
 
 
 def found(*results: Result) -> Findings:
@@ -117,14 +117,14 @@ def found(*results: Result) -> Findings:
 
 def ours(method: str, quantity: str, digits: float, needed: float) -> Result:
     """A method of Holonom's, which has to keep so many digits."""
-    return Result(method, quantity, digits, Verdict.HOLDS if digits >= needed else Verdict.FAILS)
+    return Result(method, quantity, digits, Outcome.HOLDS if digits >= needed else Outcome.FAILS)
 
 
 def theirs(method: str, quantity: str, digits: float, needed: float) -> Result:
     """A method for comparison, which may keep fewer."""
-    return Result(method, quantity, digits, Verdict.HOLDS if digits >= needed else Verdict.LOSES)
+    return Result(method, quantity, digits, Outcome.HOLDS if digits >= needed else Outcome.LOSES)
 
 
 def required(method: str, quantity: str, holds: bool) -> Result:
     """Something that Holonom does or does not do."""
-    return Result(method, quantity, None, Verdict.HOLDS if holds else Verdict.FAILS)
+    return Result(method, quantity, None, Outcome.HOLDS if holds else Outcome.FAILS)

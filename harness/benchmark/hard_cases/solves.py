@@ -18,14 +18,14 @@ from .scenes import problem
 TEXTBOOK, DIRECT, ORTHOGONAL, PIVOTED = "textbook formula", "direct", "orthogonal", "LAPACK, pivoted"
 
 
-class Solution(NamedTuple):
+class Solved(NamedTuple):
     """Accelerations a, shape (n,), and multipliers lambda, shape (g,)."""
 
     accelerations: Vector
     multipliers: Vector
 
 
-SolveAt = Callable[[float, Vector], Solution]
+SolveAt = Callable[[float, Vector], Solved]
 
 
 def every_solve(file: str, scene: str | None = None) -> Mapping[str, SolveAt]:
@@ -52,24 +52,24 @@ def every_solve(file: str, scene: str | None = None) -> Mapping[str, SolveAt]:
     }
 
 
-def textbook(matrices: Matrices) -> Solution:
+def textbook(matrices: Matrices) -> Solved:
     """As it is printed: lambda = -G^-1 (c + J A^-1 h), a = A^-1 (h + J^T lambda), G = J A^-1 J^T."""
     J = matrices.jacobian
     try:
         inverse_mass = np.linalg.inv(matrices.mass)
         inverse_of_G = np.linalg.inv(J @ inverse_mass @ J.T)
     except np.linalg.LinAlgError:
-        return Solution(np.full(J.shape[1], np.nan), np.full(J.shape[0], np.nan))
+        return Solved(np.full(J.shape[1], np.nan), np.full(J.shape[0], np.nan))
     multipliers = -inverse_of_G @ (matrices.curvature + J @ inverse_mass @ matrices.force)
-    return Solution(inverse_mass @ (matrices.force + J.T @ multipliers), multipliers)
+    return Solved(inverse_mass @ (matrices.force + J.T @ multipliers), multipliers)
 
 
-def pivoted(matrices: Matrices) -> Solution:
+def pivoted(matrices: Matrices) -> Solved:
     """As the robust engine solves."""
     weighted = weighted_constraints(matrices.mass, matrices.jacobian)
     factored = factored_constraints(weighted, rank_of(weighted.singular_values()))
     sides = matrices.force, matrices.curvature
-    return Solution(factored.accelerations(*sides), factored.multipliers(*sides))
+    return Solved(factored.accelerations(*sides), factored.multipliers(*sides))
 
 
 def programmed(motion: MotionProblem) -> SolveAt:
@@ -77,8 +77,8 @@ def programmed(motion: MotionProblem) -> SolveAt:
     evaluate, n = NumpyFunction(motion.motion), len(motion.coordinates)
     unused = np.zeros(len(motion.multipliers))
 
-    def solve(t: float, state: Vector) -> Solution:
+    def solve(t: float, state: Vector) -> Solved:
         values = evaluate([t, *state, *unused])
-        return Solution(values[:n], values[n : n + len(unused)])
+        return Solved(values[:n], values[n : n + len(unused)])
 
     return solve

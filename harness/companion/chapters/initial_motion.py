@@ -9,7 +9,7 @@ import mpmath
 from sympy import Expr, Symbol
 
 from ...record import Equation, Scene
-from ...series.power_series import MotionSeries, Numbers, number, numbers
+from ...series.power_series import MotionSeries, NumberTexts, number, numbers
 from ..cards import derivation_cards, files_of, named_equations, scene_cards, scene_named
 from ..chapter import Chapter, Page
 from ..examples import BOB, BOB_SCENE, INITIAL_SCENE, PAPER
@@ -76,6 +76,6 @@ def compared(expanded: MotionSeries) -> list[tuple[str, mpmath.mpf, mpmath.mpf]]
         ]
 
 
-def partial_sum(coefficients: Numbers, step: mpmath.mpf) -> mpmath.mpf:
+def partial_sum(coefficients: NumberTexts, step: mpmath.mpf) -> mpmath.mpf:
     """The sum of a power series as far as its coefficients go."""
     return mpmath.polyval(numbers(coefficients)[::-1], step)

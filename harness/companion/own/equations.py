@@ -6,7 +6,7 @@ from pathlib import Path
 from ..cards import derivation_cards, files_of, missing
 from ..chapter import Chapter, Page, Run
 from ..paper import REPOSITORY
-from ..runs import Study
+from ..runs import FileAnswers
 
 NUMBERS = ("2", "3a", "3", "4", "5", "6", "7", "8", "9", "11")
 
@@ -14,7 +14,7 @@ NUMBERS = ("2", "3a", "3", "4", "5", "6", "7", "8", "9", "11")
 def chapter(prefix: str, file: Path, study: Run) -> Chapter:
     """The chapter about a file, in whose pages' names the prefix comes first."""
 
-    def page(results: Mapping[str, Study]) -> Page:
+    def page(results: Mapping[str, FileAnswers]) -> Page:
         derived = results["study"].derived
         cards = derivation_cards(NUMBERS, [derived], (), REPOSITORY)
         return Page(

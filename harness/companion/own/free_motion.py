@@ -6,14 +6,14 @@ from pathlib import Path
 from ..cards import derivation_cards, files_of
 from ..chapter import Chapter, Page, Run
 from ..paper import REPOSITORY
-from ..runs import Study
+from ..runs import FileAnswers
 from .scenes import scene_cards_of
 
 
 def chapter(prefix: str, file: Path, study: Run) -> Chapter:
     """The chapter about a file, in whose pages' names the prefix comes first."""
 
-    def page(results: Mapping[str, Study]) -> Page:
+    def page(results: Mapping[str, FileAnswers]) -> Page:
         found = results["study"]
         cards = derivation_cards(["10"], [found.derived], (), REPOSITORY)
         scenes = [

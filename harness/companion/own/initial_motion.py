@@ -5,7 +5,7 @@ from pathlib import Path
 
 from ..cards import files_of
 from ..chapter import Chapter, Page, Run
-from ..runs import Study
+from ..runs import FileAnswers
 from .scenes import scene_cards_of
 
 NUMBERS = ("12", "13", "18", "19")
@@ -14,7 +14,7 @@ NUMBERS = ("12", "13", "18", "19")
 def chapter(prefix: str, file: Path, study: Run) -> Chapter:
     """The chapter about a file, in whose pages' names the prefix comes first."""
 
-    def page(results: Mapping[str, Study]) -> Page:
+    def page(results: Mapping[str, FileAnswers]) -> Page:
         found = results["study"]
         scenes = [
             {

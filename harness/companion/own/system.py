@@ -7,13 +7,13 @@ from ..cards import derivation_cards, files_of
 from ..chapter import Chapter, Page, Run
 from ..description import description
 from ..paper import REPOSITORY
-from ..runs import Study
+from ..runs import FileAnswers
 
 
 def chapter(prefix: str, file: Path, study: Run) -> Chapter:
     """The chapter about a file, in whose pages' names the prefix comes first."""
 
-    def page(results: Mapping[str, Study]) -> Page:
+    def page(results: Mapping[str, FileAnswers]) -> Page:
         derived = results["study"].derived
         cards = derivation_cards(["1"], [derived], (), REPOSITORY)
         return Page(

@@ -2,7 +2,7 @@
 
 import pytest
 
-from holonom.benchmark.hard_cases.case import CaseReport, Extent, Verdict
+from holonom.benchmark.hard_cases.case import CaseReport, Extent, Outcome
 from holonom.benchmark.hard_cases.plain import PLAIN
 from holonom.benchmark.hard_cases.register import REGISTER, examine
 from holonom.benchmark.hard_cases.solves import DIRECT, ORTHOGONAL, PIVOTED, TEXTBOOK
@@ -23,9 +23,9 @@ def report(request) -> CaseReport:
 
 
 def test_ours_hold_and_the_plain_ways_lose_where_the_case_is_hard_for_them(report):
-    failing = [result for result in report.findings.results if result.verdict is Verdict.FAILS]
+    failing = [result for result in report.findings.results if result.verdict is Outcome.FAILS]
     assert not failing
-    losing = {result.method for result in report.findings.results if result.verdict is Verdict.LOSES}
+    losing = {result.method for result in report.findings.results if result.verdict is Outcome.LOSES}
     assert losing >= LOSING.get(report.case.name, set())
 
 
