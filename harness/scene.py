@@ -222,6 +222,7 @@ class Scene:
         engine: str = "auto",
         drift: str = "projection",
         solve: str = "direct",
+        max_step: float | None = None,
         **parameters: Number,
     ) -> "Simulation":
         """Follow the motion in numbers.
@@ -242,6 +243,8 @@ class Scene:
             What keeps the constraints: ``projection``, ``baumgarte``, ``ggl`` or ``none``.
         solve : str
             ``direct`` or ``orthogonal``.
+        max_step : float or None
+            Time that no step is to exceed; None where the engine alone decides.
         **parameters : number
             Values in the place of the scene's; one that is named like an argument goes through `with_settings`.
 
@@ -256,7 +259,9 @@ class Scene:
             The request cannot be met, or the motion cannot be followed so far.
         """
         if parameters:
-            return self.with_settings(parameters).simulate(until, samples, tol, precision, engine, drift, solve)
+            return self.with_settings(parameters).simulate(
+                until, samples, tol, precision, engine, drift, solve, max_step
+            )
         from .program.precision import read_precision
         from .simulation.request import EngineName, SimulationRequest, Stabilization
         from .simulation.simulate import simulate
@@ -266,7 +271,7 @@ class Scene:
         last = _instant(until)
         problem = self._problem(solve, read_precision(str(precision)).digits)
         follower, cure = _choice(EngineName, engine), _choice(Stabilization, drift)
-        request = SimulationRequest(tol, str(precision), follower, cure, last, samples)
+        request = SimulationRequest(tol, str(precision), follower, cure, last, samples, max_step=max_step)
         return simulate(problem, request)
 
     def rhs(self, solve: str = "direct") -> "RightHandSide":
@@ -277,7 +282,8 @@ class Scene:
         Raises
         ------
         HolonomError
-            No order of pivots solves the equations of motion, as where constraints are redundant.
+            No order of pivots solves the equations of motion, as where constraints are redundant; the motion is not
+            analytic everywhere.
         """
         from .program.motion_problem import DOUBLE_DIGITS
 
