@@ -21,6 +21,8 @@
 
 (defvar *small-coordinate* (expt 10 -20))
 
+(defvar *pivot-ratio* 10000 "The largest entry of a row is at most so many times its pivot.")
+
 (defvar *floating* nil "Whether numbers are floating-point ones, for a start.")
 
 (defvar *most-corrections* 400)
@@ -148,11 +150,11 @@
                  (eliminate-column pivot i rows holders)))))))
 
 (defun chosen-pivot (row holders)
-  "Of the entries that are not small in their row, the one that fewest rows share."
+  "Of the entries that are not too small in their row, the one that fewest rows share."
   (let ((largest 0) (pivot nil) (fewest nil))
     (dolist (e row) (if (plusp (car e)) (setq largest (max largest (abs (cdr e))))))
     (dolist (e row pivot)
-      (if (and (plusp (car e)) (>= (* 10 (abs (cdr e))) largest))
+      (if (and (plusp (car e)) (>= (* *pivot-ratio* (abs (cdr e))) largest))
           (let ((count (length (gethash (car e) holders))))
             (if (or (null fewest) (< count fewest)) (setq pivot e fewest count)))))))
 
@@ -216,10 +218,15 @@
 (defun $point_on_manifold (point constraints jacobian coordinates)
   "The point, its coordinates changed until the constraints hold; false where Newton's method does
 not get there. constraints: list of terms; jacobian: their gradients by the coordinates, sparse."
-  (let ((close (or (point-near-manifold point constraints jacobian coordinates) point))
-        (*zero-share* *zero-share-of-constraints*))
+  (let ((*zero-share* *zero-share-of-constraints*))
     (catch 'irregular-point
-      (newton-iteration close constraints jacobian coordinates))))
+      (if (every #'zerop (residuals-at point constraints))
+          (converted-point point #'identity)
+          (let ((close (point-near-manifold point constraints jacobian coordinates)))
+            (if close (newton-iteration close constraints jacobian coordinates)))))))
+
+(defun residuals-at (point constraints)
+  (mapcar #'(lambda (f) (value-at (expression-term f) point)) (cdr constraints)))
 
 (defun point-near-manifold (point constraints jacobian coordinates)
   "The same in floating point, which is quicker; nil where that does not get there."
@@ -234,8 +241,8 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
 
 (defun newton-iteration (point constraints jacobian coordinates &optional metric)
   (let ((last-size nil))
-    (dotimes (attempt (if *floating* *impatience* *most-corrections*) nil)
-      (let ((residuals (mapcar #'(lambda (f) (value-at (expression-term f) point)) (cdr constraints))))
+    (dotimes (attempt *most-corrections* nil)
+      (let ((residuals (residuals-at point constraints)))
         (if (every #'zerop residuals) (return (converted-point point #'identity)))
         (let* ((corrections (if metric
                                 (corrections-in-metric residuals jacobian metric point (length (cdr coordinates)))
