@@ -41,9 +41,9 @@ bench: setup ## Time the motion program, the power series and simulations agains
 	cp build/benchmarks/simulation.svg build/benchmarks/simulation.txt tests/benchmarks/
 
 pictures: setup ## Draw the README's pictures and run the notebooks again
-	$(BIN)/holonom errata --svg examples/paper/errata.svg > /dev/null
+	$(BIN)/holonom errata --force --svg examples/paper/errata.svg > /dev/null
 	$(BIN)/python -m holonom.figures.radius examples/paper/radius.svg
-	$(BIN)/holonom stability --plot examples/hard/stability.svg > /dev/null
+	$(BIN)/holonom stability --force --plot examples/hard/stability.svg > /dev/null
 	$(BIN)/jupyter execute --inplace examples/notebooks/*.ipynb
 
 clean: ## Remove all that make made

@@ -101,8 +101,8 @@
   "What DESCRIBE makes of ENTRIES, which must be what it made of them before."
   (let ((made (mapply1 describe entries describe nil)))
     (unless (alike1 (if (eq describe '$holonomic_scene) (without-systems made) made) expected)
-      (merror "what ~A returned was changed afterwards, or the file changes how Maxima computes: ~
-               describe it as it is meant, or run the file with --trust" (mstring describe)))
+      (merror "what ~M returned was changed afterwards, or the file sets an option of Maxima's that changes it; ~
+               leave that out, or run the file with --trust" describe))
     made))
 
 (defun bind-anew (name structure)
@@ -145,7 +145,7 @@
   (let ((symbol (find-symbol name :maxima)))
     (cond ((and (plusp (length name)) (find (char name 0) "$%")) (intern name :maxima))
           ((or (member symbol '(t nil)) (known-operator-p symbol)) symbol)
-          (t (merror "the scene describes its system with ~A, which no document can hold" name)))))
+          (t (merror "the scene describes its system with ~M, which no document can hold" name)))))
 
 (defun known-operator-p (symbol)
   (or (member symbol *described-operators*) (assoc symbol *mathjson-functions*)))

@@ -53,6 +53,11 @@ class Failure(Enum):
     UNWRITABLE = ("the output cannot be written: {detail}", "give a file in a directory that can be written")
     DISK_FULL = ("the output cannot be written: {detail}", "free space, and run it again")
     COMPILER_UNUSABLE = ("the C compiler cannot be run: {detail}", "name one that works in the variable CC")
+    OUTPUT_TAKEN = ("this output would take the place of {detail}", "give it a name of its own")
+    FOREIGN_FILE = (
+        "there is a file of that name which is no earlier output of this kind",
+        "give another name, or say --force to replace it",
+    )
     NOT_A_COMPANION = (
         "the directory holds other things than a companion",
         "give the name of a new directory, or of one that `holonom companion` made",
@@ -65,6 +70,8 @@ class Failure(Enum):
     NOT_AN_INSTANT = ("{detail} is no instant", "write a number such as 0.75 or 3/4")
     TOO_FEW_SAMPLES = ("a motion has two samples or more, not {detail}", "")
     NO_SUCH_SCENE = ("there is no scene {detail}", "")
+    TOO_MANY_SAMPLES = ("{detail}", "ask for fewer, or raise --memory-limit")
+    SETTING_TOO_LARGE = ("{detail} is beyond what a double holds", "set a smaller number, or one less close to zero")
     NOT_A_SCENE_NAME = ("{detail} cannot be the name of a scene", "give the name that the scene is assigned to")
     NOT_A_PROGRAM = ("this is not a motion program: {detail}", "write it anew with `holonom program`")
     NOT_AN_IDENTIFIER = ("{detail} cannot name a function in C and Python", "use letters, digits and underscores")

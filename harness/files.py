@@ -1,18 +1,20 @@
 """Files and directories that appear whole or not at all."""
 
+import errno
 import fcntl
 import os
 import re
 import secrets
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from difflib import get_close_matches
 from pathlib import Path
 
 from .failures import Failure, HolonomError
 
+MANIFEST = ".holonom-written"
 DRAFT = "draft-"
 PRIVATE = ".holonom-run-"
 PRIVATE_NAME = re.compile(re.escape(PRIVATE) + r"[a-z0-9_]{8}")
@@ -165,7 +167,7 @@ def write_whole(path: Path, content: str | bytes) -> None:
         else:
             _replace(target, data)
     except OSError as error:
-        raise HolonomError(Failure.UNWRITABLE, path, error.strerror or str(error)) from None
+        raise _unwritable(path, error) from None
 
 
 def write_files(directory: Path, files: Mapping[str, str]) -> None:
@@ -186,9 +188,39 @@ def write_files(directory: Path, files: Mapping[str, str]) -> None:
     try:
         directory.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise HolonomError(Failure.UNWRITABLE, directory, error.strerror or str(error)) from None
-    for name, text in files.items():
+        raise _unwritable(directory, error) from None
+    manifest = _manifest({*written_before(directory), *files})
+    for name, text in {**files, MANIFEST: manifest}.items():
         write_whole(directory / name, text)
+
+
+def written_before(directory: Path) -> frozenset[str]:
+    """The files of a directory that its manifest lists, by their paths in it."""
+    try:
+        listed = (directory / MANIFEST).read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError):
+        return frozenset()
+    return frozenset(name for name in listed if os.path.lexists(directory / name))
+
+
+def require_own_files(directory: Path, names: Iterable[str]) -> None:
+    """Refuse to replace files of a directory that its manifest does not list.
+
+    Parameters
+    ----------
+    directory : Path
+    names : iterable of str
+        What is to be written, by paths in the directory.
+
+    Raises
+    ------
+    HolonomError
+        It names the first such file.
+    """
+    listed = written_before(directory)
+    for name in names:
+        if os.path.lexists(directory / name) and name not in listed:
+            raise HolonomError(Failure.FOREIGN_FILE, directory / name)
 
 
 def write_whole_directory(path: Path, files: Mapping[str, str]) -> None:
@@ -197,31 +229,64 @@ def write_whole_directory(path: Path, files: Mapping[str, str]) -> None:
     Parameters
     ----------
     path : Path
-        The directory; one that is there is replaced with all that it holds.
+        The directory. Of one that is there the files that its manifest lists are replaced, and the others stay.
     files : mapping of str to str
         The text of each file, by its path in the directory.
 
     Raises
     ------
     HolonomError
-        The directory cannot be written; what was there still is.
+        The directory cannot be written, or holds a file of one of the names that its manifest does not list; what was
+        there still is.
     """
     target = path.resolve()
-    draft, replaced = (target.with_name(f".{target.name}.{kind}.{os.getpid()}") for kind in ("new", "old"))
+    require_own_files(path, files)
     try:
-        for name, text in files.items():
-            (draft / name).parent.mkdir(parents=True, exist_ok=True)
-            (draft / name).write_text(text, encoding="utf-8")
+        with draft_of(target) as draft:
+            for name, text in {**files, MANIFEST: _manifest(files)}.items():
+                (draft / name).parent.mkdir(parents=True, exist_ok=True)
+                (draft / name).write_text(text, encoding="utf-8")
+            if target.exists():
+                _take_along(target, draft)
+            _exchange(target, draft)
+    except OSError as error:
+        raise _unwritable(path, error) from None
+
+
+def _manifest(names: Iterable[str]) -> str:
+    return "".join(f"{name}\n" for name in sorted(names))
+
+
+def _take_along(directory: Path, draft: Path) -> None:
+    """Copy into a directory's draft what the directory's manifest does not list."""
+    listed = {*written_before(directory), MANIFEST}
+    for folder, folders, names in os.walk(directory):
+        kept = [Path(folder, name) for name in names] + [
+            Path(folder, name) for name in folders if Path(folder, name).is_symlink()
+        ]
+        for file in kept:
+            if str(name := file.relative_to(directory)) not in listed:
+                (draft / name).parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy2(file, draft / name, follow_symlinks=False)
+
+
+def _exchange(target: Path, draft: Path) -> None:
+    """Put a draft in the place of a directory; the old one goes, or comes back where that fails."""
+    replaced = target.with_name(f".{target.name}.{os.getpid()}.old")
+    try:
         if target.exists():
             target.replace(replaced)
         draft.replace(target)
-    except OSError as error:
+    finally:
         if replaced.exists() and not target.exists():
             replaced.replace(target)
-        raise HolonomError(Failure.UNWRITABLE, path, error.strerror or str(error)) from None
-    finally:
-        shutil.rmtree(draft, ignore_errors=True)
-        shutil.rmtree(replaced, ignore_errors=True)
+        _remove(replaced)
+
+
+def _unwritable(path: Path, error: OSError) -> HolonomError:
+    full = error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+    failure = Failure.DISK_FULL if full else Failure.UNWRITABLE
+    return HolonomError(failure, path, error.strerror or str(error))
 
 
 def _replace(target: Path, data: bytes) -> None:

@@ -27,6 +27,7 @@ import psutil
 from .confined import MIB, Confinement, LimitExceeded, Limits, Sandbox, run_confined
 from .failures import Failure, HolonomError
 from .files import near_file, private_directory, shared
+from .supervisor import doing
 
 LIBRARY = shared("maxima")
 HEADLESS = Path(__file__).with_name("headless.lisp")
@@ -44,6 +45,7 @@ PASSED_ON = (
     "MAXIMA_LAYOUT_AUTOTOOLS",
 )
 BYTE_ORDER_MARK = "\ufeff"
+SIGNALS = frozenset(signal.Signals)
 SIGNALLED = 128  # a shell adds this to the number of the signal that ended a process
 
 STARTED, FINISHED = "STARTED", "FINISHED"
@@ -152,11 +154,11 @@ def ask_scene(
     if limits.sandbox is Sandbox.TRUSTED:
         return run_batch(scene, writer, limits, settings)
     began = time.monotonic()
-    with _new_run(scene, limits, settings) as run:
+    with doing("running the scene file"), _new_run(scene, limits, settings) as run:
         printed = _run(run, f"run-scene {_copy(run)} {_quoted(run.leaves('description').name)}", writer)
         description = _left_behind(run, "description", printed)
     rest = replace(limits, seconds=limits.seconds - (time.monotonic() - began))
-    with _new_run(scene, rest, settings) as run:
+    with doing("deriving with Maxima"), _new_run(scene, rest, settings) as run:
         (run.directory / "description").write_bytes(description)
         printed = _run(run, f'run-description "description" {_call(writer, run)}', writer)
         return _document(run, printed)
@@ -182,7 +184,7 @@ def run_batch(
     HolonomError
         As `ask_scene`.
     """
-    with _new_run(file, replace(limits, sandbox=Sandbox.TRUSTED), settings) as run:
+    with doing("deriving with Maxima"), _new_run(file, replace(limits, sandbox=Sandbox.TRUSTED), settings) as run:
         printed = _run(run, f"run-file {_copy(run)} {_call(writer, run)}", writer)
         return _document(run, printed)
 
@@ -396,7 +398,7 @@ def _read_ending(run: Run, maxima: str, status: int) -> Ending | None:
 def _unfinished(run: Run, status: int) -> Ending:
     """The ending of a run that did not come to its end: it ended itself, or was ended by a signal."""
     number = -status if status < 0 else status - SIGNALLED
-    if number <= 0:
+    if number not in SIGNALS:
         return Ending(Failure.ENDED_EARLY, str(run.file))
     return Ending(Failure.KILLED, str(run.file), signal.Signals(number).name)
 
@@ -421,10 +423,11 @@ def _read_left(path: Path, limits: Limits) -> bytes | None:
         descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
     except OSError:
         return None
+    found = os.fstat(descriptor)
+    if not stat.S_ISREG(found.st_mode) or found.st_size > limits.file_mib * MIB:
+        os.close(descriptor)
+        return None
     with open(descriptor, "rb") as file:
-        found = os.fstat(descriptor)
-        if not stat.S_ISREG(found.st_mode) or found.st_size > limits.file_mib * MIB:
-            return None
         return file.read()
 
 

@@ -102,10 +102,24 @@ def limit_time(seconds: float) -> None:
         CLOCK.pack_into(_board, 0, seconds, time.monotonic() + seconds)
 
 
-def enter_phase(doing: str) -> None:
-    """Say what the command is doing from now on, for the sentence that tells in what it ran out of time."""
+@contextmanager
+def doing(what: str) -> Iterator[None]:
+    """Say what the command does in the block, for the sentence that tells in what it ran out of time."""
+    before = _written()
+    _write(what)
+    try:
+        yield
+    finally:
+        _write(before)
+
+
+def _written() -> str:
+    return "" if _board is None else _board[CLOCK.size :].rstrip(b"\0").decode(errors="replace")
+
+
+def _write(what: str) -> None:
     if _board is not None:
-        _board[CLOCK.size :] = doing.encode()[: BOARD - CLOCK.size].ljust(BOARD - CLOCK.size, b"\0")
+        _board[CLOCK.size :] = what.encode()[: BOARD - CLOCK.size].ljust(BOARD - CLOCK.size, b"\0")
 
 
 def die_with_parent(parent: int) -> None:
@@ -133,8 +147,8 @@ def _ending_of(status: int) -> Ending:
 
 
 def _while_doing() -> str:
-    doing = _board[CLOCK.size :].rstrip(b"\0").decode(errors="replace")
-    return f" while {doing}" if doing else ""
+    what = _written()
+    return f" while {what}" if what else ""
 
 
 @contextmanager

@@ -9,7 +9,8 @@ import click
 from ..confined import Limits
 from ..failures import missing_package
 from .group import holonom
-from .options import SceneFile, runs_scenes, takes_settings
+from .options import runs_scenes, takes_settings
+from .outputs import SceneFile
 
 EXTRAS = ("jinja2", "latex2mathml", "matplotlib", "heyoka")
 

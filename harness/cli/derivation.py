@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..confined import Limits
+from ..supervisor import doing
 from .group import holonom
-from .options import STANDARD_OUTPUT, SceneFile, json_text, publish, runs_scenes, takes_settings, writes_json
+from .options import json_text, publish, runs_scenes, takes_settings, writes_json
+from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile
 
 if TYPE_CHECKING:
     from ..crosscheck import CheckReport
@@ -30,9 +32,7 @@ limits_closed_forms = click.option(
 @takes_settings
 @limits_closed_forms
 @writes_json
-@click.option(
-    "--tex", "tex_file", metavar="FILE|-", type=click.Path(path_type=Path), help="Also write it as a LaTeX document."
-)
+@click.option("--tex", "tex_file", metavar="FILE|-", type=OutputFile("tex"), help="Also write it as a LaTeX document.")
 @runs_scenes
 def derive(
     scene: Path,
@@ -63,23 +63,28 @@ def derive(
 @takes_settings
 @limits_closed_forms
 @writes_json
+@click.option("--seed", metavar="TEXT", help="Compare at the random points of an earlier check, which printed it.")
 @runs_scenes
 def check(
     scenes: Sequence[Path],
     settings: Sequence[str],
     closed_form_size: int | None,
     json_file: Path | None,
+    seed: str | None,
     limits: Limits,
 ) -> int:
     """Derive each SCENE and compare every equation with an independent SymPy evaluation."""
     from ..crosscheck import check_record
+    from ..crosscheck.points import fresh_seed
     from ..program.request import read_settings
     from ..record import derived_record
     from .tables.derivation import show_report
     from .tables.text import make_console
 
-    given = read_settings(settings)
-    reports = [(str(scene), check_record(derived_record(scene, given, limits, closed_form_size))) for scene in scenes]
+    given, seed = read_settings(settings), seed or fresh_seed()
+    records = [(str(scene), derived_record(scene, given, limits, closed_form_size)) for scene in scenes]
+    with doing("checking with SymPy"):
+        reports = [(scene, check_record(record, seed)) for scene, record in records]
     documents = [_report_document(scene, report) for scene, report in reports]
     publish(json_text(documents[0] if len(documents) == 1 else documents), json_file)
     if json_file != STANDARD_OUTPUT:
@@ -91,7 +96,7 @@ def check(
 
 @holonom.command()
 @writes_json
-@click.option("--svg", "svg_file", metavar="FILE", type=click.Path(path_type=Path), help="Also draw the table.")
+@click.option("--svg", "svg_file", metavar="FILE", type=OutputFile("svg"), help="Also draw the table.")
 def errata(json_file: Path | None, svg_file: Path | None) -> int:
     """Compare every equation that the paper prints with the derived one."""
     from ..documents import Document, published
@@ -140,5 +145,6 @@ def _report_document(scene: str, report: "CheckReport") -> dict[str, Any]:
         "left_out": report.count(Verdict.LEFT_OUT),
         "agreed": report.count(Verdict.PROVED, Verdict.AGREES),
         "disagreements": report.disagreements,
+        "seed": report.seed,
     }
     return published(Publication.CHECK, content)

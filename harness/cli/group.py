@@ -12,6 +12,7 @@ import click
 
 from ..failures import HolonomError, missing_package
 from ..supervisor import supervise
+from .outputs import Command
 
 MACHINE_AT_FAULT = 3
 INTERNAL_ERROR = 70
@@ -22,6 +23,8 @@ OWN_PROCESS = object()  # what a command finds in its context when nothing else 
 
 class Commands(click.Group):
     """The commands, with every failure explained in one sentence."""
+
+    command_class = Command
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command asked for; return its exit status."""

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .group import holonom
-from .options import STANDARD_OUTPUT, json_text, publish, writes_json
+from .options import json_text, publish, writes_json
+from .outputs import STANDARD_OUTPUT, OutputFile
 
 if TYPE_CHECKING:
     from ..benchmark.hard_cases.case import CaseReport
@@ -17,7 +18,7 @@ FAILED = 1
 
 @holonom.command()
 @click.option("--short", is_flag=True, help="Follow the long motions for less time: under a minute in all.")
-@click.option("--plot", "plot_file", metavar="FILE", type=click.Path(path_type=Path), help="Also draw a figure.")
+@click.option("--plot", "plot_file", metavar="FILE", type=OutputFile("svg", "png"), help="Also draw a figure.")
 @writes_json
 def stability(short: bool, plot_file: Path | None, json_file: Path | None) -> int:
     """Run the register of hard cases: the digits that each method keeps, and what to do."""

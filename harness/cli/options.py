@@ -11,10 +11,11 @@ import click
 
 from ..confined import Limits, Sandbox, bubblewrap
 from ..failures import Failure, HolonomError
-from ..files import private_directory
+from ..program.request import within_reach
 from ..supervisor import limit_time
+from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile
 
-STANDARD_OUTPUT = Path("-")
+SHOWN = 40  # letters of an option that is refused
 LONGEST = 1e9  # seconds of a time limit: 30 years
 MOST_MEMORY = 2**30  # MiB of a memory limit
 UNWALLED = (
@@ -23,30 +24,13 @@ UNWALLED = (
 )
 
 
-class SceneFile(click.Path):
-    """A scene file; ``-`` is what stands on standard input, kept in a file of its own while the command runs."""
-
-    name = "scene"
-
-    def __init__(self) -> None:
-        super().__init__(path_type=Path)
-
-    def convert(self, value: Any, parameter: click.Parameter | None, ctx: click.Context | None) -> Path:
-        """The path of the file."""
-        if value != str(STANDARD_OUTPUT) or ctx is None:
-            return super().convert(value, parameter, ctx)
-        file = Path(ctx.with_resource(private_directory()), "standard_input.mac")
-        file.write_bytes(click.get_binary_stream("stdin").read())
-        return file
-
-
 def writes_json(command: Callable[..., int]) -> Callable[..., int]:
     """Give a command the option --json."""
     return click.option(
         "--json",
         "json_file",
         metavar="FILE|-",
-        type=click.Path(path_type=Path),
+        type=OutputFile("json"),
         help="Also write the result to FILE as one JSON document; with -, write nothing but that to standard output.",
     )(command)
 
@@ -128,10 +112,19 @@ def _sandbox(trust: bool, sandbox: bool) -> Sandbox:
 
 def read_instant(ctx: click.Context, parameter: click.Parameter, text: str | None) -> Fraction | None:
     """Read an instant: an integer, a decimal or a quotient of integers."""
+    if text is None:
+        return None
     try:
-        return None if text is None else Fraction(text)
-    except (ValueError, ZeroDivisionError):
-        raise click.BadParameter(f"{text} is no instant; write a number such as 0.75 or 3/4", ctx, parameter) from None
+        if not within_reach(text):
+            raise OverflowError
+        return Fraction(text)
+    except (ValueError, ZeroDivisionError, OverflowError):
+        shown = text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
+        raise click.BadParameter(
+            f"{shown} is no instant; write a number such as 0.75 or 3/4, of a size that a double can have",
+            ctx,
+            parameter,
+        ) from None
 
 
 def json_text(document: Any) -> str:

@@ -9,7 +9,8 @@ import click
 from ..confined import Limits
 from ..failures import Failure, HolonomError
 from .group import holonom
-from .options import STANDARD_OUTPUT, asks_one_scene, chooses_solve, json_text, publish, runs_scenes, writes_json
+from .options import asks_one_scene, chooses_solve, json_text, publish, runs_scenes, writes_json
+from .outputs import STANDARD_OUTPUT, OutputFile, is_forced
 
 
 @holonom.command()
@@ -34,7 +35,7 @@ from .options import STANDARD_OUTPUT, asks_one_scene, chooses_solve, json_text, 
     "-o",
     "--output",
     metavar="FILE|DIR",
-    type=click.Path(path_type=Path),
+    type=OutputFile("json", "python", "fmu", "c"),
     default=STANDARD_OUTPUT,
     help="Where it goes; c takes a directory, fmu a file.",
 )
@@ -73,9 +74,12 @@ def program(
     name = name or default_name(scene_file)
     model = scene_model(scene_file, request, parameters, limits)
     if form == "c":
-        from ..files import write_files
+        from ..files import require_own_files, write_files
 
-        write_files(output, c_library(model, name))
+        files = c_library(model, name)
+        if not is_forced():
+            require_own_files(output, files)
+        write_files(output, files)
     else:
         from ..files import write_whole
         from ..program.fmu import write_fmu

@@ -13,7 +13,6 @@ from ..confined import Limits
 from ..failures import HolonomError
 from .group import OWN_PROCESS, holonom
 from .options import (
-    STANDARD_OUTPUT,
     asks_one_scene,
     chooses_solve,
     json_text,
@@ -22,6 +21,7 @@ from .options import (
     runs_scenes,
     writes_json,
 )
+from .outputs import STANDARD_OUTPUT, OutputFile
 
 SAMPLES_OF_A_PLOT = 1001
 FAILED = 1  # exit status of a result that is none
@@ -62,11 +62,11 @@ FAILED = 1  # exit status of a result that is none
     "-o",
     "--output",
     metavar="FILE.csv|.npz|.parquet",
-    type=click.Path(path_type=Path),
+    type=OutputFile("csv", "npz", "parquet"),
     help="Also write the samples of the motion.",
 )
 @click.option(
-    "--plot", "plot_file", metavar="FILE.svg|.png", type=click.Path(path_type=Path), help="Also draw the motion."
+    "--plot", "plot_file", metavar="FILE.svg|.png", type=OutputFile("svg", "png"), help="Also draw the motion."
 )
 @runs_scenes
 def simulate(
@@ -103,7 +103,7 @@ def simulate(
         document = problem_document(scene_file, request, limits, digits)
     problem = read_problem(document)
     from ..simulation.document import report_document, simulation_document
-    from ..simulation.output import require_formats, write_files
+    from ..simulation.output import require_formats, require_memory, write_files
     from ..simulation.request import FINAL_STATE_ALONE, EngineName, SimulationRequest, Stabilization
     from ..simulation.simulate import simulate as follow
     from .tables.simulation import distrust, motion_progress, show_simulation
@@ -116,6 +116,7 @@ def simulate(
     wanted = SimulationRequest(
         tol, precision, EngineName(engine), Stabilization(drift), until, samples, compact, max_step
     )
+    require_memory(problem, samples or 0, limits.memory_mib)
     with motion_progress(problem.title) as progress:
         simulation = follow(problem, wanted, progress)
     write_files(simulation, output, plot_file)

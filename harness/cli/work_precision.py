@@ -9,7 +9,6 @@ import click
 from ..confined import Limits
 from .group import holonom
 from .options import (
-    STANDARD_OUTPUT,
     asks_one_scene,
     json_text,
     publish,
@@ -17,12 +16,13 @@ from .options import (
     runs_scenes,
     writes_json,
 )
+from .outputs import STANDARD_OUTPUT, OutputFile
 
 
 @holonom.command()
 @asks_one_scene
 @click.option("--until", metavar="T", callback=read_instant, help="The last instant, in place of the scene's.")
-@click.option("--plot", "plot_file", metavar="FILE", type=click.Path(path_type=Path), help="Also draw a figure, SVG.")
+@click.option("--plot", "plot_file", metavar="FILE", type=OutputFile("svg", "png"), help="Also draw a figure, SVG.")
 @writes_json
 @runs_scenes
 def accuracy(

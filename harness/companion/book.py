@@ -8,13 +8,12 @@ from string import ascii_uppercase
 from typing import Any
 
 from ..failures import Failure, HolonomError
-from ..files import write_whole_directory
+from ..files import write_whole_directory, written_before
 from .chapter import Chapter, Page, Run
 from .pages import STYLE, Contents, Entry, Part, chapter_page, index_page, source_name, source_page, topic_page
 from .runs import Derived, FileAnswers, perform
 
 APPENDICES = "Appendices"  # title of the part whose chapters have letters
-GENERATOR = '<meta name="generator" content="Holonom companion" />'
 
 
 @dataclass(frozen=True)
@@ -59,7 +58,7 @@ def make_book(book: Book, directory: Path, done: Callable[[], None]) -> None:
     ----------
     book : Book
     directory : Path
-        Where the pages are put; a companion that is there is replaced.
+        Where the pages are put; of a companion that is there, the pages are replaced and what else there is stays.
     done : callable
         Called each time that one of the runs is done.
 
@@ -81,10 +80,9 @@ def require_companion_or_nothing(directory: Path) -> None:
     HolonomError
         It does.
     """
-    first_page = directory / "index.html"
     if not directory.exists() or (directory.is_dir() and not any(directory.iterdir())):
         return
-    if not first_page.is_file() or GENERATOR not in first_page.read_text(encoding="utf-8", errors="replace"):
+    if not directory.is_dir() or "index.html" not in written_before(directory):
         raise HolonomError(Failure.NOT_A_COMPANION, directory)
 
 

@@ -3,6 +3,7 @@
 They are performed by processes, not by threads: mpmath's precision belongs to the whole process.
 """
 
+import os
 import tempfile
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ProcessPoolExecutor, as_completed
@@ -24,6 +25,7 @@ from ..record import Record, derived_record
 from ..series.power_series import MotionSeries, SeriesRequest, compute_series
 from ..simulation.request import SimulationRequest
 from ..simulation.result import Simulation
+from ..supervisor import die_with_parent
 from .chapter import Run
 
 WORKERS = 2
@@ -138,7 +140,7 @@ def perform(runs: Iterable[Run], done: Callable[[], None]) -> dict[Run, Any]:
     HolonomError
         One of them fails; those that have not begun are given up.
     """
-    with ProcessPoolExecutor(WORKERS, get_context("spawn")) as processes:
+    with ProcessPoolExecutor(WORKERS, get_context("spawn"), die_with_parent, (os.getpid(),)) as processes:
         waiting = {processes.submit(run.compute, *run.arguments): run for run in dict.fromkeys(runs)}
         results = {}
         try:

@@ -13,6 +13,7 @@ from .claims import NotComparable
 from .derivation import DerivationClaims
 from .independent import IndependentEquations
 from .initial_motion import SceneClaims
+from .points import fresh_seed
 from .report import CheckReport, EquationVerdict, Verdict
 from .system import MechanicalSystem, described_system
 from .verdict import Comparison, judge
@@ -60,12 +61,14 @@ class Place(NamedTuple):
     scene: str | None = None
 
 
-def check_record(record: Record) -> CheckReport:
+def check_record(record: Record, seed: str | None = None) -> CheckReport:
     """Compare every equation of a record with the independent evaluation.
 
     Parameters
     ----------
     record : Record
+    seed : str or None
+        Draws the random points; None for a fresh one.
 
     Returns
     -------
@@ -73,15 +76,16 @@ def check_record(record: Record) -> CheckReport:
         Verdicts in the record's order. An equation that should be there and is not disagrees,
         and so does one whose id has no comparison.
     """
+    seed = seed or fresh_seed()
     claims = [_claims(record, derived) for derived in record.derivations]
-    verdicts = [found for place, each in enumerate(claims) for found in _check_derivation(Place(place), each)]
+    verdicts = [found for place, each in enumerate(claims) for found in _check_derivation(Place(place), each, seed)]
     for place, each in enumerate(record.derivations):
         verdicts += _left_out(Place(place), each.left_out)
     for scene in record.scenes:
         place = Place(scene.derivation, scene.name)
-        verdicts += _check_scene(place, SceneClaims(scene, claims[scene.derivation]))
+        verdicts += _check_scene(place, SceneClaims(scene, claims[scene.derivation]), seed)
         verdicts += _left_out(place, scene.left_out)
-    return CheckReport(tuple(verdicts))
+    return CheckReport(tuple(verdicts), seed)
 
 
 def _claims(record: Record, derived: Derivation) -> DerivationClaims:
@@ -90,22 +94,22 @@ def _claims(record: Record, derived: Derivation) -> DerivationClaims:
     return DerivationClaims(IndependentEquations(system, supported), tuple(derived.equations))
 
 
-def _check_derivation(place: Place, claims: DerivationClaims) -> Iterator[EquationVerdict]:
+def _check_derivation(place: Place, claims: DerivationClaims, seed: str) -> Iterator[EquationVerdict]:
     for equation in claims.equations:
-        yield _verdict(place, equation, claims, derivation.COMPARISONS)
+        yield _verdict(place, equation, claims, derivation.COMPARISONS, seed)
     yield from _missing(place, _expected(claims), claims.equations)
     if lagranges_method.can_take(claims.system):
-        yield _judged(place, lagranges_method.OPINION, lagranges_method.compare(claims.known))
+        yield _judged(place, lagranges_method.OPINION, lagranges_method.compare(claims.known), seed)
 
 
-def _check_scene(place: Place, claims: SceneClaims) -> Iterator[EquationVerdict]:
+def _check_scene(place: Place, claims: SceneClaims, seed: str) -> Iterator[EquationVerdict]:
     for equation in claims.scene.equations:
-        yield _verdict(place, equation, claims, initial_motion.COMPARISONS)
+        yield _verdict(place, equation, claims, initial_motion.COMPARISONS, seed)
     yield from _missing(place, _expected_in_scene(claims), claims.scene.equations)
 
 
 def _verdict(
-    place: Place, equation: Equation, claims: Claims, comparisons: Mapping[str, Compare[Claims]]
+    place: Place, equation: Equation, claims: Claims, comparisons: Mapping[str, Compare[Claims]], seed: str
 ) -> EquationVerdict:
     compare = comparisons.get(equation.id)
     if compare is None:
@@ -114,11 +118,11 @@ def _verdict(
         comparison = compare(claims, equation.relations)
     except NotComparable as reason:
         return _refused(place, equation, f"the record holds {reason}")
-    return _judged(place, equation, comparison)
+    return _judged(place, equation, comparison, seed)
 
 
-def _judged(place: Place, equation: Equation, comparison: Comparison) -> EquationVerdict:
-    found = judge(comparison, seed=f"{equation.number} {equation.name}")
+def _judged(place: Place, equation: Equation, comparison: Comparison, seed: str) -> EquationVerdict:
+    found = judge(comparison, seed=f"{seed} {equation.number} {equation.name}")
     what = (equation.id, equation.number, equation.name)
     return EquationVerdict(*what, *place, found.verdict, found.digits, found.points, found.detail)
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import random
+import secrets
 from collections.abc import Iterable, Mapping
 
 import sympy as sp
 from mpmath import mp
 
-PARTS = 101
-"""Coordinates of a random point are multiples of 1/101, up to two: small, and rarely special."""
+PARTS = 1_000_003
+"""Coordinates of a random point are multiples of its inverse, up to two: small, rarely special, too many to foresee."""
 
 FUNCTIONS = {
     sp.sin: mp.sin,
@@ -35,6 +36,11 @@ FUNCTIONS = {
 
 class IrregularPoint(ArithmeticError):
     """An expression has no finite real value at the point."""
+
+
+def fresh_seed() -> str:
+    """A seed that nobody can foresee, for points at which no equation can have been made to vanish."""
+    return secrets.token_hex(8)
 
 
 def random_point(names: Iterable[str], attempt: int, seed: str) -> dict[sp.Symbol, sp.Rational]:

@@ -59,9 +59,17 @@ class EquationVerdict:
 
 @dataclass(frozen=True)
 class CheckReport(Shown):
-    """Verdicts on all equations of a record, in the record's order."""
+    """Verdicts on all equations of a record, in the record's order.
+
+    Attributes
+    ----------
+    verdicts : tuple of EquationVerdict
+    seed : str
+        Draws the same random points again.
+    """
 
     verdicts: tuple[EquationVerdict, ...]
+    seed: str
 
     @property
     def disagreements(self) -> int:

@@ -156,7 +156,7 @@ def svg_text(figure: "Figure") -> str:
     """
     buffer = io.StringIO()
     with import_matplotlib().rc_context(WRITING):
-        figure.savefig(buffer, format="svg", metadata={"Date": None})
+        figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": "Holonom"})
     head, defs, rest = buffer.getvalue().partition("<defs>")
     lines = (line.rstrip() for line in (head + COLOUR_OF_INK + defs + rest.replace(INK, "currentColor")).splitlines())
     return "\n".join(lines) + "\n"
@@ -164,7 +164,7 @@ def svg_text(figure: "Figure") -> str:
 
 def _png(figure: "Figure") -> bytes:
     buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", facecolor="white", metadata={"Software": None})
+    figure.savefig(buffer, format="png", facecolor="white", metadata={"Software": "Holonom"})
     return buffer.getvalue()
 
 

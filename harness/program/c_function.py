@@ -4,15 +4,16 @@ import ctypes
 import os
 import shlex
 import shutil
-import subprocess
-import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..confined import Confinement, LimitExceeded, Limits, Sandbox, run_confined
 from ..failures import Failure, HolonomError
+from ..files import private_directory
+from ..supervisor import doing
 from .c_source import c_source
 from .motion_program import Program
 
@@ -20,6 +21,7 @@ COMPILERS = ("cc", "gcc", "clang")
 # Not less than -O2: below it GCC leaves the upper halves of vector registers in use, and code without AVX that runs
 # afterwards waits for them again and again; GSL took 2 to 8 times as long.
 OPTIONS = ("-std=c99", "-O2", "-ffp-contract=fast", "-march=native", "-shared", "-fPIC")
+COMPILER_LIMITS = Limits(sandbox=Sandbox.TRUSTED)
 SHOWN = 200  # characters of what the compiler says
 POINTERS = (ctypes.c_void_p, ctypes.c_void_p)
 
@@ -107,11 +109,14 @@ def load_c(source: str, *options: str) -> ctypes.CDLL:
     HolonomError
         As `compile_c`.
     """
-    with tempfile.TemporaryDirectory(prefix="holonom-") as directory:
-        source_file, library = Path(directory, "motion.c"), Path(directory, "motion.so")
+    with private_directory() as directory:
+        source_file, library = directory / "motion.c", directory / "motion.so"
         source_file.write_text(source, encoding="utf-8")
         compile_shared([source_file], library, *OPTIONS, *options)
-        return ctypes.CDLL(str(library))
+        try:
+            return ctypes.CDLL(str(library))
+        except OSError as error:
+            raise HolonomError(Failure.COMPILER_UNUSABLE, detail=f"it made no library; {error}") from None
 
 
 def compile_shared(sources: Sequence[Path], library: Path, *options: str) -> None:
@@ -131,16 +136,25 @@ def compile_shared(sources: Sequence[Path], library: Path, *options: str) -> Non
         As `compile_c`.
     """
     command = [*_compiler(), *map(str, sources), "-o", str(library), *options, "-lm"]
-    finished = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
-    if finished.returncode != 0:
-        said = " ".join(finished.stderr.split())
-        raise HolonomError(Failure.COMPILER_REFUSED, detail=said[:SHOWN])
+    said = bytearray()
+    try:
+        with doing("compiling C"):
+            status = run_confined(command, Confinement(library.parent, os.environ, (), COMPILER_LIMITS), said)
+    except LimitExceeded as exceeded:
+        raise HolonomError(Failure.COMPILER_UNUSABLE, detail=f"{command[0]} took more than {exceeded.detail}") from None
+    except OSError as error:
+        raise HolonomError(Failure.COMPILER_UNUSABLE, detail=f"{command[0]}: {error.strerror}") from None
+    if status != 0:
+        shown = " ".join(said.decode(errors="replace").split())[:SHOWN]
+        raise HolonomError(Failure.COMPILER_REFUSED, detail=shown or f"exit status {status}")
+    if not library.exists():
+        raise HolonomError(Failure.COMPILER_UNUSABLE, detail=f"{command[0]} made no library")
 
 
 def _compiler() -> list[str]:
     """The compiler's command: what CC says, or the first that is installed."""
     if named := os.environ.get("CC"):
-        command = shlex.split(named)
+        command = _words(named)
         found = shutil.which(command[0])
     else:
         command = [""]
@@ -148,3 +162,13 @@ def _compiler() -> list[str]:
     if found is None:
         raise HolonomError(Failure.COMPILER_MISSING)
     return [found, *command[1:]]
+
+
+def _words(command: str) -> list[str]:
+    try:
+        words = shlex.split(command)
+    except ValueError:
+        words = []
+    if not words:
+        raise HolonomError(Failure.COMPILER_UNUSABLE, detail=f"CC is '{command}'")
+    return words

@@ -197,9 +197,17 @@ def _arithmetic(heyoka: ModuleType, number: Callable[[Fraction], object]) -> Ari
 
 
 def import_heyoka() -> ModuleType:
-    """Import heyoka, or say that it is missing."""
+    """Import heyoka, or say that it is missing.
+
+    It would keep machine code in the home directory and run whatever it finds there another time: a flipped bit, or a
+    hand that was not ours, gave other motions. So it keeps none. What it has to say it would say on standard output,
+    which may carry a document; what matters of it comes as exceptions.
+    """
     try:
         import heyoka
+
+        heyoka.llvm_state.set_diskcache_enabled(False)
+        heyoka.set_logger_level_critical()
     except ImportError:
         raise missing_package("heyoka") from None
     return heyoka

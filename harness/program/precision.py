@@ -1,6 +1,7 @@
 """The floating-point numbers that heyoka computes with: double, extended, quadruple, or of any number of digits."""
 
 import math
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -97,6 +98,7 @@ def _quadruple() -> Precision:
 def _of_digits(digits: int) -> Precision:
     heyoka = import_heyoka()
     bits = _bits(digits + GUARD_DIGITS)
+    sys.set_int_max_str_digits(max(sys.get_int_max_str_digits(), 2 * (digits + GUARD_DIGITS)))
 
     def number(text: str) -> Any:
         return heyoka.real(text, bits)

@@ -12,6 +12,8 @@ from ..failures import Failure, HolonomError
 from .motion_program import Solve, read_program
 from .python_source import python_source
 
+LONGEST = 200  # digits of a number that an option gives
+LARGEST_EXPONENT = 307  # of a double
 SETTING = re.compile(r"([^\W\d]\w*)=(-?\d+(?:\.\d+)?(?:e-?\d+)?(?:/\d+)?)", re.IGNORECASE)
 
 
@@ -40,6 +42,24 @@ class Request:
     settings: Mapping[str, str] = field(default_factory=dict)
 
 
+def within_reach(number: str) -> bool:
+    """Whether the parts of a decimal number or quotient are such that a double holds them, told without computing them.
+
+    Parameters
+    ----------
+    number : str
+
+    Returns
+    -------
+    bool
+    """
+    for part in number.lower().split("/"):
+        digits, _, exponent = part.partition("e")
+        if len(digits) > LONGEST or len(exponent) > 4 or not abs(int(exponent or 0)) + len(digits) <= LARGEST_EXPONENT:
+            return False
+    return True
+
+
 def read_settings(texts: Iterable[str]) -> dict[str, str]:
     """Read settings as they stand on a command line.
 
@@ -61,6 +81,8 @@ def read_settings(texts: Iterable[str]) -> dict[str, str]:
     for text in texts:
         if (found := SETTING.fullmatch(text)) is None:
             raise HolonomError(Failure.NOT_A_SETTING, detail=text)
+        if not within_reach(found[2]):
+            raise HolonomError(Failure.SETTING_TOO_LARGE, detail=text if len(text) < LONGEST else found[1])
         settings[found[1]] = found[2]
     return settings
 

@@ -10,6 +10,7 @@ import numpy as np
 from ..failures import Failure, HolonomError
 from ..program.motion_problem import MotionProblem
 from ..program.precision import Precision, read_precision
+from ..supervisor import doing
 from ..threads import one_blas_thread
 from .diagnosis import HardCase, Instant, hard_cases
 from .diagnostics import condition, residuals
@@ -45,7 +46,10 @@ def simulate(problem: MotionProblem, request: SimulationRequest, progress: Progr
         The request cannot be met: its precision, tolerance, engine or end; or the motion cannot be followed so far.
     """
     with one_blas_thread():
-        return _Simulation(problem, request).run(progress)
+        with doing("compiling the motion"):
+            prepared = _Simulation(problem, request)
+        with doing("following the motion"):
+            return prepared.run(progress)
 
 
 def last_instant(problem: MotionProblem, until: Fraction | None, precision: Precision) -> Any:

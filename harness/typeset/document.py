@@ -12,7 +12,8 @@ from .latex import latex
 from .quantities import letter_box, spelled_out
 
 WIDTH = 70  # digits of the article's typeface beside the number of an equation
-PREAMBLE = r"""\documentclass[11pt]{article}
+PREAMBLE = r"""% Written by Holonom
+\documentclass[11pt]{article}
 \usepackage[utf8]{inputenc}
 \usepackage[a4paper, margin=25mm]{geometry}
 \usepackage{amsmath}

@@ -3,7 +3,7 @@
 import pages
 from own_system import SMOOTH, made
 
-from holonom.companion.book import GENERATOR
+from holonom.files import write_files
 
 ROUGH = """rough_scene : holonomic_scene(system, title = "Rough",
   control_law = [u = 1 + t^(7/2)], parameter_values = [k = 2], initial_state = [x = 1, y = 1, dot(x) = 0, dot(y) = 0])$
@@ -64,11 +64,11 @@ def test_a_directory_with_other_things_in_it_is_left_alone(tmp_path):
     assert (directory / "thesis.txt").read_text() == "years of work"
 
 
-def test_a_companion_is_replaced_as_a_whole(tmp_path):
-    (tmp_path / "pages").mkdir()
-    (tmp_path / "pages" / "index.html").write_text(GENERATOR)
-    (tmp_path / "pages" / "stale.html").write_text("from an earlier edition")
+def test_of_a_companion_what_was_written_is_replaced_and_the_rest_stays(tmp_path):
+    write_files(tmp_path / "pages", {"index.html": "an earlier edition", "stale.html": "from an earlier edition"})
+    (tmp_path / "pages" / "own.mac").write_text("years of work")
     outcome, directory = made(tmp_path, "")
     assert outcome.return_value == 0
     assert not (directory / "stale.html").exists()
+    assert (directory / "own.mac").read_text() == "years of work"
     assert "The file has no scene" in pages.words(directory / "the-system.html")

@@ -6,6 +6,8 @@ import pytest
 import sympy as sp
 
 from holonom.crosscheck import EquationVerdict, Verdict, check_record
+from holonom.crosscheck.points import fresh_seed, random_point
+from holonom.crosscheck.verdict import Comparison, Pair, judge
 from holonom.record import Equation, Record, Relation
 
 
@@ -121,3 +123,20 @@ def verdict_on(record: Record) -> EquationVerdict:
 
 def verdict_on_scene(record: Record) -> EquationVerdict:
     return next(found for found in check_record(record).verdicts if found.scene)
+
+
+def test_points_are_drawn_afresh_and_a_seed_draws_them_again(paper_record):
+    """A record that is made to vanish at the points of one check is found out by the next one."""
+    wrong = with_equations(paper_record, ())
+    first, second = check_record(wrong), check_record(wrong)
+    assert first.seed != second.seed
+    assert random_point(["x"], 0, f"{first.seed} 2") != random_point(["x"], 0, f"{second.seed} 2")
+    assert check_record(wrong, first.seed) == first
+
+
+def test_a_record_forged_to_vanish_at_all_points_of_a_seed_disagrees_under_another():
+    x = sp.Symbol("x", real=True)
+    points = [random_point(["x"], attempt, "known")[x] for attempt in range(100)]
+    forged = Comparison((Pair("x", x + sp.prod(x - point for point in points), x),))
+    assert judge(forged, "known").verdict is not Verdict.DISAGREES
+    assert judge(forged, fresh_seed()).verdict is Verdict.DISAGREES

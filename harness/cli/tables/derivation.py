@@ -53,7 +53,7 @@ def show_verdicts(console: Console, report: "CheckReport") -> None:
     for reason in left_out:
         numbers = [f"({found.number})" for found in report.verdicts if found.detail == reason]
         console.print(f"{', '.join(dict.fromkeys(numbers))} left out: {reason}.", soft_wrap=True, markup=False)
-    console.print(_sum(report))
+    console.print(f"{_sum(report)}; random points drawn by --seed {report.seed}", soft_wrap=True, markup=False)
 
 
 def _sum(report: "CheckReport") -> str:

@@ -1,0 +1,365 @@
+"""The fault table: what is done to a command, and what must be seen.
+
+Each row is one command in a directory of its own, which holds `scene.mac`, the particle on a table, and what `prepare`
+puts there. Whatever is done, there is one sentence, the exit status, no traceback, nothing half-written, and nothing
+left in the directory for temporary files.
+"""
+
+import os
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from conftest import PARTICLE
+
+MACHINE_AT_FAULT = 3
+PENDULUM = Path(__file__).resolve().parents[2] / "examples" / "pendulum.mac"
+SWING = re.sub(r"load\(.*?\)\)", 'load("holonom.mac")', PENDULUM.read_text(encoding="utf-8"), count=1, flags=re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A row of the table.
+
+    Attributes
+    ----------
+    name : str
+    command : str
+        What follows ``holonom``, words with blanks between them.
+    says : str
+        What the sentence holds; empty where all goes well.
+    status : int
+    prepare : callable or None
+        Given the directory.
+    environment : mapping of str to str
+        ``{here}`` stands for the directory.
+    shell : str
+        The shell command, in which ``"$@"`` is the command, where it is not called as it is.
+    long : bool
+        Whether `make check-long` alone runs it.
+    """
+
+    name: str
+    command: str
+    says: str = ""
+    status: int = 2
+    prepare: Callable[[Path], object] | None = None
+    environment: Mapping[str, str] = field(default_factory=dict)
+    shell: str = ""
+    long: bool = False
+
+
+def holding(name: str, content: str | bytes) -> Callable[[Path], object]:
+    """Put a file into the directory."""
+    data = content.encode() if isinstance(content, str) else content
+    return lambda here: (here / name).write_bytes(data)
+
+
+def maxima(script: str, mode: int = 0o755) -> Callable[[Path], object]:
+    """Put another program in Maxima's place."""
+
+    def prepare(here: Path) -> None:
+        (here / "bin").mkdir()
+        (here / "bin" / "maxima").write_text(script)
+        (here / "bin" / "maxima").chmod(mode)
+
+    return prepare
+
+
+def leaving(what: str, command: str) -> Callable[[Path], object]:
+    """A Maxima that does no more than to make something of the file it should leave behind."""
+    name = f"$(grep -o '{what}-[0-9a-f]*' job.lisp | tail -n 1)"
+    return maxima(f"#!/bin/sh\nmark=$(grep -o 'outcome-[0-9a-f]*' job.lisp | tail -n 1)\n{command.format(name=name)}\n")
+
+
+FINISHED = "printf '%s\\nFINISHED\\n-\\n0\\n\\n%s\\n' ${{mark#outcome-}} ${{mark#outcome-}} > $mark"
+OTHER_MAXIMA = {"PATH": "{here}/bin:" + os.environ["PATH"]}
+NO_PROGRAMS = {"PATH": "{here}"}
+DERIVE = "derive scene.mac --json out.json"
+
+OPTIONS = [
+    Fault("an unknown command", "surprise", "No such command"),
+    Fault("an unknown option", "derive scene.mac --surprise", "No such option"),
+    Fault("no scene", "derive", "Missing argument"),
+    Fault("no order", "series scene.mac", "Missing option"),
+    *(
+        Fault(f"a time limit of {text}", f"derive scene.mac --time-limit {text}", "--time-limit")
+        for text in ("nan", "inf", "0", "-1", "1e400", "soon", "1e10")
+    ),
+    *(
+        Fault(f"a memory limit of {text}", f"derive scene.mac --memory-limit {text}", "--memory-limit")
+        for text in ("0", "1", "-5", "1e3", "99999999999999999999")
+    ),
+    *(
+        Fault(f"an end at {text}", f"simulate scene.mac --until {text}", "is no instant")
+        for text in ("soon", "nan", "inf", "1/0", "1e400", "1e-400", "1e1000000000", "9" * 400)
+    ),
+    Fault("a sum at 1e400", "series scene.mac --order 4 --at 1e400", "is no instant"),
+    *(
+        Fault(f"{text} samples", f"simulate scene.mac --samples {text}", "--samples")
+        for text in ("0", "1", "-3", "1.5", "many")
+    ),
+    *(Fault(f"an order of {text}", f"series scene.mac --order {text}", "--order") for text in ("1", "-1", "x")),
+    Fault("no digits", "series scene.mac --order 4 --digits 0", "--digits"),
+    Fault("an unknown engine", "simulate scene.mac --engine steam", "--engine"),
+    Fault("an unknown cure of drift", "simulate scene.mac --drift hope", "--drift"),
+    Fault("an unknown solve", "program scene.mac --solve luck", "--solve"),
+    Fault("an unknown form", "program scene.mac --to cobol", "--to"),
+    Fault("trusted and walled in", "derive scene.mac --trust --sandbox", "exclude one another"),
+    Fault("exact and in digits", "series scene.mac --order 4 --exact --digits 9", "exclude one another"),
+    *(
+        Fault(f"{text} as a setting", f"derive scene.mac --set {text}", "sets nothing")
+        for text in ("m", "m=", "m=x", "=1", "m=1e", "m=system(1)", "m=1;quit()")
+    ),
+    *(
+        Fault(f"{text} as a setting", f"derive scene.mac --set {text}", "beyond what a double holds")
+        for text in ("m=1e400", "m=1e-400", "m=1e1000000000", f"m={'9' * 400}")
+    ),
+    *(
+        Fault(f"a precision of {text}", f"simulate scene.mac --until 1 --precision {text}", "is no precision")
+        for text in ("0", "-1", "5001", "1e9", "very")
+    ),
+    Fault("a name that no scene has", "simulate scene.mac --scene a;b", "cannot be the name of a scene"),
+]
+
+OUTPUTS = [
+    Fault("the record in the scene's place", "derive scene.mac --json scene.mac", "the scene itself"),
+    Fault("the article in the scene's place", "derive scene.mac --tex ./scene.mac", "the scene itself"),
+    Fault("the program in the scene's place", "program scene.mac --to python -o scene.mac", "the scene itself"),
+    Fault("the library in the scene's place", "program scene.mac --to c -o scene.mac", "the scene itself"),
+    Fault("the unit in the scene's place", "program scene.mac --to fmu -o scene.mac", "the scene itself"),
+    Fault("the verdicts in the scene's place", "check scene.mac --json scene.mac --force", "the scene itself"),
+    Fault(
+        "the scene by a symbolic link",
+        "derive scene.mac --json link",
+        "the scene itself",
+        prepare=lambda here: (here / "link").symlink_to("scene.mac"),
+    ),
+    Fault(
+        "the scene by a second name",
+        "derive scene.mac --json twin",
+        "the scene itself",
+        prepare=lambda here: os.link(here / "scene.mac", here / "twin"),
+    ),
+    Fault("two outputs of one name", "derive scene.mac --json out --tex out", "another output"),
+    Fault("two outputs of one name, spelt apart", "derive scene.mac --json out --tex ./out", "another output"),
+    Fault("two documents on standard output", "derive scene.mac --json - --tex -", "another output"),
+    Fault("samples and figure of one name", "simulate scene.mac -o x.svg --plot x.svg", "another output"),
+    Fault("no such directory", "derive scene.mac --json nowhere/out.json", "cannot be written"),
+    Fault("a directory", "derive scene.mac --json .", "cannot be written"),
+    Fault("a file as a directory", "derive scene.mac --json scene.mac/out.json", "cannot be written"),
+    Fault("too long a name", f"derive scene.mac --json {'x' * 300}", "cannot be written"),
+    *(
+        Fault(
+            f"somebody else's {name}",
+            f"{command} {name}",
+            "no earlier output of this kind",
+            prepare=holding(name, content),
+        )
+        for name, command, content in (
+            ("notes.json", "derive scene.mac --json", '{"name": "mine"}'),
+            ("list.json", "check scene.mac --json", "[1, 2]"),
+            ("other.mac", "derive scene.mac --json", PARTICLE),
+            ("table.csv", "simulate scene.mac -o", "name,mark\nme,1\n"),
+            ("drawing.svg", "errata --svg", "<svg xmlns='http://www.w3.org/2000/svg'/>"),
+            ("thesis.tex", "derive scene.mac --tex", "\\documentclass{book}"),
+            ("tool.py", "program scene.mac --to python -o", "print('mine')"),
+        )
+    ),
+    Fault("no such format", "simulate scene.mac --until 1 -o out.xls", "no such file can be written"),
+    Fault("a directory of others for the companion", "companion scene.mac -o .", "other things than a companion"),
+]
+
+SCENES = [
+    Fault("no such file", "derive nowhere.mac", "there is no such file"),
+    Fault("a directory as a scene", "derive .", "no regular file"),
+    Fault("a pipe without a writer", "derive pipe", "no regular file", prepare=lambda here: os.mkfifo(here / "pipe")),
+    Fault("an endless device", "derive /dev/zero", "no regular file"),
+    Fault("null characters", "derive null.mac", "null characters", prepare=holding("null.mac", b"x : 1$\0")),
+    Fault(
+        "a title in Latin-1",
+        "derive latin.mac",
+        "latin.mac:5: the file is not UTF-8 text: byte 0xe9",
+        prepare=holding("latin.mac", PARTICLE.replace("Particle", "Pärticlé").replace("ä", "a").encode("latin-1")),
+    ),
+    Fault("UTF-16", "check wide.mac", "not UTF-8", prepare=holding("wide.mac", PARTICLE.encode("utf-16"))),
+    Fault("a link to itself", "derive loop", "cannot be read", prepare=lambda here: (here / "loop").symlink_to("loop")),
+    Fault("an empty file", "derive empty.mac", "describes no system", prepare=holding("empty.mac", "")),
+    Fault(
+        "a file that ends Maxima",
+        "derive quit.mac",
+        "Maxima ended before the file did",
+        prepare=holding("quit.mac", "quit()$"),
+    ),
+    Fault(
+        "a Maxima that is killed",
+        "derive kill.mac",
+        "Maxima was ended by SIGKILL",
+        MACHINE_AT_FAULT,
+        prepare=holding("kill.mac", 'system("kill -9 $PPID")$'),
+    ),
+    Fault(
+        "a file that never ends",
+        "derive loop.mac --time-limit 1",
+        "--time-limit",
+        prepare=holding("loop.mac", "for i do 1$"),
+    ),
+    Fault(
+        "an error without words",
+        "derive error.mac",
+        "error.mac:1: ",
+        prepare=holding("error.mac", 'error("")$'),
+        long=True,
+    ),
+    Fault("lines ended as on Windows", DERIVE, "", 0, holding("scene.mac", PARTICLE.replace("\n", "\r\n"))),
+    Fault("a byte order mark", DERIVE, "", 0, holding("scene.mac", "\ufeff" + PARTICLE), long=True),
+    Fault("lines ended as on old Macs", DERIVE, "", 0, holding("scene.mac", PARTICLE.replace("\n", "\r")), long=True),
+    *(
+        Fault(f"a file named {name}", f"derive {name} --json out.json", "", 0, holding(name, PARTICLE), long=True)
+        for name in ("a[1].mac", "*.mac", "what?.mac", "back\\slash.mac", 'quo"te.mac', "é.mac", "x;y.mac", "~.mac")
+    ),
+    Fault(
+        "a name that is not UTF-8",
+        "derive \udce9.mac --json out.json",
+        "",
+        0,
+        lambda here: Path(os.fsdecode(os.fsencode(here) + b"/\xe9.mac")).write_text(PARTICLE),
+        long=True,
+    ),
+]
+
+ENVIRONMENTS = [
+    Fault(
+        "no Maxima", "derive scene.mac --trust", "Maxima is not installed", MACHINE_AT_FAULT, environment=NO_PROGRAMS
+    ),
+    Fault(
+        "a Maxima that nobody may run",
+        "derive scene.mac --trust",
+        "is not installed",
+        MACHINE_AT_FAULT,
+        maxima("#!/bin/sh\n", 0o644),
+        {"PATH": "{here}/bin"},
+    ),
+    Fault(
+        "a Maxima that is none",
+        "derive scene.mac",
+        "does not run as Maxima",
+        MACHINE_AT_FAULT,
+        maxima("not a program"),
+        OTHER_MAXIMA,
+    ),
+    Fault(
+        "a Maxima that says nothing",
+        "derive scene.mac",
+        "does not run as Maxima: exit status 0",
+        MACHINE_AT_FAULT,
+        maxima("#!/bin/sh\nexit 0\n"),
+        OTHER_MAXIMA,
+    ),
+    Fault(
+        "a Maxima that fails",
+        "derive scene.mac",
+        "does not run as Maxima: exit status 7",
+        MACHINE_AT_FAULT,
+        maxima("#!/bin/sh\necho garbage; exit 7\n"),
+        OTHER_MAXIMA,
+    ),
+    *(
+        Fault(name, "derive scene.mac", says, MACHINE_AT_FAULT, leaving(what, command), OTHER_MAXIMA)
+        for name, what, command, says in (
+            ("a torn outcome", "outcome", "printf 'FINI' > {name}", "not whole: its outcome"),
+            ("an alien outcome", "outcome", "seq 100 > {name}", "not whole: its outcome"),
+            ("an outcome in bytes", "outcome", "head -c 9999 /dev/urandom > {name}", "not whole: its outcome"),
+            ("an outcome that is a directory", "outcome", "mkdir {name}", "does not run as Maxima"),
+            ("an outcome that is a pipe", "outcome", "mkfifo {name}", "does not run as Maxima"),
+            ("an outcome that is a link", "outcome", "ln -s /etc/passwd {name}", "does not run as Maxima"),
+        )
+    ),
+    *(
+        Fault(
+            name, "derive scene.mac --trust", says, status, leaving("document", f"{command}; {FINISHED}"), OTHER_MAXIMA
+        )
+        for name, command, says, status in (
+            ("no document", "true", "describes no system", 2),
+            ("a document that is a directory", "mkdir {name}", "describes no system", 2),
+            ("a document that is a link", "ln -s /etc/passwd {name}", "describes no system", 2),
+            ("a torn document", "printf '{{\"format\"' > {name}", "not whole: its document", MACHINE_AT_FAULT),
+            ("an alien document", "echo hello > {name}", "", 2),
+            ("a document of another kind", "echo '{{}}' > {name}", "", 2),
+        )
+    ),
+    Fault(
+        "no such directory for temporary files",
+        DERIVE,
+        "",
+        0,
+        environment={"TMPDIR": "{here}/scene.mac"},
+    ),
+    Fault("standard output full", "derive scene.mac", "No space left", MACHINE_AT_FAULT, shell='"$@" > /dev/full'),
+    Fault("a full device", "derive scene.mac --json /dev/full", "No space left", MACHINE_AT_FAULT),
+    Fault("no standard output", "derive scene.mac --json out.json", "", 0, shell='"$@" >&-', long=True),
+    Fault("nobody who reads", "derive scene.mac", "", 141, shell='"$@" | true; exit ${PIPESTATUS[0]}'),
+    Fault("no home", DERIVE, "", 0, environment={"HOME": ""}, long=True),
+    Fault("a home that is not there", DERIVE, "", 0, environment={"HOME": "/nowhere"}, long=True),
+    Fault("letters of ASCII alone", "derive scene.mac", "", 0, environment={"PYTHONIOENCODING": "ascii"}, long=True),
+    Fault("a dozen descriptors", "derive scene.mac --trust", "", 0, shell='ulimit -n 12; "$@"'),
+    Fault("small files", DERIVE, "", MACHINE_AT_FAULT, shell='ulimit -f 4; "$@"'),
+    Fault(
+        "no bubblewrap", DERIVE, "bubblewrap is missing", 0, environment={"HOLONOM_TEST_PATH": "no bwrap"}, long=True
+    ),
+    Fault(
+        "no bubblewrap where it is demanded",
+        "derive scene.mac --sandbox",
+        "bubblewrap is missing",
+        MACHINE_AT_FAULT,
+        environment=NO_PROGRAMS,
+    ),
+    *(
+        Fault(f"CC={named}", "effects scene.mac", says, status, environment={"CC": named}, long=index > 0)
+        for index, (named, says, status) in enumerate(
+            (
+                ("'", "the C compiler cannot be run", MACHINE_AT_FAULT),
+                ("true", "made no library", MACHINE_AT_FAULT),
+                (" ", "the C compiler cannot be run", MACHINE_AT_FAULT),
+                ("false", "refused", 2),
+            )
+        )
+    ),
+    Fault(
+        "a compiler that hangs",
+        "effects scene.mac --time-limit 6",
+        "ran out of them while compiling C",
+        environment={"CC": "sleep 1000; "},
+        long=True,
+    ),
+    Fault(
+        "a nonsensical backend of Matplotlib",
+        "simulate scene.mac --until 1 --plot out.svg",
+        "",
+        0,
+        environment={"MPLBACKEND": "nonsense"},
+        long=True,
+    ),
+]
+
+WORK = [
+    Fault("a billion samples", "simulate scene.mac --until 1 --samples 1000000000", "MiB of memory"),
+    Fault("a billion orders", "series scene.mac --order 1000000000", "MiB of memory", long=True),
+    Fault("a billion digits", "series scene.mac --order 4 --digits 1000000000", "MiB of memory", long=True),
+    Fault("a tolerance of nan", "simulate scene.mac --until 1 --tol nan", "tolerances", long=True),
+    Fault("a tolerance of zero", "simulate scene.mac --until 1 --tol 0", "tolerances", long=True),
+    Fault("an end before the start", "simulate scene.mac --until -1", "not after the start", long=True),
+    Fault("5000 digits", "series scene.mac --order 4 --precision 5000", "", 0, long=True),
+    Fault("one digit", "simulate scene.mac --until 1 --precision 1 --final", "", 0, long=True),
+    Fault("a setting that nobody asks for", "derive scene.mac --set k=1", "k", long=True),
+    Fault(
+        "a motion that takes too long",
+        "simulate swing.mac --until 1e9 --time-limit 8 --final",
+        "ran out of them while following the motion",
+        prepare=holding("swing.mac", SWING),
+        long=True,
+    ),
+]
+
+TABLE = [*OPTIONS, *OUTPUTS, *SCENES, *ENVIRONMENTS, *WORK]

@@ -1,0 +1,71 @@
+"""The fault table: every fault is one sentence, and nothing is left of it."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import PARTICLE
+from table import TABLE, Fault
+
+SENTENCE = re.compile(r"^(holonom|Error): .+\S$", re.MULTILINE)
+
+
+def rows() -> list:
+    return [pytest.param(row, id=row.name[:60], marks=[pytest.mark.long] if row.long else []) for row in TABLE]
+
+
+@pytest.mark.parametrize("fault", rows())
+def test_a_fault_is_one_sentence(fault: Fault, tmp_path: Path):
+    here, temporary = tmp_path / "here", tmp_path / "temporary"
+    here.mkdir()
+    temporary.mkdir()
+    (here / "scene.mac").write_text(PARTICLE, encoding="utf-8")
+    if fault.prepare:
+        fault.prepare(here)
+    before = contents(here)
+    done = run(fault, here, environment(fault, here, temporary))
+    assert "Traceback" not in done.stderr
+    assert done.returncode == fault.status, done.stderr
+    assert fault.says in done.stderr
+    if fault.status in (2, 3):
+        assert len(SENTENCE.findall(done.stderr)) == 1, done.stderr
+        assert contents(here) == before
+    assert list(temporary.iterdir()) == []
+
+
+def test_the_table_has_a_hundred_rows_and_no_row_twice():
+    assert len({row.name for row in TABLE}) == len(TABLE) >= 100
+
+
+def run(fault: Fault, here: Path, environment: dict[str, str]) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "holonom", *fault.command.split(" ")]
+    if fault.shell:
+        command = ["/bin/bash", "-c", fault.shell, "bash", *command]
+    return subprocess.run(
+        command, cwd=here, env=environment, capture_output=True, text=True, errors="replace", timeout=100, check=False
+    )
+
+
+def environment(fault: Fault, here: Path, temporary: Path) -> dict[str, str]:
+    changed = {name: text.replace("{here}", str(here)) for name, text in fault.environment.items()}
+    if changed.pop("HOLONOM_TEST_PATH", None):
+        programs = here.parent / "programs"
+        programs.mkdir()
+        (programs / "maxima").symlink_to(shutil.which("maxima"))
+        for name in ("sh", "awk", "sed", "grep", "cut", "dirname", "basename", "expr", "ls", "cat", "uname"):
+            if found := shutil.which(name):
+                (programs / name).symlink_to(found)
+        changed["PATH"] = str(programs)
+    return os.environ | {"TMPDIR": str(temporary)} | changed
+
+
+def contents(directory: Path) -> dict[str, bytes | None]:
+    """The regular files of a directory and what they hold."""
+    return {
+        str(path.relative_to(directory)): path.read_bytes() if path.is_file() else None
+        for path in sorted(directory.rglob("*"))
+    }

@@ -1,0 +1,165 @@
+"""Scenes from strangers: what a hostile one tries, each in a run of its own, and that it has nothing of it.
+
+The scenes run in Maxima, where a file may call any program and any Lisp function.
+"""
+
+import json
+import os
+import socket
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import PARTICLE
+
+from holonom.confined import Limits, Sandbox, bubblewrap
+from holonom.failures import Failure, HolonomError
+from holonom.maxima import run_scene
+
+walled = pytest.mark.skipif(bubblewrap() is None, reason="bubblewrap is missing or forbidden")
+
+
+def scene(tmp_path: Path, deed: str, *, before: str = "") -> Path:
+    folder = tmp_path / "scene"
+    folder.mkdir()
+    file = folder / "scene.mac"
+    file.write_text(before + PARTICLE + deed, encoding="utf-8")
+    return file
+
+
+def told(tmp_path: Path, command: str) -> str:
+    """What a program says that a scene runs: the scene makes it the title of its system."""
+    text = (
+        f'load("holonom.mac")$ system("{command} > seen 2>&1")$ file : openr("seen")$ said : ""$ '
+        "while stringp(line : readline(file)) do said : sconcat(said, line)$ "
+        "system : holonomic_system(title = said, coordinates = [x], kinetic_energy = dot(x)^2/2)$"
+    )
+    file = tmp_path / "telling.mac"
+    file.write_text(text, encoding="utf-8")
+    return json.loads(run_scene(file))["system"]["title"]
+
+
+def test_what_a_program_says_can_be_told(tmp_path):
+    assert told(tmp_path, "echo hello") == "hello"
+
+
+@walled
+@pytest.mark.parametrize("where", ["outside", "in /etc"])
+def test_no_file_outside_its_folder_is_read(where, tmp_path):
+    folder, secret = tmp_path / "scene", tmp_path / "secret"
+    folder.mkdir()
+    secret.write_text("root: the secret")
+    said = told(folder, f"cat {secret if where == 'outside' else '/etc/passwd'}")
+    assert "No such file" in said
+    assert "root:" not in said
+
+
+@walled
+@pytest.mark.parametrize("place", ["{outside}/new", "{outside}/old", "{library}/holonom.mac", "{folder}/scene.mac"])
+def test_no_file_is_written(place, tmp_path):
+    import holonom.maxima
+
+    outside = tmp_path / "outside"
+    outside.mkdir()
+    (outside / "old").write_text("as it was")
+    library = holonom.maxima.LIBRARY
+    target = Path(place.format(outside=outside, library=library, folder=tmp_path / "scene"))
+    deed = f'errcatch(with_stdout("{target}", print("forged")))$ system("echo forged >> {target}; rm -rf {target}")$'
+    file = scene(tmp_path, deed)
+    before = target.read_bytes() if target.exists() else None
+    run_scene(file)
+    assert (target.read_bytes() if target.exists() else None) == before
+
+
+@walled
+def test_there_is_no_network(tmp_path):
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        server.settimeout(0.2)
+        port = server.getsockname()[1]
+        run_scene(scene(tmp_path, f"system(\"bash -c 'echo hello > /dev/tcp/127.0.0.1/{port}'\")$"))
+        with pytest.raises(TimeoutError):
+            server.accept()
+
+
+@walled
+def test_no_other_process_is_seen_or_ended(tmp_path):
+    victim = subprocess.Popen(["sleep", "60"])
+    try:
+        run_scene(scene(tmp_path, f'system("kill -9 {victim.pid}")$'))
+        assert victim.poll() is None
+    finally:
+        victim.kill()
+        victim.wait()
+
+
+@walled
+def test_nothing_runs_on_that_hides_in_a_session_of_its_own(tmp_path):
+    mark = f"{os.getpid()}.125"
+    run_scene(scene(tmp_path, f'system("setsid sleep {mark} >/dev/null 2>&1 &")$'))
+    seen = subprocess.run(["ps", "-eo", "args"], capture_output=True, text=True, check=True).stdout
+    assert f"sleep {mark}" not in seen
+
+
+@walled
+def test_the_environment_is_not_shown(tmp_path, monkeypatch):
+    monkeypatch.setenv("TOKEN", "the secret")
+    said = told(tmp_path, "env")
+    assert "HOME=" in said
+    assert "the secret" not in said
+
+
+REFUSALS = {Failure.TORN, Failure.REFUSED, Failure.NOTHING_WRITTEN, Failure.LISP_ERROR, Failure.ENDED_EARLY}
+FORGERIES = {
+    "the writer of the record": 'write_record(file) := with_stdout(file, print("{\\"forged\\" : true}"))$',
+    "the derivation": "derive(system) := error(sconcat(forged))$ multipliers_of([x]) := [0]$",
+    "the Christoffel symbols": "christoffel_symbols([x]) := zeromatrix(2, 2)$ diff([x]) := 0$",
+    "Lisp's own functions": r'?eval(?read\-from\-string("(defun $diff (&rest x) (declare (ignore x)) 0)"))$',
+    "the outcome": "system(\"for f in outcome-*; do printf 'forged' > $f; done\")$",
+    "the document": 'system("touch document-0 document; cp document document-1")$',
+    "the way out": "?leave : 0$",
+}
+
+
+@pytest.mark.parametrize("forgery", FORGERIES)
+def test_what_derives_is_not_what_the_scene_has_touched(forgery, tmp_path, particle_record):
+    """A forger is refused, for its own run is broken, or changes nothing of the derivation."""
+    try:
+        found = run_scene(scene(tmp_path, FORGERIES[forgery]))
+    except HolonomError as refusal:
+        found = None
+        refused = refusal.failure
+    assert refused in REFUSALS if found is None else derivations(found) == derivations(particle_record)
+
+
+def derivations(record: str) -> list:
+    return json.loads(record)["derivations"]
+
+
+def test_options_of_maxima_that_change_the_description_are_refused(tmp_path):
+    with pytest.raises(HolonomError, match="sets an option of Maxima's"):
+        run_scene(scene(tmp_path, "", before="numer : true$ "))
+
+
+@pytest.mark.parametrize("option", ["obase : 8", "keepfloat : true", "simp : true", "exptdispflag : false"])
+def test_options_of_maxima_do_not_reach_the_derivation(option, tmp_path, particle_record):
+    assert derivations(run_scene(scene(tmp_path, "", before=f"{option}$ "))) == derivations(particle_record)
+
+
+def test_a_trusted_scene_is_run_in_the_open(tmp_path):
+    target = tmp_path / "written"
+    run_scene(scene(tmp_path, f'with_stdout("{target}", print("here"))$'), Limits(sandbox=Sandbox.TRUSTED))
+    assert target.read_text().strip() == "here"
+
+
+def test_a_command_says_that_nothing_is_walled_in(tmp_path):
+    programs = tmp_path / "programs"
+    programs.mkdir()
+    done = subprocess.run(
+        [sys.executable, "-m", "holonom", "derive", "nowhere.mac"],
+        env=os.environ | {"PATH": str(programs)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.stderr.splitlines()[0].startswith("holonom: bubblewrap is missing or forbidden here")

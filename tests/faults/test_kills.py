@@ -1,0 +1,91 @@
+"""Whatever ends a command, nothing that it started runs on, and no file of it stays."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+
+import psutil
+import pytest
+
+ENDLESS = 'load("holonom.mac")$ system("(sleep 1000 >/dev/null 2>&1 &); true")$ for i do 1$'
+VERBS = {
+    "derive": ["--json", "out.json"],
+    "check": ["--json", "out.json"],
+    "free": ["--json", "out.json"],
+    "series": ["--order", "4", "--json", "out.json"],
+    "program": ["-o", "out.json"],
+    "effects": ["--json", "out.json"],
+    "simulate": ["--until", "1", "-o", "out.csv"],
+    "accuracy": ["--json", "out.json"],
+    "companion": ["-o", "pages"],
+}
+SIGNALS = (signal.SIGTERM, signal.SIGHUP, signal.SIGINT, signal.SIGKILL)
+
+
+def cases() -> list:
+    """Each verb by each signal; of these the short form has each verb and each signal once or twice."""
+    short = {("derive", each) for each in SIGNALS} | {("simulate", signal.SIGTERM), ("companion", signal.SIGKILL)}
+    return [
+        pytest.param(verb, number, marks=[] if (verb, number) in short else [pytest.mark.long])
+        for verb in VERBS
+        for number in SIGNALS
+    ]
+
+
+@pytest.mark.parametrize(("verb", "number"), cases())
+def test_a_signal_ends_all_and_leaves_nothing(verb, number, tmp_path):
+    here, temporary = tmp_path / "here", tmp_path / "temporary"
+    here.mkdir()
+    temporary.mkdir()
+    (here / "scene.mac").write_text(ENDLESS, encoding="utf-8")
+    environment = os.environ | {"TMPDIR": str(temporary)}
+    command = [sys.executable, "-m", "holonom", verb, "scene.mac", *VERBS[verb]]
+    process = subprocess.Popen(command, cwd=here, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    assert soon(lambda: any("sleep" in name for name in names(running(process))))
+    started = running(process)
+    process.send_signal(number)
+    said = process.communicate(timeout=60)[1].decode()
+    assert process.returncode == (-number if number == signal.SIGKILL else 128 + number)
+    assert "Traceback" not in said
+    assert soon(lambda: not any(each.is_running() and each.status() != psutil.STATUS_ZOMBIE for each in started))
+    assert [path.name for path in here.iterdir()] == ["scene.mac"]
+    if number == signal.SIGKILL:  # nobody is left to tidy up; the next command does
+        subprocess.run([sys.executable, "-m", "holonom", "derive", "no.mac"], env=environment, capture_output=True)
+    assert list(temporary.iterdir()) == []
+
+
+def test_the_supervisor_tells_a_crash_of_its_command(tmp_path):
+    """A command that crashes, here by a signal of its own, is told in one sentence."""
+    crash = "import os, signal; from holonom.supervisor import doing, supervise\n"
+    crash += "def command():\n    with doing('compiling'):\n        os.kill(os.getpid(), signal.SIGSEGV)\n"
+    crash += "print(supervise(command))"
+    done = subprocess.run([sys.executable, "-c", crash], capture_output=True, text=True, env=os.environ, check=True)
+    assert "status=3" in done.stdout
+    assert "ended by SIGSEGV while compiling" in done.stdout
+
+
+def running(process: subprocess.Popen[bytes]) -> list[psutil.Process]:
+    try:
+        return psutil.Process(process.pid).children(recursive=True)
+    except psutil.NoSuchProcess:
+        return []
+
+
+def names(processes: list[psutil.Process]) -> list[str]:
+    found = []
+    for each in processes:
+        try:
+            found.append(each.name())
+        except psutil.NoSuchProcess:
+            continue
+    return found
+
+
+def soon(condition: Callable[[], bool]) -> bool:
+    deadline = time.monotonic() + 60
+    while not condition() and time.monotonic() < deadline:
+        time.sleep(0.05)
+    return condition()
