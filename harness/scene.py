@@ -15,6 +15,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 from .confined import Limits
+from .documents import Document, ask, read
 from .failures import Failure, HolonomError
 from .files import near_file, write_files, write_whole
 from .program.motion_program import Program, Solve, read_program
@@ -136,16 +137,31 @@ class Scene:
 
     @cached_property
     def equations(self) -> "Equations":
-        """The equations of the system with the scene's effects, (2) to (11), then those of its initial motion."""
+        """The equations of the system with the scene's effects, (2) to (11), then those of its initial motion.
+
+        Of a scene that prescribes reactions, those of the system as it is described.
+        """
         record = self.record
-        named = [scene for scene in record.scenes if self._name in (None, scene.name)]
-        if self._name is not None and not named:
-            names = ", ".join(scene.name for scene in record.scenes) or "none"
-            raise HolonomError(Failure.NO_SUCH_SCENE, self.file, f"{self._name}; the file has {names}")
-        if not named:
+        names = [scene.name for scene in record.scenes]
+        wanted = self._name
+        if wanted not in names:
+            wanted = self._name_among(self._all_names())
+        if wanted not in names:
             return Equations(record.derivations[0].equations)
-        chosen = named[-1]
+        chosen = record.scenes[names.index(wanted)]
         return Equations((*record.derivations[chosen.derivation].equations, *chosen.equations))
+
+    def _all_names(self) -> Sequence[str]:
+        """Names of the file's scenes, those that prescribe reactions among them."""
+        text = ask(Document.SCENES, self.file, settings=self.settings, limits=self.limits)
+        return read(Document.SCENES, text)["scenes"]
+
+    def _name_among(self, names: Sequence[str]) -> str | None:
+        """The scene's name: the last one where none is given, None where there is no scene."""
+        if self._name is not None and self._name not in names:
+            said = f"{self._name}; the file has {', '.join(names) or 'none'}"
+            raise HolonomError(Failure.NO_SUCH_SCENE, self.file, said)
+        return self._name or next(reversed(names), None)
 
     @cached_property
     def symbols(self) -> Mapping[str, "Letter"]:
@@ -317,7 +333,7 @@ class Equations(Sequence["Equation"]):
     """Equations in the paper's order; a notebook shows them as typeset mathematics.
 
     ``equations[0]`` is the first; ``equations["8"]`` are those with the paper's number (8), and
-    ``equations["multipliers"]`` the one of that name.
+    ``equations["multipliers"]`` the one with that id.
     """
 
     def __init__(self, equations: Iterable["Equation"]) -> None:
@@ -335,14 +351,14 @@ class Equations(Sequence["Equation"]):
             return self._equations[key]
         if isinstance(key, slice):
             return Equations(self._equations[key])
-        found = [equation for equation in self._equations if key in (equation.id, equation.number, equation.name)]
+        found = [equation for equation in self._equations if key in (equation.id, equation.number)]
         if not found:
-            raise KeyError(f"no equation has the number or name {key!r}; there are {', '.join(self.titles())}")
+            raise KeyError(f"no equation has the number or id {key!r}; there are {', '.join(self.titles())}")
         return Equations(found)
 
     def titles(self) -> Iterator[str]:
-        """Number and name of each."""
-        return (f"({equation.number}) {equation.name}" for equation in self._equations)
+        """Number, id and name of each."""
+        return (f"({equation.number}) {equation.id}: {equation.name}" for equation in self._equations)
 
     def solved_for(self, name: str) -> Any:
         """The right side of the relation whose left side is the quantity of that name, in SymPy.

@@ -13,7 +13,8 @@ from holonom.cli import holonom
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```(\w*)\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
-LONG = ("companion", "accuracy", "stability")  # commands that other tests run; here, that they take their arguments
+# Commands that other tests run; here, that they take their arguments.
+LONG = ("companion", "accuracy", "stability", "errata")
 
 
 def blocks(language: str) -> list[str]:

@@ -81,7 +81,7 @@ def test_all_public_names_are_there():
         _ = holonom.nothing
 
 
-def test_equations_are_found_by_number_and_by_name(pendulum):
+def test_equations_are_found_by_number_and_by_id(pendulum):
     assert len(pendulum.equations["8"]) == 2
     [multipliers] = pendulum.equations["multipliers"]
     assert multipliers in list(pendulum.equations)
@@ -157,6 +157,14 @@ def test_a_scene_is_chosen_by_its_name_and_the_last_one_without():
         holonom.system(OSCILLATOR, scene="nowhere").simulate()
     with pytest.raises(holonom.HolonomError, match="there is no scene nowhere"):
         _ = holonom.system(OSCILLATOR, scene="nowhere").equations
+
+
+def test_a_scene_that_prescribes_reactions_has_the_equations_of_the_described_system():
+    last, first = (holonom.load(EXAMPLES / "prescribed_tension.mac", scene=name) for name in (None, "thrown_scene"))
+    assert {"2", "8", "11"} <= {equation.number for equation in last.equations}
+    assert list(last.equations.titles()) == list(first.equations.titles())
+    with pytest.raises(holonom.HolonomError, match="the file has thrown_scene, steady_scene, growing_scene"):
+        _ = holonom.load(EXAMPLES / "prescribed_tension.mac", scene="thrown").equations
 
 
 def test_settings_reach_the_file():
