@@ -7,13 +7,15 @@ left in the directory for temporary files.
 
 import os
 import re
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from conftest import PARTICLE
 
 MACHINE_AT_FAULT = 3
+SHORT = 2  # rows with the same sentence in the short form
 PENDULUM = Path(__file__).resolve().parents[2] / "examples" / "pendulum.mac"
 SWING = re.sub(r"load\(.*?\)\)", 'load("holonom.mac")', PENDULUM.read_text(encoding="utf-8"), count=1, flags=re.DOTALL)
 
@@ -362,4 +364,13 @@ WORK = [
     ),
 ]
 
-TABLE = [*OPTIONS, *OUTPUTS, *SCENES, *ENVIRONMENTS, *WORK]
+
+def abridged(rows: Iterable[Fault]) -> Iterator[Fault]:
+    """The rows, and of those that differ in what is given alone only the first `SHORT` in the short form."""
+    seen = Counter()
+    for row in rows:
+        seen[row.says, row.status] += 1
+        yield replace(row, long=row.long or (bool(row.says) and seen[row.says, row.status] > SHORT))
+
+
+TABLE = [*abridged([*OPTIONS, *OUTPUTS, *SCENES, *ENVIRONMENTS, *WORK])]
