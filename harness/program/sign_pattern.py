@@ -32,6 +32,8 @@ def problem_in(problem: MotionProblem, pattern: Pattern) -> MotionProblem:
     MotionProblem
         Without signs.
     """
+    if not problem.signs:
+        return problem
     return replace(
         problem,
         motion=problem.motion and program_in(problem, problem.motion, pattern),
@@ -131,10 +133,9 @@ def with_numbers(program: Program, numbers: Mapping[str, Fraction]) -> Program:
     kept = []
     for name, expression in program.assignments:
         value = _substituted(expression, known)
+        kept.append((name, value))
         if isinstance(value, Fraction | Name | Constant):
             known[name] = value
-        else:
-            kept.append((name, value))
     part = replace(
         program,
         inputs=tuple(name for name in program.inputs if name not in numbers),
