@@ -199,7 +199,30 @@
     (dolist (form (library-file-forms file))
       (if (lisp-file-p (library-file-path file))
           (eval (lisp-in-namespace form))
-          (meval* (in-namespace form))))))
+          (meval* (with-maximas-defaults (in-namespace form)))))))
+
+;;; What a user sets changes how Maxima computes: obase : 8, modulus : 7, numer : true. Behind the
+;;; library's own doors it computes as it does when it starts.
+(defvar *defaults*
+  '(($numer nil) ($float nil) ($keepfloat nil) ($%enumer nil) ($modulus nil) ($obase 10) ($ibase 10)
+    ($algebraic nil) ($ratfac nil) ($domain $real) ($radexpand t) ($logexpand t) ($listarith t)
+    ($doallmxops t) ($domxmxops t) ($exponentialize nil) ($demoivre nil) ($trigexpand nil)
+    ($halfangles nil) ($stardisp nil) ($powerdisp nil) ($expop 0) ($expon 0)))
+
+(defun with-maximas-defaults (statement)
+  "A definition of a door with its body under the defaults; any other statement as it is."
+  (if (and (eq (caar statement) 'mdefine) (door-p (caaadr statement)))
+      (destructuring-bind (head function body) statement
+        (list head function
+              `((mprog) ((mlist) ,@(mapcar #'binding-of-flag *defaults*)) ,body)))
+      statement))
+
+;;; Maxima's own reader takes some flags by another name: $modulus is modulus, $obase *print-base*.
+(defun binding-of-flag (flag) (list '(msetq) (getalias (first flag)) (second flag)))
+
+(defun door-p (name)
+  (and (public-name-p name) (not (eq (gethash name *public-names*) 'entry))
+       (not (member name '($dot $ddot $dddot $total $setting)))))
 
 ;;; ---- names that are made, and text that is read, while the library runs -----------------------
 

@@ -76,11 +76,11 @@ def internal_names(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
     return [name for name in json.loads(run_batch(file, "write_names")) if not re.search(rf"\b{name}\b", BALL)]
 
 
-def documents(text: str, directory: Path) -> list[object]:
+def documents(text: str, directory: Path, writers: tuple[str, ...] = WRITERS) -> list[object]:
     """All documents about a scene file, its text and the library in one Maxima."""
     file = directory / "scene.mac"
     file.write_text(text)
-    return [json.loads(run_batch(file, writer)) for writer in WRITERS]
+    return [json.loads(run_batch(file, writer)) for writer in writers]
 
 
 @pytest.mark.parametrize("order", ["before", "after"])
@@ -89,6 +89,21 @@ def test_a_scene_may_define_every_name_of_the_library(order: str, internal_names
     scene = f"{taken}{HOLONOM}{BALL}" if order == "before" else f"{HOLONOM}{taken}{BALL}"
     assert len(internal_names) > 700
     assert documents(scene, tmp_path) == documents(HOLONOM + BALL, tmp_path)
+
+
+@pytest.mark.parametrize("flag", ["obase : 8", "modulus : 7", "exponentialize : true", "listarith : false"])
+def test_a_flag_of_maximas_does_not_change_the_motion(flag: str, tmp_path: Path):
+    # the motion was another one, with exit status 0
+    ours, theirs = (documents(HOLONOM + first + BALL, tmp_path, WRITERS[4:6]) for first in ("", f"{flag}$\n"))
+    assert ours == theirs
+
+
+def test_numbers_under_numer_are_exact_in_the_motion(tmp_path: Path):
+    # numer : true makes decimals of what the scene writes, and nothing of what the library computes
+    scene = BALL.replace("1 + t/10", "1 + t/8").replace("981/50", "39/2").replace("3/5", "0").replace("-4/5", "-1")
+    scene = re.sub(r"-dot\((\w+)\)/9", r"-dot(\1)/8", scene)
+    ours, theirs = (documents(HOLONOM + first + scene, tmp_path, WRITERS[4:5]) for first in ("", "numer : true$\n"))
+    assert ours == theirs
 
 
 def test_a_scene_may_call_its_coordinates_by_the_papers_letters(tmp_path: Path):
