@@ -8,7 +8,7 @@ from math import factorial
 from typing import NamedTuple, TypeVar
 
 from ..record import Derivation, Equation, LeftOut, Record, Relation, why_left_out
-from . import derivation, initial_motion, lagranges_method
+from . import derivation, initial_motion
 from .claims import NotComparable
 from .derivation import DerivationClaims
 from .independent import IndependentEquations
@@ -98,6 +98,8 @@ def _check_derivation(place: Place, claims: DerivationClaims, seed: str) -> Iter
     for equation in claims.equations:
         yield _verdict(place, equation, claims, derivation.COMPARISONS, seed)
     yield from _missing(place, _expected(claims), claims.equations)
+    from . import lagranges_method  # loads SymPy's mechanics, which nothing else of this package needs
+
     if lagranges_method.can_take(claims.system):
         yield _judged(place, lagranges_method.OPINION, lagranges_method.compare(claims.known), seed)
 
