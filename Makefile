@@ -9,7 +9,7 @@ SOURCES := $(shell find maxima harness -name '*.mac' -o -name '*.lisp' -o -name 
 
 .DEFAULT_GOAL := paper
 .DELETE_ON_ERROR:
-.PHONY: paper companion check check-long bench setup pictures clean help have-maxima have-compiler have-gsl have-bubblewrap have-python
+.PHONY: paper companion check check-long bench setup install pictures clean help have-maxima have-compiler have-gsl have-bubblewrap have-python
 
 paper: setup $(RECORDS) companion ## Derive and check every scene, compare the paper as printed (the default)
 	$(BIN)/holonom check $(SCENES) --json build/check.json
@@ -29,6 +29,9 @@ check-long: setup ## Run the tests that take too long for every change
 	$(TEST) -m long || [ $$? = 5 ]    # 5: there are none
 
 setup: have-maxima have-compiler have-gsl have-bubblewrap $(STAMP) ## Install what is missing: Maxima, a C compiler, GSL, bubblewrap, and the Python packages in .venv
+
+install: setup ## Put Holonom into Maxima's user directory, where load(holonom) finds it
+	$(BIN)/holonom maxima-path
 
 bench: export OPENBLAS_NUM_THREADS = 1
 bench: setup ## Time the motion program, the power series and simulations against their peers: tables and figures

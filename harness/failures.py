@@ -58,6 +58,10 @@ class Failure(Enum):
         "there is a file of that name which is no earlier output of this kind",
         "give another name, or say --force to replace it",
     )
+    FOREIGN_IN_MAXIMA = (
+        "Maxima's user directory has a file that Holonom did not put there: {detail}",
+        "move it away, or name another directory in the variable MAXIMA_USERDIR",
+    )
     NOT_A_COMPANION = (
         "the directory holds other things than a companion",
         "give the name of a new directory, or of one that `holonom companion` made",

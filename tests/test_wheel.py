@@ -1,5 +1,6 @@
 """A wheel, installed where no repository is, works; what is not installed is named in one sentence."""
 
+import os
 import re
 import subprocess
 import sys
@@ -88,6 +89,17 @@ def test_it_works_in_an_empty_directory(commands, tmp_path, command, said):
 def test_what_is_imported_is_the_wheel(commands, tmp_path):
     done = run(commands / "python", "-c", "import holonom; print(holonom.__file__)", cwd=tmp_path, check=True)
     assert str(commands.parent) in done.stdout
+
+
+@pytest.mark.long
+def test_maxima_loads_the_library_of_the_wheel(commands, tmp_path):
+    options = {"cwd": tmp_path, "env": os.environ | {"MAXIMA_USERDIR": str(tmp_path / "user")}}
+    run(commands / "holonom", "maxima-path", check=True, **options)
+    assert str(commands.parent) in (tmp_path / "user" / "holonom.mac").read_text(encoding="utf-8")
+    shown = 'load(holonom)$ example(holonomic_scene)$ describe("initial_guess", exact)$'
+    done = run("maxima", "--very-quiet", f"--batch-string={shown}", stdin=subprocess.DEVNULL, **options)
+    assert "(18)  initial motion, as a series" in done.stdout
+    assert "-- Entry of holonomic_scene: initial_guess" in done.stdout
 
 
 @pytest.mark.parametrize(

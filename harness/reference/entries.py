@@ -63,6 +63,11 @@ class FunctionText:
         by_name = {_name_of(entry): entry for entry in (*self.context, *replacing)}
         return ",\n  ".join(by_name.values())
 
+    def complete_call(self) -> str:
+        """The complete example, an expression of Maxima."""
+        first = "system, " if self.name == "holonomic_scene" else ""
+        return f"{self.name}({first}\n  {self.with_entries()})"
+
 
 @cache
 def function_texts() -> tuple[FunctionText, ...]:

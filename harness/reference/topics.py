@@ -12,7 +12,7 @@ from typing import Any
 import click
 
 from ..documents import SCHEMAS
-from .entries import EntryText, FunctionText, function_texts
+from .entries import EntryText, function_texts
 
 DESCRIPTION, COMMANDS, DOCUMENTS, PYTHON = (
     "Describing a system",
@@ -76,16 +76,11 @@ def entry_topics() -> Iterator[Topic]:
         rows = tuple((entry.name, entry.type, entry.default) for entry in function.entries)
         parts = (
             Code("How it is called", function.call),
-            Code("For instance", _call(function)),
+            Code("For instance", f"{function.complete_call()}$"),
             Table("Its entries, in any order", ("entry", "what it is", "without it"), rows),
         )
         yield Topic(DESCRIPTION, function.name, function.name, function.summary, parts)
         yield from (_entry_topic(entry) for entry in function.entries)
-
-
-def _call(function: FunctionText) -> str:
-    first = "system, " if function.name == "holonomic_scene" else ""
-    return f"{function.name}({first}\n  {function.with_entries()})$"
 
 
 def _entry_topic(entry: EntryText) -> Topic:

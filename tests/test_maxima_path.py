@@ -1,0 +1,130 @@
+"""Maxima finds the library in its user directory, from anywhere, and what lies there already is safe."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from holonom.maxima_path import put_into_maxima
+from holonom.reference.entries import function_texts
+
+ROOT = Path(__file__).parents[1]
+[README_SCENE] = re.findall(r"^```maxima\n(.*?)^```$", (ROOT / "README.md").read_text(encoding="utf-8"), re.M | re.S)
+
+
+def run(*command: object, user_directory: Path, **options) -> subprocess.CompletedProcess[str]:
+    environment = os.environ | {"MAXIMA_USERDIR": str(user_directory)}
+    return subprocess.run(
+        list(map(str, command)), env=environment, capture_output=True, text=True, timeout=120, **options
+    )
+
+
+def holonom_maxima_path(user_directory: Path) -> subprocess.CompletedProcess[str]:
+    return run(sys.executable, "-m", "holonom", "maxima-path", user_directory=user_directory)
+
+
+@pytest.fixture(scope="module")
+def user_directory(tmp_path_factory) -> Path:
+    """Maxima's, with Holonom in it, in a place whose name is hard to write."""
+    directory = tmp_path_factory.mktemp("user") / 'a "quoted" place' / ".maxima"
+    done = holonom_maxima_path(directory)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert str(directory / "holonom.mac") in done.stdout
+    return directory
+
+
+@pytest.fixture
+def batch(user_directory, tmp_path):
+    """What bare Maxima prints while it runs a file in a directory of no account."""
+
+    def batch(text: str, answers: str = "") -> str:
+        (tmp_path / "session.mac").write_text(text, encoding="utf-8")
+        command = ("maxima", "-b", "session.mac")
+        return run(*command, user_directory=user_directory, cwd=tmp_path, input=answers).stdout
+
+    return batch
+
+
+@pytest.mark.parametrize("loading", ["load(holonom)$", 'load("holonom")$', 'load("holonom.mac")$'])
+def test_the_scene_of_the_readme_runs_in_bare_maxima(batch, loading):
+    scene = README_SCENE.replace('load("holonom.mac")$', loading)
+    assert loading in scene
+    printed = batch(f"{scene}\nprint_derivation(system, swing)$\n")
+    assert "(18)  initial motion, as a series" in printed
+    assert "error" not in printed
+
+
+@pytest.mark.parametrize("topic", [*(f.name for f in function_texts()), "kinetic_energy", "initial_guess"])
+def test_maxima_describes(batch, topic):
+    printed = " ".join(batch(f"load(holonom)$\n? {topic}\n").split())
+    summaries = {each.name: each.summary for each in function_texts()}
+    texts = {entry.name: entry.text for function in function_texts() for entry in function.entries}
+    assert (summaries | texts)[topic] in printed
+
+
+def test_examples_run_and_maximas_own_still_do(batch):
+    printed = batch('load(holonom)$\nload(holonom)$\nexample(holonomic_system)$\nexample("holonomic_scene")$\n')
+    assert printed.count("(10)  condition of free motion \n") == 2
+    assert printed.count("(18)  initial motion, as a series") == 1
+    assert "error" not in printed
+    assert "x = 0.8296749902129361" in batch("load(holonom)$\nexample(allroots)$\n")
+    assert "not found" in batch("load(holonom)$\nexample(no_such_topic)$\n")
+
+
+def test_the_demonstration_runs_to_its_end(batch):
+    printed = batch("load(holonom)$\ndemo(holonom)$\n", answers=";\n" * 10)
+    assert "(10)  condition of free motion" in printed
+    assert "(18)  initial motion, as a series" in printed
+
+
+@pytest.mark.parametrize("name", ["holonom.mac", "holonom/holonom.info"])
+def test_a_file_of_somebody_elses_is_not_replaced(tmp_path, name):
+    foreign = tmp_path / name
+    foreign.parent.mkdir(exist_ok=True)
+    foreign.write_text("/* mine */\n", encoding="utf-8")
+    before = sorted(tmp_path.rglob("*"))
+    done = holonom_maxima_path(tmp_path)
+    assert done.returncode == 2
+    assert f"a file that Holonom did not put there: {foreign}" in done.stderr
+    assert foreign.read_text(encoding="utf-8") == "/* mine */\n"
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_it_is_put_there_anew_beside_other_files(tmp_path):
+    (tmp_path / "maxima-init.mac").write_text("mine : 1$\n", encoding="utf-8")
+    stub = put_into_maxima(tmp_path)
+    whole = stub.read_text(encoding="utf-8")
+    stub.write_text(whole.splitlines()[0] + '\nload("/where/the/library/was/holonom.mac")$\n', encoding="utf-8")
+    assert put_into_maxima(tmp_path) == stub
+    assert stub.read_text(encoding="utf-8") == whole
+    assert (tmp_path / "maxima-init.mac").read_text(encoding="utf-8") == "mine : 1$\n"
+
+
+def test_make_install_does_it(tmp_path):
+    make = ("make", "-o", "setup", "install", f"BIN={Path(sys.executable).parent}")
+    done = run(*make, user_directory=tmp_path, cwd=ROOT)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "holonom.mac").exists()
+
+
+# The sign of k, and whether n is -1, are what integrate and desolve ask about.
+SIGN = "parameters=[k], potential_energy=k*x^2/2, constraints=[y-u*x]"
+POWER = "parameters=[n], forces=[0,(1+t)^n], constraints=[y-u]"
+
+
+@pytest.mark.parametrize("entries", [SIGN, POWER], ids=["sign", "power"])
+def test_no_question_is_asked_where_nobody_answers(batch, entries):
+    printed = batch(f"""
+load(holonom)$
+system : holonomic_system(coordinates=[x,y], controls=[u], kinetic_energy=(dot(x)^2+dot(y)^2)/2, {entries})$
+s : holonomic_scene(system, control_law=[u=1+t], initial_state=[x=1,dot(x)=0])$
+print_derivation(system, s)$
+write_free_motion("free.json", 's, false)$
+print("the end")$
+""")
+    assert "the end " in printed.splitlines()
+    assert not re.search(r"\?\s*$", printed, re.MULTILINE)
+    assert "error" not in printed
