@@ -42,7 +42,6 @@ def test_what_is_not_defined_is_missed_loudly(root):
 
 @pytest.mark.parametrize("key", STEPS)
 def test_every_step_of_the_paper_is_found_in_the_library(key):
-    number, _, name = key.partition(" ")
-    for found in step(REPOSITORY, number, name):
+    for found in step(REPOSITORY, key):
         assert found.text.splitlines()[-1].endswith("$")
         assert f"\n{found.name}" in f"\n{found.text}"
