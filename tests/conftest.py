@@ -6,30 +6,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from particle import PARTICLE
 
 from holonom.maxima import run_scene
 
 ScenesWriter = Callable[[str], Path]
 COMPANION = Path(__file__).with_name("companion")
-
-PARTICLE = """
-load("holonom.mac")$
-
-particle : holonomic_system(
-  title          = "Particle on a table of controlled height",
-  coordinates    = [x, z],
-  controls       = [u],
-  parameters     = [m, g],
-  kinetic_energy = m*(dot(x)^2 + dot(z)^2)/2,
-  potential_energy = m*g*z,
-  constraints    = [z - u])$
-
-rise : holonomic_scene(particle,
-  title            = "The table rises",
-  control_law      = [u = t],
-  parameter_values = [m = 2, g = 981/100],
-  initial_state    = [x = 0, dot(x) = 1/3])$
-"""
 
 
 @pytest.fixture(scope="session")

@@ -25,6 +25,6 @@ def made(tmp_path, scene: str, *others, constrained=True):
     """The command's outcome and the directory of the pages."""
     file, directory = tmp_path / "my system.mac", tmp_path / "pages"
     text = OWN.format(scene=scene)
-    file.write_text(text if constrained else text.replace("[y - u*x]", "[]"))
+    file.write_text(text if constrained else text.replace("[y - u*x]", "[]").replace("[u]", "[]"))
     arguments = ["companion", str(file), *map(str, others), "-o", str(directory)]
     return CliRunner(mix_stderr=False).invoke(holonom, arguments, standalone_mode=False), directory

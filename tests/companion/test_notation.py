@@ -20,7 +20,7 @@ def test_maxima_functions_are_defined(function):
 
 @pytest.mark.parametrize("path", [each.python for each in SYMBOLS])
 def test_python_names_are_in_the_record(path):
-    if path.startswith("derivation equation"):
+    if path.startswith("equations["):
         assert path.split('"')[1] in STEPS
     else:
         owner, name = path.split(".")

@@ -6,6 +6,7 @@ both with control rates; potentials may contain velocities; each constraint give
 coordinates in terms of the first ones, time and controls.
 """
 
+import re
 from dataclasses import dataclass
 from itertools import combinations_with_replacement, pairwise
 from pathlib import Path
@@ -38,22 +39,26 @@ class SystemText:
 
     def scene_file(self) -> str:
         n, g = len(self.coordinates), len(self.constraints)
-        law = [f"{u} = c0 + {i}*t/3" for i, u in enumerate(self.controls_with_law, start=1)]
+        written = " ".join([self.kinetic_energy, self.potential_energy, *self.forces, *self.constraints])
+        controls, parameters = (
+            [name for name in names if re.search(rf"\b{name}\b", written)] for names in (self.controls, ["c0"])
+        )
+        law = [f"{u} = c0 + {i}*t/3" for i, u in enumerate(self.controls_with_law, start=1) if u in controls]
         chosen = [x for q in self.coordinates[: n - g] for x in (f"{q} = 1/3", f"dot({q}) = -2/5")]
         return f"""
             load("holonom.mac")$
             closed_form_size : {CLOSED_FORM_SIZE}$
             system : holonomic_system(
               coordinates = [{", ".join(self.coordinates)}],
-              controls = [{", ".join(self.controls)}],
-              parameters = [c0],
+              controls = [{", ".join(controls)}],
+              parameters = [{", ".join(parameters)}],
               kinetic_energy = {self.kinetic_energy},
               potential_energy = {self.potential_energy},
               forces = [{", ".join(self.forces)}],
               constraints = [{", ".join(self.constraints)}])$
             random_scene : holonomic_scene(system,
               control_law = [{", ".join(law)}],
-              parameter_values = [c0 = 3/4],
+              parameter_values = [{"c0 = 3/4" if parameters or law else ""}],
               initial_state = [{", ".join(chosen)}])$
         """
 

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from conftest import PARTICLE
+from particle import PARTICLE
 
 MACHINE_AT_FAULT = 3
 SHORT = 2  # rows with the same sentence in the short form

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from conftest import PARTICLE
+from particle import PARTICLE
 from table import TABLE, Fault
 
 SENTENCE = re.compile(r"^(holonom|Error): .+\S$", re.MULTILINE)

@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from conftest import PARTICLE
+from particle import PARTICLE
 
 from holonom.confined import Limits, Sandbox, bubblewrap
 from holonom.failures import Failure, HolonomError

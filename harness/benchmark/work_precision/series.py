@@ -156,7 +156,7 @@ def _prepare_double(expansion: Expansion, order: int) -> Prepared:
         with mpmath.workdps(WORKING_DIGITS):
             return _added_up([list(map(mpmath.mpf, map(float, row))) for row in coefficients], _step(expansion))
 
-    return Prepared(run, state, lambda: expansion_operations(problem.program, order))
+    return Prepared(run, state, lambda: expansion_operations(problem.motion, order))
 
 
 def _step(expansion: Expansion) -> mpmath.mpf:
