@@ -49,7 +49,7 @@ def _bordered_equations(system: MechanicalSystem) -> LinearEquations:
     n = len(system.coordinates)
     unknowns = tuple(dotted("method", symbol) for symbol in (*system.accelerations, *system.multipliers))
     matrix = method.mass_matrix_full[n:, n:].xreplace(ours)
-    forcing = method.forcing_full[n:, :].xreplace(ours)
+    forcing = method.forcing_full[n:, :].xreplace(ours).doit()  # |x| leaves dx/dx
     return LinearEquations(unknowns, tuple(matrix * sp.Matrix(unknowns) - forcing))
 
 
@@ -80,7 +80,7 @@ def _functions_of_time(system: MechanicalSystem) -> Mapping[sp.Symbol, sp.Expr]:
     time = dynamicsymbols._t
     functions: dict[sp.Symbol, sp.Expr] = {system.time: time}
     for symbol in (*system.coordinates, *system.controls):
-        function = sp.Function(symbol.name)(time)
+        function = sp.Function(symbol.name, real=True)(time)  # Abs has a derivative then
         functions[symbol] = function
         functions[dotted("dot", symbol)] = function.diff(time)
         functions[dotted("ddot", symbol)] = function.diff(time, 2)

@@ -16,7 +16,7 @@ from mpmath import mp
 
 from .independent import IndependentEquations
 from .linear import LinearEquations
-from .points import IrregularPoint, Valuation, random_point
+from .points import IrregularPoint, Valuation, fresh_seed, random_point
 from .report import Verdict
 from .system import MechanicalSystem, dotted
 from .verdict import DIGITS, POINTS, WORKING_DIGITS, Judgement
@@ -62,13 +62,13 @@ def judge_law(system: MechanicalSystem, values: Mapping[sp.Symbol, sp.Expr], law
         found, and then the detail says so.
     """
     moved = _MovedByLaw(system, values, law)
-    seed = " ".join(f"{control} = {expression}" for control, expression in law.controls.items())
+    seed = fresh_seed()
     draws = (random_point(moved.names, attempt, seed) for attempt in range(DRAWS * POINTS))
     with mp.workdps(WORKING_DIGITS):
         for _ in range(POINTS):
             detail = _residual_at_next_state(moved, draws)
             if detail:
-                return Judgement(Verdict.DISAGREES, DIGITS, POINTS, detail)
+                return Judgement(Verdict.DISAGREES, DIGITS, POINTS, f"{detail}, in a state drawn with seed {seed}")
     return Judgement(Verdict.AGREES, DIGITS, POINTS)
 
 

@@ -3,6 +3,7 @@
 import dataclasses
 
 import pytest
+import sympy as sp
 from systems import charge_in_crossed_fields, paper_example, pendulum
 
 from holonom.crosscheck.independent import IndependentEquations
@@ -20,6 +21,12 @@ def test_lagranges_method_gives_the_same_accelerations_and_multipliers(
 ) -> None:
     found = judge(compare(IndependentEquations(system)), "third opinion")
     assert found.verdict is Verdict.AGREES, found.detail
+
+
+def test_a_potential_with_a_kink_had_no_regular_point() -> None:
+    smooth = pendulum()
+    kinked = dataclasses.replace(smooth, potential_energy=smooth.potential_energy + 20 * sp.Abs(smooth.coordinates[0]))
+    assert judge(compare(IndependentEquations(kinked)), "third opinion").verdict is Verdict.AGREES
 
 
 def test_a_system_without_constraints_is_taken() -> None:

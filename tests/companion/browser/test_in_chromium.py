@@ -26,7 +26,7 @@ def test_the_browser_has_nothing_to_complain_about(seen):
 
 def test_nothing_is_loaded_but_files_of_the_book(seen):
     for each in seen:
-        book = each.page.parent.parent if each.page.parent.name == "source" else each.page.parent
+        book = each.page.parent.parent if each.page.parent.name in ("source", "reference") else each.page.parent
         assert [found for found in each.requests if not found.startswith((book.as_uri(), "data:"))] == []
 
 
