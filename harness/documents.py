@@ -59,6 +59,9 @@ class Publication(StrEnum):
     SERIES = "series"
     SIMULATION = "simulation"
     DOCTOR = "doctor"
+    COSTS = "costs"
+    HARD_CASES = "hard-cases"
+    ACCURACY = "accuracy"
 
 
 def ask(

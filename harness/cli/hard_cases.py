@@ -24,6 +24,7 @@ def stability(short: bool, plot_file: Path | None, json_file: Path | None) -> in
     """Run the register of hard cases: the digits that each method keeps, and what to do."""
     from ..benchmark.hard_cases.case import Extent
     from ..benchmark.hard_cases.register import REGISTER, examine_all
+    from ..documents import Publication, published
     from .tables.hard_cases import show_stability
     from .tables.progress import progress
     from .tables.text import make_console
@@ -31,7 +32,8 @@ def stability(short: bool, plot_file: Path | None, json_file: Path | None) -> in
     extent = Extent.SHORT if short else Extent.FULL
     with progress("Hard cases", len(REGISTER)) as done:
         reports = examine_all(extent, done)
-    publish(json_text([_report_document(report) for report in reports]), json_file)
+    content = {"cases": [_report_document(report) for report in reports]}
+    publish(json_text(published(Publication.HARD_CASES, content)), json_file)
     if plot_file is not None:
         from ..figures.hard_cases import draw_stability
 

@@ -21,9 +21,7 @@ FORCE = "holonom.force"  # where the context of a command holds whether it has t
 
 # What the beginning and the end of an earlier output hold, by kind.
 EARLIER = {
-    "json": re.compile(
-        rb'\A\s*(\[\s*)?\{\s*"(format"\s*:\s*"holonom-|case"\s*:)',
-    ),
+    "json": re.compile(rb'\A\s*(\[\s*)?\{\s*"format"\s*:\s*"holonom-'),
     "tex": re.compile(rb"\A% Written by Holonom\n"),
     "svg": re.compile(rb"\A\s*(<\?xml|<svg).*(Holonom|class=\"errata|rich-terminal)", re.DOTALL),
     "png": re.compile(rb"\A\x89PNG\r\n.*Holonom", re.DOTALL),

@@ -102,6 +102,7 @@ def effects(
     limits: Limits,
 ) -> int:
     """Show which terms and effects a SCENE has and what each costs, in operations and in measured time."""
+    from ..documents import Publication, published
     from ..program.effects import measure_costs, read_costs
     from ..program.motion_program import Solve
     from ..program.request import Request, effects_document, read_settings
@@ -110,7 +111,7 @@ def effects(
 
     request = Request(scene, Solve(solve), read_settings(settings))
     costs = measure_costs(read_costs(effects_document(scene_file, request, limits)))
-    publish(json_text(asdict(costs)), json_file)
+    publish(json_text(published(Publication.COSTS, asdict(costs))), json_file)
     if json_file != STANDARD_OUTPUT:
         show_costs(make_console(), costs)
     return 0

@@ -1,18 +1,17 @@
-"""A study as a JSON document; `schemas/work_precision.json` describes it."""
+"""A study as a JSON document."""
 
 from dataclasses import asdict
 from typing import Any
 
+from ...documents import Publication, published
 from .advice import Advice
 from .study import Study
 
 
 def study_document(done: Study) -> dict[str, Any]:
-    """What `holonom accuracy --json` writes; `schemas/work_precision.json` describes it."""
+    """What `holonom accuracy --json` writes; `schemas/accuracy.json` describes it."""
     reference = done.reference
-    return {
-        "format": "holonom-accuracy",
-        "version": 1,
+    content = {
         "scene": done.scene,
         "title": done.title,
         "until": str(done.until),
@@ -29,6 +28,7 @@ def study_document(done: Study) -> dict[str, Any]:
         "advice": [_published_advice(advice) for advice in done.advice],
         "prices": [asdict(price) for price in done.prices],
     }
+    return published(Publication.ACCURACY, content)
 
 
 def _published_advice(advice: Advice) -> dict[str, Any]:

@@ -4,10 +4,12 @@ import json
 import xml.etree.ElementTree as ET
 
 import pytest
+from jsonschema import Draft202012Validator
 
 from holonom.benchmark.hard_cases import register
 from holonom.benchmark.hard_cases.case import Case, Findings, Sweep, found, ours, required, theirs
 from holonom.cli import holonom
+from holonom.documents import schema
 from holonom.simulation.diagnosis import HardCase, advice
 
 
@@ -30,9 +32,11 @@ def run(monkeypatch, cases, *arguments) -> int:
     return holonom(["stability", *map(str, arguments)], standalone_mode=False)
 
 
-def test_document_tells_digits_verdicts_and_advice(monkeypatch, capsys):
+def test_document_keeps_its_schema_and_tells_digits_verdicts_and_advice(monkeypatch, capsys):
     assert run(monkeypatch, (HELD,), "--short", "--json", "-") == 0
-    (case,) = json.loads(capsys.readouterr().out)
+    content = json.loads(capsys.readouterr().out)
+    Draft202012Validator(schema("hard-cases")).validate(content)
+    (case,) = content["cases"]
     assert [result["verdict"] for result in case["results"]] == ["loses it", "holds", "holds"]
     assert [result["digits"] for result in case["results"]] == [1.25, 9.0, None]
     assert case["sweep"]["digits"]["plain"] == [9.0, 7.0]

@@ -21,6 +21,7 @@ from holonom.benchmark.work_precision.solvers import SOLVERS, solver_ladder
 from holonom.benchmark.work_precision.study import study
 from holonom.benchmark.work_precision.taylor import drift_cures, taylor_ladder, the_two_solves
 from holonom.confined import Limits
+from holonom.documents import schema
 from holonom.figures.work_precision import draw_study
 from holonom.program.motion_problem import motion_problem
 from holonom.program.motion_program import Solve
@@ -29,7 +30,6 @@ from holonom.simulation.request import Stabilization
 
 ROOT = Path(__file__).parents[3]
 PAPER = ROOT / "examples" / "paper" / "paper.mac"
-SCHEMA = ROOT / "harness" / "schemas" / "work_precision.json"
 REQUEST = Request("free_motion_scene")
 UNTIL = Fraction(2)
 SHORT = Plan(
@@ -121,8 +121,7 @@ def test_every_group_is_measured(done):
 
 def test_the_document_keeps_to_its_schema(done):
     document = json.loads(json.dumps(study_document(done)))
-    schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
-    jsonschema.Draft202012Validator(schema).validate(document)
+    jsonschema.Draft202012Validator(schema("accuracy")).validate(document)
     assert len(document["measurements"]) == len(done.measurements)
     assert document["advice"][-1] == {"digits": 30, "cheapest": None}
 
