@@ -47,6 +47,7 @@
          (scenes (structures-of-kind '$motion_scene))
          (systems (remove-duplicates (append (mapcar #'cdr named) (mapcar (lambda (item) (system-of (cdr item))) scenes))
                                      :test #'alike1 :from-end t)))
+    (mapc #'require-known-functions (append systems (mapcar #'cdr scenes)))
     (flet ((number-of (system) (position system systems :test #'alike1)))
       (listed (listed* (cdr $settings_used))
               (mfuncall '$facts)
@@ -54,6 +55,20 @@
               (listed* (loop for (name . system) in named collect (listed name (number-of system))))
               (listed* (loop for (name . scene) in scenes
                              collect (listed name (number-of (system-of scene)) (without-systems scene))))))))
+
+(defun require-known-functions (structure)
+  "Refuse what no document can hold where the entry that holds it is known."
+  (dolist (entry (entries-of structure))
+    (let ((unknown (unknown-operator (third entry))))
+      (when unknown
+        (merror "~M contains the function ~M, which no program or document can hold; write it with elementary functions"
+                (second entry) unknown)))))
+
+(defun unknown-operator (e)
+  (cond ((or (atom e) (eq (caar e) 'bigfloat)) nil)
+        ((eq (caar e) 'mrat) (unknown-operator ($totaldisrep e)))
+        ((or (member 'array (car e)) (known-operator-p (caar e))) (some #'unknown-operator (cdr e)))
+        (t (caar e))))
 
 (defun listed (&rest items) (listed* items))
 (defun listed* (items) (cons '(mlist simp) items))

@@ -3,8 +3,11 @@
 ;;; Maxima takes every symbol for a constant that  depends  does not say otherwise of, so that
 ;;; -c*diff(x, t) is 0 before a system can be described with it, and the damping is gone.
 ;;; Here  diff  notes what scene text differentiates by t, so that holonomic_system can refuse
-;;; it where it holds a coordinate or a control; the result is Maxima's own in any case.
+;;; it where it holds a coordinate or a control; the result is Maxima's own then.
 ;;; Scene text is what runs outside the functions that the library defines.
+;;;
+;;; The library's own  diff  takes signum for constant, as it is between its jumps, which are looked at
+;;; where a motion meets them (program/switching.mac). Maxima leaves that derivative open.
 
 (in-package :maxima)
 
@@ -13,9 +16,16 @@
 (defvar *plain-diff* (symbol-function '$diff))
 
 (defun $diff (&rest arguments)
-  (if (and (eq (second arguments) '$t) (scene-text-p) (constant-by-default-p (first arguments)))
-      (push (first arguments) *partial-rates*))
-  (apply *plain-diff* arguments))
+  (cond ((not (scene-text-p)) (diff-between-jumps arguments))
+        (t (if (and (eq (second arguments) '$t) (constant-by-default-p (first arguments)))
+               (push (first arguments) *partial-rates*))
+           (apply *plain-diff* arguments))))
+
+(defun diff-between-jumps (arguments)
+  (let ((users (get '%signum 'grad)))
+    (unwind-protect (progn (setf (get '%signum 'grad) '((x) 0))
+                           (apply *plain-diff* arguments))
+      (if users (setf (get '%signum 'grad) users) (remprop '%signum 'grad)))))
 
 (defun constant-by-default-p (e)
   "Whether a symbol of e is taken for a constant because  depends  says nothing about it."

@@ -26,6 +26,11 @@ FUNCTIONS = {
     sp.asinh: mp.asinh,
     sp.acosh: mp.acosh,
     sp.atanh: mp.atanh,
+    **{
+        getattr(sp, name): getattr(mp, name)
+        for name in ("sec", "csc", "cot", "sech", "csch", "coth", "asec", "acsc", "acot", "asech", "acsch", "acoth")
+    },
+    sp.erf: mp.erf,
     sp.exp: mp.exp,
     sp.log: mp.log,
     sp.Abs: abs,

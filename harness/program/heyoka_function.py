@@ -41,6 +41,7 @@ FUNCTIONS = {
     Operation.ARSINH: "asinh",
     Operation.ARCOSH: "acosh",
     Operation.ARTANH: "atanh",
+    Operation.ERF: "erf",
 }
 
 

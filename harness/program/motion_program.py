@@ -57,6 +57,7 @@ class Operation(StrEnum):
     ARSINH = "Arsinh"
     ARCOSH = "Arcosh"
     ARTANH = "Artanh"
+    ERF = "Erf"
 
 
 OPERATIONS = frozenset(Operation)

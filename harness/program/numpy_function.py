@@ -42,6 +42,7 @@ UFUNCS = {
     Operation.ARTANH: np.arctanh,
 }
 UFUNC_NAMES = {ufunc.__name__: ufunc for ufunc in (*UFUNCS.values(), np.square, np.power)}
+OF_SCIPY = {Operation.ERF: "erf"}  # ufuncs of scipy.special, which is loaded where a program calls one
 
 
 class NumpyFunction:
@@ -88,7 +89,17 @@ def _compiled(program: Program) -> Callable[[Sequence[NDArray[np.float64]]], tup
     function = ast.FunctionDef(name="motion", args=parameters, body=body, decorator_list=[])
     module = compile(ast.fix_missing_locations(ast.Module([function], [])), "<motion program>", "exec")
     code = next(constant for constant in module.co_consts if isinstance(constant, CodeType))
-    return FunctionType(code, UFUNC_NAMES)
+    return FunctionType(code, UFUNC_NAMES | _called_of_scipy(code.co_names))
+
+
+def _called_of_scipy(names: Sequence[str]) -> Mapping[str, np.ufunc]:
+    """The ufuncs of scipy.special among the names that a function uses."""
+    called = [name for name in names if name in OF_SCIPY.values()]
+    if not called:
+        return {}
+    from scipy import special
+
+    return {name: getattr(special, name) for name in called}
 
 
 def _statements(program: Program) -> Iterator[ast.stmt]:
@@ -129,7 +140,11 @@ def _number(value: Fraction | float) -> ast.expr:
 
 
 def _call(ufunc: np.ufunc, *arguments: ast.expr) -> ast.expr:
-    return ast.Call(_load(ufunc.__name__), list(arguments), [])
+    return _call_by_name(ufunc.__name__, *arguments)
+
+
+def _call_by_name(name: str, *arguments: ast.expr) -> ast.expr:
+    return ast.Call(_load(name), list(arguments), [])
 
 
 def _chained(operator: ast.operator, *arguments: ast.expr) -> ast.expr:
@@ -164,6 +179,7 @@ SYNTAX = Arithmetic(
     power=_power,
     operations={
         **{operation: partial(_call, ufunc) for operation, ufunc in UFUNCS.items()},
+        **{operation: partial(_call_by_name, name) for operation, name in OF_SCIPY.items()},
         Operation.ADD: partial(_chained, ast.Add()),
         Operation.MULTIPLY: partial(_chained, ast.Mult()),
         Operation.SUBTRACT: partial(_chained, ast.Sub()),

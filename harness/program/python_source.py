@@ -34,6 +34,7 @@ FUNCTIONS = {
     Operation.ARSINH: "functions.asinh",
     Operation.ARCOSH: "functions.acosh",
     Operation.ARTANH: "functions.atanh",
+    Operation.ERF: "functions.erf",
 }
 
 SOURCE = '''\

@@ -306,8 +306,11 @@
 
 (defun call-term (operator terms)
   (let ((reciprocal (assoc operator '((%sec . %cos) (%csc . %sin) (%cot . %tan)
-                                      (%sech . %cosh) (%csch . %sinh) (%coth . %tanh)))))
+                                      (%sech . %cosh) (%csch . %sinh) (%coth . %tanh))))
+        (of-reciprocal (assoc operator '((%asec . %acos) (%acsc . %asin) (%acot . %atan)
+                                         (%asech . %acosh) (%acsch . %asinh) (%acoth . %atanh)))))
     (cond (reciprocal (power-of (apply #'call-of (cdr reciprocal) terms) -1))
+          (of-reciprocal (call-of (cdr of-reciprocal) (power-of (first terms) -1)))
           ((get operator 'graph-derivative) (apply #'call-of operator terms))
           (t (merror (intl:gettext "motion_program: the function ~M cannot be written into a motion program") operator)))))
 
@@ -333,6 +336,10 @@
 (define-derivative %asinh (x) (power-of (one-plus 1 x) -1/2))
 (define-derivative %acosh (x) (power-of (sum-of (list (power-of x 2) (number-term -1))) -1/2))
 (define-derivative %atanh (x) (power-of (one-plus -1 x) -1))
+(define-derivative %erf (x)
+  (product-of (list (number-term 2)
+                    (power-of (symbol-term '$%pi) -1/2)
+                    (call-of '%exp (scaled-term -1 (power-of x 2))))))
 (define-derivative %exp (x) f)
 (define-derivative %log (x) (power-of x -1))
 (define-derivative mabs (x) (call-of '%signum x))

@@ -12,7 +12,10 @@
   '((mtimes . "Multiply") (mquotient . "Divide") (mminus . "Negate") (mabs . "Abs") (%log . "Ln") (%signum . "Sign")
     (%sin . "Sin") (%cos . "Cos") (%tan . "Tan") (%sinh . "Sinh") (%cosh . "Cosh") (%tanh . "Tanh")
     (%asin . "Arcsin") (%acos . "Arccos") (%atan . "Arctan") ($atan2 . "Arctan2") (%atan2 . "Arctan2")
-    (%asinh . "Arsinh") (%acosh . "Arcosh") (%atanh . "Artanh")))
+    (%asinh . "Arsinh") (%acosh . "Arcosh") (%atanh . "Artanh")
+    (%sec . "Sec") (%csc . "Csc") (%cot . "Cot") (%sech . "Sech") (%csch . "Csch") (%coth . "Coth")
+    (%asec . "Arcsec") (%acsc . "Arccsc") (%acot . "Arccot")
+    (%asech . "Arsech") (%acsch . "Arcsch") (%acoth . "Arcoth") (%erf . "Erf")))
 
 (defvar *mathjson-constants*
   '(($%pi . "Pi") ($%e . "ExponentialE") ($%i . "ImaginaryUnit")))

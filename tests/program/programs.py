@@ -14,7 +14,7 @@ HALF = ["Rational", 1, 2]
 
 # Arguments that keep a function away from the borders of its domain, and its values of the order of one.
 BOUNDED = {
-    **dict.fromkeys(("Sin", "Cos", "Tanh", "Arctan", "Arsinh", "Negate"), lambda x: x),
+    **dict.fromkeys(("Sin", "Cos", "Tanh", "Arctan", "Arsinh", "Erf", "Negate"), lambda x: x),
     **dict.fromkeys(("Exp", "Tan", "Sinh", "Cosh"), lambda x: ["Sin", x]),
     **dict.fromkeys(("Arcsin", "Arccos", "Artanh"), lambda x: ["Multiply", HALF, ["Sin", x]]),
     **dict.fromkeys(("Sqrt", "Ln"), lambda x: ["Add", 1, ["Power", x, 2]]),

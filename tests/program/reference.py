@@ -43,6 +43,7 @@ FUNCTIONS = {
     Operation.ARSINH: mp.asinh,
     Operation.ARCOSH: mp.acosh,
     Operation.ARTANH: mp.atanh,
+    Operation.ERF: mp.erf,
 }
 
 
