@@ -180,7 +180,7 @@ class PrescribedReactions:
     controls: Law
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class FreeMotion(Shown):
     """The answers about one scene.
 

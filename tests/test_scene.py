@@ -124,6 +124,15 @@ def test_check_and_free_answer_what_the_commands_answer(pendulum):
     assert "condition of free motion" in pendulum.free()._repr_html_()
 
 
+def test_results_print_as_the_command_line_prints_them(pendulum, released):
+    printed = repr(pendulum.check())
+    assert "multipliers" in printed
+    assert "no disagreements" in printed
+    assert "condition of free motion" in str(pendulum.free())
+    assert "energy error" in repr(released.simulate(until=1, samples=2))
+    assert "\x1b[" not in printed
+
+
 def test_effects_names_gravity(pendulum):
     costs = pendulum.effects()
     assert "gravity" in {effect.name for effect in costs.effects}

@@ -57,7 +57,7 @@ class EquationVerdict:
     held: bool = True
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class CheckReport(Shown):
     """Verdicts on all equations of a record, in the record's order.
 

@@ -104,7 +104,7 @@ class EffectCost:
     seconds: float | None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class MeasuredCosts(Shown):
     """What a scene pays for, in operations and in time for one evaluation."""
 

@@ -67,7 +67,7 @@ class Continuation:
     velocities: Mapping[str, NumberTexts]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class MotionSeries(Shown):
     """The power series of one motion about its initial instant.
 

@@ -83,7 +83,7 @@ class Report:
         return not self.doubts
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Simulation(Shown):
     """A motion followed from its start to its end.
 

@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.text import Text
 
 PIPE_WIDTH = 100_000  # columns where there is no terminal: no table is cut
-HTML_WIDTH = 110  # columns that fit a notebook's cell
+CELL_WIDTH = 110  # columns that fit a notebook's cell
 HTML = '<pre style="white-space: pre; overflow-x: auto; line-height: normal">{code}</pre>'
 STYLES = {
     "proved": "green",
@@ -37,12 +37,12 @@ def make_console() -> Console:
 
 def html_of(show: Callable[[Console], None]) -> str:
     """What is shown on a console, as HTML for a notebook."""
-    kept = io.StringIO()
-    console = Console(
-        highlight=False, record=True, width=HTML_WIDTH, file=kept, force_terminal=True, force_jupyter=False
-    )
-    show(console)
-    return console.export_html(inline_styles=True, code_format=HTML)
+    return _shown(show).export_html(inline_styles=True, code_format=HTML)
+
+
+def text_of(show: Callable[[Console], None]) -> str:
+    """What is shown on a console, as plain text."""
+    return "\n".join(line.rstrip() for line in _shown(show).export_text().splitlines())
 
 
 def formula(expression: object) -> str:
@@ -58,3 +58,12 @@ def styled(verdict: str) -> Text:
 def counted(count: int, what: str) -> str:
     """How many of what there are, in words."""
     return f"{count or 'no'} {what}{'' if count == 1 else 's'}"
+
+
+def _shown(show: Callable[[Console], None]) -> Console:
+    kept = io.StringIO()
+    console = Console(
+        highlight=False, record=True, width=CELL_WIDTH, file=kept, force_terminal=True, force_jupyter=False
+    )
+    show(console)
+    return console
