@@ -14,7 +14,7 @@ PRINTED = shared("examples") / "paper" / "printed.mac"
 
 @dataclass(frozen=True)
 class PrintedEquation:
-    """An equation of the paper and the verdict on its print. Equations are Maxima text, on one line.
+    """An equation of the paper and the verdict on its print in our copy. Equations are Maxima text, on one line.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class PrintedEquation:
 
 
 def errata() -> tuple[PrintedEquation, ...]:
-    """Compare every equation that the paper prints, from (2) on, with the derived one.
+    """Compare every equation and condition that the paper prints with the derived one.
 
     Returns
     -------

@@ -10,7 +10,7 @@ from ..crosscheck.lagranges_method import OPINION
 from ..errata import PrintedEquation
 from ..record import Equation, Scene
 from .excerpts import Excerpt
-from .explanations import words
+from .explanations import words, words_on_print
 from .runs import Derived
 from .steps import step
 
@@ -105,6 +105,12 @@ def scene_cards(
     """
     instances = [_scene_instances(derived, name) for derived, name in scenes]
     return _cards(numbers, instances, tuple(printed), root, prefix)
+
+
+def printed_card(printed: Iterable[PrintedEquation], name: str) -> Card:
+    """The card of an equation that the paper prints without a number, and no record has, given its name."""
+    found = next(each for each in printed if each.name == name)
+    return Card(anchor("", found), found.number, found.name, words_on_print(found.number, found.name), (found,), (), ())
 
 
 def named_equations(derived: Derived, scene: str | None = None) -> dict[str, Equation]:

@@ -84,6 +84,17 @@ ON_PRINT = {
     "Lagrange's equations on a free motion": (
         "Equation (2) without reactions: the left side is inertia, the right side the given forces, and that is all."
     ),
+    "condition on the kinetic energy": (
+        "What lets (2) be solved for the accelerations: their coefficients in it are the second derivatives of $T$ by "
+        "the velocities."
+    ),
+    "condition on the mass matrix": (
+        "The same condition for the split $T$: the mass matrix $A$ has an inverse. A positive definite one always has."
+    ),
+    "condition on the constraints": (
+        "What lets (8) be solved for the multipliers. It asks that the constraints be independent, their gradients "
+        "$\\partial f_\\beta/\\partial q_s$ linearly independent; for a positive definite $A$ that is enough."
+    ),
     "14 kinetic energy": "Three coordinates, each with the kinetic energy of a unit mass.",
     "14 generalized forces": (
         "A force like that of a spring on the first coordinate, one like friction on the second; both depend on "

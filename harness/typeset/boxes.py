@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 SCRIPT = 0.7  # size of a subscript or superscript
 OPERATOR = 2.4  # a plus or minus sign with the space around it
-RELATION = 2.7  # an equals sign with the space around it
+RELATION = 2.7  # an equals sign, crossed out or not, with the space around it
 LETTER = 1.1
 NARROW = 0.8  # a bracket, a comma
 ACCENTS = ("", "dot", "ddot", "dddot")
@@ -29,6 +29,7 @@ NOTHING = Box("", 0)
 SIGNS = {sign: Box(sign, OPERATOR) for sign in "+-"}
 PREFIX_MINUS = Box("-", OPERATOR / 2)
 EQUALS = Box("=", RELATION)
+UNEQUAL = Box(r"\neq", RELATION)
 THIN_SPACE = Box(r"\,", 0.3)
 WIDE_SPACE = Box(r"\quad", 2)
 INDENT = Box(r"\quad", 2)

@@ -3,12 +3,13 @@
 Sums are broken before a sign, products before a factor, everything else in what it holds; terms and factors keep the
 order of the tree. Trees are those of `holonom.mathjson`, and what the paper's equations need beyond them:
 
-    ["Equal", left, right], ["List", item, ...]
+    ["Equal", left, right], ["NotEqual", left, right], ["List", item, ...]
     ["Subscript", "f", "beta"], ["Subscript", "A_inverse", "l", "s"], ["Subscript", "christoffel", "k", "m", "s"]
     ["Dot", x], ["Ddot", x], ["Dddot", x]     x differentiated by the time, under dots
     ["Rate", x]                               dx/dt along a motion
     ["Partial", x, y, ...]                    partial derivative of x by y, ...
     ["Apply", F, argument, ...], ["Factorial", n]
+    ["Determinant", x]                        of the matrix that the free indices of x span
     ["Marked", colour, x]                     x in a colour
 """
 
@@ -32,6 +33,7 @@ from .boxes import (
     SIGNS,
     THIN_SPACE,
     TIMES,
+    UNEQUAL,
     WIDE_SPACE,
     Box,
     above,
@@ -80,6 +82,7 @@ FUNCTIONS = {
     "Arcoth": r"\operatorname{arcoth}",
     "Erf": r"\operatorname{erf}",
     "Sign": r"\operatorname{sign}",
+    "Determinant": r"\det",
 }
 FRACTIONS = {"Divide", "Rational", "Partial", "Rate"}
 SUMS = {"Add", "Negate", "Subtract"}
@@ -451,6 +454,10 @@ def _equation(room: float, left: Tree, right: Tree) -> Box:
     return relation_box(left, right, room)
 
 
+def _condition(room: float, left: Tree, right: Tree) -> Box:
+    return beside(formula_box(left, room), UNEQUAL, formula_box(right))
+
+
 SETTERS: dict[str, Callable[..., Box]] = {
     "Multiply": _product,
     "Divide": _fraction,
@@ -470,4 +477,5 @@ SETTERS: dict[str, Callable[..., Box]] = {
     "Marked": _marked,
     "List": _list,
     "Equal": _equation,
+    "NotEqual": _condition,
 }

@@ -1,15 +1,15 @@
 ;;; The text of an equation as a tree, in the shape of the record's expressions (record/mathjson.lisp).
 ;;;
 ;;; The text is parsed and nothing is done to it: terms, factors and signs stay where they are
-;;; printed. Besides sums, products, quotients and powers a tree holds Equal, List, Subscript,
-;;; Apply, Factorial, Dot, Ddot, Dddot, Rate and Partial.
+;;; printed. Besides sums, products, quotients and powers a tree holds Equal, NotEqual, List,
+;;; Subscript, Apply, Factorial, Determinant, Dot, Ddot, Dddot, Rate and Partial.
 
 (in-package :maxima)
 
 (defvar *printed-heads*
-  '((mequal . "Equal") (mlist . "List") (mplus . "Add") (mminus . "Negate") (mtimes . "Multiply")
+  '((mequal . "Equal") (mnotequal . "NotEqual") (mlist . "List") (mplus . "Add") (mminus . "Negate") (mtimes . "Multiply")
     (mquotient . "Divide") (mexpt . "Power") (mfactorial . "Factorial") (mqapply . "Apply")
-    ($exp . "Exp") (%exp . "Exp")
+    ($exp . "Exp") (%exp . "Exp") ($det . "Determinant")
     ($dot . "Dot") ($ddot . "Ddot") ($dddot . "Dddot") ($rate . "Rate") ($partial . "Partial")))
 
 (defun $equation_tree (text)

@@ -161,6 +161,10 @@ def test_sums_are_broken_before_signs_and_kept_to_the_width(width):
             r"\frac{d}{d t} \frac{\partial T}{\partial \dot{q}_{s}}",
         ),
         (["Divide", 1, ["Factorial", 3]], r"\frac{1}{3 !}"),
+        (
+            ["NotEqual", ["Determinant", ["Subscript", "A", "s", "k"]], 0],
+            r"\det (A_{s k}) \neq 0",
+        ),
         (["List", ["Equal", "t", 0], ["Equal", "f", 0]], r"t = 0 , \quad f = 0"),
         (["Add", "b", ["Negate", "a"]], "b - a"),
     ],

@@ -25,7 +25,7 @@ def show_errata(console: Console, equations: Sequence["PrintedEquation"]) -> Non
     for equation in equations:
         _show_misprint(console, equation)
     misprints = sum(not equation.agrees for equation in equations)
-    console.print(f"{len(equations)} equations, {counted(misprints, 'misprint')}")
+    console.print(f"{len(equations)} equations, {counted(misprints, 'misprint')} in our copy of the paper")
 
 
 def draw_errata(equations: Sequence["PrintedEquation"]) -> str:
@@ -37,7 +37,7 @@ def draw_errata(equations: Sequence["PrintedEquation"]) -> str:
 
 
 def _errata_table(equations: Sequence["PrintedEquation"]) -> Table:
-    table = Table("no.", "equation", "as printed", title="The paper as printed", title_justify="left")
+    table = Table("no.", "equation", "as printed", title="The paper as our copy prints it", title_justify="left")
     for equation in equations:
         table.add_row(equation.number, equation.name, styled("agrees" if equation.agrees else "differs"))
     return table

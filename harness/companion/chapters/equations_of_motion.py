@@ -4,11 +4,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ..cards import derivation_cards, files_of, missing, named_equations
+from ..cards import derivation_cards, files_of, missing, named_equations, printed_card
 from ..chapter import Chapter, Page
 from ..examples import BEAD, BOB, PAPER, PENDULUM
 from ..runs import derived, printed
 
+CONDITIONS = ("condition on the kinetic energy", "condition on the mass matrix", "condition on the constraints")
 NUMBERS = ("2", "3a", "3", "4", "5", "6", "7", "8", "9")
 
 
@@ -18,9 +19,10 @@ def chapter(root: Path) -> Chapter:
     def page(results: Mapping[str, Any]) -> Page:
         paper = results["paper"]
         cards = derivation_cards(NUMBERS, [paper, results["bob"]], results["printed"], root)
+        conditions = [printed_card(results["printed"], name) for name in CONDITIONS]
         return Page(
             {
-                "cards": {card.anchor: card for card in cards},
+                "cards": {card.anchor: card for card in (*cards, *conditions)},
                 "missing": missing(paper),
                 "bob": results["bob"].record,
                 "bead": named_equations(results["bead"]),

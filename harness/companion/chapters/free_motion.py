@@ -4,11 +4,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ...errata import PrintedEquation
-from ..cards import Card, anchor, derivation_cards, files_of, named_equations, scene_cards
+from ..cards import derivation_cards, files_of, named_equations, printed_card, scene_cards
 from ..chapter import Chapter, Page
 from ..examples import BOB, CABIN, FREE_SCENE, INITIAL_SCENE, PAPER, PENDULUM
-from ..explanations import words_on_print
 from ..runs import derived, free, printed
 
 PARABOLIC_FLIGHT = "parabolic_flight_scene"
@@ -29,7 +27,7 @@ def chapter(root: Path) -> Chapter:
                 "scenes": scenes,
                 "free_law": results["free_law"],
                 "other_law": results["other_law"],
-                "unpushed": unpushed_card(results["printed"]),
+                "unpushed": printed_card(results["printed"], UNPUSHED),
                 "cabin": named_equations(cabin),
                 "flight": results["flight"].motion,
                 "lift": results["lift"].motion,
@@ -56,9 +54,3 @@ def chapter(root: Path) -> Chapter:
         },
         page=page,
     )
-
-
-def unpushed_card(equations: tuple[PrintedEquation, ...]) -> Card:
-    """The card of Lagrange's equations without reactions, which the paper prints without a number."""
-    found = next(each for each in equations if each.name == UNPUSHED)
-    return Card(anchor("", found), found.number, found.name, words_on_print(found.number, found.name), (found,), (), ())

@@ -1,6 +1,6 @@
 """The paper's misprints: every printed equation compared with the derived one."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import takewhile
 from pathlib import Path
 
@@ -10,6 +10,7 @@ from ..chapter import Chapter, Page
 from ..runs import printed
 
 PAGES = {
+    "the-system": ("1",),
     "equations-of-motion": ("2", "3", "4", "5", "6", "7", "8", "9"),
     "free-motion": ("10",),
     "initial-motion": ("11", "12", "13"),
@@ -35,7 +36,7 @@ def chapter(root: Path) -> Chapter:
     return Chapter(
         slug="misprints",
         title="Misprints",
-        aim="Every equation that the paper prints, compared with the derived one.",
+        aim="Every equation that the paper prints, as our copy has it, compared with the derived one.",
         template="misprints.html",
         runs={"printed": printed()},
         page=page,
@@ -47,7 +48,7 @@ def rows(equations: tuple[PrintedEquation, ...]) -> list[tuple[PrintedEquation, 
     general = list(takewhile(_before_the_example, equations))
     example = equations[len(general) :]
     return [
-        *((each, f"{_page(each)}.html#{anchor('', each)}") for each in general),
+        *((each, f"{page}.html#{anchor('', each)}") for page, each in zip(_pages(general), general, strict=True)),
         *((each, f"{EXAMPLE}.html#{place}") for each, place in zip(example, anchors(example), strict=True)),
     ]
 
@@ -56,6 +57,10 @@ def _before_the_example(each: PrintedEquation) -> bool:
     return each.number != FIRST_OF_EXAMPLE
 
 
-def _page(each: PrintedEquation) -> str:
-    """The page of a general equation; the one without a number is about free motion."""
-    return next((page for page, numbers in PAGES.items() if each.number in numbers), "free-motion")
+def _pages(general: Iterable[PrintedEquation]) -> Iterator[str]:
+    """The page of each general equation; one without a number is on that of the equation before it."""
+    page_of = {number: page for page, numbers in PAGES.items() for number in numbers}
+    page = ""
+    for each in general:
+        page = page_of.get(each.number, page)
+        yield page

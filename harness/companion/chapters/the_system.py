@@ -2,21 +2,22 @@
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from ..cards import derivation_cards, files_of
 from ..chapter import Chapter, Page
 from ..description import description
 from ..examples import CABIN, FREE_SCENE, LINKAGE, PAPER, PENDULUM
 from ..excerpts import excerpt
-from ..runs import Derived, derived
+from ..runs import derived, printed
 
 
 def chapter(root: Path) -> Chapter:
     """The chapter, with the systems under a root."""
 
-    def page(results: Mapping[str, Derived]) -> Page:
+    def page(results: Mapping[str, Any]) -> Page:
         paper = results["paper"]
-        cards = derivation_cards(["1"], [paper, results["pendulum"]], (), root)
+        cards = derivation_cards(["1"], [paper, results["pendulum"]], results["printed"], root)
         return Page(
             {
                 "system": paper.record.system,
@@ -42,6 +43,7 @@ def chapter(root: Path) -> Chapter:
             "pendulum": derived(root / PENDULUM),
             "linkage": derived(root / LINKAGE),
             "cabin": derived(root / CABIN),
+            "printed": printed(),
         },
         page=page,
     )
