@@ -1,11 +1,13 @@
 """What can go wrong, each way with its sentence and its remedy."""
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
 from enum import Enum
 from pathlib import Path
 
 OPTION = re.compile(r"--[a-z-]+")
+LIMITS = frozenset({"--time-limit", "--memory-limit", "--sandbox"})  # options that are one argument in Python
 
 
 class Failure(Enum):
@@ -192,15 +194,22 @@ class HolonomError(Exception):
         Parameters
         ----------
         options : collection of str or None
-            Options of the command that is told, such as ``--until``: advice to use others is left out.
+            Options of the command that is told, such as ``--until``: advice to use others is left out. None in Python,
+            where options are arguments.
         """
         sentence, remedy = self.failure.value
         said, advised = (text.format(detail=self.detail) for text in (sentence, remedy))
-        if options is not None:
+        if options is None:
+            advised = OPTION.sub(_argument, advised)
+        else:
             clauses = advised.split(", or ")
             advised = ", or ".join(clause for clause in clauses if set(OPTION.findall(clause)) <= set(options))
         located = f"{self.place}: {said}" if self.place else said
         return located.rstrip(".") + (f"; {advised}." if advised else ".")
+
+
+def _argument(option: re.Match[str]) -> str:
+    return "limits" if option[0] in LIMITS else option[0].removeprefix("--").replace("-", "_")
 
 
 def missing_package(package: str) -> HolonomError:
@@ -210,3 +219,23 @@ def missing_package(package: str) -> HolonomError:
     extra = extra_of(package)
     named = f"holonom[{extra}]" if extra else package
     return HolonomError(Failure.EXTRA_MISSING, detail=f"{package}, which is not installed; run `pip install '{named}'`")
+
+
+@contextmanager
+def naming_the_extra() -> Iterator[None]:
+    """Around what needs the packages of an extra, also as a decorator: where one is missing, say which and the remedy.
+
+    Raises
+    ------
+    HolonomError
+        A package of an extra is not installed.
+    """
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        from .installation import extra_of
+
+        package = str(error.name).partition(".")[0]
+        if extra_of(package) is None:
+            raise
+        raise missing_package(package) from None

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 from .confined import Limits
 from .documents import Document, ask, read
-from .failures import Failure, HolonomError
+from .failures import Failure, HolonomError, naming_the_extra
 from .files import near_file, write_files, write_whole
 from .program.motion_program import Program, Solve, read_program
 from .program.request import Request, program_document, read_settings
@@ -185,6 +185,7 @@ class Scene:
 
         return free_motion(self.file, self._name, self.settings, self.limits)
 
+    @naming_the_extra()
     def effects(self) -> "MeasuredCosts":
         """Which terms and effects there are, and what each costs in operations and in measured time."""
         from .program.effects import measure_costs, read_costs
@@ -194,6 +195,7 @@ class Scene:
 
     # ---- the motion ----
 
+    @naming_the_extra()
     def series(
         self,
         order: int = 20,
@@ -229,6 +231,7 @@ class Scene:
         request = SeriesRequest(order, self._name, digits, last, self.settings, precision)
         return compute_series(self.file, request, self.limits)
 
+    @naming_the_extra()
     def simulate(
         self,
         until: Number | None = None,
@@ -430,12 +433,14 @@ class MotionProgram:
         """What one evaluation costs."""
         return self.program.operations
 
+    @naming_the_extra()
     def compile(self) -> "CFunction":
         """A function of an array (inputs,) or (inputs, points), compiled by the system's C compiler."""
         from .program.c_function import compile_c
 
         return compile_c(self.program)
 
+    @naming_the_extra()
     def lambdify(self) -> "NumpyFunction":
         """The same function by NumPy alone."""
         from .program.numpy_function import NumpyFunction

@@ -249,3 +249,17 @@ def test_the_text_of_a_system_is_removed_with_its_last_scene():
 
     gc.collect()
     assert not file.exists()
+
+
+def test_in_python_advice_names_arguments_and_no_options(released):
+    with pytest.raises(holonom.HolonomError, match="give a later one with until"):
+        released.simulate(until=-1)
+    with pytest.raises(holonom.HolonomError, match="ask for less, or raise limits"):
+        holonom.load(released.file, limits=holonom.Limits(seconds=1e-3)).free()
+
+
+@pytest.mark.parametrize("asked", ["simulate", "effects", "program().lambdify"])
+def test_without_numpy_a_scene_says_which_extra_brings_it(asked, released):
+    hidden = f"import sys; sys.modules['numpy'] = None; import holonom; holonom.load({str(released.file)!r}).{asked}()"
+    done = subprocess.run([sys.executable, "-c", hidden], capture_output=True, text=True)
+    assert "HolonomError: this needs numpy, which is not installed; run `pip install 'holonom[motion]'`" in done.stderr

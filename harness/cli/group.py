@@ -10,7 +10,7 @@ from typing import Any
 
 import click
 
-from ..failures import HolonomError, missing_package
+from ..failures import HolonomError, naming_the_extra
 from ..supervisor import supervise
 from .outputs import Command
 
@@ -30,7 +30,8 @@ class Commands(click.Group):
         """Run the command asked for; return its exit status."""
         verbose = ctx.params["verbose"]
         try:
-            return super().invoke(ctx)
+            with naming_the_extra():
+                return super().invoke(ctx)
         except HolonomError as error:
             return _refused(error, verbose, self._options(ctx))
         except BrokenPipeError:
@@ -41,13 +42,6 @@ class Commands(click.Group):
             return _machine_refuses(error)
         except (click.ClickException, click.Abort, click.exceptions.Exit):
             raise
-        except ModuleNotFoundError as error:
-            from ..installation import extra_of
-
-            package = str(error.name).partition(".")[0]
-            if extra_of(package) is None:
-                return _internal_error(error, verbose)
-            return _refused(missing_package(package), verbose, self._options(ctx))
         except Exception as error:
             return _internal_error(error, verbose)
 
