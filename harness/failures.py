@@ -186,26 +186,30 @@ class HolonomError(Exception):
         self.command = command
 
     def __str__(self) -> str:
-        return self.sentence()
+        """As Python says it: what are options on the command line are arguments here."""
+        return self._told(OPTION.sub(_argument, self._remedy))
 
     def sentence(self, options: Collection[str] | None = None) -> str:
-        """What went wrong, where, and what to do.
+        """What went wrong, where, and what to do, as the command line says it.
 
         Parameters
         ----------
         options : collection of str or None
-            Options of the command that is told, such as ``--until``: advice to use others is left out. None in Python,
-            where options are arguments.
+            Options of the command that is told, such as ``--until``: advice to use others is left out.
         """
-        sentence, remedy = self.failure.value
-        said, advised = (text.format(detail=self.detail) for text in (sentence, remedy))
         if options is None:
-            advised = OPTION.sub(_argument, advised)
-        else:
-            clauses = advised.split(", or ")
-            advised = ", or ".join(clause for clause in clauses if set(OPTION.findall(clause)) <= set(options))
+            return self._told(self._remedy)
+        clauses = self._remedy.split(", or ")
+        return self._told(", or ".join(each for each in clauses if set(OPTION.findall(each)) <= set(options)))
+
+    @property
+    def _remedy(self) -> str:
+        return self.failure.value[1].format(detail=self.detail)
+
+    def _told(self, remedy: str) -> str:
+        said = self.failure.value[0].format(detail=self.detail)
         located = f"{self.place}: {said}" if self.place else said
-        return located.rstrip(".") + (f"; {advised}." if advised else ".")
+        return located.rstrip(".") + (f"; {remedy}." if remedy else ".")
 
 
 def _argument(option: re.Match[str]) -> str:

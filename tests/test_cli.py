@@ -158,6 +158,13 @@ def test_a_scene_may_stand_on_standard_input(particle_scene):
     assert json.loads(done.stdout) == json.loads(holonom("derive", particle_scene, "--json", "-").stdout)
 
 
+def test_what_is_wrong_on_standard_input_is_told_of_standard_input():
+    done = holonom("derive", "-", input="a : 1$\nb : $\n")
+    assert done.returncode == 2
+    assert "standard input:2: " in done.stderr
+    assert "standard_input.mac" not in done.stderr
+
+
 def test_quiet_prints_nothing_but_what_is_asked_for(particle_scene):
     silent, asked = holonom("-q", "check", particle_scene), holonom("-q", "check", particle_scene, "--json", "-")
     assert (silent.returncode, silent.stdout) == (0, "")

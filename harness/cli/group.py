@@ -12,7 +12,7 @@ import click
 
 from ..failures import HolonomError, naming_the_extra
 from ..supervisor import supervise
-from .outputs import Command
+from .outputs import STANDARD_INPUT, Command
 
 MACHINE_AT_FAULT = 3
 INTERNAL_ERROR = 70
@@ -33,7 +33,7 @@ class Commands(click.Group):
             with naming_the_extra():
                 return super().invoke(ctx)
         except HolonomError as error:
-            return _refused(error, verbose, self._options(ctx))
+            return _refused(error, verbose, self._options(ctx), str(ctx.meta.get(STANDARD_INPUT, "")))
         except BrokenPipeError:
             return PIPE_CLOSED
         except MemoryError:
@@ -96,7 +96,7 @@ def main() -> None:
     try:
         ending = supervise(run)
     except HolonomError as error:
-        status = _told(str(error), error.failure.status)
+        status = _told(error.sentence(), error.failure.status)
     else:
         status = _told(ending.sentence, ending.status) if ending.sentence else ending.status
     sys.stderr.flush()
@@ -144,8 +144,10 @@ def _machine_refuses(error: OSError) -> int:
     return _told(f"this machine refuses: {what}; see to it, and run it again.", MACHINE_AT_FAULT)
 
 
-def _refused(error: HolonomError, verbose: bool, options: Collection[str]) -> int:
-    _told(error.sentence(options), error.failure.status)
+def _refused(error: HolonomError, verbose: bool, options: Collection[str], standing_in: str) -> int:
+    """Tell what was refused; a file that stands in for standard input is not named."""
+    named = "standard input"
+    _told(error.sentence(options).replace(standing_in or named, named), error.failure.status)
     if verbose:
         for line in error.last_lines:
             click.echo(f"  | {line}", err=True)

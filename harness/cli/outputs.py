@@ -17,6 +17,7 @@ from ..files import draft_of, private_directory
 
 STANDARD_OUTPUT = Path("-")
 LOOKED_AT = 16384  # bytes at each end of a file
+STANDARD_INPUT = "holonom.standard_input"  # where it holds the file that stands in for standard input
 FORCE = "holonom.force"  # where the context of a command holds whether it has the option
 
 # What the beginning and the end of an earlier output hold, by kind.
@@ -47,6 +48,7 @@ class SceneFile(click.Path):
             return super().convert(value, parameter, ctx)
         file = Path(ctx.with_resource(private_directory()), "standard_input.mac")
         file.write_bytes(click.get_binary_stream("stdin").read())
+        ctx.meta[STANDARD_INPUT] = file
         return file
 
 
