@@ -1,12 +1,13 @@
 ;;; A description between two processes
 ;;;
 ;;; A scene file is a program, and may do anything to the Maxima that runs it. So one process runs the file and writes
-;;; down what it described: the entries given to holonomic_system and holonomic_scene, and what it assumed. A second
-;;; one, which never sees the file, reads that as data, describes the same systems and scenes anew, and derives.
+;;; down what it described: the entries given to holonomic_system and holonomic_scene, what it assumed, and how long
+;;; closed forms may be. A second one, which never sees the file, reads that as data, describes the same systems and
+;;; scenes anew, and derives.
 ;;;
-;;; A description is one expression, a list of: the settings used; what is assumed; the systems; their names, each with
-;;; the number of its system; the scenes, each with its name and the number of its system. It is written thus, a blank
-;;; after each item:
+;;; A description is one expression, a list of: the settings used; closed_form_size; what is assumed; the systems; their
+;;; names, each with the number of its system; the scenes, each with its name and the number of its system. It is
+;;; written thus, a blank after each item:
 ;;;
 ;;;   i123      an integer                          s3:abc   a string, its length before it
 ;;;   f3/4      a float, as a quotient              y2:$x    a symbol, the length of its name before it
@@ -50,11 +51,17 @@
     (mapc #'require-known-functions (append systems (mapcar #'cdr scenes)))
     (flet ((number-of (system) (position system systems :test #'alike1)))
       (listed (listed* (cdr $settings_used))
+              (required-size $closed_form_size)
               (mfuncall '$facts)
               (listed* systems)
               (listed* (loop for (name . system) in named collect (listed name (number-of system))))
               (listed* (loop for (name . scene) in scenes
                              collect (listed name (number-of (system-of scene)) (without-systems scene))))))))
+
+(defun required-size (size)
+  (if (and (integerp size) (plusp size))
+      size
+      (merror "closed_form_size must be a positive integer; it is ~M" size)))
 
 (defun require-known-functions (structure)
   "Refuse what no document can hold where the entry that holds it is known."
@@ -103,8 +110,9 @@
 
 (defun describe-anew (file)
   "Describe the systems and scenes in FILE, under their names."
-  (destructuring-bind (used facts systems names scenes) (cdr (with-open-file (in file) (read-datum in)))
+  (destructuring-bind (used size facts systems names scenes) (cdr (with-open-file (in file) (read-datum in)))
     (setq $settings_used used)
+    (setq $closed_form_size (required-size size))
     (mapc #'assume-anew (cdr facts))
     (let ((systems (mapcar (lambda (system) (described-anew '$holonomic_system (entries-of system) system))
                            (cdr systems))))

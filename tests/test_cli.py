@@ -9,7 +9,12 @@ from importlib import metadata
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
+from particle import PARTICLE
 
+from holonom.cli import holonom as cli
+from holonom.crosscheck import Verdict
+from holonom.crosscheck.verdict import Judgement
 from holonom.failures import Failure, HolonomError
 
 HOLONOM = [sys.executable, "-m", "holonom"]
@@ -225,3 +230,29 @@ def test_check_and_derive_were_silent_about_equations_that_are_not_made():
     assert "--closed-form-size 3288 makes them" in holonom("derive", chain).stdout
     made = holonom("derive", chain, "--set", "N=2", "--closed-form-size", "1")
     assert "(4), (5), (8), (9), (10), (11) not made" in made.stdout
+
+
+def test_equations_left_out_for_a_small_limit_were_called_missing(particle_scene):
+    done = holonom("check", particle_scene, "--closed-form-size", "1", "--json", "-")
+    report = json.loads(done.stdout)
+    assert (done.returncode, report["disagreements"]) == (0, 0)
+    left_out = {found["number"] for found in report["equations"] if found["verdict"] == "left out"}
+    assert left_out == {"4", "5", "8", "9", "10", "11", "13", "18"}
+
+
+def test_the_scene_file_s_closed_form_size_had_no_effect(write_scene):
+    scene = write_scene(PARTICLE + "closed_form_size : 1$\n")
+    assert "more than closed_form_size = 1;" in holonom("derive", scene).stdout
+    assert "not made" not in holonom("derive", scene, "--closed-form-size", "500").stdout
+    scene.write_text(PARTICLE + "closed_form_size : x$\n")
+    refused = holonom("derive", scene)
+    assert refused.returncode == 2
+    assert "closed_form_size must be a positive integer; it is x" in refused.stderr
+
+
+def test_a_law_that_sympy_contradicts_had_exit_status_0(particle_scene, monkeypatch):
+    contradicted = Judgement(Verdict.DISAGREES, 50, 8, "lambda1 is 1")
+    monkeypatch.setattr("holonom.free_motion.judge_law", lambda *_: contradicted)
+    found = CliRunner().invoke(cli, ["free", str(particle_scene)], standalone_mode=False)
+    assert found.return_value == 1
+    assert "disagrees to 50 digits in 8 random states: lambda1 is 1" in found.output

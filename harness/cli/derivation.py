@@ -10,20 +10,18 @@ import click
 from ..confined import Limits
 from ..supervisor import doing
 from .group import holonom
-from .options import json_text, publish, runs_scenes, takes_settings, writes_json
+from .options import DISAGREEMENT, json_text, publish, runs_scenes, takes_settings, writes_json
 from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile
 
 if TYPE_CHECKING:
     from ..crosscheck import CheckReport
     from ..record import Record
 
-DISAGREEMENT = 1
-
 limits_closed_forms = click.option(
     "--closed-form-size",
     metavar="N",
     type=click.IntRange(min=1),
-    help="Make closed forms up to so many terms; without it, what the library finds readable.",
+    help="Make closed forms up to so many terms; without it, up to the scene file's closed_form_size, or 500.",
 )
 
 
@@ -144,6 +142,7 @@ def _report_document(scene: str, report: "CheckReport") -> dict[str, Any]:
         "made": len(report.verdicts) - report.count(Verdict.LEFT_OUT),
         "left_out": report.count(Verdict.LEFT_OUT),
         "agreed": report.count(Verdict.PROVED, Verdict.AGREES),
+        "undecided": report.count(Verdict.UNDECIDED),
         "disagreements": report.disagreements,
         "seed": report.seed,
     }

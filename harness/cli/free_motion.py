@@ -9,7 +9,7 @@ import click
 
 from ..confined import Limits
 from .group import holonom
-from .options import STANDARD_OUTPUT, asks_one_scene, json_text, publish, runs_scenes, writes_json
+from .options import DISAGREEMENT, STANDARD_OUTPUT, asks_one_scene, json_text, publish, runs_scenes, writes_json
 
 if TYPE_CHECKING:
     from ..free_motion import FreeMotion
@@ -33,7 +33,11 @@ def free(
     json_file: Path | None,
     limits: Limits,
 ) -> int:
-    """Find when the motion of a SCENE is free: as it is, under which laws, under which for one trajectory."""
+    """Find when the motion of a SCENE is free: as it is, under which laws, under which for one trajectory.
+
+    The exit status is 1 where SymPy's own evaluation contradicts a law that was found.
+    """
+    from ..crosscheck import Verdict
     from ..free_motion import free_motion
     from ..program.request import read_settings
     from .tables.free_motion import show_free_motion
@@ -43,7 +47,8 @@ def free(
     publish(json_text(_free_motion_document(found)), json_file)
     if json_file != STANDARD_OUTPUT:
         show_free_motion(make_console(), found)
-    return 0
+    contradicted = any(law.check.verdict is Verdict.DISAGREES for law in found.universal.laws)
+    return DISAGREEMENT if contradicted else 0
 
 
 def _free_motion_document(found: "FreeMotion") -> dict[str, Any]:

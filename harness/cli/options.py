@@ -15,6 +15,7 @@ from ..program.request import within_reach
 from ..supervisor import limit_time
 from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile
 
+DISAGREEMENT = 1  # exit status where SymPy contradicts Maxima
 SHOWN = 40  # letters of an option that is refused
 LONGEST = 1e9  # seconds of a time limit: 30 years
 MOST_MEMORY = 2**30  # MiB of a memory limit

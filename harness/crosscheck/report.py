@@ -17,6 +17,8 @@ class Verdict(StrEnum):
     """The difference vanishes, to the digits stated, at the random points stated."""
     DISAGREES = "disagrees"
     """The difference does not vanish, or the equation is not there."""
+    UNDECIDED = "undecided"
+    """Too few random points were found at which both sides have values."""
     NOTHING = "nothing to check"
     """The equation states nothing of this system."""
     LEFT_OUT = "left out"
@@ -37,10 +39,10 @@ class EquationVerdict:
         Name of the scene the equation belongs to; None for an equation of a derivation.
     verdict : Verdict
     digits, points : int or None
-        Significant digits demanded and random points tried; None where nothing was evaluated.
+        Significant digits demanded and random points compared; None where nothing was evaluated.
     detail : str
-        For a disagreement the relation, the difference and the point; for what was left out the reason; empty
-        otherwise.
+        For a disagreement the relation, the difference and the point; for what is undecided or was left out the
+        reason; empty otherwise.
     held : bool
         Whether the record holds the equation.
     """

@@ -58,27 +58,31 @@ def judge_law(system: MechanicalSystem, values: Mapping[sp.Symbol, sp.Expr], law
     Returns
     -------
     Judgement
-        ``agrees`` with the digits and states, or ``disagrees`` with the first residual; also where no regular state was
-        found, and then the detail says so.
+        ``agrees`` with the digits and states, ``disagrees`` with the first residual, or ``undecided`` where too few
+        regular states were found.
     """
     moved = _MovedByLaw(system, values, law)
     seed = fresh_seed()
     draws = (random_point(moved.names, attempt, seed) for attempt in range(DRAWS * POINTS))
     with mp.workdps(WORKING_DIGITS):
-        for _ in range(POINTS):
+        for found in range(POINTS):
             detail = _residual_at_next_state(moved, draws)
+            if detail is None:
+                reason = f"only {found} regular states were found on the constraint manifold, of {POINTS} looked for"
+                return Judgement(Verdict.UNDECIDED, None, found or None, reason)
             if detail:
                 return Judgement(Verdict.DISAGREES, DIGITS, POINTS, f"{detail}, in a state drawn with seed {seed}")
     return Judgement(Verdict.AGREES, DIGITS, POINTS)
 
 
-def _residual_at_next_state(moved: _MovedByLaw, draws: Iterator[Mapping[sp.Symbol, sp.Rational]]) -> str:
+def _residual_at_next_state(moved: _MovedByLaw, draws: Iterator[Mapping[sp.Symbol, sp.Rational]]) -> str | None:
+    """Tell the first multiplier that is not zero, empty where all are; None where the draws end without a state."""
     for point in draws:
         try:
             return moved.residual(point)
         except (IrregularPoint, ZeroDivisionError):
             continue
-    return "no regular state was found on the constraint manifold"
+    return None
 
 
 class _MovedByLaw:

@@ -91,23 +91,35 @@ def judge(comparison: Comparison, seed: str) -> Judgement:
     names = _free_names(comparison)
     points = POINTS if names else 1
     digits = _digits(comparison)
+    compared, valueless = 0, ""
     candidates = (random_point(names, attempt, seed) for attempt in range(ATTEMPTS * points))
     with mp.workdps(WORKING_DIGITS):
-        for _ in range(points):
-            detail = _difference_at_next_regular_point(comparison, candidates, digits)
+        while compared < points and (point := next(candidates, None)) is not None:
+            try:
+                detail = _difference(comparison, point, digits)
+            except ClaimWithoutValue as found:
+                valueless = valueless or str(found)
+                continue
+            except (IrregularPoint, ZeroDivisionError):
+                continue
             if detail:
                 return Judgement(Verdict.DISAGREES, digits, points, detail)
+            compared += 1
+    if compared == 0 and valueless:
+        return Judgement(Verdict.DISAGREES, digits, ATTEMPTS * points, valueless)
+    if compared < points:
+        return Judgement(Verdict.UNDECIDED, None, compared or None, _too_few(compared))
     proved = _is_proved(comparison)
     return Judgement(Verdict.PROVED if proved else Verdict.AGREES, digits, points)
 
 
-def _difference_at_next_regular_point(comparison: Comparison, candidates: Iterator[Point], digits: int) -> str:
-    for point in candidates:
-        try:
-            return _difference(comparison, point, digits)
-        except (IrregularPoint, ZeroDivisionError):
-            continue
-    return "no regular point found"
+def _too_few(compared: int) -> str:
+    found = f"only {compared} regular points were" if compared else "no regular point was"
+    return f"{found} found among {ATTEMPTS * POINTS} drawn at random"
+
+
+class ClaimWithoutValue(IrregularPoint):
+    """At a point where the independent evaluation has a value the record's expression has none."""
 
 
 def _difference(comparison: Comparison, point: Point, digits: int) -> str:
@@ -119,7 +131,14 @@ def _difference(comparison: Comparison, point: Point, digits: int) -> str:
         for symbol, number in equations.solution(value).items():
             value.define(symbol, number)
     for quantity, claimed, independent in comparison.pairs:
-        left, right = value(claimed), value(independent)
+        right = value(independent)
+        try:
+            left = value(claimed)
+        except (IrregularPoint, ZeroDivisionError):
+            raise ClaimWithoutValue(
+                f"{quantity}: the record gives no real value at any point tried, "
+                f"the independent evaluation {mp.nstr(right, 12)}{_where(point)}"
+            ) from None
         if abs(left - right) > mp.mpf(10) ** -digits * max(1, abs(left), abs(right)):
             return (
                 f"{quantity}: the record gives {mp.nstr(left, 12)}, "

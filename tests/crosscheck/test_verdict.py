@@ -1,5 +1,6 @@
-"""The three verdicts, and what each rests on."""
+"""The verdicts, and what each rests on."""
 
+import pytest
 import sympy as sp
 from systems import symbols
 
@@ -40,10 +41,29 @@ def test_points_where_an_expression_is_not_real_are_passed_over() -> None:
     assert judge(compared(sp.sqrt(X) ** 3, X * sp.sqrt(X)), "seed").verdict is Verdict.PROVED
 
 
-def test_nothing_agrees_where_no_point_is_regular() -> None:
+def test_nothing_is_decided_where_no_point_is_regular() -> None:
     imaginary = sp.sqrt(-1 - X**2)
     found = judge(compared(imaginary, imaginary), "seed")
-    assert (found.verdict, found.detail) == (Verdict.DISAGREES, "no regular point found")
+    assert found == (Verdict.UNDECIDED, None, None, "no regular point was found among 200 drawn at random")
+
+
+def test_too_few_points_decide_nothing() -> None:
+    rare = sp.sqrt(X - sp.Rational(39, 20))
+    found = judge(compared(rare, rare), "seed")
+    assert found.verdict is Verdict.UNDECIDED
+    assert 0 < found.points < POINTS
+    assert found.detail == f"only {found.points} regular points were found among 200 drawn at random"
+
+
+@pytest.mark.parametrize("valueless", [sp.sqrt(-1 - X**2), sp.zoo * X])
+def test_what_has_no_value_where_the_truth_has_one_disagrees(valueless) -> None:
+    found = judge(compared(valueless, X), "seed")
+    assert found.verdict is Verdict.DISAGREES
+    assert "something: the record gives no real value at any point tried, the independent evaluation" in found.detail
+
+
+def test_a_difference_counts_although_other_points_are_irregular() -> None:
+    assert judge(compared(sp.sqrt(X) + 1, sp.sqrt(X)), "seed").verdict is Verdict.DISAGREES
 
 
 def test_a_constant_is_compared_once() -> None:

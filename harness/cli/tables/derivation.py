@@ -47,7 +47,7 @@ def show_verdicts(console: Console, report: "CheckReport") -> None:
             table.add_row(found.number, found.name, styled(found.verdict), _number(found.digits), _number(found.points))
     console.print(table)
     for found in report.verdicts:
-        if found.verdict == "disagrees":
+        if found.verdict in ("disagrees", "undecided"):
             console.print(f"({found.number}) {found.name}: {found.detail}", soft_wrap=True, markup=False)
     left_out = {found.detail: found for found in report.verdicts if found.verdict == "left out"}
     for reason in left_out:
@@ -62,6 +62,8 @@ def _sum(report: "CheckReport") -> str:
     left_out, empty = report.count(Verdict.LEFT_OUT), report.count(Verdict.NOTHING)
     agreed = report.count(Verdict.PROVED, Verdict.AGREES)
     parts = [f"{len(report.verdicts) - left_out} equations made", f"{left_out} left out", f"{agreed} agreed"]
+    if undecided := report.count(Verdict.UNDECIDED):
+        parts.append(f"{undecided} undecided")
     if empty:
         parts.append(f"{empty} with nothing to check")
     return ", ".join([*parts, counted(report.disagreements, "disagreement")])

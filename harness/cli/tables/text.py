@@ -14,6 +14,7 @@ STYLES = {
     "proved": "green",
     "agrees": "green",
     "disagrees": "bold red",
+    "undecided": "yellow",
     "nothing to check": "dim",
     "left out": "yellow",
     "differs": "bold red",
