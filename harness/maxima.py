@@ -96,31 +96,6 @@ class Run:
         return self.directory / f"{what}-{self.mark}"
 
 
-def run_scene(scene: Path, limits: Limits = DEFAULT_LIMITS, settings: Mapping[str, str] = NO_SETTINGS) -> str:
-    """Derive a scene file.
-
-    Parameters
-    ----------
-    scene : Path
-        A Maxima file that describes one system and any number of scenes.
-    limits : Limits
-        What the run may take.
-    settings : mapping of str to str
-        As for `ask_scene`.
-
-    Returns
-    -------
-    str
-        The derivation record, JSON text.
-
-    Raises
-    ------
-    HolonomError
-        As `ask_scene`.
-    """
-    return ask_scene(scene, "write_record", limits, settings)
-
-
 def ask_scene(
     scene: Path, writer: str, limits: Limits = DEFAULT_LIMITS, settings: Mapping[str, str] = NO_SETTINGS
 ) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from particle import PARTICLE
 
-from holonom.maxima import run_scene
+from holonom.documents import Document, ask
 
 ScenesWriter = Callable[[str], Path]
 COMPANION = Path(__file__).with_name("companion")
@@ -43,7 +43,7 @@ def particle_record(tmp_path_factory: pytest.TempPathFactory) -> str:
     """The particle's record as Maxima wrote it."""
     file = tmp_path_factory.mktemp("particle") / "scene.mac"
     file.write_text(PARTICLE, encoding="utf-8")
-    return run_scene(file)
+    return ask(Document.RECORD, file)
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -13,11 +13,10 @@ from sympy import Function, Symbol, cos, exp, symbols
 from holonom.confined import Limits
 from holonom.failures import HolonomError
 from holonom.free_motion import FirstCoefficient, Free, free_motion
-from holonom.maxima import run_scene
 from holonom.program.motion_program import read_program
 from holonom.program.numpy_function import NumpyFunction
 from holonom.program.request import Request, program_document
-from holonom.record import read_record
+from holonom.record import derived_record
 from holonom.series.power_series import SeriesRequest, compute_series, number
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -128,7 +127,7 @@ def test_motion_under_prescribed_reactions_is_a_motion_program():
 
 
 def test_record_holds_scenes_under_control_laws_only():
-    record = read_record(run_scene(EXAMPLES / "prescribed_tension.mac"))
+    record = derived_record(EXAMPLES / "prescribed_tension.mac")
     assert record.derivations
     assert record.scenes == ()
 

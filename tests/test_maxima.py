@@ -6,15 +6,16 @@ from dataclasses import replace
 import pytest
 
 from holonom.confined import Limits
+from holonom.documents import Document, ask
 from holonom.failures import Failure, HolonomError
-from holonom.maxima import count_statements, run_batch, run_rtest, run_scene
+from holonom.maxima import count_statements, run_batch, run_rtest
 
 LONG = Limits(seconds=20, memory_mib=512, output_mib=1)
 
 
 def failure_of(file, limits=LONG) -> HolonomError:
     with pytest.raises(HolonomError) as raised:
-        run_scene(file, limits)
+        ask(Document.RECORD, file, limits=limits)
     return raised.value
 
 

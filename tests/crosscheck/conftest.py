@@ -4,8 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from holonom.maxima import run_scene
-from holonom.record import Record, read_record
+from holonom.record import Record, derived_record
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
@@ -15,9 +14,9 @@ EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
     params=["paper/paper.mac", "weightless_cabin.mac", "pendulum.mac", "bead.mac"],
 )
 def example_record(request: pytest.FixtureRequest) -> Record:
-    return read_record(run_scene(EXAMPLES / request.param))
+    return derived_record(EXAMPLES / request.param)
 
 
 @pytest.fixture(scope="session")
 def paper_record() -> Record:
-    return read_record(run_scene(EXAMPLES / "paper" / "paper.mac"))
+    return derived_record(EXAMPLES / "paper" / "paper.mac")

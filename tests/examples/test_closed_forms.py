@@ -7,15 +7,14 @@ import pytest
 import sympy
 from sympy import Expr, Symbol, cos, cosh, exp, sin
 
-from holonom.maxima import run_scene
-from holonom.record import Equation, Record, read_record
+from holonom.record import Equation, Record, derived_record
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 @cache
 def record_of(name: str) -> Record:
-    return read_record(run_scene(EXAMPLES / f"{name}.mac"))
+    return derived_record(EXAMPLES / f"{name}.mac")
 
 
 def symbols(names: str) -> tuple[Symbol, ...]:

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from holonom.crosscheck import check_record
-from holonom.maxima import run_batch, run_scene
-from holonom.record import read_record
+from holonom.maxima import run_batch
+from holonom.record import derived_record, read_record
 
 HOLONOM = 'load("holonom.mac")$'
 
@@ -112,7 +112,7 @@ def test_a_scene_may_call_its_coordinates_by_the_papers_letters(tmp_path: Path):
     for word, letter in letters.items():
         scene = re.sub(rf"\b{word}\b", letter, scene)
     (file := tmp_path / "scene.mac").write_text(HOLONOM + scene)
-    report = check_record(read_record(run_scene(file)))
+    report = check_record(derived_record(file))
     assert report.verdicts
     assert report.disagreements == 0
 

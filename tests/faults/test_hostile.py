@@ -14,8 +14,8 @@ import pytest
 from particle import PARTICLE
 
 from holonom.confined import Limits, Sandbox, bubblewrap
+from holonom.documents import Document, ask
 from holonom.failures import Failure, HolonomError
-from holonom.maxima import run_scene
 
 walled = pytest.mark.skipif(bubblewrap() is None, reason="bubblewrap is missing or forbidden")
 
@@ -37,7 +37,7 @@ def told(tmp_path: Path, command: str) -> str:
     )
     file = tmp_path / "telling.mac"
     file.write_text(text, encoding="utf-8")
-    return json.loads(run_scene(file))["system"]["title"]
+    return json.loads(ask(Document.RECORD, file))["system"]["title"]
 
 
 def test_what_a_program_says_can_be_told(tmp_path):
@@ -68,7 +68,7 @@ def test_no_file_is_written(place, tmp_path):
     deed = f'errcatch(with_stdout("{target}", print("forged")))$ system("echo forged >> {target}; rm -rf {target}")$'
     file = scene(tmp_path, deed)
     before = target.read_bytes() if target.exists() else None
-    run_scene(file)
+    ask(Document.RECORD, file)
     assert (target.read_bytes() if target.exists() else None) == before
 
 
@@ -77,7 +77,7 @@ def test_there_is_no_network(tmp_path):
     with socket.create_server(("127.0.0.1", 0)) as server:
         server.settimeout(0.2)
         port = server.getsockname()[1]
-        run_scene(scene(tmp_path, f"system(\"bash -c 'echo hello > /dev/tcp/127.0.0.1/{port}'\")$"))
+        ask(Document.RECORD, scene(tmp_path, f"system(\"bash -c 'echo hello > /dev/tcp/127.0.0.1/{port}'\")$"))
         with pytest.raises(TimeoutError):
             server.accept()
 
@@ -86,7 +86,7 @@ def test_there_is_no_network(tmp_path):
 def test_no_other_process_is_seen_or_ended(tmp_path):
     victim = subprocess.Popen(["sleep", "60"])
     try:
-        run_scene(scene(tmp_path, f'system("kill -9 {victim.pid}")$'))
+        ask(Document.RECORD, scene(tmp_path, f'system("kill -9 {victim.pid}")$'))
         assert victim.poll() is None
     finally:
         victim.kill()
@@ -96,7 +96,7 @@ def test_no_other_process_is_seen_or_ended(tmp_path):
 @walled
 def test_nothing_runs_on_that_hides_in_a_session_of_its_own(tmp_path):
     mark = f"{os.getpid()}.125"
-    run_scene(scene(tmp_path, f'system("setsid sleep {mark} >/dev/null 2>&1 &")$'))
+    ask(Document.RECORD, scene(tmp_path, f'system("setsid sleep {mark} >/dev/null 2>&1 &")$'))
     seen = subprocess.run(["ps", "-eo", "args"], capture_output=True, text=True, check=True).stdout
     assert f"sleep {mark}" not in seen
 
@@ -125,7 +125,7 @@ FORGERIES = {
 def test_what_derives_is_not_what_the_scene_has_touched(forgery, tmp_path, particle_record):
     """A forger is refused, for its own run is broken, or changes nothing of the derivation."""
     try:
-        found = run_scene(scene(tmp_path, FORGERIES[forgery]))
+        found = ask(Document.RECORD, scene(tmp_path, FORGERIES[forgery]))
     except HolonomError as refusal:
         found = None
         refused = refusal.failure
@@ -138,19 +138,20 @@ def derivations(record: str) -> list:
 
 def test_a_description_that_is_changed_afterwards_is_refused(tmp_path):
     with pytest.raises(HolonomError, match="was changed afterwards, or the file sets an option of Maxima's"):
-        run_scene(scene(tmp_path, "particle@constraints : [z - 2*u]$ "))
+        ask(Document.RECORD, scene(tmp_path, "particle@constraints : [z - 2*u]$ "))
 
 
 @pytest.mark.parametrize(
     "option", ["numer : true", "obase : 8", "keepfloat : true", "simp : true", "exptdispflag : false"]
 )
 def test_options_of_maxima_do_not_reach_the_derivation(option, tmp_path, particle_record):
-    assert derivations(run_scene(scene(tmp_path, "", before=f"{option}$ "))) == derivations(particle_record)
+    assert derivations(ask(Document.RECORD, scene(tmp_path, "", before=f"{option}$ "))) == derivations(particle_record)
 
 
 def test_a_trusted_scene_is_run_in_the_open(tmp_path):
     target = tmp_path / "written"
-    run_scene(scene(tmp_path, f'with_stdout("{target}", print("here"))$'), Limits(sandbox=Sandbox.TRUSTED))
+    trusted = Limits(sandbox=Sandbox.TRUSTED)
+    ask(Document.RECORD, scene(tmp_path, f'with_stdout("{target}", print("here"))$'), limits=trusted)
     assert target.read_text().strip() == "here"
 
 

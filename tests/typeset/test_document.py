@@ -8,8 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from holonom.maxima import run_scene
-from holonom.record import read_record
+from holonom.record import derived_record, read_record
 from holonom.typeset.document import tex_document
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -28,7 +27,7 @@ needs_tex = pytest.mark.skipif(not shutil.which("pdflatex"), reason="pdflatex is
 
 
 def document(scene: Path) -> str:
-    return tex_document(read_record(run_scene(scene)))
+    return tex_document(derived_record(scene))
 
 
 def complaints(text: str, directory: Path) -> list[str]:

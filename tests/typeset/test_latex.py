@@ -10,8 +10,7 @@ from reading import letter, sides
 from sympy import Float, Function, Indexed, IndexedBase, Rational, Symbol, cos, exp, lambdify, sin, sqrt, symbols
 
 from holonom.failures import HolonomError
-from holonom.maxima import run_scene
-from holonom.record import Record, Relation, read_record
+from holonom.record import Record, Relation, derived_record
 from holonom.typeset.formula import formula_box
 from holonom.typeset.latex import latex, latex_relation, latex_tree
 from holonom.typeset.presentation import presented
@@ -23,7 +22,7 @@ dx = Symbol("dot(x)", real=True)
 
 @cache
 def record(example: str) -> Record:
-    return read_record(run_scene(EXAMPLES / example))
+    return derived_record(EXAMPLES / example)
 
 
 def relations(found: Record) -> list[Relation]:
