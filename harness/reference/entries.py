@@ -1,5 +1,6 @@
-"""Entries of holonomic_system and holonomic_scene, as `entries.toml` explains them."""
+"""Entries of holonomic_system and holonomic_scene, and what writes them for bodies, as `entries.toml` explains them."""
 
+import re
 import tomllib
 from dataclasses import dataclass
 from functools import cache
@@ -69,11 +70,50 @@ class FunctionText:
         return f"{self.name}({first}\n  {self.with_entries()})"
 
 
+@dataclass(frozen=True)
+class PartText:
+    """What there is to know about a function that writes entries for a body, a joint or a load.
+
+    Attributes
+    ----------
+    name, call, text, example : str
+    context : tuple of str
+        The bodies that the example uses, as statements.
+    refused : tuple of Refusal
+    """
+
+    name: str
+    call: str
+    text: str
+    example: str
+    context: tuple[str, ...]
+    refused: tuple[Refusal, ...]
+
+
+@cache
+def part_texts() -> tuple[PartText, ...]:
+    """The functions that write entries for bodies, joints and loads."""
+    described = _described()
+    bodies = {name: f"{name} : {body}$" for name, body in described["part_context"].items()}
+    return tuple(
+        PartText(
+            context=tuple(line for name, line in bodies.items() if re.search(rf"\b{name}\b", part["example"])),
+            refused=tuple(Refusal(**refusal) for refusal in part.pop("refused")),
+            **part,
+        )
+        for part in described["part"]
+    )
+
+
 @cache
 def function_texts() -> tuple[FunctionText, ...]:
     """The two functions with their entries."""
-    described = tomllib.loads(TEXT.read_text(encoding="utf-8"))
+    described = _described()
     return tuple(_function(name, described[name]) for name in FUNCTIONS)
+
+
+def _described() -> dict:
+    return tomllib.loads(TEXT.read_text(encoding="utf-8"))
 
 
 def _function(name: str, described: dict) -> FunctionText:

@@ -5,9 +5,9 @@ Maxima finds a topic by the byte where it begins and the number of its character
 
 import textwrap
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
-from .entries import EntryText, FunctionText, function_texts
+from .entries import EntryText, FunctionText, PartText, Refusal, function_texts, part_texts
 
 INFO = "holonom.info"
 DEFINITIONS = "Definitions for holonom"
@@ -58,6 +58,7 @@ def _topics() -> Iterator[tuple[str, str]]:
         yield function.name, _function(function)
         for entry in function.entries:
             yield f"{entry.name} <{number}>" if shared[entry.name] > 1 else entry.name, _entry(entry)
+    yield from ((part.name, _part(part)) for part in part_texts())
 
 
 def _function(function: FunctionText) -> str:
@@ -76,10 +77,20 @@ def _entry(entry: EntryText) -> str:
         f"{_filled(f'What it is: {entry.type}.')}{_filled(f'Without it: {entry.default}.')}\n"
         f"{_filled('For instance:')}\n{_shown(example)}"
     )
-    if entry.refused:
-        refused = "".join(_filled(f"{refusal.given}: {refusal.said}", 10, 14) for refusal in entry.refused)
-        text += f"\n{_filled('What is refused, and words of the sentence that says why:')}\n{refused}"
-    return text
+    return text + (_refused(entry.refused) if entry.refused else "")
+
+
+def _part(part: PartText) -> str:
+    example = "\n".join([*part.context, f"{part.example};"])
+    return (
+        f" -- Function: {part.call}\n{_filled(part.text)}\n{_filled('For instance:')}\n{_shown(example)}"
+        f"{_refused(part.refused)}"
+    )
+
+
+def _refused(refusals: Sequence[Refusal]) -> str:
+    refused = "".join(_filled(f"{refusal.given}: {refusal.said}", 10, 14) for refusal in refusals)
+    return f"\n{_filled('What is refused, and words of the sentence that says why:')}\n{refused}"
 
 
 def _filled(text: str, first: int = 5, later: int = 5) -> str:

@@ -12,10 +12,11 @@ from typing import Any
 import click
 
 from ..documents import SCHEMAS
-from .entries import EntryText, function_texts
+from .entries import EntryText, PartText, Refusal, function_texts, part_texts
 
-DESCRIPTION, COMMANDS, DOCUMENTS, PYTHON = (
+DESCRIPTION, BODIES, COMMANDS, DOCUMENTS, PYTHON = (
     "Describing a system",
+    "Bodies and joints",
     "The command line",
     "Documents",
     "Python",
@@ -64,7 +65,7 @@ class Topic:
 
 def topics() -> list[Topic]:
     """All pages, group by group."""
-    return [*entry_topics(), *command_topics(), *document_topics(), *python_topics()]
+    return [*entry_topics(), *part_topics(), *command_topics(), *document_topics(), *python_topics()]
 
 
 # ---- entries ----------------------------------------------------------------------------------------------------
@@ -87,10 +88,31 @@ def _entry_topic(entry: EntryText) -> Topic:
     facts = Table("In short", ("", ""), (("what it is", entry.type), ("without it", entry.default)))
     parts: list[Table | Code] = [facts, Code("For instance", ",\n".join([entry.example, *entry.also]))]
     if entry.refused:
-        rows = tuple((refusal.given, refusal.said) for refusal in entry.refused)
-        parts.append(Table("What is refused", ("given", "the sentence has in it"), rows))
+        parts.append(_refusals(entry.refused))
     slug = f"{entry.function}-{entry.name}"
     return Topic(DESCRIPTION, slug, f"{entry.name} of {entry.function}", entry.text, tuple(parts))
+
+
+def _refusals(refused: Sequence[Refusal]) -> Table:
+    rows = tuple((refusal.given, refusal.said) for refusal in refused)
+    return Table("What is refused", ("given", "the sentence has in it"), rows)
+
+
+# ---- bodies and joints ------------------------------------------------------------------------------------------
+
+
+def part_topics() -> Iterator[Topic]:
+    """A page for each function that writes entries for a body, a joint or a load."""
+    yield from (_part_topic(part) for part in part_texts())
+
+
+def _part_topic(part: PartText) -> Topic:
+    parts = (
+        Code("How it is called", part.call),
+        Code("For instance", "\n".join([*part.context, f"{part.example};"])),
+        _refusals(part.refused),
+    )
+    return Topic(BODIES, f"part-{part.name}", part.name, part.text, parts)
 
 
 # ---- commands ---------------------------------------------------------------------------------------------------

@@ -13,12 +13,11 @@ from holonom.record import derived_record, read_record
 HOLONOM = 'load("holonom.mac")$'
 
 BALL = """
+ball : particle(mass, [east, north])$
 system : holonomic_system(
-  coordinates = [east, north], controls = [reach], parameters = [mass, weight],
-  kinetic_energy = [moving = mass*(dot(east)^2 + dot(north)^2)/2],
-  potential_energy = [falling = weight*north], forces = [drag = [-dot(east)/9, -dot(north)/9]],
-  constraints = [east^2 + north^2 - reach^2],
-  drawing = [segment([0, 0], [east, north])])$
+  controls = [reach], parameters = [mass, weight],
+  assembly(moving = ball, distance_joint(ball, [0, 0], reach), falling = uniform_gravity(weight/mass, ball)),
+  forces = [drag = [-dot(east)/9, -dot(north)/9]])$
 fling : holonomic_scene(system, control_law = [reach = 1 + t/10], parameter_values = [mass = 2, weight = 981/50],
   initial_state = [east = 3/5, north = -4/5, dot(east) = 0], time_span = [0, 3])$
 pulled : holonomic_scene(system, prescribed_reactions = [lambda1 = -t], parameter_values = [mass = 2, weight = 981/50],

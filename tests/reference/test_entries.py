@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from holonom.maxima import LIBRARY
-from holonom.reference.entries import EntryText, FunctionText, function_texts
+from holonom.reference.entries import EntryText, FunctionText, function_texts, part_texts
 
 SYSTEM, SCENE = function_texts()
 
@@ -17,6 +17,7 @@ def call(function: FunctionText, *replacing: str) -> str:
     return f"{function.name}({first}{function.with_entries(*replacing)})"
 
 
+BODIES = ", ".join(dict.fromkeys(line.rstrip("$") for part in part_texts() for line in part.context))
 CASES = [
     *((call(function, entry.example, *entry.also), None) for function in (SYSTEM, SCENE) for entry in function.entries),
     *(
@@ -25,6 +26,8 @@ CASES = [
         for entry in function.entries
         for refusal in entry.refused
     ),
+    *((f"block([{BODIES}], {part.example})", None) for part in part_texts()),
+    *((f"block([{BODIES}], {refusal.given})", refusal.said) for part in part_texts() for refusal in part.refused),
 ]
 
 
@@ -66,3 +69,9 @@ def test_an_entry_says_all_that_there_is_to_say():
     assert all(isinstance(entry, EntryText) for entry in SYSTEM.entries)
     for entry in (*SYSTEM.entries, *SCENE.entries):
         assert all((entry.type, entry.default, entry.text, entry.example))
+
+
+def test_every_function_for_bodies_is_explained():
+    loaded = (Path(LIBRARY) / "holonom.mac").read_text(encoding="utf-8")
+    public = re.search(r"/\* bodies and joints.*?\*/(.*?)/\*", loaded, re.DOTALL)[1]
+    assert {part.name for part in part_texts()} == set(re.findall(r"\w+", public)) - {"ground"}
