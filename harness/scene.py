@@ -453,6 +453,12 @@ class MotionProgram:
 
         return python_source(self.program)
 
+    def to_javascript(self) -> str:
+        """A script for a page or for Node that needs nothing but Math."""
+        from .program.javascript_source import javascript_source
+
+        return javascript_source(self.program)
+
     def to_c(self, directory: str | Path, name: str | None = None, parameters: Sequence[str] = ()) -> None:
         """Write a library in C11, as ``holonom program --to c`` does.
 

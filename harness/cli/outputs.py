@@ -29,7 +29,8 @@ EARLIER = {
     "csv": re.compile(rb"\At(,[^,\n]+)*\n"),
     "npz": re.compile(rb"\APK\x03\x04.{26,60}t\.npy", re.DOTALL),
     "parquet": re.compile(rb"\APAR1.*holonom", re.DOTALL),
-    "python": re.compile(rb'\A"""Motion program of '),
+    "python": re.compile(rb'\A"""Motion program( of |: )'),
+    "javascript": re.compile(rb"\A/\* Motion program( of |: )"),
     "fmu": re.compile(rb"\APK\x03\x04.*modelDescription\.xml", re.DOTALL),
 }
 

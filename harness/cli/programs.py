@@ -19,7 +19,7 @@ from .outputs import STANDARD_OUTPUT, OutputFile, is_forced
 @click.option(
     "--to",
     "form",
-    type=click.Choice(["c", "fmu", "python", "json"]),
+    type=click.Choice(["c", "fmu", "python", "javascript", "json"]),
     default="json",
     show_default=True,
     help="What is written.",
@@ -35,7 +35,7 @@ from .outputs import STANDARD_OUTPUT, OutputFile, is_forced
     "-o",
     "--output",
     metavar="FILE|DIR",
-    type=OutputFile("json", "python", "fmu", "c"),
+    type=OutputFile("json", "python", "javascript", "fmu", "c"),
     default=STANDARD_OUTPUT,
     help="Where it goes; c takes a directory, fmu a file.",
 )
@@ -53,9 +53,10 @@ def program(
 ) -> int:
     """Write the motion program of a SCENE, for those who carry it elsewhere.
 
-    As json or python it has the scene's values, and controls as inputs. As c it is a library in C11: accelerations and
-    multipliers, the control law, residuals and Jacobian of the constraints, projection; as fmu the same for FMI 3 model
-    exchange. Controls, and parameters without a value or named by --parameters, are inputs of both.
+    As json, python or javascript it has the scene's values, and controls as inputs. As c it is a library in C11:
+    accelerations and multipliers, the control law, residuals and Jacobian of the constraints, projection; as fmu the
+    same for FMI 3 model exchange. Controls, and parameters without a value or named by --parameters, are inputs of
+    both.
     """
     from ..program.motion_program import Solve
     from ..program.request import Form, Request, program_text, read_settings

@@ -10,7 +10,6 @@ from ..crosscheck.lagranges_method import OPINION
 from ..errata import PrintedEquation
 from ..record import Equation, Scene
 from .excerpts import Excerpt
-from .explanations import words, words_on_print
 from .runs import Derived
 from .steps import step
 
@@ -43,8 +42,10 @@ class Card:
         Where the card is, on its page.
     number, name : str
         The paper's number and what the equation is.
-    words : str
-        One or two plain sentences, with TeX between dollar signs.
+    id : str
+        Of the equation in a record; empty where only the paper has it. Its plain words are under it in a template.
+    controlled : bool
+        Whether its system has controls to speak of.
     printed : tuple of PrintedEquation
         As the paper prints it; empty where there is no print to compare with.
     instances : tuple of Instance
@@ -56,7 +57,8 @@ class Card:
     anchor: str
     number: str
     name: str
-    words: str
+    id: str
+    controlled: bool
     printed: tuple[PrintedEquation, ...]
     instances: tuple[Instance, ...]
     lines: tuple[Excerpt, ...]
@@ -81,7 +83,7 @@ def derivation_cards(
         The repository that the Maxima lines are taken from.
     """
     instances = [_derivation_instances(each) for each in derivations]
-    return _cards(numbers, instances, tuple(printed), root)
+    return _cards(numbers, instances, tuple(printed), root, _is_controlled(derivations[0]))
 
 
 def scene_cards(
@@ -104,13 +106,13 @@ def scene_cards(
         What the anchors begin with, where a page shows the cards of several scenes.
     """
     instances = [_scene_instances(derived, name) for derived, name in scenes]
-    return _cards(numbers, instances, tuple(printed), root, prefix)
+    return _cards(numbers, instances, tuple(printed), root, _is_controlled(scenes[0][0]), prefix)
 
 
 def printed_card(printed: Iterable[PrintedEquation], name: str) -> Card:
     """The card of an equation that the paper prints without a number, and no record has, given its name."""
     found = next(each for each in printed if each.name == name)
-    return Card(anchor("", found), found.number, found.name, words_on_print(found.number, found.name), (found,), (), ())
+    return Card(anchor("", found), found.number, found.name, "", True, (found,), (), ())
 
 
 def named_equations(derived: Derived, scene: str | None = None) -> dict[str, Equation]:
@@ -161,6 +163,7 @@ def _cards(
     instances: Sequence[Sequence[Instance]],
     printed: tuple[PrintedEquation, ...],
     root: Path,
+    controlled: bool,
     prefix: str = "",
 ) -> list[Card]:
     equations = _distinct(shown.equation for shown in instances[0] if shown.equation.number in numbers)
@@ -169,13 +172,18 @@ def _cards(
             anchor=place,
             number=equation.number,
             name=equation.name,
-            words=words(equation.id),
+            id=equation.id,
+            controlled=controlled,
             printed=tuple(each for each in printed if _same(each, equation)),
             instances=tuple(each for group in instances for each in group if each.equation.id == equation.id),
             lines=step(root, equation.id),
         )
         for place, equation in zip(anchors(equations, prefix), equations, strict=True)
     ]
+
+
+def _is_controlled(derived: Derived) -> bool:
+    return bool(derived.record.system.controls)
 
 
 def _distinct(equations: Iterable[Equation]) -> list[Equation]:

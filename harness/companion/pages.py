@@ -170,6 +170,7 @@ def _environment() -> jinja2.Environment:
         "power_of_ten": _power_of_ten,
         "with_code": _with_code,
         "counted": _counted,
+        "signed": _signed,
         "engine_text": engine_text,
         "remarks": remarks,
         "complex_numbers": _complex_numbers,
@@ -197,6 +198,11 @@ def _points(count: int) -> str:
 
 def _rounded(value: float, digits: int = 6) -> str:
     return f"{float(f'{float(value):.{digits}g}'):.15g}"
+
+
+def _signed(value: float) -> str:
+    """A rounded number with its sign; nothing has a sign only where it is nothing."""
+    return f"{value:+.0f}" if round(value) else "under 1"
 
 
 def _counted(count: int, one: str, several: str = "") -> str:

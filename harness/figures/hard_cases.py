@@ -58,7 +58,7 @@ def _draw_digits(axes: "Axes", rows: Sequence[Result | str]) -> None:
     axes.tick_params(axis="y", length=0)
     axes.grid(False, axis="y")
     axes.set(xlim=(0, MOST_DIGITS), xticks=range(0, 17, 2), ylim=(len(rows) - 0.5, -0.5))
-    axes.set_xlabel("decimal digits kept: a dot has those asked for, a square has not")
+    axes.set_xlabel("decimal digits kept: a dot has those asked for, a cross has not")
 
 
 def _draw_sweep(axes: "Axes", sweep: Sweep) -> None:

@@ -119,9 +119,9 @@ LANE_FUNCTIONS = {
 
 @dataclass(frozen=True)
 class Target:
-    """What C computes with: a type and its arithmetic."""
+    """What C computes with: how it declares a value, and its arithmetic."""
 
-    type: str
+    declaration: str
     arithmetic: Arithmetic[Formula]
 
 
@@ -221,11 +221,11 @@ def statements(program: Program, target: Target, inputs: Sequence[str], writes: 
     for index, (name, value) in enumerate(zip(program.inputs, inputs, strict=True)):
         names[name] = infix.atom(f"v{index}")
         if name in used:
-            yield f"const {target.type} v{index} = {value};"
+            yield f"{target.declaration} v{index} = {value};"
     for index, (name, expression) in enumerate(program.assignments, start=len(program.inputs)):
         formula = target.arithmetic.value(expression, names)
         names[name] = infix.atom(f"v{index}")
-        yield f"const {target.type} v{index} = {formula.text};"
+        yield f"{target.declaration} v{index} = {formula.text};"
     for value, write in zip(program.outputs.values(), writes, strict=True):
         yield write.format(value=target.arithmetic.atom(value, names).text)
 
@@ -278,5 +278,5 @@ def _arithmetic(prefix: str, number: Callable[[Fraction | float], Formula]) -> A
     )
 
 
-ONE = Target("double", _arithmetic("", _scalar))
-MANY = Target("lanes", _arithmetic("lanes_", _lanes))
+ONE = Target("const double", _arithmetic("", _scalar))
+MANY = Target("const lanes", _arithmetic("lanes_", _lanes))

@@ -9,6 +9,7 @@ from pathlib import Path
 from ..confined import Limits
 from ..documents import Document, ask
 from ..failures import Failure, HolonomError
+from .javascript_source import javascript_source
 from .motion_program import Solve, read_program
 from .python_source import python_source
 
@@ -21,6 +22,7 @@ class Form(StrEnum):
     """What `holonom program` writes as one text."""
 
     PYTHON = "python"
+    JAVASCRIPT = "javascript"
     JSON = "json"
 
 
@@ -110,7 +112,13 @@ def program_text(file: Path, request: Request, form: Form, limits: Limits) -> st
     """
     document = program_document(file, request, limits)
     program = read_program(document)
-    return document if form is Form.JSON else python_source(program)
+    match form:
+        case Form.JSON:
+            return document
+        case Form.PYTHON:
+            return python_source(program)
+        case Form.JAVASCRIPT:
+            return javascript_source(program)
 
 
 def program_document(file: Path, request: Request, limits: Limits) -> str:

@@ -12,6 +12,7 @@ from .boxes import COMMA, SEMICOLON, Box, above, below, beside, bracketed, digit
 RATE = re.compile(r"(d{1,3})ot\((.+)\)(\w*)")
 UNDERSCORE = r"\_"  # of a name that is nothing else
 NUMBERED = re.compile(r"([^\W\d]+?)(\d*)")
+OPEN = {"phi": r"\varphi"}  # the shape that mechanics writes
 GREEK = {name.replace("lamda", "lambda") for name in greeks}
 
 
@@ -27,6 +28,8 @@ def indexed_box(name: str, indices: list[Box], dots: int = 0) -> Box:
         return above(letter_box("A"), beside(*indices))
     if name == "christoffel":
         return _christoffel(*indices)
+    if name == "delta" and len(indices) == 2:
+        return below(above(letter_box("delta"), indices[0]), indices[1])
     if rate := RATE.fullmatch(name):
         return indexed_box(rate[2] + rate[3], indices, dots + len(rate[1]))
     stem, *parts = [part for part in name.replace("%", "").split("_") if part] or [UNDERSCORE]
@@ -45,7 +48,7 @@ def letter_box(letter: str) -> Box:
     """A letter, Latin or Greek, or a word."""
     letter = spelled_out(letter)
     if letter.lower() in GREEK:
-        return word(tex_greek_dictionary.get(letter, rf"\{letter}"), 1)
+        return word(OPEN.get(letter) or tex_greek_dictionary.get(letter, rf"\{letter}"), 1)
     if len(letter) == 1 and letter.isascii():
         return word(letter, 1)
     return word(rf"\text{{{letter}}}", len(letter))

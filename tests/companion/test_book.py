@@ -4,9 +4,11 @@ from itertools import pairwise
 
 import pages
 import pytest
+from sympy import Symbol, sin
 
 from holonom.companion import runs
-from holonom.companion.examples import PAPER
+from holonom.companion.cards import named_equations
+from holonom.companion.examples import BEAD, PAPER
 from holonom.companion.paper import REPOSITORY, book_of_the_paper
 
 CARDS = {
@@ -98,6 +100,34 @@ def test_no_verdict_disagrees(companion):
     for page in pages.pages(companion):
         if page.name not in ("index.html", "your-own-system.html"):
             assert "verdict disagrees" not in page.read_text(), page.name
+
+
+def test_no_card_without_a_formula_has_a_verdict(companion, own):
+    """What stands in the place of a formula was not compared with anything."""
+    for page in (*pages.pages(companion), *pages.pages(own)):
+        for derived in (each for each in pages.parsed(page).iter() if each.get("class") == "derived"):
+            kinds = {each.get("class") for each in derived.iter()}
+            assert "formula" in kinds or "check" not in kinds, page.name
+
+
+def test_the_general_inverse_has_one_index_above_and_one_below(companion):
+    card = (companion / "equations-of-motion.html").read_text().partition('id="eq-5"')[2].partition("</section>")[0]
+    assert card.count("<msubsup><mi>δ</mi>") == 1
+
+
+def test_one_letter_has_one_shape(companion):
+    for page in pages.pages(companion):
+        assert "ϕ" not in page.read_text(), page.name
+
+
+def test_sines_and_cosines_that_cancel_are_not_left_standing(results):
+    """T of the bead is M v^2/2 + m(v^2 + r'^2 + r^2 w^2)/2 + ..., since sin^2 + cos^2 = 1."""
+    relations = named_equations(results[runs.derived(REPOSITORY / BEAD)])["kinetic_energy"].relations
+    m, w, r = (Symbol(name, real=True) for name in ("m", "w", "r"))
+    found = {str(each.left): each.right for each in relations}
+    assert found["A[2, 2]"] == m
+    assert found["T0"].coeff(w, 2).equals(m * r**2 / 2)
+    assert not found["A[1, 1]"].has(sin)
 
 
 @pytest.mark.parametrize("page", CARDS)

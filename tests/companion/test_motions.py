@@ -1,5 +1,7 @@
 """Motions on the pages: every example is in the gallery, and a system that does not say how it looks has its curves."""
 
+from xml.etree import ElementTree
+
 import pages
 import pytest
 from click.testing import CliRunner
@@ -38,6 +40,13 @@ def test_every_exhibit_moves_stands_still_and_has_its_curves(companion, name):
     assert {f"figures/{name}-{kind}.svg" for kind in ("moving", "still", "curves")} <= loaded
     assert "<animate" in (companion / "figures" / f"{name}-moving.svg").read_text()
     assert "<animate" not in (companion / "figures" / f"{name}-still.svg").read_text()
+
+
+def test_a_support_that_is_shaken_is_seen_to_move(companion):
+    """Only the rim, the circle that the bob would reach, stands still."""
+    film = ElementTree.parse(companion / "figures" / "spherical-pendulum-moving.svg")
+    (still,) = (group for group in film.iter() if group.get("class") == "fixed")
+    assert len(still) == 1
 
 
 def test_a_scene_is_drawn_whatever_it_observes_and_one_without_end_says_why_not(tmp_path):

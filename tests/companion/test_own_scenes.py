@@ -45,6 +45,10 @@ def test_a_system_without_constraints_is_free(tmp_path):
     outcome, directory = made(tmp_path, "", constrained=False)
     assert outcome.return_value == 0
     assert "every motion is free" in pages.words(directory / "free-motion.html")
+    for slug in CHAPTERS:
+        paragraphs = pages.parsed(directory / f"{slug}.html").iter(f"{pages.HTML}p")
+        said = " ".join("".join(each.itertext()) for each in paragraphs if each.get("class") != "origin")
+        assert "control" not in said.replace("no controls", ""), slug
 
 
 def test_a_file_that_is_refused_leaves_nothing(tmp_path):

@@ -147,7 +147,7 @@ def test_sums_are_broken_before_signs_and_kept_to_the_width(width):
         (["Subscript", "A", "s", "k"], "A_{s k}"),
         (["Subscript", "A_inverse", "l", "s"], "A^{l s}"),
         (["Subscript", "christoffel", "k", "m", "s"], "[k , m ; s]"),
-        (["Subscript", "delta", "l", "k"], r"\delta_{l k}"),
+        (["Subscript", "delta", "l", "k"], r"\delta^{l}_{k}"),
         (["Subscript", "q_0", "s"], "q_{s , 0}"),
         (["Dot", ["Subscript", "q_0", "s"]], r"\dot{q}_{s , 0}"),
         (["Partial", ["Subscript", "f", "beta"], "t", "t"], r"\frac{\partial^{2} f_{\beta}}{\partial t^{2}}"),

@@ -1,6 +1,6 @@
-"""Two constraints that become parallel: the ropes of a swing, hung from hinges that come together.
+"""Two constraints that become parallel: the rods of a swing, hung from hinges that come together.
 
-However near the hinges are, the bob moves on the circle that both ropes leave to it, as a pendulum does.
+However near the hinges are, the bob moves on the circle that both rods leave to it, as a pendulum does.
 """
 
 from math import cos, sin
@@ -14,7 +14,7 @@ from .digits import digits_kept
 from .solves import DIRECT, ORTHOGONAL, PIVOTED, TEXTBOOK, SolveAt, every_solve
 
 FILE = "hard/swing.mac"
-ANGLES = tuple(10.0**-k for k in range(1, 12))  # between the ropes, of length 1: the hinges are as far apart
+ANGLES = tuple(10.0**-k for k in range(1, 12))  # between the rods, of length 1: the hinges are as far apart
 JUDGED = 1e-7
 NEEDED = 8.0  # digits of the accelerations at that angle
 
@@ -58,6 +58,6 @@ def pendulum(outward: Vector, along: Vector) -> Vector:
 CASE = Case(
     name="parallel constraints",
     kind=HardCase.NEARLY_DEPENDENT,
-    truth="a pendulum on the circle that the two ropes leave free, in closed form",
+    truth="a pendulum on the circle that the two rods leave free, in closed form",
     examine=examine,
 )

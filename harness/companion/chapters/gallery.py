@@ -110,8 +110,8 @@ EXHIBITS = (
         "spherical-pendulum",
         "examples/spherical_pendulum.mac",
         (
-            "A pendulum in space, seen from above, with the plumb line under the bob. Its support is shaken, turns and "
-            "goes through air: the path keeps to no plane.",
+            "A pendulum in space, with the plumb line under its bob, seen from above by one who turns with the hinge. "
+            "That is shaken and the bob goes through air: the path keeps to no plane.",
             "The multiplier swings with the bob, the more the wider that swings.",
         ),
     ),
@@ -187,8 +187,9 @@ EXHIBITS = (
         "swing",
         "examples/hard/swing.mac",
         (
-            "A swing on two ropes. Their hinges are nearly together at first, the ropes nearly one, and move apart.",
-            "The closer the hinges, the larger the two multipliers that have to share one force.",
+            "A swing on two rods. Their hinges are nearly together at first, the rods nearly one, and move apart.",
+            "The closer the hinges, the larger the two multipliers that have to share one force. One is positive: that "
+            "rod pushes, which a rope could not.",
         ),
     ),
     Exhibit(

@@ -15,7 +15,6 @@ from ..cards import Card, Instance, anchors, files_of, named_equations, scene_na
 from ..chapter import Chapter, Page
 from ..examples import FREE_SCENE, INITIAL_SCENE, PAPER
 from ..excerpts import excerpt
-from ..explanations import words_on_print
 from ..expressions import right_side, under, zeros
 from ..runs import Derived, derived, free, printed
 from ..steps import step
@@ -110,9 +109,7 @@ def _cards(example: list[PrintedEquation], paper: Derived, laws: tuple, root: Pa
     cards: list[Card] = []
     for each, place in zip(example, anchors(example), strict=True):
         instances, lines = _derived(each, paper, laws, root)
-        plain = words_on_print(each.number, each.name)
-        said = "" if cards and words_on_print(cards[-1].number, cards[-1].name) == plain else plain
-        cards.append(Card(place, each.number, each.name, said, (each,), instances, lines))
+        cards.append(Card(place, each.number, each.name, "", True, (each,), instances, lines))
     return cards
 
 

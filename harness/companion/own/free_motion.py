@@ -26,7 +26,7 @@ def chapter(prefix: str, file: Path, study: Run) -> Chapter:
     return Chapter(
         slug=f"{prefix}free-motion",
         title="Free motion",
-        aim="Under which controls the constraints push nobody.",
+        aim="Whether the constraints push, and what it takes that they do not.",
         template="own_free_motion.html",
         runs={"study": study},
         page=page,
