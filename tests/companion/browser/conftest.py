@@ -5,11 +5,13 @@ import shutil
 import pytest
 from chromium import chromium, missing_programs
 from observation import keep_screenshot, observe
-from views import VIEWS
+from views import DESK, PAPER, PHONE
 
 from holonom.companion.paper import REPOSITORY
 
 SCREENSHOTS = REPOSITORY / "build" / "screenshots"
+# The narrowest view finds most; a look at some hundred pages takes a minute and a half.
+VIEWS = (PHONE, *(pytest.param(view, marks=pytest.mark.long) for view in (DESK, PAPER)))
 
 
 @pytest.fixture(scope="session")
