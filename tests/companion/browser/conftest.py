@@ -5,13 +5,13 @@ import shutil
 import pytest
 from chromium import chromium, missing_programs
 from observation import keep_screenshot, observe
-from views import DESK, PAPER, PHONE
+from views import PHONE, VIEWS
 
 from holonom.companion.paper import REPOSITORY
 
 SCREENSHOTS = REPOSITORY / "build" / "screenshots"
 # The narrowest view finds most; a look at some hundred pages takes a minute and a half.
-VIEWS = (PHONE, *(pytest.param(view, marks=pytest.mark.long) for view in (DESK, PAPER)))
+LOOKS = (PHONE, *(pytest.param(view, marks=pytest.mark.long) for view in VIEWS if view is not PHONE))
 
 
 @pytest.fixture(scope="session")
@@ -22,7 +22,7 @@ def browser(tmp_path_factory):
         yield driver
 
 
-@pytest.fixture(scope="session", params=VIEWS, ids=str)
+@pytest.fixture(scope="session", params=LOOKS, ids=str)
 def seen(request, browser, companion, own):
     """What is met on every page, in one of the views; screenshots are kept."""
     view = request.param

@@ -31,3 +31,4 @@ class View:
 PHONE = View("phone in the dark", 360, 740, mobile=True, colours="dark")
 DESK = View("desk", 1280, 900)
 PAPER = View("paper", 680, 960, medium="print")  # what A4 leaves between margins of 15 mm
+VIEWS = (PHONE, DESK, PAPER)
