@@ -91,8 +91,8 @@ def simulate(
     """Follow the motion of a SCENE in numbers, and say how well it was followed.
 
     What depends on the time alone is looked at before, so that no step passes over what lasts longer than 1/32768 of
-    the time span. The exit status is 1 where the constraints or the energy are missed out of proportion to the
-    tolerance.
+    the time span. The exit status is 1 where the constraints, the energy, or forces within a step are missed out of
+    proportion to the tolerance.
     """
     from ..program.motion_problem import problem_document, read_problem
     from ..program.motion_program import Solve

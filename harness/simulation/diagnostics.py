@@ -19,6 +19,7 @@ from ..program.motion_program import names_in
 from ..program.precision import Precision, read_precision
 from .constraints.factorization import weighted_constraints
 from .evaluation import Numbers, evaluation, zeros
+from .faint import may_hide
 from .matrices import Matrices, Matrix, Vector
 
 if TYPE_CHECKING:
@@ -88,7 +89,7 @@ class EnergyBalance:
     Attributes
     ----------
     conservative : bool
-        Whether the power vanishes identically: then there is nothing to integrate.
+        Whether the power vanishes: then there is nothing to integrate. Power that may hide is not taken for none.
     """
 
     def __init__(
@@ -102,7 +103,8 @@ class EnergyBalance:
         self._rows = {name: row for row, name in enumerate(problem.energy.outputs)}
         self._g, self._multipliers = len(problem.multipliers), multipliers
         self._moving = _constraints_move(problem)
-        self.conservative = not self._moving and self._without_power(2 * len(problem.coordinates))
+        hidden = may_hide(computing(problem.energy, {"power"}))
+        self.conservative = not self._moving and not hidden and self._without_power(2 * len(problem.coordinates))
 
     def energy(self, instants: Numbers, states: Numbers) -> Numbers:
         """The energy function at states of the motion.

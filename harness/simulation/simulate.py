@@ -16,7 +16,9 @@ from .diagnosis import HardCase, Instant, hard_cases
 from .diagnostics import condition, residuals
 from .engines.engine import Piece, Solutions
 from .evaluation import Numbers, as_floats
+from .faint import may_hide
 from .matrices import Matrices, Vector
+from .passed_over import StepsHeldAgainstTheEquations
 from .piecewise import PiecewiseMotion
 from .recording import Recording
 from .request import FINAL_STATE_ALONE, SimulationRequest
@@ -92,6 +94,11 @@ class _Simulation:
         self.first = self.motion.state.copy()
         self.compile_seconds = time.perf_counter() - begun - self.motion.compile_seconds
         self.recording = Recording(self.motion, self._wanted_instants(), self.precision.number("0"))
+        self.steps = (
+            StepsHeldAgainstTheEquations(self.motion, self.end - self.start, self.precision)
+            if may_hide(problem.matrices)
+            else None
+        )
 
     def run(self, progress: Progress | None) -> Simulation:
         begun, compiled = time.perf_counter(), self.motion.compile_seconds
@@ -127,14 +134,16 @@ class _Simulation:
 
     def _take(self, progress: Progress | None) -> Callable[[Piece], None] | None:
         """What is done with each piece; None where nothing has to be."""
-        if self.samples == FINAL_STATE_ALONE and self.motion.conservative and progress is None:
+        nothing_to_integrate = self.motion.conservative and self.steps is None
+        if self.samples == FINAL_STATE_ALONE and nothing_to_integrate and progress is None:
             return None
-        if progress is None:
-            return self.recording.take
 
         def take(piece: Piece) -> None:
             self.recording.take(piece)
-            progress(float((piece.end - self.start) / (self.end - self.start)))
+            if self.steps is not None:
+                self.steps.take(piece)
+            if progress is not None:
+                progress(float((piece.end - self.start) / (self.end - self.start)))
 
         return take
 
@@ -191,8 +200,15 @@ class _Simulation:
             run_seconds=seconds,
             cases=self._cases(state, as_floats(solutions.multipliers[:, -1])),
             switchings=tuple(self.motion.switchings),
-            doubts=tuple(doubts(left, *self._energy_missed(at, energies), self.motion.tol, self.motion.steps)),
+            doubts=tuple(doubts(self._missed(left, at, energies), self.motion.tol, self.motion.steps)),
         )
+
+    def _missed(self, left: Mapping[str, float], at: Matrices, energies: Samples) -> Mapping[str, float]:
+        """What is missed of each quantity that the tolerance speaks of, relative to its size."""
+        error, scale = self._energy_missed(at, energies)
+        within = {} if self.steps is None else {"acceleration": self.steps.missed}
+        kept = {name: left[name] for name in ("position", "velocity")}
+        return {**kept, "energy": error / scale if scale > 0 else error, **within}
 
     def _energy_missed(self, at: Matrices, energies: Samples) -> tuple[float, float]:
         """The largest energy error on the way, and the size of the energies that it is an error of."""

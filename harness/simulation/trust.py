@@ -22,7 +22,7 @@ class Doubt(NamedTuple):
     Attributes
     ----------
     quantity : str
-        ``position``, ``velocity`` or ``energy``.
+        ``position``, ``velocity``, ``energy``, or ``acceleration``: of the equations of motion within a step.
     missed, expected : float
         Relative: what was found, and the most that the tolerance lets expect.
     """
@@ -32,18 +32,13 @@ class Doubt(NamedTuple):
     expected: float
 
 
-def doubts(
-    residuals: Mapping[str, float], energy_error: float, energy_scale: float, tol: float, steps: int
-) -> Iterator[Doubt]:
+def doubts(missed: Mapping[str, float], tol: float, steps: int) -> Iterator[Doubt]:
     """What is out of proportion to the tolerance.
 
     Parameters
     ----------
-    residuals : mapping of str to float
-        Relative, as `holonom.simulation.diagnostics` defines them.
-    energy_error : float
-        The largest on the way.
-    energy_scale : float
+    missed : mapping of str to float
+        By quantity, relative to its size.
     tol : float
     steps : int
 
@@ -52,8 +47,6 @@ def doubts(
     Doubt
     """
     expected = MARGIN * max(tol, FINEST) * max(1, steps)
-    missed = {name: residuals[name] for name in ("position", "velocity")}
-    missed["energy"] = energy_error / energy_scale if energy_scale > 0 else energy_error
     for quantity, value in missed.items():
         if not value <= expected:
             yield Doubt(quantity, value, expected)

@@ -94,7 +94,11 @@ def distrust(doubt: "Doubt") -> str:
     -------
     str
     """
-    what = "the energy" if doubt.quantity == "energy" else f"the {doubt.quantity} that the constraints allow"
+    whats = {
+        "energy": "the energy",
+        "acceleration": "a force that acts within a step",
+    }
+    what = whats.get(doubt.quantity, f"the {doubt.quantity} that the constraints allow")
     return (
         f"holonom: this is no result: {what} is missed by {doubt.missed:.1e} of its size, where the tolerance lets "
         f"expect {doubt.expected:.1e} at most; take a smaller --max-step, another --engine or more --precision."

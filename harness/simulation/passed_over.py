@@ -1,0 +1,82 @@
+"""What a step may have passed over: a force that is felt in a narrow place only.
+
+A step is as long as the motion at its beginning, or at its stages, lets expect. Exponentials, and high powers, can be
+so faint there that rounding swallows them, and yet be strong where the step passes: a well of the potential that is
+entered and left within one step leaves even the energy as it was. So where the equations of motion contain such
+functions of the state, the dense output of each step is held against them: over every part of it the velocities must
+change by the integral of the accelerations that the equations give there.
+
+What is guaranteed: where such a function acts for longer than 1/4096 of the time span, and changes the velocities by
+more than the tolerance lets expect, it is not passed over in silence.
+"""
+
+from math import ceil
+from typing import Any
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss
+
+from ..program.precision import Precision
+from .engines.engine import Piece
+from .evaluation import Numbers, as_floats
+from .piecewise import PiecewiseMotion
+
+PARTS = 1024  # of the time span: longer steps are looked into
+AT_ONCE = 64  # parts of a step
+NODES, WEIGHTS = leggauss(10)
+
+
+class StepsHeldAgainstTheEquations:
+    """The largest difference between what the velocities gain within the steps and what the equations say.
+
+    Parameters
+    ----------
+    motion : PiecewiseMotion
+        At work.
+    span : number
+        Length of the time span.
+    precision : Precision
+
+    Attributes
+    ----------
+    missed : float
+        Relative to the largest velocity where that is more than one.
+    """
+
+    def __init__(self, motion: PiecewiseMotion, span: Any, precision: Precision) -> None:
+        self._motion, self._span = motion, float(span)
+        self._nodes, self._weights = (
+            np.array([precision.number(repr(float(value))) for value in values]) for values in (NODES, WEIGHTS)
+        )
+        self.missed = 0.0
+
+    def take(self, piece: Piece) -> None:
+        """Look into a step that is long.
+
+        Parameters
+        ----------
+        piece : Piece
+            Of the phase at work.
+        """
+        length = piece.end - piece.start
+        parts = ceil(float(length) / self._span * PARTS)
+        if parts > 1:
+            for first in range(0, parts, AT_ONCE):
+                edges = piece.start + length * np.arange(first, min(first + AT_ONCE, parts) + 1) / parts
+                self.missed = max(self.missed, self._missed_between(edges, piece), key=_size)
+
+    def _missed_between(self, edges: Numbers, piece: Piece) -> float:
+        half = (edges[1:] - edges[:-1]) / 2
+        instants = (edges[:-1, None] + half[:, None] * (1 + self._nodes)).ravel()
+        accelerations = self._motion.solutions(instants, piece.states(instants)).accelerations
+        n = len(accelerations)
+        gained = half * (accelerations.reshape(n, len(half), -1) * self._weights).sum(axis=2)
+        velocities = piece.states(edges)[n:]
+        missed = as_floats((np.diff(velocities, axis=1) - gained).ravel())
+        largest = np.max(np.abs(as_floats(velocities.ravel())), initial=1.0)
+        return float(np.max(np.abs(missed), initial=0.0) / largest)
+
+
+def _size(missed: float) -> float:
+    """What is no number is larger than all that are."""
+    return missed if missed == missed else np.inf
