@@ -66,6 +66,8 @@ class MotionProblem:
         Their names: n and g of them.
     start : mapping of str to str
         The time, coordinates and velocities at the start, as decimal digits.
+    correction : (str, str) or None
+        The given value that missed the constraints in its last digits and was corrected most, and by how much.
     obstacle : str or None
         Why no order of pivots solves the equations of motion; None where one does.
     motion : Program or None
@@ -96,6 +98,7 @@ class MotionProblem:
     coordinates: tuple[str, ...]
     multipliers: tuple[str, ...]
     start: Mapping[str, str]
+    correction: tuple[str, str] | None
     obstacle: str | None
     motion: Program | None
     projection: Program | None
@@ -198,6 +201,7 @@ def read_problem(text: str) -> MotionProblem:
         coordinates=tuple(document["coordinates"]),
         multipliers=tuple(document["multipliers"]),
         start=document["start"],
+        correction=(correction := document["correction"]) and (correction["name"], correction["size"]),
         obstacle=document["obstacle"],
         motion=_optional(document["motion"]),
         projection=_optional(document["projection"]),

@@ -43,7 +43,8 @@ def report_document(report: Report) -> dict[str, Any]:
     """
     said = {"engine": engine_text(report.legs), "remarks": tuple(remarks(report.legs, report.cases))}
     lists = {name: tuple(each._asdict() for each in getattr(report, name)) for name in ("legs", "switchings", "doubts")}
-    attributes = vars(report) | lists | said | {"trusted": report.trusted}
+    correction = report.correction and dict(zip(("name", "size"), report.correction, strict=True))
+    attributes = vars(report) | lists | said | {"trusted": report.trusted, "correction": correction}
     return published(Publication.SIMULATION, {k: _published(value, report.digits) for k, value in attributes.items()})
 
 

@@ -50,6 +50,8 @@ class Report:
         Decimal digits that tell its numbers apart.
     tol : float
     compile_seconds, run_seconds : float
+    correction : (str, str) or None
+        The given initial value that was corrected most to fit the constraints, and by how much.
     cases : tuple of HardCase
         Kinds of hard case that the motion is.
     switchings : tuple of Switching
@@ -73,6 +75,7 @@ class Report:
     tol: float
     compile_seconds: float
     run_seconds: float
+    correction: tuple[str, str] | None
     cases: tuple[HardCase, ...]
     switchings: tuple[Switching, ...]
     doubts: tuple[Doubt, ...]

@@ -198,6 +198,7 @@ class _Simulation:
             tol=self.motion.tol,
             compile_seconds=self.compile_seconds + self.motion.compile_seconds,
             run_seconds=seconds,
+            correction=self.problem.correction,
             cases=self._cases(state, as_floats(solutions.multipliers[:, -1])),
             switchings=tuple(self.motion.switchings),
             doubts=tuple(doubts(self._missed(left, at, energies), self.motion.tol, self.motion.steps)),

@@ -32,6 +32,7 @@ def test_the_final_state_is_one_document():
     assert final["steps"] > 10
     assert final["engine"] == "taylor"
     assert "samples" not in final
+    assert final["correction"] is None
 
 
 def test_a_simulation_waits_for_no_sympy():
@@ -99,6 +100,20 @@ def test_bad_input_is_one_sentence(options, sentence, tmp_path):
     assert done.stderr.count("\n") == 1
     assert done.stdout == ""
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_start_of_limited_digits_was_corrected_without_a_word(write_scene):
+    scene = write_scene(
+        """load("holonom.mac")$
+        system : holonomic_system(
+          coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2, constraints = [x^2 + y^2 - 1])$
+        scene : holonomic_scene(system,
+          initial_state = [x = 0.70710678118, y = 0.70710678118, dot(x) = 0], time_span = [0, 1])$"""
+    )
+    done = simulate(scene, "--json", "-")
+    missed = (0.5**0.5 - 0.70710678118) * 10**12
+    assert float(json.loads(done.stdout)["correction"]["size"]) * 10**12 == pytest.approx(missed, rel=1e-3)
+    assert "The initial state misses the constraints in its last digits and is corrected, " in simulate(scene).stdout
 
 
 def test_a_scene_without_an_end_is_refused(particle_scene):

@@ -60,6 +60,9 @@ def show_simulation(console: "Console", simulation: "Simulation") -> None:
 def _quality(report: "Report") -> Iterator[str]:
     from ...simulation.diagnosis import engine_text, remarks
 
+    if report.correction is not None:
+        name, size = report.correction
+        yield f"The initial state misses the constraints in its last digits and is corrected, {name} most, by {size}."
     left = ", ".join(f"{name} {value:.1e}" for name, value in report.residuals.items())
     yield f"residuals of the constraints: {left}; condition number of G: {report.condition:.3g}"
     yield f"energy error: {report.energy_error:.1e}"
