@@ -93,6 +93,10 @@ class Failure(Enum):
     NOT_A_PRECISION = ("{detail}", "take another one, or ask for --digits, which Maxima computes with")
     NO_CONTINUATION = ("{detail}", "ask for an earlier instant")
     NO_SUCH_FORMAT = ("no such file can be written", "give a name that ends in one of {detail}")
+    START_UNFOLLOWED = (
+        "the start does not follow these parameters: {detail}",
+        "",
+    )
     NO_END = ("the scene has no time span", "give it one, or the last instant with --until")
     NOT_AFTER_START = ("the last instant is not after the start: {detail}", "give a later one with --until")
     GSL_MISSING = (

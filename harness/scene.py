@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from decimal import Decimal
 from enum import StrEnum
 from fractions import Fraction
-from functools import cache, cached_property
+from functools import cached_property
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, TypeVar, overload
@@ -20,6 +20,7 @@ from .failures import Failure, HolonomError, naming_the_extra
 from .files import near_file, write_files, write_whole
 from .program.motion_program import Program, Solve, read_program
 from .program.request import Request, program_document, read_settings
+from .simulation.derivations import Derivations
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -113,12 +114,12 @@ class Scene:
         self.file, self.settings, self.limits = file, dict(settings), limits
         self._name = name
         self._directory: TemporaryDirectory[str] | None = None
-        self._problem = cache(self._ask_problem)
+        self._derived = Derivations(file, limits)
 
     def with_settings(self, settings: Mapping[str, Number] | None = None, **more: Number) -> "Scene":
         """The same scene with other numbers for what the file leaves open and for parameters."""
         other = Scene(self.file, self._name, self.settings | _settings({**(settings or {}), **more}), self.limits)
-        other._directory = self._directory
+        other._directory, other._derived = self._directory, self._derived
         return other
 
     # ---- the derivation ----
@@ -265,7 +266,8 @@ class Scene:
         max_step : float or None
             Time that no step is to exceed; None where the engine alone decides.
         **parameters : number
-            Values in the place of the scene's; one that is named like an argument goes through `with_settings`.
+            Values in the place of the scene's; one that is named like an argument goes through `with_settings`. The
+            next call with other values of the same ones derives and compiles nothing again.
 
         Returns
         -------
@@ -305,8 +307,9 @@ class Scene:
             analytic everywhere.
         """
         from .program.motion_problem import DOUBLE_DIGITS
+        from .program.sign_pattern import with_values_in
 
-        return RightHandSide(self._problem(solve, DOUBLE_DIGITS))
+        return RightHandSide(with_values_in(self._problem(solve, DOUBLE_DIGITS)))
 
     def program(self, solve: str = "direct") -> "MotionProgram":
         """The motion program: accelerations and multipliers of (t, q, dot q, u, dot u, ddot u)."""
@@ -326,10 +329,8 @@ class Scene:
     def _request(self, solve: str) -> Request:
         return Request(self._name, _choice(Solve, solve), self.settings)
 
-    def _ask_problem(self, solve: str, digits: int) -> "MotionProblem":
-        from .program.motion_problem import motion_problem
-
-        return motion_problem(self.file, self._request(solve), self.limits, digits)
+    def _problem(self, solve: str, digits: int) -> "MotionProblem":
+        return self._derived.motion(self._request(solve), digits)
 
 
 class Equations(Sequence["Equation"]):

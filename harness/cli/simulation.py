@@ -94,14 +94,17 @@ def simulate(
     the time span. The exit status is 1 where the constraints, the energy, or forces within a step are missed out of
     proportion to the tolerance.
     """
-    from ..program.motion_problem import problem_document, read_problem
+    from ..program.motion_problem import motion_problem, problem_document, read_problem
     from ..program.motion_program import Solve
     from ..program.request import Request, read_settings
+    from ..simulation.derivations import open_names, stands
 
     request, digits = Request(scene, Solve(solve), read_settings(settings)), _digits_of(precision)
     with _imported_meanwhile():
-        document = problem_document(scene_file, request, limits, digits)
+        document = problem_document(scene_file, request, limits, digits, open_names(request, digits))
     problem = read_problem(document)
+    if not stands(problem):
+        problem = motion_problem(scene_file, request, limits, digits)
     from ..simulation.document import report_document, simulation_document
     from ..simulation.output import require_formats, require_memory, write_files
     from ..simulation.request import FINAL_STATE_ALONE, EngineName, SimulationRequest, Stabilization

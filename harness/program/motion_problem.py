@@ -4,11 +4,12 @@ One JSON document from Maxima, `maxima/record/motion_problem.mac`; `maxima/progr
 program computes.
 """
 
-from collections.abc import Collection, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
+from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from ..confined import Limits
 from ..documents import Document, ask, read
@@ -19,6 +20,7 @@ from .request import Request
 if TYPE_CHECKING:
     from .drawing import Drawing
 
+Built = TypeVar("Built")
 DOUBLE_DIGITS = 17  # decimal digits that tell any two doubles apart
 
 
@@ -47,11 +49,42 @@ class Sign(NamedTuple):
     by: By
 
 
+class Origin(StrEnum):
+    """Where an initial value comes from when the parameters change.
+
+    ``GIVEN``: the scene gives it. ``NEAR``: the constraints fix it, near the scene's guess. ``ONLY``: they fix it,
+    and contain it linearly.
+    """
+
+    GIVEN = "given"
+    NEAR = "near"
+    ONLY = "only"
+
+
+@dataclass(frozen=True)
+class ParametricStart:
+    """The start of a motion as a function of its open parameters.
+
+    Attributes
+    ----------
+    program : Program or None
+        Of the open parameters: each coordinate and velocity, or what the search for it begins with.
+    origins : mapping of str to Origin
+    obstacle : str or None
+        Why the start cannot follow the parameters; there is a program where it can.
+    """
+
+    program: Program | None
+    origins: Mapping[str, Origin]
+    obstacle: str | None
+
+
 @dataclass(frozen=True)
 class MotionProblem:
     """A motion to follow.
 
-    Every program takes t, the coordinates, the velocities, the multipliers and the signs, in this order.
+    Every program takes t, the coordinates, the velocities, the multipliers, the signs and the open parameters, in this
+    order.
 
     Attributes
     ----------
@@ -65,7 +98,8 @@ class MotionProblem:
     coordinates, multipliers : tuple of str
         Their names: n and g of them.
     start : mapping of str to str
-        The time, coordinates and velocities at the start, as decimal digits.
+        The time, coordinates and velocities at the start, as decimal digits; the time alone where a parameter without
+        a value decides about the others.
     correction : (str, str) or None
         The given value that missed the constraints in its last digits and was corrected most, and by how much.
     obstacle : str or None
@@ -87,6 +121,12 @@ class MotionProblem:
     switching : Program or None
         ``switch[i]``, the functions, with what decides how the motion passes their zeros, ``switch_rate[i]``,
         ``drive[i]`` and ``grip[i]``, and ``momentum[s]``; None without signs.
+    parameters : tuple of str
+        Those that stay open.
+    values : mapping of str to Fraction
+        Their values in this motion; some may be missing where none is followed.
+    parametric_start : ParametricStart or None
+        None without open parameters.
     """
 
     system: str
@@ -107,6 +147,32 @@ class MotionProblem:
     drawing: "Drawing | None"
     signs: tuple[Sign, ...] = ()
     switching: Program | None = None
+    parameters: tuple[str, ...] = ()
+    values: Mapping[str, Fraction] = field(default_factory=dict)
+    parametric_start: ParametricStart | None = None
+    _compiled: dict[Hashable, tuple[object, Any]] = field(default_factory=dict, compare=False, repr=False)
+
+    def once(self, what: Hashable, program: Program, build: "Callable[[], Built]") -> "Built":
+        """What is built of a program, once for all values of the open parameters; anew where there are none.
+
+        Parameters
+        ----------
+        what : hashable
+            Tells apart what is built of the same program.
+        program : Program
+        build : callable
+        """
+        if not self.parameters:
+            return build()
+        key = (what, id(program))
+        if key not in self._compiled:
+            self._compiled[key] = program, build()  # with the program, so that no other one takes its id
+        return self._compiled[key][1]
+
+    @property
+    def numbers(self) -> tuple[float, ...]:
+        """Values of the open parameters, in double precision."""
+        return tuple(float(self.values[name]) for name in self.parameters)
 
     @property
     def state(self) -> tuple[str, ...]:
@@ -125,7 +191,9 @@ def require_analytic(problem: MotionProblem) -> None:
         raise HolonomError(Failure.NOT_ANALYTIC, problem.scene, problem.signs[0].of)
 
 
-def motion_problem(file: Path, request: Request, limits: Limits, digits: int = DOUBLE_DIGITS) -> MotionProblem:
+def motion_problem(
+    file: Path, request: Request, limits: Limits, digits: int = DOUBLE_DIGITS, open_parameters: Sequence[str] = ()
+) -> MotionProblem:
     """Ask Maxima for the motion of a scene.
 
     Parameters
@@ -137,6 +205,8 @@ def motion_problem(file: Path, request: Request, limits: Limits, digits: int = D
         What Maxima may take.
     digits : int
         Significant digits of the initial state.
+    open_parameters : sequence of str
+        Parameters that are inputs of the programs, whether they have values or not; names of others do no harm.
 
     Returns
     -------
@@ -147,15 +217,17 @@ def motion_problem(file: Path, request: Request, limits: Limits, digits: int = D
     HolonomError
         As `holonom.maxima.ask_scene`; the file has no scene, a control no law, a parameter no value.
     """
-    return read_problem(problem_document(file, request, limits, digits))
+    return read_problem(problem_document(file, request, limits, digits, open_parameters))
 
 
-def problem_document(file: Path, request: Request, limits: Limits, digits: int = DOUBLE_DIGITS) -> str:
+def problem_document(
+    file: Path, request: Request, limits: Limits, digits: int = DOUBLE_DIGITS, open_parameters: Sequence[str] = ()
+) -> str:
     """The document of a scene's motion, as Maxima writes it.
 
     Parameters
     ----------
-    file, request, limits, digits
+    file, request, limits, digits, open_parameters
         As for `motion_problem`.
 
     Returns
@@ -168,7 +240,7 @@ def problem_document(file: Path, request: Request, limits: Limits, digits: int =
     HolonomError
         As `motion_problem`.
     """
-    asked = (request.scene, request.solve, digits)
+    asked = (request.scene, request.solve, digits, tuple(open_parameters))
     return ask(Document.MOTION_PROBLEM, file, *asked, settings=request.settings, limits=limits)
 
 
@@ -200,7 +272,7 @@ def read_problem(text: str) -> MotionProblem:
         observe=tuple(document["observe"]),
         coordinates=tuple(document["coordinates"]),
         multipliers=tuple(document["multipliers"]),
-        start=document["start"],
+        start=document["start"] or {"t": span[0] if span else "0"},
         correction=(correction := document["correction"]) and (correction["name"], correction["size"]),
         obstacle=document["obstacle"],
         motion=_optional(document["motion"]),
@@ -210,6 +282,9 @@ def read_problem(text: str) -> MotionProblem:
         drawing=_drawing(document["drawing"]),
         signs=tuple(Sign(sign["name"], sign["of"], By(sign["by"])) for sign in document["signs"]),
         switching=_optional(document["switching"]),
+        parameters=tuple(document["parameters"]),
+        values={name: Fraction(value) for name, value in document["values"].items()},
+        parametric_start=_parametric_start(document["parametric_start"]),
     )
 
 
@@ -240,6 +315,13 @@ def computing(program: Program, wanted: Collection[str]) -> Program:
 
 def _optional(document: Any) -> Program | None:
     return None if document is None else program_of(document)
+
+
+def _parametric_start(document: Any) -> ParametricStart | None:
+    if document is None:
+        return None
+    origins = {name: Origin(origin) for name, origin in (document["origins"] or {}).items()}
+    return ParametricStart(_optional(document["program"]), origins, document["obstacle"])
 
 
 def _drawing(document: Any) -> "Drawing | None":

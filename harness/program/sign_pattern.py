@@ -5,7 +5,7 @@ While they stay the same it is an analytic motion like any other: its problem is
 A sign that holds the motion on its surface is a value along the way, -drive(0)/grip.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 
@@ -34,18 +34,8 @@ def problem_in(problem: MotionProblem, pattern: Pattern) -> MotionProblem:
     """
     if not problem.signs:
         return problem
-    return replace(
-        problem,
-        motion=problem.motion and program_in(problem, problem.motion, pattern),
-        projection=problem.projection and program_in(problem, problem.projection, pattern),
-        matrices=program_in(problem, problem.matrices, pattern),
-        energy=program_in(problem, problem.energy, pattern),
-        drawing=problem.drawing and replace(
-            problem.drawing, program=program_in(problem, problem.drawing.program, pattern)
-        ),
-        signs=(),
-        switching=None,
-    )  # fmt: skip
+    analytic = _with_programs(problem, lambda program: program_in(problem, program, pattern))
+    return replace(analytic, signs=(), switching=None)
 
 
 def program_in(problem: MotionProblem, program: Program, pattern: Pattern) -> Program:
@@ -93,6 +83,34 @@ def drawing_at_any_time(problem: MotionProblem) -> Drawing:
 def holdable(problem: MotionProblem, name: str) -> bool:
     """Whether a sign can hold the motion on its surface: forces alone contain it, and linearly."""
     return problem.switching is not None and f"grip[{_index(problem, name)}]" in problem.switching.outputs
+
+
+def in_numbers(problem: MotionProblem, program: Program) -> Program:
+    """A program of the motion with the values of the open parameters put in."""
+    return with_numbers(program, problem.values) if problem.parameters else program
+
+
+def with_values_in(problem: MotionProblem) -> MotionProblem:
+    """The motion with the values of its parameters put into its programs, none left open.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        With a value for each open parameter.
+
+    Returns
+    -------
+    MotionProblem
+    """
+    if not problem.parameters:
+        return problem
+    return replace(
+        _with_programs(problem, lambda program: in_numbers(problem, program)),
+        switching=problem.switching and in_numbers(problem, problem.switching),
+        parameters=(),
+        values={},
+        parametric_start=None,
+    )
 
 
 def drive(problem: MotionProblem, name: str, sign: int, pattern: Pattern) -> Program:
@@ -143,6 +161,18 @@ def with_numbers(program: Program, numbers: Mapping[str, Fraction]) -> Program:
         outputs={name: _substituted(value, known) for name, value in program.outputs.items()},
     )
     return replace(part, operations=count_operations(part))
+
+
+def _with_programs(problem: MotionProblem, changed: Callable[[Program], Program]) -> MotionProblem:
+    """The motion with each of its programs changed, but for that of the switching."""
+    return replace(
+        problem,
+        motion=problem.motion and changed(problem.motion),
+        projection=problem.projection and changed(problem.projection),
+        matrices=changed(problem.matrices),
+        energy=changed(problem.energy),
+        drawing=problem.drawing and replace(problem.drawing, program=changed(problem.drawing.program)),
+    )
 
 
 def _index(problem: MotionProblem, name: str) -> int:

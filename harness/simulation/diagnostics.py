@@ -18,9 +18,9 @@ from ..program.motion_problem import MotionProblem, computing
 from ..program.motion_program import names_in
 from ..program.precision import Precision, read_precision
 from .constraints.factorization import weighted_constraints
-from .evaluation import Numbers, evaluation, zeros
+from .evaluation import Numbers, evaluation_once, zeros
 from .faint import may_hide
-from .matrices import Matrices, Matrix, Vector
+from .matrices import Matrices, Vector
 
 if TYPE_CHECKING:
     from .engines.engine import Piece
@@ -99,11 +99,12 @@ class EnergyBalance:
         precision: Precision | str = "double",
     ) -> None:
         self._precision = read_precision(precision) if isinstance(precision, str) else precision
-        self._evaluate = evaluation(problem.energy, self._precision)
+        self._evaluate = evaluation_once(problem, problem.energy, self._precision)
+        self._values = np.array([[self._precision.ratio(problem.values[name])] for name in problem.parameters])
         self._rows = {name: row for row, name in enumerate(problem.energy.outputs)}
         self._g, self._multipliers = len(problem.multipliers), multipliers
         self._moving = _constraints_move(problem)
-        hidden = may_hide(computing(problem.energy, {"power"}))
+        hidden = may_hide(computing(problem.energy, {"power"}), problem.parameters)
         self.conservative = not self._moving and not hidden and self._without_power(2 * len(problem.coordinates))
 
     def energy(self, instants: Numbers, states: Numbers) -> Numbers:
@@ -153,7 +154,10 @@ class EnergyBalance:
         return half * (self._numbers(WEIGHTS) * self.power(instants, piece.states(instants))).sum()
 
     def _output(self, name: str, instants: Numbers, states: Numbers, multipliers: Numbers) -> Numbers:
-        inputs = np.concatenate([np.reshape(instants, (1, -1)), states, multipliers])
+        parts = [np.reshape(instants, (1, -1)), states, multipliers]
+        if len(self._values):
+            parts.append(np.repeat(self._values, len(instants), axis=1))
+        inputs = np.concatenate(parts)
         return self._evaluate(np.ascontiguousarray(inputs))[self._rows[name]]
 
     def _no_multipliers(self, points: int) -> Numbers:
@@ -177,9 +181,26 @@ def _constraints_move(problem: MotionProblem) -> bool:
     return any("t" in names_in(part) for part in parts)
 
 
-def _scaled(residual: Vector, jacobian: Matrix, moved: Vector) -> float:
+def _scaled(residual: Numbers, jacobian: Numbers, moved: Numbers) -> float:
+    return float(scaled_residual(residual, jacobian, moved))
+
+
+def scaled_residual(residual: Numbers, jacobian: Numbers, moved: Numbers) -> Numbers:
+    """How far the coordinates, or their rates, are from the constraints, relative to the largest of them.
+
+    Parameters
+    ----------
+    residual : ndarray, shape (g, ...)
+    jacobian : ndarray, shape (g, n, ...)
+    moved : ndarray, shape (n, ...)
+        What the residual is one of: coordinates, velocities or accelerations.
+
+    Returns
+    -------
+    ndarray, shape (...)
+    """
     gradients = np.max(np.abs(jacobian), axis=1, initial=0.0)
     peaks = np.where(gradients > 0, gradients, 1.0)
     lengths = np.maximum(1.0, np.linalg.norm(jacobian / peaks[:, None], axis=1))
-    left = np.max(np.abs(residual) / peaks / lengths, initial=0.0)
-    return float(left / max(1.0, float(np.max(np.abs(moved), initial=0.0))))
+    left = np.max(np.abs(residual) / peaks / lengths, axis=0, initial=0.0)
+    return left / np.maximum(1.0, np.max(np.abs(moved), axis=0, initial=0.0))

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..program.heyoka_function import COMPACT_FROM, heyoka_expressions, import_heyoka
+from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Program
 from ..program.precision import Precision
 
@@ -46,6 +47,50 @@ def evaluation(program: Program, precision: Precision) -> Evaluation:
         opt_level=0,
         **precision.options,
     )
+
+
+def evaluation_once(problem: MotionProblem, program: Program, precision: Precision) -> Evaluation:
+    """Compile a program of a problem, once for all values of its open parameters."""
+    return problem.once(("evaluation", precision.name), program, lambda: evaluation(program, precision))
+
+
+def lane_evaluation(problem: MotionProblem, program: Program) -> Evaluation:
+    """Compile a program of a problem, once, to be evaluated at many points in double precision.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+    program : Program
+
+    Returns
+    -------
+    callable
+        Takes the inputs, shape (inputs, points), to the outputs, shape (outputs, points). What comes out at a point
+        does not hang on the other points, to the last bit: all go through the same vector instructions, because what
+        is missing to full vectors is filled up.
+    """
+    heyoka = import_heyoka()
+
+    def build() -> Evaluation:
+        variables = {name: heyoka.expression(name) for name in program.inputs}
+        outputs = list(heyoka_expressions(program, variables).values())
+        compact = program.operations >= COMPACT_FROM
+        return in_full_vectors(heyoka.cfunc(outputs, vars=list(variables.values()), compact_mode=compact))
+
+    return problem.once("lanes", program, build)
+
+
+def in_full_vectors(function: Callable[[Numbers], Numbers]) -> Evaluation:
+    """A function of heyoka's that takes points in full vectors only, shape (inputs, points)."""
+    width = import_heyoka().recommended_simd_size()
+
+    def evaluate(inputs: Numbers) -> Numbers:
+        points = inputs.shape[1]
+        missing = -points % width
+        filled = np.concatenate([inputs, np.repeat(inputs[:, -1:], missing, axis=1)], axis=1) if missing else inputs
+        return function(np.ascontiguousarray(filled))[:, :points]
+
+    return evaluate
 
 
 def zeros(precision: Precision, *shape: int) -> Numbers:

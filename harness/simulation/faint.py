@@ -4,7 +4,7 @@ An exponential is so small away from there, or so near to its limit, that roundi
 better. What they do shows neither at a few states, however chosen, nor at the beginning of a step.
 """
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from fractions import Fraction
 
 from ..program.motion_program import Call, Expression, Operation, Program, names_in
@@ -13,15 +13,17 @@ FAINT = frozenset({Operation.EXP, Operation.SINH, Operation.COSH, Operation.TANH
 HIGH = 16  # exponents from which a power is as faint as an exponential
 
 
-def may_hide(program: Program) -> bool:
+def may_hide(program: Program, parameters: Collection[str] = ()) -> bool:
     """Whether a program contains such a function of the state.
 
     Parameters
     ----------
     program : Program
-        One of its inputs is ``t``; the others are the state.
+        One of its inputs is ``t``; the others are the state, and parameters.
+    parameters : collection of str
+        Which inputs are.
     """
-    moving = set(program.inputs) - {"t"}
+    moving = set(program.inputs) - {"t", *parameters}
     for name, expression in program.assignments:
         if any(_is_faint(call) and names_in(call) & moving for call in _calls(expression)):
             return True

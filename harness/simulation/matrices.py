@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..program.motion_problem import MotionProblem, require_analytic
 from ..program.precision import read_precision
-from .evaluation import evaluation
+from .evaluation import Numbers, evaluation_once, lane_evaluation
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -34,7 +34,7 @@ class Matrices(NamedTuple):
         c.
     residual, residual_rate : ndarray, shape (g,)
         f and df/dt.
-    finite : bool
+    finite : bool or ndarray of bool
         Whether all of them are numbers, none infinite.
     """
 
@@ -44,7 +44,7 @@ class Matrices(NamedTuple):
     curvature: Vector
     residual: Vector
     residual_rate: Vector
-    finite: bool
+    finite: bool | NDArray[np.bool_]
 
 
 class MotionMatrices:
@@ -57,17 +57,10 @@ class MotionMatrices:
 
     def __init__(self, problem: MotionProblem) -> None:
         require_analytic(problem)
-        n, g = len(problem.coordinates), len(problem.multipliers)
-        shapes = {"A": (n, n), "h": (n,), "J": (g, n), "c": (g,), "residual": (g,), "residual_rate": (g,)}
-        ends = np.cumsum([math.prod(shape) for shape in shapes.values()])
-        self._parts = [
-            (slice(end - math.prod(shape), end), shape) for end, shape in zip(ends, shapes.values(), strict=True)
-        ]
-        starts = {name: part.start for name, (part, _) in zip(shapes, self._parts, strict=True)}
-        self._size = int(ends[-1])
-        self._places = np.array([_place(name, starts, n) for name in problem.matrices.outputs], dtype=int)
-        self._evaluate = evaluation(problem.matrices, read_precision("double"))
-        self._inputs = np.zeros(1 + 2 * n + g)
+        self._layout = _Layout(problem)
+        self._evaluate = evaluation_once(problem, problem.matrices, read_precision("double"))
+        unused = [0.0] * len(problem.multipliers)
+        self._inputs = np.array([0.0] * (1 + len(problem.state)) + unused + list(problem.numbers))
 
     def __call__(self, t: float, state: Vector) -> Matrices:
         """Evaluate the matrices.
@@ -84,10 +77,63 @@ class MotionMatrices:
         """
         self._inputs[0] = t
         self._inputs[1 : 1 + len(state)] = state
-        values = np.zeros(self._size)
-        values[self._places] = self._evaluate(self._inputs)
-        finite = bool(np.isfinite(values).all())
-        return Matrices(*(values[part].reshape(shape) for part, shape in self._parts), finite)
+        return self._layout.matrices(self._evaluate(self._inputs))
+
+
+class LaneMatrices:
+    """The matrices of many motions of one problem, each with its own values of the open parameters.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+    """
+
+    def __init__(self, problem: MotionProblem) -> None:
+        require_analytic(problem)
+        self._layout, self._g = _Layout(problem), len(problem.multipliers)
+        self._evaluate = lane_evaluation(problem, problem.matrices)
+
+    def __call__(self, t: float, states: Numbers, values: Numbers) -> Matrices:
+        """Evaluate the matrices.
+
+        Parameters
+        ----------
+        t : float
+        states : ndarray, shape (2n, k)
+        values : ndarray, shape (p, k)
+            Of the open parameters.
+
+        Returns
+        -------
+        Matrices
+            Each with a last axis more, of length k.
+        """
+        lanes = states.shape[1]
+        instants, unused = np.full((1, lanes), t), np.zeros((self._g, lanes))
+        return self._layout.matrices(self._evaluate(np.concatenate([instants, states, unused, values])))
+
+
+class _Layout:
+    """Where the outputs of the program of the matrices go."""
+
+    def __init__(self, problem: MotionProblem) -> None:
+        n, g = len(problem.coordinates), len(problem.multipliers)
+        shapes = {"A": (n, n), "h": (n,), "J": (g, n), "c": (g,), "residual": (g,), "residual_rate": (g,)}
+        ends = np.cumsum([math.prod(shape) for shape in shapes.values()])
+        self._parts = [
+            (slice(end - math.prod(shape), end), shape) for end, shape in zip(ends, shapes.values(), strict=True)
+        ]
+        starts = {name: part.start for name, (part, _) in zip(shapes, self._parts, strict=True)}
+        self._size = int(ends[-1])
+        self._places = np.array([_place(name, starts, n) for name in problem.matrices.outputs], dtype=int)
+
+    def matrices(self, outputs: Numbers) -> Matrices:
+        """What the program computes, shape (outputs, ...), as matrices, each of its own shape and that of the rest."""
+        rest = outputs.shape[1:]
+        values = np.zeros((self._size, *rest))
+        values[self._places] = outputs
+        finite = np.isfinite(values).all(axis=0)
+        return Matrices(*(values[part].reshape(*shape, *rest) for part, shape in self._parts), finite)
 
 
 def start_of(problem: MotionProblem) -> tuple[float, Vector]:

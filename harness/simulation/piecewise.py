@@ -26,7 +26,7 @@ import numpy as np
 from ..failures import Failure, HolonomError
 from ..program.motion_problem import By, MotionProblem, Sign, computing
 from ..program.precision import Precision
-from ..program.sign_pattern import HELD, Pattern, drive, holdable, problem_in, program_in
+from ..program.sign_pattern import HELD, Pattern, drive, holdable, in_numbers, problem_in, program_in
 from .constraints.program_projection import ProgramProjection
 from .constraints.projection import project
 from .constraints.singularity import require_gradient, shortly_before, vanishing_instants
@@ -95,7 +95,7 @@ class Part:
         self.balance = EnergyBalance(self.problem, self._multipliers, precision)
         self._start, self._end = float(problem.start["t"]), float(end)
         self.doubtful = vanishing_instants(self.problem, self.matrices, self._end)
-        self.by_time = time_dependence(self.problem.matrices, self._start, self._end)
+        self.by_time = time_dependence(in_numbers(self.problem, self.problem.matrices), self._start, self._end)
         ends = () if self.by_time.end is None else (self.by_time.end,)
         before = (shortly_before(t, self._start) for t in self.doubtful)
         self.stops = sorted({*self.by_time.stops, *ends, *before})

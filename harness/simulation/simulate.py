@@ -10,6 +10,7 @@ import numpy as np
 from ..failures import Failure, HolonomError
 from ..program.motion_problem import MotionProblem
 from ..program.precision import Precision, read_precision
+from ..program.sign_pattern import with_values_in
 from ..supervisor import doing
 from ..threads import one_blas_thread
 from .diagnosis import HardCase, Instant, hard_cases
@@ -21,7 +22,7 @@ from .matrices import Matrices, Vector
 from .passed_over import StepsHeldAgainstTheEquations
 from .piecewise import PiecewiseMotion
 from .recording import Recording
-from .request import FINAL_STATE_ALONE, SimulationRequest
+from .request import FINAL_STATE_ALONE, EngineName, SimulationRequest, Stabilization
 from .result import Report, Samples, Simulation
 from .trust import doubts, energy_scale
 
@@ -49,9 +50,33 @@ def simulate(problem: MotionProblem, request: SimulationRequest, progress: Progr
     """
     with one_blas_thread():
         with doing("compiling the motion"):
-            prepared = _Simulation(problem, request)
+            prepared = _Simulation(followable(problem, request), request)
         with doing("following the motion"):
             return prepared.run(progress)
+
+
+def followable(problem: MotionProblem, request: SimulationRequest) -> MotionProblem:
+    """The motion with its parameters open where the engines take them so, else with their values put in.
+
+    What follows an analytic motion in double precision, as it is or projected, is compiled once for all values.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        With a value for each open parameter.
+    request : SimulationRequest
+
+    Returns
+    -------
+    MotionProblem
+    """
+    open_ = (
+        not problem.signs
+        and request.precision == "double"
+        and request.engine is not EngineName.RUNGE_KUTTA
+        and request.drift in (Stabilization.PROJECTION, Stabilization.NONE)
+    )
+    return problem if open_ else with_values_in(problem)
 
 
 def last_instant(problem: MotionProblem, until: Fraction | None, precision: Precision) -> Any:
@@ -96,7 +121,7 @@ class _Simulation:
         self.recording = Recording(self.motion, self._wanted_instants(), self.precision.number("0"))
         self.steps = (
             StepsHeldAgainstTheEquations(self.motion, self.end - self.start, self.precision)
-            if may_hide(problem.matrices)
+            if may_hide(problem.matrices, problem.parameters)
             else None
         )
 

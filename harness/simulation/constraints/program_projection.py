@@ -23,8 +23,13 @@ class ProgramProjection:
     """
 
     def __init__(self, problem: MotionProblem, precision: Precision) -> None:
-        self._nearest = _nearest_state(problem, precision)
-        self._inputs = zeros(precision, 1 + len(problem.state))
+        self._nearest = problem.once(
+            ("projection", precision.name), problem.projection, lambda: nearest_state(problem, precision, opt_level=0)
+        )
+        self._inputs = zeros(precision, 1 + len(problem.state) + len(problem.parameters))
+        self._moving = slice(1, 1 + len(problem.state))
+        for place, name in enumerate(problem.parameters, start=1 + len(problem.state)):
+            self._inputs[place] = precision.ratio(problem.values[name])
         self._found = zeros(precision, len(problem.state) + 1)
         self._projected = self._found[:-1]
 
@@ -42,16 +47,30 @@ class ProgramProjection:
             How far: the length of the change, relative to (1 + x^2)^(1/2) of each number x.
         """
         self._inputs[0] = instant
-        self._inputs[1:] = state
+        self._inputs[self._moving] = state
         self._nearest(self._inputs, self._found)
         state[:] = self._projected
         return float(self._found[-1]) ** 0.5
 
 
-def _nearest_state(problem: MotionProblem, precision: Precision) -> Any:
-    """Function of t and the state to the projected state, compiled by heyoka."""
+def nearest_state(problem: MotionProblem, precision: Precision, **options: Any) -> Any:
+    """Compile the projection of a state.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+    precision : Precision
+    **options
+        For heyoka's compiler.
+
+    Returns
+    -------
+    heyoka.cfunc
+        From t, the state and the open parameters to the nearest state that keeps the constraints, and the square of
+        its distance, relative to (1 + x^2)^(1/2) of each number x.
+    """
     heyoka = import_heyoka()
-    variables = {name: heyoka.expression(name) for name in ("t", *problem.state)}
+    variables = {name: heyoka.expression(name) for name in ("t", *problem.state, *problem.parameters)}
     inputs = {**variables, **dict.fromkeys(problem.multipliers, heyoka.expression(precision.number("0")))}
     velocities = problem.state[len(problem.coordinates) :]
     one = heyoka.expression(precision.number("1"))
@@ -62,8 +81,8 @@ def _nearest_state(problem: MotionProblem, precision: Precision) -> Any:
         [*(both[name] for name in problem.state), heyoka.sum(squares)],
         vars=list(variables.values()),
         compact_mode=problem.projection.operations >= COMPACT_FROM,
-        opt_level=0,
         **precision.options,
+        **options,
     )
 
 

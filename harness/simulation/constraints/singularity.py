@@ -19,6 +19,7 @@ from ...failures import Failure, HolonomError
 from ...program.motion_problem import MotionProblem, computing
 from ...program.motion_program import Name
 from ...program.numpy_function import NumpyFunction
+from ...program.sign_pattern import in_numbers
 from ..diagnosis import HardCase, Instant, advice
 from ..evaluation import Numbers, as_floats
 from ..matrices import MotionMatrices, Vector, start_of
@@ -207,11 +208,12 @@ def zeros_of_controls(problem: MotionProblem, start: float, end: float) -> list[
     list of float
         In order.
     """
-    assigned = {name for name, _ in problem.matrices.assignments}
+    matrices = in_numbers(problem, problem.matrices)
+    assigned = {name for name, _ in matrices.assignments}
     laws = {name: Name(name) for name in assigned if f"dot({name})" in assigned}
     if not laws:
         return []
-    law = computing(replace(problem.matrices, inputs=("t",), outputs=laws), laws)
+    law = computing(replace(matrices, inputs=("t",), outputs=laws), laws)
     values, grid = NumpyFunction(law), np.linspace(start, end, POINTS)
     signs = np.sign(values([grid]))
     controls, places = np.nonzero(signs[:, :-1] * signs[:, 1:] < 0)

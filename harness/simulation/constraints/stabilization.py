@@ -35,9 +35,12 @@ def equations_of_motion(problem: MotionProblem, program: Program, precision: Pre
     Returns
     -------
     list of (expression, expression)
-        Each coordinate and each velocity with its rate.
+        Each coordinate and each velocity with its rate; the open parameters are heyoka's.
     """
-    return dynamics(program, zero_multipliers(problem.multipliers, precision.number("0")), precision.ratio)
+    heyoka = import_heyoka()
+    parameters = {name: heyoka.par[place] for place, name in enumerate(problem.parameters)}
+    unused = zero_multipliers(problem.multipliers, precision.number("0"))
+    return dynamics(program, parameters | unused, precision.ratio)
 
 
 def stabilized_equations(

@@ -20,7 +20,7 @@ from ...program.motion_problem import MotionProblem, require_analytic
 from ...program.precision import Precision
 from ..constraints.singularity import Watch, no_gradient
 from ..diagnosis import HardCase
-from ..evaluation import Evaluation, Numbers, evaluation, zeros
+from ..evaluation import Evaluation, Numbers, evaluation_once, zeros
 from ..request import EngineName
 from .engine import Obstacle, Piece, Solutions
 
@@ -157,9 +157,13 @@ class ProgramEngine:
         n, g = len(self._problem.coordinates), len(self._problem.multipliers)
         if self._evaluate is None:
             begun = time.perf_counter()
-            self._evaluate = evaluation(self._problem.motion, self.precision)
+            self._evaluate = evaluation_once(self._problem, self._problem.motion, self.precision)
             self.compile_seconds += time.perf_counter() - begun
-        inputs = np.concatenate([np.reshape(instants, (1, -1)), states, zeros(self.precision, g, len(instants))])
+        parts = [np.reshape(instants, (1, -1)), states, zeros(self.precision, g, len(instants))]
+        if self._problem.parameters:
+            values = [self.precision.ratio(self._problem.values[name]) for name in self._problem.parameters]
+            parts.append(np.repeat(np.array(values)[:, None], len(instants), axis=1))
+        inputs = np.concatenate(parts)
         found = self._evaluate(np.ascontiguousarray(inputs))
         return Solutions(found[:n], found[n : n + g], found[n + g :])
 

@@ -5,6 +5,7 @@ short.
 """
 
 import time
+from copy import copy
 from typing import Any
 
 import numpy as np
@@ -67,8 +68,8 @@ class TaylorEngine(ProgramEngine):
         self._chosen = compact is not None
         self._program = computing(problem.motion, {f"ddot({name})" for name in problem.coordinates})
         code = Code.QUICK if compact is None else Code.COMPACT if compact else Code.UNROLLED
+        self._drift, self._decay = drift, decay
         begun, number = time.perf_counter(), self.precision.number
-        self._equations = self._equations_with(drift, decay)
         start = np.array([number(problem.start[name]) for name in problem.state])
         self._set_up(code, number(problem.start["t"]), start)
         kept = drift is Stabilization.PROJECTION and problem.multipliers
@@ -110,10 +111,20 @@ class TaylorEngine(ProgramEngine):
 
     def _set_up(self, code: Code, instant: Any, state: Numbers) -> None:
         self.code = code
-        self._integrator = import_heyoka().taylor_adaptive(
-            self._equations, state, time=instant, **self._tolerance, **code.options, **self.precision.options
-        )
+        kind = ("taylor", code, self._drift, self.precision.name, *self._tolerance.values())
+        built = self._problem.once(kind, self._problem.motion, lambda: self._compiled(code, state))
+        self._integrator = copy(built) if self._problem.parameters else built
+        self._integrator.time = instant
+        self._integrator.state[:] = state
+        for place in range(len(self._integrator.pars)):  # those that the equations contain, and all before them
+            self._integrator.pars[place] = self.precision.ratio(self._problem.values[self._problem.parameters[place]])
         self.state = self._integrator.state  # a view: what the integrator does shows in it
+
+    def _compiled(self, code: Code, state: Numbers) -> Any:
+        equations = self._equations_with(self._drift, self._decay)
+        return import_heyoka().taylor_adaptive(
+            equations, state, **self._tolerance, **code.options, **self.precision.options
+        )
 
     def _equations_with(self, drift: Stabilization, decay: float | None) -> Equations:
         if drift in (Stabilization.BAUMGARTE, Stabilization.GGL) and self._problem.multipliers:

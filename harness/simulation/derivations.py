@@ -1,0 +1,118 @@
+"""The motions of a scene file, derived once for all values of the parameters that are set from outside.
+
+A setting that is a parameter of the scene stays open in the programs and gets its value afterwards; any other, a number
+of masses say, changes what is derived. Where numbers tell more than names do, as a mass that is zero, the motion is
+derived with the numbers in it.
+"""
+
+from collections.abc import Mapping
+from fractions import Fraction
+from pathlib import Path
+
+from ..confined import Limits
+from ..failures import Failure, HolonomError
+from ..program.motion_problem import DOUBLE_DIGITS, MotionProblem, motion_problem
+from ..program.request import Request
+
+
+class Derivations:
+    """What Maxima has derived from a scene file.
+
+    Parameters
+    ----------
+    file : Path
+    limits : Limits
+        What Maxima may take.
+    """
+
+    def __init__(self, file: Path, limits: Limits) -> None:
+        self._file, self._limits = file, limits
+        self._opened: dict[tuple[object, ...], list[tuple[Mapping[str, str], MotionProblem]]] = {}
+        self._closed: dict[tuple[object, ...], MotionProblem] = {}
+
+    def motion(self, request: Request, digits: int = DOUBLE_DIGITS) -> MotionProblem:
+        """The motion that a request asks for.
+
+        Parameters
+        ----------
+        request : Request
+        digits : int
+            Significant digits of the initial state.
+
+        Returns
+        -------
+        MotionProblem
+            Its open parameters, if it has any, have the values of the settings.
+
+        Raises
+        ------
+        HolonomError
+            As `motion_problem`.
+        """
+        names = open_names(request, digits)
+        opened = self._at_settings(request, names) if names else None
+        return self._with_numbers(request, digits) if opened is None else opened
+
+    def _with_numbers(self, request: Request, digits: int) -> MotionProblem:
+        key = (request.scene, request.solve, digits, *sorted(request.settings.items()))
+        if key not in self._closed:
+            self._closed[key] = motion_problem(self._file, request, self._limits, digits)
+        return self._closed[key]
+
+    def _at_settings(self, request: Request, names: tuple[str, ...]) -> MotionProblem | None:
+        """The motion with its parameters open and their values set, or None where it takes numbers to derive it."""
+        known = self._opened.setdefault((request.scene, request.solve, names), [])
+        for settings, problem in known:
+            if all(settings[name] == request.settings[name] for name in names if name not in problem.parameters):
+                return _moved(problem, request.settings)
+        problem = motion_problem(self._file, request, self._limits, DOUBLE_DIGITS, names)
+        known.append((request.settings, problem))
+        return _moved(problem, request.settings)
+
+
+def open_names(request: Request, digits: int) -> tuple[str, ...]:
+    """Names of what stays open where it is a parameter: what is set, in double precision."""
+    return tuple(sorted(request.settings)) if digits == DOUBLE_DIGITS else ()
+
+
+def stands(problem: MotionProblem) -> bool:
+    """Whether the programs of a motion, with its parameters open, solve its equations at the start.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+
+    Returns
+    -------
+    bool
+        Also where no parameter is open.
+    """
+    if not problem.parameters:
+        return True
+    if problem.motion is None:
+        return False
+    import numpy as np
+
+    from ..program.numpy_function import NumpyFunction
+
+    function = problem.once("start", problem.motion, lambda: NumpyFunction(problem.motion))
+    state = [float(problem.start[name]) for name in ("t", *problem.state)]
+    unused = [0.0] * len(problem.multipliers) + [1.0] * len(problem.signs)
+    with np.errstate(all="ignore"):
+        return bool(np.isfinite(function([*state, *unused, *problem.numbers])).all())
+
+
+def _moved(problem: MotionProblem, settings: Mapping[str, str]) -> MotionProblem | None:
+    """The motion for other settings; None where its programs do not stand, or its start does not follow."""
+    from .initial_state import at_values
+
+    values = {name: Fraction(settings[name]) for name in problem.parameters}
+    try:
+        moved = at_values(problem, values)
+    except HolonomError as error:
+        if error.failure is not Failure.START_UNFOLLOWED:
+            raise
+        if values != problem.values:
+            return None
+        moved = problem  # Maxima has found the start for these
+    return moved if stands(moved) else None

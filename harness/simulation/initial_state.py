@@ -1,0 +1,246 @@
+"""Where motions start that differ in their parameters: eqs. (12) and (19) in numbers, many motions at a time.
+
+What the scene gives is evaluated; what the constraints fix is solved for by Newton's method, the corrections being the
+least ones in the mass metric, or the only ones, as `maxima/program/parametric_start.mac` says of each. Data of limited
+digits that miss a constraint by less than a share of 1e-9 are corrected in the same way. `maxima/derivation/
+initial_state.mac` does the same to 60 digits for one motion.
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..failures import Failure, HolonomError
+from ..program.motion_problem import MotionProblem, Origin
+from .diagnostics import scaled_residual
+from .evaluation import Numbers, lane_evaluation
+from .matrices import LaneMatrices
+
+LIMITED_DIGITS = 1e-9  # share of the largest datum by which data may be corrected, and of coordinates a residual
+ROUNDING = 8 * np.finfo(float).eps  # relative size of a correction that is none
+ITERATIONS = 25
+
+
+class Starts(NamedTuple):
+    """States that motions start from.
+
+    Attributes
+    ----------
+    states : ndarray, shape (2n, k)
+        Coordinates, then velocities.
+    found : ndarray of bool, shape (k,)
+        Whether they keep the constraints; the other states mean nothing.
+    """
+
+    states: Numbers
+    found: NDArray[np.bool_]
+
+
+class InitialStates:
+    """The states that a problem's motions start from, as a function of the open parameters.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        With open parameters.
+
+    Raises
+    ------
+    HolonomError
+        The start cannot follow the parameters.
+    """
+
+    def __init__(self, problem: MotionProblem) -> None:
+        start = problem.parametric_start
+        if start.obstacle is not None:
+            raise HolonomError(Failure.START_UNFOLLOWED, problem.scene, start.obstacle)
+        self._instant, self._n = float(problem.start["t"]), len(problem.coordinates)
+        self._evaluate = lane_evaluation(problem, start.program)
+        self._matrices, self._redundant = LaneMatrices(problem), problem.obstacle is not None
+        n = self._n
+        present = {name for name in problem.matrices.outputs if name.startswith("J[")}
+        touches = np.array(
+            [[f"J[{b},{s}]" in present for s in range(1, n + 1)] for b in range(1, len(problem.multipliers) + 1)]
+        ).reshape(-1, n)
+        self._origins = {name: start.origins[name] for name in problem.state}
+        origins = list(self._origins.values())
+        self._groups = [
+            _Group(half, np.array([origin is Origin.GIVEN for origin in part]), Origin.ONLY in part, touches)
+            for half, part in ((0, origins[:n]), (1, origins[n:]))
+        ]
+
+    def __call__(self, values: Numbers) -> Starts:
+        """The states for many values of the open parameters.
+
+        Parameters
+        ----------
+        values : ndarray, shape (p, k)
+
+        Returns
+        -------
+        Starts
+            What comes out for one column of values does not hang on the others.
+        """
+        states, found = self._evaluate(values), np.ones(values.shape[1], dtype=bool)
+        with np.errstate(all="ignore"):
+            for group in self._groups:
+                found &= self._corrected(group, states, values)
+                if len(group.solved):
+                    lanes = np.arange(len(found))
+                    found &= self._solved(states, values, group, group.solved, group.open, group.only, lanes)
+            at = self._matrices(self._instant, states, values)
+            for residual, moved in ((at.residual, states[: self._n]), (at.residual_rate, states[self._n :])):
+                found &= scaled_residual(residual, at.jacobian, moved) <= LIMITED_DIGITS
+        return Starts(states, found & np.isfinite(states).all(axis=0))
+
+    def correction(self, values: Numbers, states: Numbers) -> tuple[str, str] | None:
+        """The datum that was corrected most to make the state of one motion, and by how much; None if none was."""
+        origins = self._origins
+        data, state = self._evaluate(values)[:, 0], states[:, 0]
+        changes = {
+            name: abs(float(now - before))
+            for name, before, now in zip(origins, data, state, strict=True)
+            if origins[name] is Origin.GIVEN and abs(now - before) > ROUNDING * max(1.0, abs(now))
+        }
+        return max(((name, f"{size:.2g}") for name, size in changes.items()), key=lambda c: float(c[1]), default=None)
+
+    def _corrected(self, group: "_Group", states: Numbers, values: Numbers) -> NDArray[np.bool_]:
+        """Correct the data, in place, where they are given in too few digits; whether no more was needed."""
+        if not len(group.given) or not len(group.bound):
+            return np.ones(states.shape[1], dtype=bool)
+        rows, n = group.given + group.half * self._n, self._n
+        at, data = self._matrices(self._instant, states, values), states[rows]
+        residual, moved = (at.residual_rate, states[n:]) if group.half else (at.residual, states[:n])
+        missed = scaled_residual(residual[group.bound], at.jacobian[group.bound], moved) > ROUNDING
+        self._solved(states, values, group, group.given, group.bound, False, np.flatnonzero(missed))
+        size = np.max(np.abs(data), axis=0)
+        return np.max(np.abs(states[rows] - data), axis=0) <= LIMITED_DIGITS * np.where(size > 0, size, 1.0)
+
+    def _solved(
+        self,
+        states: Numbers,
+        values: Numbers,
+        group: "_Group",
+        unknown: Numbers,
+        rows: Numbers,
+        only: bool,
+        active: Numbers,
+    ) -> NDArray[np.bool_]:
+        """Newton's method, in place, for some of the numbers from some of the constraints; whether it arrived."""
+        places = unknown + group.half * self._n
+        arrived = np.zeros(states.shape[1], dtype=bool)
+        for _ in range(ITERATIONS):
+            at = self._matrices(self._instant, states[:, active], values[:, active])
+            residual = (at.residual_rate if group.half else at.residual)[rows]
+            jacobian = at.jacobian[np.ix_(rows, unknown)]
+            mass = None if only else at.mass[np.ix_(unknown, unknown)]
+            change = _step(mass, jacobian, residual, self._redundant)
+            here = states[np.ix_(places, active)]
+            states[np.ix_(places, active)] = here + change
+            small = np.max(np.abs(change), axis=0) <= ROUNDING * np.maximum(1.0, np.max(np.abs(here), axis=0))
+            arrived[active[small]] = True
+            active = active[~small & np.isfinite(change).all(axis=0)]
+            if not len(active):
+                break
+        else:
+            arrived[active] = True  # rounding goes to and fro; the residuals tell
+        return arrived
+
+
+class _Group:
+    """Coordinates or velocities: which are given, and which constraints fix the others.
+
+    Parameters
+    ----------
+    half : int
+        0 for coordinates, 1 for velocities.
+    given : ndarray of bool, shape (n,)
+    only : bool
+        Whether the others are the only solution of linear equations.
+    touches : ndarray of bool, shape (g, n)
+        Where J is not zero by structure.
+    """
+
+    def __init__(self, half: int, given: NDArray[np.bool_], only: bool, touches: NDArray[np.bool_]) -> None:
+        self.half, self.only = half, only
+        self.given, self.solved = np.flatnonzero(given), np.flatnonzero(~given)
+        open_ = touches[:, ~given].any(axis=1)
+        self.open, self.bound = np.flatnonzero(open_), np.flatnonzero(~open_)
+
+
+def at_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionProblem:
+    """The motion for other values of its open parameters.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+    values : mapping of str to Fraction
+        One for each open parameter that the motion has no value of.
+
+    Returns
+    -------
+    MotionProblem
+        Its start is good to double precision.
+
+    Raises
+    ------
+    HolonomError
+        The start cannot follow the parameters, or there is none for these values.
+    """
+    complete = {name: values.get(name, problem.values.get(name)) for name in problem.parameters}
+    numbers = np.array([[float(complete[name])] for name in problem.parameters])
+    initial_states = InitialStates(problem)
+    starts = initial_states(numbers)
+    if not starts.found[0]:
+        raise HolonomError(Failure.START_UNFOLLOWED, problem.scene, "no state satisfies the constraints")
+    correction = initial_states.correction(numbers, starts.states)
+    return replace(started(problem, complete, starts.states[:, 0]), correction=correction)
+
+
+def started(problem: MotionProblem, values: Mapping[str, Fraction], state: Numbers) -> MotionProblem:
+    """The motion for values of its open parameters, from a state that belongs to them, shape (2n,)."""
+    texts = {name: repr(float(number)) for name, number in zip(problem.state, state, strict=True)}
+    return replace(problem, values=dict(values), start={"t": problem.start["t"], **texts})
+
+
+def _step(mass: Numbers | None, jacobian: Numbers, residual: Numbers, redundant: bool) -> Numbers:
+    """The least correction in the metric, or the only one: shapes (u, u, k), (b, u, k), (b, k) to (u, k)."""
+    b, u, lanes = jacobian.shape
+    if mass is None:
+        matrix, right = np.moveaxis(jacobian, 2, 0), -residual.T
+    else:
+        matrix = np.zeros((lanes, u + b, u + b))
+        matrix[:, :u, :u] = np.moveaxis(mass, 2, 0)
+        matrix[:, :u, u:] = -np.moveaxis(jacobian, 2, 0).swapaxes(1, 2)
+        matrix[:, u:, :u] = np.moveaxis(jacobian, 2, 0)
+        right = np.concatenate([np.zeros((lanes, u)), -residual.T], axis=1)
+    return _solution(matrix, right, redundant and mass is not None)[:, :u].T
+
+
+def _solution(matrices: Numbers, rights: Numbers, redundant: bool) -> Numbers:
+    """Solutions of linear systems, each by itself, whatever the others are; nan where there is none."""
+    if redundant or matrices.shape[1] != matrices.shape[2]:
+        return np.array([_least(matrix, right, redundant) for matrix, right in zip(matrices, rights, strict=True)])
+    try:
+        return np.linalg.solve(matrices, rights[:, :, None])[:, :, 0]
+    except np.linalg.LinAlgError:  # one of them is singular
+        return np.array([_regular(matrix, right) for matrix, right in zip(matrices, rights, strict=True)])
+
+
+def _regular(matrix: Numbers, right: Numbers) -> Numbers:
+    try:
+        return np.linalg.solve(matrix, right)
+    except np.linalg.LinAlgError:
+        return np.full(len(right), np.nan)
+
+
+def _least(matrix: Numbers, right: Numbers, redundant: bool) -> Numbers:
+    """The solution of least squares; where it must be the only one, nan if it is not."""
+    if not (np.isfinite(matrix).all() and np.isfinite(right).all()):
+        return np.full(matrix.shape[1], np.nan)
+    found, _, rank, _ = np.linalg.lstsq(matrix, right, rcond=None)
+    return found if redundant or rank == matrix.shape[1] else np.full(matrix.shape[1], np.nan)

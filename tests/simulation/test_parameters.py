@@ -1,0 +1,139 @@
+"""Open parameters: one derivation and one compilation for all their values, and a start that follows them."""
+
+import heyoka
+import numpy as np
+import pytest
+
+import holonom
+from holonom.confined import Limits
+from holonom.failures import HolonomError
+from holonom.program.motion_problem import motion_problem
+from holonom.program.numpy_function import NumpyFunction
+from holonom.program.request import Request
+from holonom.program.sign_pattern import with_values_in
+from holonom.simulation import derivations
+from holonom.simulation.engines import taylor
+from holonom.simulation.initial_state import InitialStates, at_values
+
+HANGING = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [m, g],
+  kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2, potential_energy = m*g*y, constraints = [x^2 + y^2 - u^2])$
+hanging : holonomic_scene(system, control_law = [u = l0 + v*t], parameter_values = [m = 1, g = 10, l0 = 1, v = 1/10],
+  initial_state = [x = 1/10, dot(x) = 1/10], initial_guess = [y = -1, dot(y) = 0], time_span = [0, 2])$"""
+LINEAR = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], parameters = [k],
+  kinetic_energy = (dot(x)^2 + dot(y)^2)/2, constraints = [y - k*x - t])$
+slide : holonomic_scene(system, parameter_values = [k = 1], initial_state = [x = k^2, dot(x) = 1/k],
+  time_span = [0, 1])$"""
+CUBIC = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], parameters = [k],
+  kinetic_energy = (dot(x)^2 + dot(y)^2)/2, constraints = [y^3 + k*y - x])$
+slide : holonomic_scene(system, parameter_values = [k = 1], initial_state = [x = 2, dot(x) = 1], time_span = [0, 1])$"""
+
+
+@pytest.fixture(scope="module")
+def hanging(tmp_path_factory):
+    file = tmp_path_factory.mktemp("scene") / "hanging.mac"
+    file.write_text(HANGING)
+    return file
+
+
+@pytest.fixture(scope="module")
+def problem(hanging):
+    return motion_problem(hanging, Request(), Limits(), open_parameters=("l0", "m", "v", "N"))
+
+
+def test_the_parameters_among_the_names_stay_open(problem):
+    assert problem.parameters == ("l0", "m", "v")
+    assert (
+        problem.motion.inputs[-3:] == problem.energy.inputs[-3:] == problem.projection.inputs[-3:] == ("l0", "m", "v")
+    )
+    assert {name: float(value) for name, value in problem.values.items()} == {"l0": 1, "m": 1, "v": 0.1}
+
+
+def test_open_programs_with_numbers_in_them_are_those_derived_with_the_numbers(hanging, problem):
+    settings = {"l0": "3/2", "m": "2", "v": "-1/5"}
+    derived = motion_problem(hanging, Request(settings=settings), Limits())
+    filled = with_values_in(at_values(problem, {"l0": 1.5, "m": 2, "v": -0.2}))
+    points = np.random.default_rng(2).uniform(0.5, 1.5, (len(derived.motion.inputs), 5))
+    for part in ("motion", "projection", "matrices", "energy"):
+        theirs, ours = getattr(derived, part), getattr(filled, part)
+        found = dict(zip(ours.outputs, NumpyFunction(ours)(points), strict=True))
+        for name, row in zip(theirs.outputs, NumpyFunction(theirs)(points), strict=True):
+            assert found[name] == pytest.approx(row, rel=1e-12), (part, name)
+
+
+def test_the_start_on_the_circle_follows_its_radius_and_its_rate(problem):
+    l0, v = np.linspace(0.5, 3, 11), np.linspace(-1, 1, 11)
+    starts = InitialStates(problem)(np.array([l0, np.ones(11), v]))
+    y = -np.sqrt(l0**2 - 0.01)
+    assert starts.found.all()
+    assert starts.states[0] == pytest.approx(np.full(11, 0.1))
+    assert starts.states[1] == pytest.approx(y, rel=1e-14)
+    assert starts.states[3] == pytest.approx((l0 * v - 0.01) / y, rel=1e-13, abs=1e-14)
+
+
+def test_a_circle_too_small_for_its_data_has_no_start_and_leaves_the_others_theirs(problem):
+    l0 = np.array([0.05, 1.0, 0.0, 2.0])
+    starts = InitialStates(problem)(np.array([l0, np.ones(4), np.zeros(4)]))
+    assert starts.found.tolist() == [False, True, False, True]
+    alone = InitialStates(problem)(np.array([[2.0], [1.0], [0.0]]))
+    assert (alone.states[:, 0] == starts.states[:, 3]).all()
+
+
+def test_data_may_contain_parameters_and_what_is_linear_needs_no_guess(write_scene):
+    problem = motion_problem(write_scene(LINEAR), Request(), Limits(), open_parameters=("k",))
+    k = np.array([[0.5, 2.0, -3.0, 0.0]])
+    starts = InitialStates(problem)(k)
+    assert starts.found.tolist() == [True, True, True, False]  # dot(x) = 1/k
+    k = k[0, :3]
+    assert starts.states[:, :3] == pytest.approx(np.array([k**2, k**3, 1 / k, np.full(3, 2.0)]), rel=1e-14)
+
+
+def test_a_start_with_more_than_one_solution_elsewhere_is_no_function(write_scene):
+    file = write_scene(CUBIC)
+    problem = motion_problem(file, Request(), Limits(), open_parameters=("k",))
+    with pytest.raises(HolonomError, match="no closed form gives y"):
+        InitialStates(problem)
+    scene = holonom.load(file)
+    found = scene.simulate(k=3, samples=2)  # Maxima counts the roots for each number
+    assert found["y"][0] ** 3 + 3 * found["y"][0] == pytest.approx(2)
+
+
+def test_data_that_contradict_the_constraints_for_other_values_are_refused_with_their_sentence():
+    scene = holonom.load("examples/pendulum.mac", scene="swing_scene")
+    assert scene.simulate(until=1, samples=2, g=5)["x"][0] == pytest.approx(np.sin(np.pi / 13))
+    with pytest.raises(HolonomError, match="contradicts constraint 1: the residual is"):
+        scene.simulate(until=1, samples=2, l0=2)
+
+
+def test_a_second_value_derives_and_compiles_nothing(hanging, monkeypatch):
+    monkeypatch.setattr(taylor, "pays", lambda *_: False)  # better code for long runs, by the clock
+    scene = holonom.load(hanging)
+    first = scene.simulate(samples=3, l0=1.5, m=2)
+
+    def refuse(*_, **__):
+        raise AssertionError("this was done before")
+
+    monkeypatch.setattr(derivations, "motion_problem", refuse)
+    monkeypatch.setattr(heyoka, "cfunc", refuse)
+    monkeypatch.setattr(heyoka, "taylor_adaptive", refuse)
+    second = scene.simulate(samples=3, l0=2, m=3)
+    again = scene.with_settings(m=2).simulate(samples=3, l0="3/2")
+    monkeypatch.undo()
+    assert (again["y"] == first["y"]).all()
+    alone = holonom.load(hanging).simulate(samples=3, l0=2, m=3)
+    assert second["lambda1"] == pytest.approx(alone["lambda1"], rel=1e-12)
+    assert second["y"] == pytest.approx(alone["y"], rel=1e-13)
+
+
+def test_a_mass_of_zero_is_derived_with_the_zero_in_it(write_scene):
+    scene = holonom.load(
+        write_scene("""load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], parameters = [m],
+  kinetic_energy = (dot(x)^2 + m*dot(y)^2)/2, constraints = [y - x])$
+slide : holonomic_scene(system, parameter_values = [m = 1], initial_state = [x = 0, dot(x) = 1],
+  time_span = [0, 1])$""")
+    )
+    assert scene.simulate(samples=2, m=1)["x"][-1] == pytest.approx(1)
+    assert scene.simulate(samples=2, m=0)["x"][-1] == pytest.approx(1)
