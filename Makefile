@@ -9,7 +9,7 @@ SOURCES := $(shell find maxima harness -name '*.mac' -o -name '*.lisp' -o -name 
 
 .DEFAULT_GOAL := paper
 .DELETE_ON_ERROR:
-.PHONY: paper companion check check-long bench setup install pictures clean help have-maxima have-compiler have-gsl have-bubblewrap have-python
+.PHONY: paper companion check check-long mutants bench setup install pictures clean help have-maxima have-compiler have-gsl have-bubblewrap have-python
 
 paper: setup $(RECORDS) companion ## Derive and check every scene, compare the paper as printed (the default)
 	$(BIN)/holonom check $(SCENES) --json build/check.json
@@ -27,6 +27,9 @@ check: setup ## Lint, then run the tests, Maxima's own rtest files among them
 
 check-long: setup ## Run the tests that take too long for every change
 	$(TEST) -m long || [ $$? = 5 ]    # 5: there are none
+
+mutants: setup ## Make wrong programs of a fixed list, one at a time, and tell which of them no test finds
+	nice $(BIN)/python tests/mutants/run.py build/mutants.json
 
 setup: have-maxima have-compiler have-gsl have-bubblewrap $(STAMP) ## Install what is missing: Maxima, a C compiler, GSL, bubblewrap, and the Python packages in .venv
 

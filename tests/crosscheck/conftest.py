@@ -1,4 +1,4 @@
-"""Records of the examples, each derived once."""
+"""Records of the examples, each derived once, and of a system with every kind of term."""
 
 from pathlib import Path
 
@@ -7,6 +7,21 @@ import pytest
 from holonom.record import Record, derived_record
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+
+# A(q,t,u), B, T0, control rates in T, forces with velocities; a start that is not t = 0; a scene without all effects.
+EVERY_TERM = """
+load("holonom.mac")$
+system : holonomic_system(
+  coordinates = [x, y], controls = [u], parameters = [m, k],
+  kinetic_energy = [bare = (m + x*u + t)*dot(x)^2/2 + m*dot(y)^2/2, turning = t*u*dot(x) + x*dot(u)*dot(y) + x*u],
+  potential_energy = [spring = k*x*y],
+  forces = [drag = [-y*dot(x), 0], push = [0, t*dot(u)]],
+  constraints = [y - x*u - t*u])$
+whole : holonomic_scene(system, control_law = [u = 1 + t^2], parameter_values = [m = 2, k = 3],
+  initial_state = [x = 1/2, dot(x) = 1/3], time_span = [1, 2])$
+part : holonomic_scene(system, effects = [bare, push], control_law = [u = 1 + t^2], parameter_values = [m = 2, k = 3],
+  initial_state = [x = 1/2, dot(x) = 1/3], time_span = [1, 2])$
+"""
 
 
 @pytest.fixture(
@@ -20,3 +35,10 @@ def example_record(request: pytest.FixtureRequest) -> Record:
 @pytest.fixture(scope="session")
 def paper_record() -> Record:
     return derived_record(EXAMPLES / "paper" / "paper.mac")
+
+
+@pytest.fixture(scope="session")
+def every_term_record(tmp_path_factory: pytest.TempPathFactory) -> Record:
+    file = tmp_path_factory.mktemp("every") / "scene.mac"
+    file.write_text(EVERY_TERM, encoding="utf-8")
+    return derived_record(file)

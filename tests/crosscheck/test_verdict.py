@@ -1,5 +1,7 @@
 """The verdicts, and what each rests on."""
 
+import dataclasses
+
 import pytest
 import sympy as sp
 from systems import symbols
@@ -89,3 +91,47 @@ def test_the_same_seed_gives_the_same_point() -> None:
 def test_a_verdict_on_nothing_was_called_proved():
     found = judge(Comparison(()), seed="(19)")
     assert (found.verdict, found.digits, found.points) == (Verdict.NOTHING, None, None)
+
+
+def test_a_certificate_that_is_no_solution_proves_nothing() -> None:
+    """Both unknowns doubled: what is compared vanishes all the same, the equations do not."""
+    equations = LinearEquations((Y, Z), (Y - X, Z - X))
+    comparison = Comparison((Pair("y - z", Y - Z, sp.Integer(0)),), solves=(equations,))
+    for factor, expected in ((1, Verdict.PROVED), (2, Verdict.AGREES)):
+        certified = dataclasses.replace(comparison, certificate={Y: factor * X, Z: factor * X})
+        assert judge(certified, "seed").verdict is expected
+
+
+def test_what_is_given_counts_at_the_points_and_in_the_proof() -> None:
+    """Later ones use the ones before them."""
+    given = {Y: X**2, Z: 1 + Y}
+    assert judge(Comparison((Pair("z", Z, 1 + X**2),), given), "seed").verdict is Verdict.PROVED
+    assert judge(Comparison((Pair("z", Z, 2 + X**2),), given), "seed").verdict is Verdict.DISAGREES
+
+
+def test_the_last_pair_counts_as_much_as_the_first() -> None:
+    pairs = (Pair("x", X, X), Pair("y", Y, Y), Pair("z", Z, Z + 1))
+    assert judge(Comparison(pairs), "seed").verdict is Verdict.DISAGREES
+
+
+def test_large_values_are_compared_by_their_own_size() -> None:
+    large = sp.Integer(10) ** 30
+    assert judge(compared(large * X, large * X + sp.Rational(1, 10**10)), "seed").verdict is Verdict.DISAGREES
+
+
+def test_a_point_where_the_equations_are_singular_is_passed_over() -> None:
+    """Drawn from the integers, the coefficient would vanish often; here at half of the points."""
+    equations = LinearEquations((Y,), (sp.sign(X - 1) * Y + Y - 2 * X,))
+    assert judge(Comparison((Pair("y", X, Y),), solves=(equations,)), "seed").verdict is Verdict.AGREES
+
+
+def test_floats_in_what_is_given_lower_the_digits() -> None:
+    found = judge(Comparison((Pair("y", Y, X / 10),), given={Y: sp.Float(0.1) * X}), "seed")
+    assert found.verdict is not Verdict.DISAGREES
+    assert found.digits < DIGITS
+
+
+def test_floating_point_data_are_no_excuse_for_four_digits() -> None:
+    assert judge(compared(sp.Float(0.1) * X, (sp.Rational(1, 10) + sp.Rational(1, 10**6)) * X), "seed").verdict is (
+        Verdict.DISAGREES
+    )

@@ -2,8 +2,8 @@
 
 mutations.toml lists them: a file, the tests beside it, and pairs of texts, what stands there once and what is put in
 its place; a third text says why no test can tell the two apart. Each mutation is made in a copy of the sources, its
-tests run there, and it is killed when one of them fails. What has been found is kept in a JSON file, under all that it
-depends on, so that a run that was broken off goes on where it was, and after a change only what it touches is run again.
+tests run there, and it is killed when one of them fails. What has been found is kept in a JSON file, under what it
+depends on, so that a run that was broken off goes on where it was, and after a change what that touches is run again.
 
     python tests/mutants/run.py build/mutants.json
 """
@@ -19,7 +19,7 @@ import sys
 import tempfile
 import tomllib
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -62,7 +62,7 @@ class Mutation:
     @property
     def key(self) -> str:
         """Digest of what the outcome depends on: the mutation, its file, its tests."""
-        files = [self.file, *sorted({test.partition("::")[0] for test in self.tests}), *_rtests(self.tests)]
+        files = [self.file, *(test.partition("::")[0] for test in self.tests)]
         parts = [self.before, self.after, *self.tests, *((ROOT / file).read_text(encoding="utf-8") for file in files)]
         return hashlib.sha256("\0".join(parts).encode()).hexdigest()
 
@@ -80,9 +80,9 @@ def mutations() -> list[Mutation]:
     ]
 
 
-def _rtests(tests: Iterable[str]) -> list[str]:
-    """The file of Maxima text behind each test that runs one."""
-    return [f"tests/maxima/{test.partition('[')[2][:-1]}.mac" for test in tests if "test_rtest[" in test]
+def for_pytest(test: str) -> str:
+    """Name a test as pytest knows it: what runs a file of Maxima's own tests goes by that file."""
+    return f"tests/test_rtests.py::test_rtest[{Path(test).stem}]" if test.endswith(".mac") else test
 
 
 class Copy:
@@ -99,7 +99,8 @@ class Copy:
     def passes(self, tests: Iterable[str]) -> bool:
         """Whether the tests pass, in time."""
         environment = os.environ | {"PYTHONPATH": str(self.directory / "site"), "PYTHONDONTWRITEBYTECODE": "1"}
-        command = [sys.executable, "-m", "pytest", "-q", "-x", "-n", "0", "-p", "no:cacheprovider", *tests]
+        command = [sys.executable, "-m", "pytest", "-q", "-x", "-n", "0", "-p", "no:cacheprovider"]
+        command += map(for_pytest, tests)
         try:
             done = subprocess.run(
                 command, cwd=self.directory, env=environment, capture_output=True, timeout=SECONDS, check=False
@@ -119,46 +120,46 @@ class Copy:
             file.write_text(text, encoding="utf-8")
 
 
-def judged(wanted: Iterable[Mutation], found: dict[str, bool], copy: Copy) -> Iterator[Mutation]:
-    """Find out of each mutation that is new whether it survives, after its tests have passed without it."""
+def judged(wanted: Mapping[str, Mutation], copy: Copy) -> Iterator[tuple[str, bool]]:
+    """Find out of each mutation, by its key, whether it survives, after its tests have passed without it."""
     passed: set[tuple[str, ...]] = set()
-    for mutation in wanted:
+    for key, mutation in wanted.items():
         if mutation.tests not in passed and not copy.passes(mutation.tests):
             raise SystemExit(f"These fail without a mutation: {' '.join(mutation.tests)}")
         passed.add(mutation.tests)
-        found[mutation.key] = copy.survives(mutation)
-        yield mutation
+        yield key, copy.survives(mutation)
 
 
 def main(results: Path) -> int:
     """Run what has not been run, print what survives and the score; 1 where the score is too low."""
-    wanted = mutations()
-    stale = [mutation for mutation in wanted if not mutation.applies]
+    stale = [str(mutation) for mutation in mutations() if not mutation.applies]
     if stale:
         print("Not in the sources as listed, or more than once:", *stale, sep="\n  ")
         return 2
-    found = json.loads(results.read_text(encoding="utf-8")) if results.is_file() else {}
-    found = {mutation.key: found[mutation.key] for mutation in wanted if mutation.key in found}
-    left = [mutation for mutation in wanted if mutation.key not in found]
+    wanted = {mutation.key: mutation for mutation in mutations()}
+    known = json.loads(results.read_text(encoding="utf-8")) if results.is_file() else {}
+    found = {key: survived for key, survived in known.items() if key in wanted}
+    left = {key: mutation for key, mutation in wanted.items() if key not in found}
+    results.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="holonom-mutants-") as directory:
-        for i, mutation in enumerate(judged(left, found, Copy(Path(directory))), start=1):
-            print(f"{i}/{len(left)} {'SURVIVES' if found[mutation.key] else 'killed'} {mutation}", flush=True)
-            results.parent.mkdir(parents=True, exist_ok=True)
+        for i, (key, survived) in enumerate(judged(left, Copy(Path(directory))), start=1):
+            print(f"{i}/{len(left)} {'SURVIVES' if survived else 'killed'} {wanted[key]}", flush=True)
+            found[key] = survived
             results.write_text(json.dumps(found, indent=0), encoding="utf-8")
-    return report(wanted, found)
+    return report([(mutation, found[key]) for key, mutation in wanted.items()])
 
 
-def report(wanted: Iterable[Mutation], found: dict[str, bool]) -> int:
+def report(outcomes: Sequence[tuple[Mutation, bool]]) -> int:
     """Print the survivors, those that are equivalent with the reason, and the score."""
-    counts = Counter((found[mutation.key], bool(mutation.equivalent)) for mutation in wanted)
-    for mutation in wanted:
-        if found[mutation.key]:
-            print(f"equivalent, {mutation.equivalent}:" if mutation.equivalent else "SURVIVES", mutation)
+    for mutation, survived in outcomes:
+        if survived:
+            print(f"equivalent: {mutation}: {mutation.equivalent}" if mutation.equivalent else f"SURVIVES {mutation}")
         elif mutation.equivalent:
-            print("KILLED, although it is said to be equivalent:", mutation)
-    killed, survived = counts[False, False], counts[True, False]
-    score = killed / (killed + survived)
-    print(f"{killed} of {killed + survived} mutations killed, {score:.1%}; {counts[True, True]} more are equivalent.")
+            print(f"killed, although it is said to be equivalent: {mutation}")
+    counts = Counter((survived, bool(mutation.equivalent)) for mutation, survived in outcomes)
+    killed, alive = counts[False, False], counts[True, False]
+    score = killed / (killed + alive)
+    print(f"{killed} of {killed + alive} mutations killed, {score:.1%}; {counts[True, True]} more are equivalent.")
     return 0 if score >= LEAST_SCORE and not counts[False, True] else 1
 
 

@@ -1,0 +1,92 @@
+"""An equation that should be there and is not: it disagrees, unless the record states why it was not made."""
+
+import dataclasses
+
+import pytest
+
+from holonom.crosscheck import CheckReport, Verdict, check, check_record, lagranges_method
+from holonom.crosscheck.check import SOLVED, STATED
+from holonom.crosscheck.verdict import Comparison, Judgement
+from holonom.record import Equation, LeftOut, Record, Relation
+
+TWICE = Relation(["Subscript", "A", 1, 1], 1)
+
+
+@pytest.fixture
+def nothing_held(every_term_record: Record, monkeypatch: pytest.MonkeyPatch) -> Record:
+    """The record of the first derivation, without its equations and its scenes; the third opinion is not asked."""
+    monkeypatch.setattr(lagranges_method, "can_take", lambda system: False)
+    derived = dataclasses.replace(every_term_record.derivations[0], equations=())
+    return dataclasses.replace(every_term_record, derivations=(derived,), scenes=())
+
+
+def missing(report: CheckReport) -> set[str]:
+    return {found.id for found in report.verdicts if found.verdict is Verdict.DISAGREES and not found.held}
+
+
+def with_equations(record: Record, *equations: Equation) -> Record:
+    derived = dataclasses.replace(record.derivations[0], equations=equations)
+    return dataclasses.replace(record, derivations=(derived,))
+
+
+def held(record: Record, wanted: str) -> Equation:
+    (found,) = [each for each in record.derivations[0].equations if each.id == wanted]
+    return found
+
+
+def test_all_closed_forms_are_missed_of_a_system_that_has_readable_ones(nothing_held):
+    assert missing(check_record(nothing_held)) == {*STATED, *SOLVED}
+
+
+def test_the_stated_equations_alone_are_missed_of_a_system_that_is_too_large(nothing_held, monkeypatch):
+    monkeypatch.setattr(check, "READABLE", 0)
+    assert missing(check_record(nothing_held)) == {*STATED}
+
+
+def test_of_a_large_system_that_has_some_closed_forms_the_others_are_missed(nothing_held, monkeypatch):
+    monkeypatch.setattr(check, "READABLE", 0)
+    one = Equation("free_motion_condition", "10", "condition of free motion", ())
+    assert missing(check_record(with_equations(nothing_held, one))) == {*STATED, *SOLVED} - {one.id}
+
+
+def test_what_was_left_out_for_a_reason_is_told_and_counts_for_nothing(nothing_held, every_term_record):
+    why = LeftOut(("4", "8"), 900, 500)
+    derived = dataclasses.replace(nothing_held.derivations[0], left_out=why)
+    (scene, _) = every_term_record.scenes
+    silent = dataclasses.replace(scene, equations=(), left_out=LeftOut(("18",), 900, 500))
+    found = check_record(dataclasses.replace(nothing_held, derivations=(derived,), scenes=(silent,))).verdicts
+    told = [(each.number, each.scene, each.held) for each in found if each.verdict is Verdict.LEFT_OUT]
+    assert told == [("4", None, False), ("8", None, False), ("18", "whole", False)]
+    assert all("500" in each.detail for each in found if each.verdict is Verdict.LEFT_OUT)
+
+
+def test_what_is_wrong_disagrees_and_says_where(nothing_held, every_term_record):
+    (constraint,) = held(every_term_record, "constraints").relations
+    wrong = Equation("constraints", "1", "constraints", (Relation(constraint.left_tree, 1),))
+    found = check_record(with_equations(nothing_held, wrong)).verdicts[0]
+    assert found.verdict is Verdict.DISAGREES
+    assert found.detail.startswith("constraint 1: the record gives")
+
+
+def test_what_cannot_be_compared_disagrees_and_says_what_it_is(nothing_held, every_term_record):
+    split = held(every_term_record, "kinetic_energy")
+    twice = dataclasses.replace(split, relations=(*split.relations, TWICE))
+    found = check_record(with_equations(nothing_held, twice)).verdicts[0]
+    assert found.verdict is Verdict.DISAGREES
+    assert found.detail.startswith("the record holds an entry A[1, 1]")
+
+
+def test_each_equation_is_looked_at_in_points_of_its_own_and_of_this_check(
+    nothing_held, every_term_record, monkeypatch
+):
+    seeds = []
+
+    def noted(_comparison: Comparison, seed: str) -> Judgement:
+        seeds.append(seed)
+        return Judgement(Verdict.NOTHING, None, None)
+
+    monkeypatch.setattr(check, "judge", noted)
+    some = [held(every_term_record, wanted) for wanted in ("constraints", "accelerations")]
+    check_record(with_equations(nothing_held, *some), seed="this one")
+    assert len(set(seeds)) == len(seeds) == 2
+    assert all(seed.startswith("this one ") for seed in seeds)

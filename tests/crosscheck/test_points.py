@@ -1,0 +1,32 @@
+"""Random points: anywhere, and every second one positive; their values exact, finite and real."""
+
+import pytest
+import sympy as sp
+from mpmath import mp
+
+from holonom.crosscheck.points import IrregularPoint, Valuation, fresh_seed, random_point
+
+X = sp.Symbol("x", real=True)
+
+
+def test_every_second_point_is_positive_and_the_others_are_of_both_signs():
+    draws = [random_point("abc", attempt, "seed") for attempt in range(40)]
+    signs = [{number > 0 for number in draw.values()} for draw in draws]
+    assert all(each == {True} for each in signs[::2])
+    assert {True, False} == set().union(*signs[1::2])
+
+
+def test_each_attempt_is_another_point_and_nobody_foresees_the_seed():
+    assert random_point(["x"], 0, "seed") != random_point(["x"], 2, "seed") != random_point(["x"], 4, "seed")
+    assert fresh_seed() != fresh_seed()
+
+
+def test_a_fraction_has_all_the_digits_that_are_worked_with():
+    with mp.workdps(60):
+        assert Valuation({X: sp.Rational(1, 3)})(3 * X - 1) == pytest.approx(0, abs=1e-58)
+
+
+@pytest.mark.parametrize("expression", [sp.log(X), sp.sqrt(-1 - X**2), sp.DiracDelta(X)], ids=str)
+def test_what_is_infinite_or_imaginary_is_no_value(expression):
+    with pytest.raises((IrregularPoint, ZeroDivisionError, ValueError)):
+        Valuation({X: sp.Integer(0)})(expression)
