@@ -5,7 +5,14 @@ import dataclasses
 import pytest
 
 from holonom.crosscheck import CheckReport, Verdict, check, check_record, lagranges_method
-from holonom.crosscheck.check import SOLVED, STATED
+from holonom.crosscheck.check import (
+    SERIES_IN_SCENE,
+    SOLVED,
+    SOLVED_IN_SCENE,
+    STATED,
+    STATED_IN_SCENE,
+    UNDER_LAW_IN_SCENE,
+)
 from holonom.crosscheck.verdict import Comparison, Judgement
 from holonom.record import Equation, LeftOut, Record, Relation
 
@@ -90,3 +97,35 @@ def test_each_equation_is_looked_at_in_points_of_its_own_and_of_this_check(
     check_record(with_equations(nothing_held, *some), seed="this one")
     assert len(set(seeds)) == len(seeds) == 2
     assert all(seed.startswith("this one ") for seed in seeds)
+
+
+def test_the_third_opinion_is_asked_for(nothing_held, monkeypatch):
+    monkeypatch.undo()
+    (asked,) = [each for each in check_record(nothing_held).verdicts if each.id == "lagranges_method"]
+    assert asked.verdict is Verdict.AGREES
+
+
+@pytest.mark.parametrize("kept", [(), ("initial_series",)], ids=["none", "the series"])
+def test_what_a_scene_with_a_law_should_hold_is_missed(every_term_record, monkeypatch, kept):
+    """Its series is expected where the closed forms are short, and where it is there without the others."""
+    monkeypatch.setattr(lagranges_method, "can_take", lambda system: False)
+    monkeypatch.setattr(check, "judge", lambda comparison, seed: Judgement(Verdict.NOTHING, None, None))
+    monkeypatch.setattr(check, "READABLE_SERIES", 0 if kept else 10_000)
+    scene = every_term_record.scenes[0]
+    part = dataclasses.replace(scene, equations=tuple(each for each in scene.equations if each.id in kept))
+    found = missing(check_record(dataclasses.replace(every_term_record, scenes=(part,))))
+    everything = {*STATED_IN_SCENE, *SOLVED_IN_SCENE, *SERIES_IN_SCENE, *UNDER_LAW_IN_SCENE}
+    assert found == everything - {*kept}
+
+
+def test_points_are_drawn_afresh_for_each_check(nothing_held):
+    assert check_record(nothing_held).seed != check_record(nothing_held).seed
+    assert check_record(nothing_held, seed="again").seed == "again"
+
+
+def test_a_derivation_is_of_its_own_effects_and_of_a_supported_mass_matrix_where_it_says_so(every_term_record):
+    derived = every_term_record.derivations[1]
+    claims = check._claims(every_term_record, dataclasses.replace(derived, mass_matrix="supported"))
+    assert claims.known.supported
+    assert claims.system.potential_energy == 0
+    assert not check._claims(every_term_record, derived).known.supported

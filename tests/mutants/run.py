@@ -14,6 +14,7 @@ import hashlib
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -132,6 +133,7 @@ def judged(wanted: Mapping[str, Mutation], copy: Copy) -> Iterator[tuple[str, bo
 
 def main(results: Path) -> int:
     """Run what has not been run, print what survives and the score; 1 where the score is too low."""
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))  # the copy goes, whatever ends the run
     stale = [str(mutation) for mutation in mutations() if not mutation.applies]
     if stale:
         print("Not in the sources as listed, or more than once:", *stale, sep="\n  ")
