@@ -75,6 +75,12 @@ def test_what_is_wrong_disagrees_and_says_where(nothing_held, every_term_record)
     assert found.detail.startswith("constraint 1: the record gives")
 
 
+def test_an_equation_that_nothing_is_known_of_disagrees(nothing_held):
+    unknown = Equation("new", "20", "an equation of another paper", ())
+    found = check_record(with_equations(nothing_held, unknown)).verdicts[0]
+    assert (found.verdict, found.detail) == (Verdict.DISAGREES, "there is no comparison for this equation")
+
+
 def test_what_cannot_be_compared_disagrees_and_says_what_it_is(nothing_held, every_term_record):
     split = held(every_term_record, "kinetic_energy")
     twice = dataclasses.replace(split, relations=(*split.relations, TWICE))
