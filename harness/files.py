@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from difflib import get_close_matches
 from pathlib import Path
+from typing import BinaryIO
 
 from .failures import Failure, HolonomError
 
@@ -159,13 +160,38 @@ def write_whole(path: Path, content: str | bytes) -> None:
     HolonomError
         The file cannot be written; what it held is still there.
     """
+    with whole_file(path) as file:
+        file.write(content if isinstance(content, bytes) else content.encode())
+
+
+@contextmanager
+def whole_file(path: Path) -> Iterator[BinaryIO]:
+    """A file that is written piece by piece, and of which nobody ever sees a part.
+
+    Parameters
+    ----------
+    path : Path
+        As for `write_whole`.
+
+    Yields
+    ------
+    binary file
+
+    Raises
+    ------
+    HolonomError
+        The file cannot be written; what it held is still there, as after any other exception of the block.
+    """
     target = path.resolve()
-    data = content if isinstance(content, bytes) else content.encode()
     try:
         if target.exists() and not target.is_file():
-            target.write_bytes(data)
+            with target.open("wb") as file:
+                yield file
         else:
-            _replace(target, data)
+            with draft_of(target) as draft:
+                with draft.open("wb") as file:
+                    yield file
+                draft.replace(target)
     except OSError as error:
         raise _unwritable(path, error) from None
 
@@ -287,9 +313,3 @@ def _unwritable(path: Path, error: OSError) -> HolonomError:
     full = error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
     failure = Failure.DISK_FULL if full else Failure.UNWRITABLE
     return HolonomError(failure, path, error.strerror or str(error))
-
-
-def _replace(target: Path, data: bytes) -> None:
-    with draft_of(target) as draft:
-        draft.write_bytes(data)
-        draft.replace(target)

@@ -106,10 +106,11 @@ def simulate(
     if not stands(problem):
         problem = motion_problem(scene_file, request, limits, digits)
     from ..simulation.document import report_document, simulation_document
-    from ..simulation.output import require_formats, require_memory, write_files
+    from ..simulation.output import require_disk, require_formats, require_memory, sample_file, streams, write_files
     from ..simulation.request import FINAL_STATE_ALONE, EngineName, SimulationRequest, Stabilization
-    from ..simulation.simulate import simulate as follow
-    from .tables.simulation import distrust, motion_progress, show_simulation
+    from ..simulation.simulate import follow
+    from ..simulation.simulate import simulate as follow_and_keep
+    from .tables.simulation import distrust, motion_progress, show_report
 
     require_formats(output, plot_file)
     if final and output is None and plot_file is None:
@@ -119,19 +120,25 @@ def simulate(
     wanted = SimulationRequest(
         tol, precision, EngineName(engine), Stabilization(drift), until, samples, compact, max_step
     )
-    require_memory(problem, samples or 0, limits.memory_mib)
-    with motion_progress(problem.title) as progress:
-        simulation = follow(problem, wanted, progress)
-    write_files(simulation, output, plot_file)
+    if output is not None and streams(output) and plot_file is None and (json_file is None or final):
+        require_disk(problem, samples or 0, output)
+        with motion_progress(problem.title) as progress, sample_file(output, digits) as take:
+            report = follow(problem, wanted, take, progress)
+    else:
+        require_memory(problem, samples or 0, limits.memory_mib)
+        with motion_progress(problem.title) as progress:
+            simulation = follow_and_keep(problem, wanted, progress)
+        write_files(simulation, output, plot_file)
+        report = simulation.report
     if json_file is not None:
-        publish(json_text(report_document(simulation.report) if final else simulation_document(simulation)), json_file)
+        publish(json_text(report_document(report) if final else simulation_document(simulation)), json_file)
     if json_file != STANDARD_OUTPUT:
         from .tables.text import make_console
 
-        show_simulation(make_console(), simulation)
-    for doubt in simulation.report.doubts:
+        show_report(make_console(), problem.scene, problem.title, report)
+    for doubt in report.doubts:
         click.echo(distrust(doubt), err=True)
-    return 0 if simulation.report.trusted else FAILED
+    return 0 if report.trusted else FAILED
 
 
 def _digits_of(precision: str) -> int:

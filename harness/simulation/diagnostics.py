@@ -8,7 +8,7 @@ The energy function changes at the rate that `MotionProblem.energy` calls power.
 integral of the power is an error of the motion (Goldstein, Poole & Safko, section 2.7).
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -136,22 +136,26 @@ class EnergyBalance:
         reactions = self._multipliers(instants, states) if self._moving else self._no_multipliers(len(instants))
         return self._output("power", instants, states, reactions)
 
-    def work(self, piece: "Piece") -> Any:
-        """Integral of the power over a piece of the motion.
+    def works(self, piece: "Piece", ends: Sequence[Any]) -> list[Any]:
+        """Integrals of the power over the parts of a piece of the motion.
 
         Parameters
         ----------
         piece : Piece
+        ends : sequence of k numbers
+            Where the parts end, in order; the last one with the piece.
 
         Returns
         -------
-        number
+        list of k numbers
         """
         if self.conservative:
-            return self._precision.number("0")
-        half = (piece.end - piece.start) / 2
-        instants = piece.start + half * (1 + self._numbers(POINTS))
-        return half * (self._numbers(WEIGHTS) * self.power(instants, piece.states(instants))).sum()
+            return [self._precision.number("0")] * len(ends)
+        starts = np.array([piece.start, *ends[:-1]])
+        halves = (np.array(ends) - starts) / 2
+        instants = (starts[:, None] + halves[:, None] * (1 + self._numbers(POINTS))).ravel()
+        power = self.power(instants, piece.states(instants)).reshape(len(ends), -1)
+        return [half * (self._numbers(WEIGHTS) * row).sum() for half, row in zip(halves, power, strict=True)]
 
     def _output(self, name: str, instants: Numbers, states: Numbers, multipliers: Numbers) -> Numbers:
         parts = [np.reshape(instants, (1, -1)), states, multipliers]

@@ -3,23 +3,27 @@
 Numbers that no double can hold are written as decimal text.
 """
 
-import io
-from collections.abc import Callable, Iterable, Mapping
+import shutil
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import AbstractContextManager, ExitStack, contextmanager
 from pathlib import Path
 from types import ModuleType
+from typing import BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..confined import MIB
 from ..failures import Failure, HolonomError, missing_package
-from ..files import write_whole
+from ..files import whole_file
 from ..program.motion_problem import MotionProblem
 from .document import published_list
-from .result import Simulation
+from .result import Sampled, Simulation
 
 BYTES_OF_NUMBER = 250  # while samples are collected and written as text: measured for 300000 of six numbers each
 Columns = Mapping[str, NDArray[np.float64] | NDArray[np.str_]]
+Write = Callable[[Columns], None]
+Format = Callable[[BinaryIO], AbstractContextManager[Write]]
 
 
 def require_formats(samples: Path | None, figure: Path | None) -> None:
@@ -54,12 +58,38 @@ def require_memory(problem: MotionProblem, samples: int, memory_mib: int) -> Non
     HolonomError
         It names what they take and how many there is room for.
     """
-    numbers = 1 + len(problem.state) + len(problem.multipliers)
+    numbers = _numbers_a_sample(problem)
     needed = samples * numbers * BYTES_OF_NUMBER / MIB
     if needed > memory_mib:
         room = int(memory_mib * MIB / (numbers * BYTES_OF_NUMBER))
         said = f"{samples} samples take about {needed:.0f} MiB of memory, and there are {memory_mib} for {room}"
         raise HolonomError(Failure.TOO_MANY_SAMPLES, detail=said)
+
+
+def require_disk(problem: MotionProblem, samples: int, path: Path) -> None:
+    """Refuse more samples than there is room for where they are to be written, before the motion is followed.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+    samples : int
+    path : Path
+
+    Raises
+    ------
+    HolonomError
+        It names what they take and how many there is room for.
+    """
+    folder = path.resolve().parent
+    free = shutil.disk_usage(folder).free / MIB
+    size = _numbers_a_sample(problem) * BYTES_ON_DISK[path.suffix]
+    if samples * size / MIB > free:
+        said = f"{samples} samples take about {samples * size / MIB:.0f} MiB of disk"
+        raise HolonomError(Failure.DISK_TOO_SMALL, path, f"{said}, and {folder} has room for {int(free * MIB / size)}")
+
+
+def _numbers_a_sample(problem: MotionProblem) -> int:
+    return 1 + len(problem.state) + len(problem.multipliers)
 
 
 def write_files(simulation: Simulation, samples: Path | None, figure: Path | None) -> None:
@@ -97,13 +127,43 @@ def write_samples(simulation: Simulation, path: Path) -> None:
     HolonomError
         There is no such format, or what it needs is not installed; the file cannot be written.
     """
+    with sample_file(path, simulation.report.digits) as take:
+        take(simulation)
+
+
+def streams(path: Path) -> bool:
+    """Whether a file is written sample by sample, and not from all of them at once."""
+    return path.suffix in BYTES_ON_DISK
+
+
+@contextmanager
+def sample_file(path: Path, digits: int) -> Iterator[Callable[[Sampled], None]]:
+    """A file of samples that are written as they come. It is there when the block has ended well, and whole.
+
+    Parameters
+    ----------
+    path : Path
+        Its suffix names the format: one of `FORMATS`.
+    digits : int
+        Of numbers that no double can hold.
+
+    Yields
+    ------
+    callable
+        Takes samples that follow those before.
+
+    Raises
+    ------
+    HolonomError
+        There is no such format, or what it needs is not installed; the file cannot be written.
+    """
     form = sample_format(path)
-    digits = simulation.report.digits
-    write_whole(path, form({name: np.array(published_list(row, digits)) for name, row in simulation.columns()}))
+    with whole_file(path) as file, form(file) as write:
+        yield lambda samples: write({name: np.array(published_list(row, digits)) for name, row in samples.columns()})
 
 
-def sample_format(path: Path) -> Callable[[Columns], bytes]:
-    """What turns samples into the content of a file.
+def sample_format(path: Path) -> Format:
+    """What writes samples into a file.
 
     Parameters
     ----------
@@ -125,25 +185,46 @@ def sample_format(path: Path) -> Callable[[Columns], bytes]:
     return FORMATS[path.suffix]
 
 
-def _csv(columns: Columns) -> bytes:
+@contextmanager
+def _csv(file: BinaryIO) -> Iterator[Write]:
     """A line of names, then a line for each instant; a double as the shortest text that reads back the same."""
-    texts = [[str(value) for value in column.tolist()] for column in columns.values()]
-    lines = [",".join(columns), *map(",".join, zip(*texts, strict=True))]
-    return ("\n".join(lines) + "\n").encode()
+    named = False
+
+    def write(columns: Columns) -> None:
+        nonlocal named
+        texts = [[str(value) for value in column.tolist()] for column in columns.values()]
+        heading = [] if named else [",".join(columns)]
+        named = True
+        lines = [*heading, *map(",".join, zip(*texts, strict=True))]
+        file.write(("\n".join(lines) + "\n").encode())
+
+    yield write
 
 
-def _npz(columns: Columns) -> bytes:
-    buffer = io.BytesIO()
-    np.savez_compressed(buffer, **columns)
-    return buffer.getvalue()
+@contextmanager
+def _npz(file: BinaryIO) -> Iterator[Write]:
+    """All samples of a quantity are one array: they are kept until the end."""
+    kept: list[Columns] = []
+    yield kept.append
+    np.savez_compressed(file, **{name: np.concatenate([each[name] for each in kept]) for name in kept[0]})
 
 
-def _parquet(columns: Columns) -> bytes:
+@contextmanager
+def _parquet(file: BinaryIO) -> Iterator[Write]:
+    """A row group for the samples that come together."""
     pyarrow, parquet = _import_parquet()
-    buffer = io.BytesIO()
-    table = pyarrow.table({name: pyarrow.array(column) for name, column in columns.items()})
-    parquet.write_table(table.replace_schema_metadata({"creator": "holonom"}), buffer)
-    return buffer.getvalue()
+    with ExitStack() as opened:
+        writer = None
+
+        def write(columns: Columns) -> None:
+            nonlocal writer
+            table = pyarrow.table({name: pyarrow.array(column) for name, column in columns.items()})
+            table = table.replace_schema_metadata({"creator": "holonom"})
+            if writer is None:
+                writer = opened.enter_context(parquet.ParquetWriter(file, table.schema))
+            writer.write_table(table)
+
+        yield write
 
 
 def _import_parquet() -> tuple[ModuleType, ModuleType]:
@@ -160,4 +241,6 @@ def _no_such_format(path: Path, suffixes: Iterable[str]) -> HolonomError:
 
 
 FIGURES = (".svg", ".png")
-FORMATS: Mapping[str, Callable[[Columns], bytes]] = {".csv": _csv, ".npz": _npz, ".parquet": _parquet}
+FORMATS: Mapping[str, Format] = {".csv": _csv, ".npz": _npz, ".parquet": _parquet}
+BYTES_ON_DISK = {".csv": 20, ".parquet": 9}
+"""What a number takes in the formats that are written as samples come: measured for a swing in double precision."""

@@ -15,7 +15,7 @@ state, an impulse of a surface whose law of impact nobody has given.
 
 from bisect import bisect_left, bisect_right
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from enum import StrEnum
 from functools import cached_property
@@ -259,10 +259,11 @@ class PiecewiseMotion:
         phase = max(0, bisect_left([float(phase.start) for phase in self.phases], t) - 1)
         return self.phases[phase].part.matrices(t, state)
 
-    def work(self, piece: Piece) -> Any:
-        """Work of a piece of the phase at work, with that of the impulse at its beginning."""
+    def works(self, piece: Piece, ends: Sequence[Any]) -> list[Any]:
+        """Works of the parts of a piece of the phase at work, with that of the impulse at its beginning."""
         jump, self._jump = self._jump, self._precision.number("0")
-        return jump + self.part.balance.work(piece)
+        first, *others = self.part.balance.works(piece, ends)
+        return [jump + first, *others]
 
     def _by_phase(self, instants: Numbers) -> Iterator[tuple[Part, slice]]:
         """The instants, in order, by the phases that end with them or hold them."""

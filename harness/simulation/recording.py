@@ -1,14 +1,39 @@
-"""What is kept of a motion while an engine follows it: states at instants, and the work done until then."""
+"""What is kept of a motion while an engine follows it: states at instants, and the work done until then.
 
-from collections import deque
-from collections.abc import Iterator, Sequence
-from typing import Any
+They are handed on in stretches, so that a motion of any number of samples takes the memory of one stretch.
+"""
+
+from collections.abc import Callable, Iterable, Iterator
+from itertools import islice
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from .engines.engine import Piece
 from .evaluation import Numbers
 from .piecewise import PiecewiseMotion
+
+STRETCH = 2**14
+"""Samples that are handed on together: enough for arrays to pay, little beside what a process takes anyway."""
+
+PORTION = 2**10
+"""Samples that are looked up together in one piece; the work until each is a sum over ten states."""
+
+
+class Stretch(NamedTuple):
+    """Consecutive samples of a motion.
+
+    Attributes
+    ----------
+    instants : ndarray, shape (k,)
+    states : ndarray, shape (2n, k)
+    works : ndarray, shape (k,)
+        Work done until each instant.
+    """
+
+    instants: Numbers
+    states: Numbers
+    works: Numbers
 
 
 class Recording:
@@ -17,30 +42,33 @@ class Recording:
     Parameters
     ----------
     motion : PiecewiseMotion
-    instants : sequence of numbers, or None
-        In order; None for the ends of the pieces.
+    instants : iterable of numbers, or None
+        In order, before the last; None for the ends of the pieces.
     zero : number
+    hand_on : callable
+        Takes each `Stretch`.
 
     Attributes
     ----------
-    instants : list of number
-    states : list of ndarray, shape (2n,)
-    works : list of number
-        Work done until each instant.
     work : number
         Work done in all.
     """
 
-    def __init__(self, motion: PiecewiseMotion, instants: Sequence[Any] | None, zero: Any) -> None:
-        self._motion, self._waiting = motion, None if instants is None else deque(instants)
-        self.instants: list[Any] = []
-        self.states: list[Numbers] = []
-        self.works: list[Any] = []
+    def __init__(
+        self, motion: PiecewiseMotion, instants: Iterable[Any] | None, zero: Any, hand_on: Callable[[Stretch], None]
+    ) -> None:
+        self._motion, self._hand_on = motion, hand_on
+        self._steps = instants is None
+        self._waiting = iter(instants or ())
+        self._next = next(self._waiting, None)
+        self._instants: list[Any] = []
+        self._states: list[Numbers] = []
+        self._works: list[Any] = []
         self.work = zero
 
     def begin(self, instant: Any, state: Numbers) -> None:
         """Keep the first state, if it is wanted."""
-        if self._wanted(instant):
+        if self._steps or any(True for _ in self._wanted_until(instant)):
             self._keep(instant, state.copy())
 
     def take(self, piece: Piece) -> None:
@@ -51,33 +79,40 @@ class Recording:
         piece : Piece
             It begins where the last one ended.
         """
-        for part in self._parts(piece):
-            self.work = self.work + self._motion.work(part)
-            if self._wanted(part.end):
-                self._keep(part.end, part.states(np.array([part.end]))[:, 0])
+        start = piece.start
+        while start != piece.end:
+            wanted = [piece.end] if self._steps else list(islice(self._wanted_until(piece.end), PORTION))
+            ends = wanted if len(wanted) == PORTION or piece.end in wanted[-1:] else [*wanted, piece.end]
+            works = self._motion.works(Piece(start, ends[-1], piece.states), ends)
+            states = piece.states(np.array(wanted)).T if wanted else ()
+            for instant, state, work in zip(wanted, states, works, strict=False):
+                self.work = self.work + work
+                self._keep(instant, state)
+            for work in works[len(wanted) :]:
+                self.work = self.work + work
+            start = ends[-1]
 
     def end(self, instant: Any, state: Numbers) -> None:
         """Keep the last state, projected as it is, in the place of the one that the last piece ended with."""
-        if self.instants and self.instants[-1] == instant:
-            self.states[-1] = state.copy()
+        if self._instants and self._instants[-1] == instant:
+            self._states[-1] = state.copy()
         else:
             self._keep(instant, state.copy())
 
+    def hand_on(self) -> None:
+        """Hand on what has been kept since the last time."""
+        if self._instants:
+            self._hand_on(Stretch(np.array(self._instants), np.array(self._states).T, np.array(self._works)))
+        self._instants, self._states, self._works = [], [], []
+
     def _keep(self, instant: Any, state: Numbers) -> None:
-        self.instants.append(instant)
-        self.states.append(state)
-        self.works.append(self.work)
-        if self._waiting:
-            self._waiting.popleft()
+        if len(self._instants) == STRETCH:  # the last one stays, for `end` may change it
+            self.hand_on()
+        self._instants.append(instant)
+        self._states.append(state)
+        self._works.append(self.work)
 
-    def _wanted(self, instant: Any) -> bool:
-        return self._waiting is None or (bool(self._waiting) and self._waiting[0] == instant)
-
-    def _parts(self, piece: Piece) -> Iterator[Piece]:
-        """The piece, cut at the instants wanted."""
-        start = piece.start
-        while self._waiting and self._waiting[0] < piece.end:
-            end = self._waiting[0]
-            yield Piece(start, end, piece.states)
-            start = end
-        yield Piece(start, piece.end, piece.states)
+    def _wanted_until(self, end: Any) -> Iterator[Any]:
+        while self._next is not None and self._next <= end:
+            instant, self._next = self._next, next(self._waiting, None)
+            yield instant

@@ -1,9 +1,10 @@
 """What came of a simulation: samples of the motion, and a report on how well it was followed."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from ..failures import missing_package
@@ -87,22 +88,18 @@ class Report:
 
 
 @dataclass(frozen=True, repr=False)
-class Simulation(Shown):
-    """A motion followed from its start to its end.
+class Sampled:
+    """Samples of a motion, all or some that follow one another.
 
     Attributes
     ----------
-    scene, title : str
     instants : ndarray, shape (k,)
     coordinates, velocities, multipliers, constraint_forces : mapping of str to ndarray of shape (k,)
         At the instants; empty where the scene does not observe them.
     energy, residuals : mapping of str to ndarray of shape (k,)
         ``energy`` and ``energy_error``; ``position``, ``velocity`` and ``acceleration``. Empty likewise.
-    report : Report
     """
 
-    scene: str
-    title: str
     instants: NDArray[Any]
     coordinates: Samples
     velocities: Samples
@@ -110,6 +107,28 @@ class Simulation(Shown):
     constraint_forces: Samples
     energy: Samples
     residuals: Samples
+
+    def columns(self) -> Iterator[tuple[str, NDArray[Any]]]:
+        """The time, then every series of samples with its name; residuals are named ``residual.position`` and so on."""
+        yield "t", self.instants
+        for group in (self.coordinates, self.velocities, self.multipliers, self.constraint_forces, self.energy):
+            yield from group.items()
+        for name, samples in self.residuals.items():
+            yield f"residual.{name}", samples
+
+
+@dataclass(frozen=True, repr=False, kw_only=True)
+class Simulation(Sampled, Shown):
+    """A motion followed from its start to its end, with its samples.
+
+    Attributes
+    ----------
+    scene, title : str
+    report : Report
+    """
+
+    scene: str
+    title: str
     report: Report
 
     def __getitem__(self, name: str) -> NDArray[Any]:
@@ -157,10 +176,12 @@ class Simulation(Shown):
 
         return Picture(motion_figure(self))
 
-    def columns(self) -> Iterator[tuple[str, NDArray[Any]]]:
-        """The time, then every series of samples with its name; residuals are named ``residual.position`` and so on."""
-        yield "t", self.instants
-        for group in (self.coordinates, self.velocities, self.multipliers, self.constraint_forces, self.energy):
-            yield from group.items()
-        for name, samples in self.residuals.items():
-            yield f"residual.{name}", samples
+
+def joined(parts: Sequence[Sampled]) -> Sampled:
+    """Samples that follow one another as one."""
+    groups = {
+        name: {each: np.concatenate([getattr(part, name)[each] for part in parts]) for each in getattr(parts[0], name)}
+        for name in vars(parts[0])
+        if name != "instants"
+    }
+    return Sampled(instants=np.concatenate([part.instants for part in parts]), **groups)

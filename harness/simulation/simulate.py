@@ -1,7 +1,7 @@
 """A simulation: engines follow the motion, a recording keeps what is wanted of it, a report says how well it went."""
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
 from typing import Any
 
@@ -21,16 +21,17 @@ from .faint import may_hide
 from .matrices import Matrices, Vector
 from .passed_over import StepsHeldAgainstTheEquations
 from .piecewise import PiecewiseMotion
-from .recording import Recording
+from .recording import Recording, Stretch
 from .request import FINAL_STATE_ALONE, EngineName, SimulationRequest, Stabilization
-from .result import Report, Samples, Simulation
+from .result import Report, Sampled, Samples, Simulation, joined
 from .trust import doubts, energy_scale
 
 Progress = Callable[[float], None]
+TakeSamples = Callable[[Sampled], None]
 
 
 def simulate(problem: MotionProblem, request: SimulationRequest, progress: Progress | None = None) -> Simulation:
-    """Follow a motion.
+    """Follow a motion, and keep its samples.
 
     Parameters
     ----------
@@ -46,11 +47,39 @@ def simulate(problem: MotionProblem, request: SimulationRequest, progress: Progr
     Raises
     ------
     HolonomError
+        As `follow`.
+    """
+    parts: list[Sampled] = []
+    report = follow(problem, request, parts.append, progress)
+    return Simulation(scene=problem.scene, title=problem.title, report=report, **vars(joined(parts)))
+
+
+def follow(
+    problem: MotionProblem, request: SimulationRequest, take: TakeSamples, progress: Progress | None = None
+) -> Report:
+    """Follow a motion, and hand on its samples as they come, some thousands together.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+    request : SimulationRequest
+    take : callable
+        Takes a `Sampled`.
+    progress : callable or None
+        Told the fraction that is done, now and then.
+
+    Returns
+    -------
+    Report
+
+    Raises
+    ------
+    HolonomError
         The request cannot be met: its precision, tolerance, engine or end; or the motion cannot be followed so far.
     """
     with one_blas_thread():
         with doing("compiling the motion"):
-            prepared = _Simulation(followable(problem, request), request)
+            prepared = _Simulation(followable(problem, request), request, take)
         with doing("following the motion"):
             return prepared.run(progress)
 
@@ -109,8 +138,8 @@ def last_instant(problem: MotionProblem, until: Fraction | None, precision: Prec
 class _Simulation:
     """One simulation on its way: what the steps of `simulate` share."""
 
-    def __init__(self, problem: MotionProblem, request: SimulationRequest) -> None:
-        self.problem, self.samples = problem, request.samples
+    def __init__(self, problem: MotionProblem, request: SimulationRequest, take: TakeSamples) -> None:
+        self.problem, self.samples, self.take = problem, request.samples, take
         self.precision = read_precision(str(request.precision))
         self.start = self.precision.number(problem.start["t"])
         self.end = last_instant(problem, request.until, self.precision)
@@ -118,30 +147,37 @@ class _Simulation:
         self.motion = PiecewiseMotion(problem, request, self.precision, self.end)
         self.first = self.motion.state.copy()
         self.compile_seconds = time.perf_counter() - begun - self.motion.compile_seconds
-        self.recording = Recording(self.motion, self._wanted_instants(), self.precision.number("0"))
+        zero = self.precision.number("0")
+        self.recording = Recording(self.motion, self._wanted_instants(), zero, self._hand_on)
+        self.exchange = Exchange()
         self.steps = (
             StepsHeldAgainstTheEquations(self.motion, self.end - self.start, self.precision)
             if may_hide(problem.matrices, problem.parameters)
             else None
         )
 
-    def run(self, progress: Progress | None) -> Simulation:
+    def run(self, progress: Progress | None) -> Report:
         begun, compiled = time.perf_counter(), self.motion.compile_seconds
         self.recording.begin(self.start, self.first)
         self._follow(self._take(progress))
         self.recording.end(self.end, self.motion.state)
         seconds = time.perf_counter() - begun - (self.motion.compile_seconds - compiled)
-        instants, states = np.array(self.recording.instants), np.array(self.recording.states).T
-        solutions = self.motion.solutions(instants, states)
-        energies = self._energies(instants, states)
-        return Simulation(
-            scene=self.problem.scene,
-            title=self.problem.title,
-            instants=instants,
-            **self._motion(states, solutions),
-            energy=energies if "energy" in self.problem.observe else {},
-            residuals=self._residual_samples(instants, states, solutions),
-            report=self._report(solutions, energies, seconds),
+        self.recording.hand_on()
+        return self._report(seconds)
+
+    def _hand_on(self, stretch: Stretch) -> None:
+        """Work out what is observed at samples, and what the report needs of them."""
+        instants, states, works = stretch
+        self.solutions = self.motion.solutions(instants, states)
+        energies = self._energies(instants, states, works)
+        self.exchange.add(works, energies["energy"], energies["energy_error"])
+        self.take(
+            Sampled(
+                instants=instants,
+                **self._motion(states, self.solutions),
+                energy=energies if "energy" in self.problem.observe else {},
+                residuals=self._residual_samples(instants, states, self.solutions),
+            )
         )
 
     def _follow(self, take: Callable[[Piece], None] | None) -> None:
@@ -150,12 +186,12 @@ class _Simulation:
         for piece in self.motion.pieces(self.end):
             take(piece)
 
-    def _wanted_instants(self) -> Sequence[Any] | None:
+    def _wanted_instants(self) -> Iterator[Any] | None:
         """Instants to keep; None for those of the steps. The last one is kept in any case."""
         if self.samples is None:
             return None
         inner = range(self.samples - 1) if self.samples != FINAL_STATE_ALONE else ()
-        return [self.start + (self.end - self.start) * i / (self.samples - 1) for i in inner]
+        return (self.start + (self.end - self.start) * i / (self.samples - 1) for i in inner)
 
     def _take(self, progress: Progress | None) -> Callable[[Piece], None] | None:
         """What is done with each piece; None where nothing has to be."""
@@ -172,11 +208,11 @@ class _Simulation:
 
         return take
 
-    def _energies(self, instants: Numbers, states: Numbers) -> Samples:
+    def _energies(self, instants: Numbers, states: Numbers, works: Numbers) -> Samples:
         """Energies at the samples, and what they differ by from the energy at the start and the work done since."""
         start = self.motion.energy(np.array([self.start]), self.first[:, None])
         energy = self.motion.energy(instants, states)
-        return {"energy": energy, "energy_error": energy - start - np.array(self.recording.works)}
+        return {"energy": energy, "energy_error": energy - start - works}
 
     def _motion(self, states: Numbers, solutions: Solutions) -> Mapping[str, Samples]:
         """Samples of what the scene observes."""
@@ -202,18 +238,19 @@ class _Simulation:
         at = self.motion.matrices(float(instant), as_floats(state))
         return residuals(at, as_floats(state), as_floats(accelerations))
 
-    def _report(self, solutions: Solutions, energies: Samples, seconds: float) -> Report:
+    def _report(self, seconds: float) -> Report:
         state, n = self.motion.state.copy(), len(self.problem.coordinates)
         observed = self.problem.multipliers if "multipliers" in self.problem.observe else ()
         at = self.motion.matrices(float(self.end), as_floats(state))
-        left = residuals(at, as_floats(state), as_floats(solutions.accelerations[:, -1]))
+        multipliers = self.solutions.multipliers[:, -1]
+        left = residuals(at, as_floats(state), as_floats(self.solutions.accelerations[:, -1]))
         return Report(
             t=self.end,
             coordinates=dict(zip(self.problem.coordinates, state[:n], strict=True)),
             velocities=dict(zip(self.problem.state[n:], state[n:], strict=True)),
-            multipliers=dict(zip(observed, solutions.multipliers[:, -1], strict=False)),
+            multipliers=dict(zip(observed, multipliers, strict=False)),
             residuals=left,
-            energy_error=float(energies["energy_error"][-1]),
+            energy_error=self.exchange.last_error,
             condition=condition(at),
             steps=self.motion.steps,
             legs=tuple(self.motion.legs),
@@ -224,25 +261,23 @@ class _Simulation:
             compile_seconds=self.compile_seconds + self.motion.compile_seconds,
             run_seconds=seconds,
             correction=self.problem.correction,
-            cases=self._cases(state, as_floats(solutions.multipliers[:, -1])),
+            cases=self._cases(state, as_floats(multipliers)),
             switchings=tuple(self.motion.switchings),
-            doubts=tuple(doubts(self._missed(left, at, energies), self.motion.tol, self.motion.steps)),
+            doubts=tuple(doubts(self._missed(left, at), self.motion.tol, self.motion.steps)),
         )
 
-    def _missed(self, left: Mapping[str, float], at: Matrices, energies: Samples) -> Mapping[str, float]:
+    def _missed(self, left: Mapping[str, float], at: Matrices) -> Mapping[str, float]:
         """What is missed of each quantity that the tolerance speaks of, relative to its size."""
-        error, scale = self._energy_missed(at, energies)
+        error, scale = self._energy_missed(at)
         within = {} if self.steps is None else {"acceleration": self.steps.missed}
         kept = {name: left[name] for name in ("position", "velocity")}
         return {**kept, "energy": error / scale if scale > 0 else error, **within}
 
-    def _energy_missed(self, at: Matrices, energies: Samples) -> tuple[float, float]:
+    def _energy_missed(self, at: Matrices) -> tuple[float, float]:
         """The largest energy error on the way, and the size of the energies that it is an error of."""
         first, last = as_floats(self.first), as_floats(self.motion.state)
-        work = float(np.max(np.abs(as_floats(np.array(self.recording.works)))))
         scale = max(energy_scale(self.motion.matrices(float(self.start), first), first), energy_scale(at, last))
-        exchanged = np.max(np.abs(as_floats(energies["energy"] - energies["energy"][0])))
-        return float(np.max(np.abs(as_floats(energies["energy_error"])))), max(scale, work, float(exchanged))
+        return self.exchange.error, max(scale, self.exchange.work, self.exchange.exchanged)
 
     def _cases(self, state: Numbers, multipliers: Vector) -> tuple[HardCase, ...]:
         """Those that the robust engine was called for, then those that the ends tell; each once."""
@@ -250,3 +285,25 @@ class _Simulation:
         called_for = [leg.case for leg in self.motion.legs if leg.case is not None]
         found = hard_cases(self.motion.matrices, start, end, multipliers, self.motion.steps)
         return tuple(dict.fromkeys([*called_for, *found]))
+
+
+class Exchange:
+    """What energy did on the way: the largest work, the largest change and the largest error, stretch by stretch."""
+
+    def __init__(self) -> None:
+        self.work = self.exchanged = self.error = self.last_error = 0.0
+        self._first: Any = None
+
+    def add(self, works: Numbers, energy: Numbers, error: Numbers) -> None:
+        """Take in samples, each of shape (k,)."""
+        if self._first is None:
+            self._first = energy[0]
+        self.work = _largest(works, self.work)
+        self.exchanged = _largest(energy - self._first, self.exchanged)
+        self.error = _largest(error, self.error)
+        self.last_error = float(error[-1])
+
+
+def _largest(numbers: Numbers, known: float) -> float:
+    """The largest of them and of what is known; no number where one of them is none."""
+    return float(np.max(np.abs([*as_floats(numbers), known])))

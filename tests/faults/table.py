@@ -347,6 +347,7 @@ ENVIRONMENTS = [
 
 WORK = [
     Fault("a billion samples", "simulate scene.mac --until 1 --samples 1000000000", "MiB of memory"),
+    Fault("more samples than a disk holds", f"simulate scene.mac --until 1 --samples {10**15} -o x.csv", "MiB of disk"),
     Fault("a billion orders", "series scene.mac --order 1000000000", "MiB of memory", long=True),
     Fault("a billion digits", "series scene.mac --order 4 --digits 1000000000", "MiB of memory", long=True),
     Fault("a tolerance of nan", "simulate scene.mac --until 1 --tol nan", "tolerances", long=True),

@@ -24,7 +24,7 @@ def followed(asked, until: float):
     motion = RobustEngine(asked, 1e-12)
     balance = balance_of(motion, asked)
     start = balance.energy(np.array([motion.time]), motion.state[:, None])[0]
-    work = sum(balance.work(piece) for piece in motion.pieces(until))
+    work = sum(balance.works(piece, [piece.end])[0] for piece in motion.pieces(until))
     return balance.energy(np.array([motion.time]), motion.state[:, None])[0] - start, work, balance
 
 

@@ -41,12 +41,17 @@ def motion_progress(title: str) -> Iterator[Callable[[float], None] | None]:
 
 def show_simulation(console: "Console", simulation: "Simulation") -> None:
     """Print the end of a motion, and the report."""
+    show_report(console, simulation.scene, simulation.title, simulation.report)
+
+
+def show_report(console: "Console", scene: str, title: str, report: "Report") -> None:
+    """Print the end of a scene's motion, and the report."""
     from rich.table import Table
 
     from ...simulation.document import report_document
 
-    report, document = simulation.report, report_document(simulation.report)
-    console.print(f"{simulation.scene}: {simulation.title}, at t = {document['t']}", soft_wrap=True, markup=False)
+    document = report_document(report)
+    console.print(f"{scene}: {title}, at t = {document['t']}", soft_wrap=True, markup=False)
     table = Table("", "", show_header=False)
     for group in ("coordinates", "velocities", "multipliers"):
         for name, value in document[group].items():
