@@ -188,15 +188,15 @@ def _walls(confinement: Confinement, program: Path) -> list[str]:
     ]
     for part in filter(os.path.lexists, SYSTEM):
         walls += ["--symlink", os.readlink(part), part] if os.path.islink(part) else ["--ro-bind", part, part]
-    for part in (*_surroundings(program), *map(str, confinement.readable)):
+    for part in map(str, (*surroundings(program), *confinement.readable)):
         walls += ["--ro-bind", part, part]
     return [*walls, "--bind", directory, directory, "--chdir", directory, "--"]
 
 
-def _surroundings(program: Path) -> list[str]:
+def surroundings(program: Path) -> list[Path]:
     """What a program that is not in /usr needs: the folders beside it, and it by the name that it is called by."""
     folders = {program.parent, *(program.resolve().parents[1] / name for name in SHARED_BY_PROGRAMS)}
-    return sorted(str(folder) for folder in folders if folder.is_dir() and not folder.is_relative_to("/usr"))
+    return sorted(folder for folder in folders if folder.is_dir() and not folder.is_relative_to("/usr"))
 
 
 def _watch(process: subprocess.Popen[bytes], limits: Limits, printed: bytearray) -> None:

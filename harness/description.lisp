@@ -39,7 +39,7 @@
 
 (defun write-description (file)
   "Write what the scene file described to FILE; nothing where it did not load the library."
-  (when (mget '$holonomic_system 'mexpr)
+  (when (and (boundp '*asked-for*) (symbol-value '*asked-for*))
     (with-open-file (out file :direction :output)
       (write-datum (description) out))))
 

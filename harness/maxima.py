@@ -24,9 +24,10 @@ from pathlib import Path
 
 import psutil
 
-from .confined import MIB, Confinement, LimitExceeded, Limits, Sandbox, run_confined
+from .confined import MIB, Confinement, LimitExceeded, Limits, Sandbox, run_confined, surroundings
 from .failures import Failure, HolonomError
 from .files import near_file, private_directory, shared
+from .preloaded import ARGUMENTS, ENVIRONMENT, QUIET, preloaded_image
 from .supervisor import doing
 
 LIBRARY = shared("maxima")
@@ -299,10 +300,13 @@ def _run(run: Run, start: str, writer: str) -> str:
         f"({start} '({' '.join(arguments)}))\n",
     ]
     (run.directory / "job.lisp").write_bytes(os.fsencode("\n".join(parts)))
-    command = [maxima, "--init=/dev/null", "--very-quiet", "--preload-lisp=job.lisp"]
+    confinement = _confinement(run, Path(maxima))
+    image = preloaded_image(maxima, LIBRARY, frozenset(_passed_on().items()))
+    program = [maxima] if image is None else [str(image), *ARGUMENTS]
+    command = [*program, *QUIET, "--preload-lisp=job.lisp"]
     output = bytearray()
     try:
-        status = run_confined(command, _confinement(run), output)
+        status = run_confined(command, confinement, output)
     except LimitExceeded as exceeded:
         ending = Ending(exceeded.failure, str(run.file), exceeded.detail)
     except OSError as error:
@@ -327,10 +331,14 @@ def _maxima() -> str:
     return found
 
 
-def _confinement(run: Run) -> Confinement:
+def _passed_on() -> dict[str, str]:
+    return {name: os.environ[name] for name in PASSED_ON if name in os.environ}
+
+
+def _confinement(run: Run, maxima: Path) -> Confinement:
     """A private directory for all that Maxima keeps, English messages, and nothing else of this machine's settings."""
     directory = str(run.directory)
-    environment = {name: os.environ[name] for name in PASSED_ON if name in os.environ}
+    environment = ENVIRONMENT | _passed_on()
     environment |= {
         "HOME": directory,
         "TMPDIR": directory,
@@ -341,7 +349,8 @@ def _confinement(run: Run) -> Confinement:
         # under the limit: what garbage there is depends on the limit then, and not on the machine.
         "GCL_MEM_MULTIPLE": f"{run.limits.memory_mib * MIB / psutil.virtual_memory().total:.6f}",
     }
-    return Confinement(run.directory, environment, (LIBRARY, _own_folder(run.file)), run.limits)
+    readable = (*surroundings(maxima), LIBRARY, _own_folder(run.file))
+    return Confinement(run.directory, environment, readable, run.limits)
 
 
 def _own_folder(file: Path) -> Path:

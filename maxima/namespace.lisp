@@ -16,7 +16,7 @@
 ;;;
 ;;;   public_names(name, ...)$              declares names of the vocabulary
 ;;;   private_names(name, ...)$             declares names that head data: json_object(...)
-;;;   load_library(directory, [file, ...])$ reads Maxima and Lisp files into the namespace
+;;;   load_library(directory, [file, ...])$ reads Maxima and Lisp files into the namespace, once
 ;;;   internal_names();                     lists the names that have a twin
 ;;;   open_namespace()$                     reads from now on everything so: for tests of internal functions
 ;;;
@@ -31,6 +31,8 @@
 (defvar *read-names* (make-hash-table :test 'eq) "What each name of the library is read as.")
 
 (defvar *namespace-open* nil "Whether everything is read as the library's files are.")
+(defvar *loaded-from* nil "The directory of the library, once it is loaded.")
+(defvar *asked-for* nil "Whether a file has loaded the library: it may be there before, in an image.")
 
 (defun note (name table kind)
   (if (maxima-name-p name) (unless (gethash name table) (setf (gethash name table) kind))))
@@ -253,13 +255,18 @@
 ;;; The library stays out of Maxima's lists of what the user has made:  values,  functions,  and what
 ;;; kill(all)  kills.
 (defun $load_library (directory files)
+  (unless (equal directory *loaded-from*)
+    (read-library (mapcar #'(lambda (file) (concatenate 'string directory file)) (cdr files)))
+    (setq *loaded-from* directory))
+  (setq *asked-for* t)
+  '$done)
+
+(defun read-library (paths)
   (let (($functions (copy-list $functions)) ($values (copy-list $values)) ($macros (copy-list $macros))
         ($arrays (copy-list $arrays)) ($props (copy-list $props)) ($structures (copy-list $structures))
         ($myoptions (copy-list $myoptions)))
-    (mapc #'evaluate-library-file
-          (mapcar #'(lambda (file) (read-library-file (concatenate 'string directory file))) (cdr files))))
-  (setq $values (remove-if #'public-option-p $values))
-  '$done)
+    (mapc #'evaluate-library-file (mapcar #'read-library-file paths)))
+  (setq $values (remove-if #'public-option-p $values)))
 
 (defun $internal_names ()
   "The names that the library keeps to itself, and that are none of Maxima's."

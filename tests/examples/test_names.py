@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from holonom import maxima
 from holonom.crosscheck import check_record
 from holonom.maxima import run_batch
 from holonom.record import derived_record, read_record
@@ -131,7 +132,8 @@ system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [m,
     assert report.disagreements == 0
 
 
-def test_loading_the_library_changes_nothing_of_maximas(tmp_path: Path):
+def test_loading_the_library_changes_nothing_of_maximas(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(maxima, "preloaded_image", lambda *_: None)  # it is to be loaded behind the ledger
     (tmp_path / "ledger.lisp").write_text(LEDGER)
     (file := tmp_path / "load.mac").write_text(
         f'load("{tmp_path}/ledger.lisp")$\nopen_ledger()$\n{HOLONOM}\nload("paper/errata.mac")$\n'

@@ -1,0 +1,126 @@
+"""Maxima with the library already loaded, kept as an image in the user's cache: each run is spared the loading.
+
+An image is made when it is first wanted, by Maxima itself, and bears the name of all that it depends on: the program,
+the library's text, this file. It is used only where it belongs to the user, is out of others' reach, and has the
+checksum that it was made with; where there is none, or none can be made, a run loads the library, and finds the same.
+Only GCL, on which Debian's Maxima runs, makes them here.
+"""
+
+import os
+import stat
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from functools import cache
+from hashlib import file_digest, sha256
+from pathlib import Path
+from shutil import disk_usage, move
+
+from .confined import MIB, Confinement, LimitExceeded, Limits, Sandbox, run_confined
+from .files import draft_of, private_directory
+
+# What Debian's script sets before it starts Maxima on GCL, and what follows the program's name there.
+ENVIRONMENT = {"GCL_GC_PAGE_THRESH": "0.2", "GCL_GC_ALLOC_MIN": "0.01", "GCL_GC_PAGE_MAX": "0.05"}
+ARGUMENTS = ("-eval", "(cl-user::run)", "-f", "--")
+QUIET = ("--init=/dev/null", "--very-quiet")
+
+KEPT = 5  # images, those of so many versions or installations that were used last
+FREE_SPACE = 1024 * MIB  # on a fuller disk none is made
+MAKING = Limits(seconds=20.0, sandbox=Sandbox.TRUSTED)  # the library alone is run
+SAVE = """(in-package :maxima)
+(mfuncall '$load "{library}/holonom.mac")
+(setq *maxima-started* nil *asked-for* nil)
+#+gcl (si::save-system "image")
+(quit)
+"""
+
+
+@cache
+def preloaded_image(maxima: str, library: Path, environment: frozenset[tuple[str, str]]) -> Path | None:
+    """The program that is Maxima with the library loaded.
+
+    Parameters
+    ----------
+    maxima : str
+        The path of Maxima.
+    library : Path
+    environment : frozenset of (str, str)
+        What of the environment Maxima is started with.
+
+    Returns
+    -------
+    Path or None
+        It takes `ARGUMENTS` before Maxima's own; None where there is none and none can be made.
+    """
+    with suppress(OSError, RuntimeError, LimitExceeded):  # RuntimeError: there is no home directory
+        folder = _own_folder()
+        image = folder / f"{_name(maxima, library, environment)}.image"
+        if not _is_whole(image):
+            _make(image, maxima, library, dict(environment))
+            _remove_older_ones(folder)
+        if image.stat().st_size:
+            os.utime(image)
+            return image
+    return None
+
+
+def _own_folder() -> Path:
+    """The folder of the images; refused where others may write to it."""
+    folder = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache", "holonom")
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    found = folder.lstat()
+    if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.getuid() or found.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
+        raise PermissionError(None, "it is not the user's own", str(folder))
+    return folder.resolve()
+
+
+def _name(maxima: str, library: Path, environment: frozenset[tuple[str, str]]) -> str:
+    program = Path(maxima).resolve()
+    known = [program, program.stat().st_size, program.stat().st_mtime_ns, library, sorted(environment)]
+    texts = [Path(__file__), *sorted(_texts(library))]
+    return sha256(b"\0".join([repr(known).encode(), *(each.read_bytes() for each in texts)])).hexdigest()
+
+
+def _texts(library: Path) -> Iterator[Path]:
+    return (file for file in library.rglob("*") if file.suffix in (".mac", ".lisp"))
+
+
+def _is_whole(image: Path) -> bool:
+    """Whether an image is there, with its checksum."""
+    try:
+        with image.open("rb") as file:
+            return file_digest(file, "sha256").hexdigest() == _checksum(image).read_text(encoding="ascii")
+    except (OSError, UnicodeDecodeError):
+        return False
+
+
+def _checksum(image: Path) -> Path:
+    return image.with_suffix(".sha256")
+
+
+def _make(image: Path, maxima: str, library: Path, environment: Mapping[str, str]) -> None:
+    """Have Maxima save itself with the library; an empty file says that it cannot, or that the image does not run."""
+    if disk_usage(image.parent).free < FREE_SPACE:
+        raise OSError(None, "there is too little space", str(image))
+    with private_directory() as directory, draft_of(image) as draft:
+        quoted = str(library).replace("\\", "\\\\").replace('"', '\\"')
+        (directory / "save.lisp").write_text(SAVE.format(library=quoted), encoding="utf-8")
+        inside = {"HOME": str(directory), "MAXIMA_USERDIR": str(directory), "LC_ALL": "C"}
+        confinement = Confinement(directory, {**environment, **ENVIRONMENT, **inside}, (), MAKING)
+        run_confined([maxima, *QUIET, "--preload-lisp=save.lisp"], confinement, bytearray())
+        if (directory / "image").exists():
+            move(directory / "image", draft)
+            draft.chmod(0o500)
+        if run_confined([str(draft), *ARGUMENTS, *QUIET, "--batch-string=quit();"], confinement, bytearray()) != 0:
+            draft.unlink(missing_ok=True)
+            draft.touch()
+        with draft.open("rb") as file:
+            checksum = file_digest(file, "sha256").hexdigest()
+        _checksum(image).write_text(checksum, encoding="ascii")
+        draft.replace(image)
+
+
+def _remove_older_ones(folder: Path) -> None:
+    newest_first = sorted(folder.glob("*.image"), key=lambda image: image.stat().st_mtime, reverse=True)
+    for image in newest_first[KEPT:]:
+        image.unlink(missing_ok=True)
+        _checksum(image).unlink(missing_ok=True)

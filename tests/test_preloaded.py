@@ -1,0 +1,78 @@
+"""The image of Maxima with the library: it changes no result, and is trusted only while it is what was made."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from holonom import maxima, preloaded
+from holonom.documents import Document, ask
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+make_image = preloaded.preloaded_image.__wrapped__
+
+
+@pytest.fixture
+def cache(tmp_path, monkeypatch) -> Path:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    return tmp_path / "holonom"
+
+
+def image() -> Path | None:
+    return make_image(shutil.which("maxima"), maxima.LIBRARY, frozenset({("PATH", "/usr/bin:/bin")}))
+
+
+@pytest.fixture
+def made(cache) -> Path:
+    if (found := image()) is None:
+        pytest.skip("this Maxima's Lisp cannot save itself")
+    return found
+
+
+@pytest.mark.parametrize("example", ["paper/paper.mac", "pendulum.mac"])
+@pytest.mark.parametrize("document", [Document.RECORD, Document.FREE_MOTION])
+def test_with_the_image_and_without_the_documents_are_the_same(monkeypatch, document, example):
+    arguments = (None,) if document is Document.RECORD else (None, None)
+    with_image = ask(document, EXAMPLES / example, *arguments)
+    monkeypatch.setattr(maxima, "preloaded_image", lambda *_: None)
+    assert ask(document, EXAMPLES / example, *arguments) == with_image
+
+
+@pytest.mark.parametrize("harm", [lambda data: data[:-1], lambda data: data[:99] + bytes([data[99] ^ 1]) + data[100:]])
+def test_an_image_that_is_torn_or_has_a_flipped_bit_is_made_anew(made, harm):
+    data = made.read_bytes()
+    made.chmod(0o700)
+    made.write_bytes(harm(data))
+    assert image() == made
+    assert preloaded._is_whole(made)
+
+
+def test_a_folder_that_others_may_write_to_is_not_used(made):
+    made.parent.chmod(0o777)
+    assert image() is None
+
+
+def test_a_nearly_full_disk_is_not_filled(cache, monkeypatch):
+    monkeypatch.setattr(preloaded, "FREE_SPACE", shutil.disk_usage("/").total)
+    assert image() is None
+    assert list(cache.iterdir()) == []
+
+
+def test_a_maxima_that_cannot_save_itself_is_asked_once(cache, tmp_path, monkeypatch):
+    stubborn = tmp_path / "maxima"
+    stubborn.write_text(f"#!/bin/sh\necho asked >> {tmp_path}/asked\n")
+    stubborn.chmod(0o755)
+    for _ in range(2):
+        assert make_image(str(stubborn), maxima.LIBRARY, frozenset()) is None
+    assert (tmp_path / "asked").read_text() == "asked\n"
+
+
+def test_another_text_of_the_library_has_another_image_and_old_images_go(cache, tmp_path, monkeypatch):
+    monkeypatch.setattr(preloaded, "KEPT", 1)
+    library = shutil.copytree(maxima.LIBRARY, tmp_path / "library")
+    first = make_image(shutil.which("maxima"), library, frozenset())
+    with (library / "notation.mac").open("a") as file:
+        file.write("/* another text */\n")
+    second = make_image(shutil.which("maxima"), library, frozenset())
+    assert first != second
+    assert [file.name for file in cache.glob("*.image")] == [second.name]
