@@ -8,6 +8,7 @@ Only GCL, on which Debian's Maxima runs, makes them here.
 
 import os
 import stat
+import time
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from functools import cache
@@ -23,7 +24,8 @@ ENVIRONMENT = {"GCL_GC_PAGE_THRESH": "0.2", "GCL_GC_ALLOC_MIN": "0.01", "GCL_GC_
 ARGUMENTS = ("-eval", "(cl-user::run)", "-f", "--")
 QUIET = ("--init=/dev/null", "--very-quiet")
 
-KEPT = 5  # images, those of so many versions or installations that were used last
+KEPT = 3  # images, of so many versions or installations; more while they are in use
+IN_USE = 3600.0  # seconds after its last use in which an image is not removed
 FREE_SPACE = 1024 * MIB  # on a fuller disk none is made
 MAKING = Limits(seconds=20.0, sandbox=Sandbox.TRUSTED)  # the library alone is run
 SAVE = """(in-package :maxima)
@@ -120,7 +122,8 @@ def _make(image: Path, maxima: str, library: Path, environment: Mapping[str, str
 
 
 def _remove_older_ones(folder: Path) -> None:
-    newest_first = sorted(folder.glob("*.image"), key=lambda image: image.stat().st_mtime, reverse=True)
-    for image in newest_first[KEPT:]:
-        image.unlink(missing_ok=True)
-        _checksum(image).unlink(missing_ok=True)
+    last_used = {image: image.stat().st_mtime for image in folder.glob("*.image")}
+    for image in sorted(last_used, key=last_used.__getitem__, reverse=True)[KEPT:]:
+        if last_used[image] < time.time() - IN_USE:
+            image.unlink(missing_ok=True)
+            _checksum(image).unlink(missing_ok=True)
