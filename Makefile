@@ -5,20 +5,31 @@ STAMP   := .venv/installed
 TEST    := $(BIN)/pytest -q --numprocesses auto --dist loadgroup
 SCENES  := $(filter-out %/printed.mac examples/hard/%,$(shell find examples -name '*.mac' | sort))
 RECORDS := $(SCENES:%.mac=build/%.json)
-SOURCES := $(shell find maxima harness -name '*.mac' -o -name '*.lisp' -o -name '*.py')
+SOURCES := $(shell find maxima harness -type f -not -path '*/__pycache__/*')
+PRINTED := examples/paper/printed.mac
+HARD    := $(shell find examples/hard -name '*.mac')
 
 .DEFAULT_GOAL := paper
 .DELETE_ON_ERROR:
-.PHONY: paper companion check check-long mutants bench setup install pictures clean help have-maxima have-compiler have-gsl have-bubblewrap have-python
+.PHONY: paper companion check check-long mutants bench setup install pictures clean help have-programs
 
-paper: setup $(RECORDS) companion ## Derive and check every scene, compare the paper as printed (the default)
-	$(BIN)/holonom check $(SCENES) --json build/check.json
-	$(BIN)/holonom errata --json build/errata.json
+paper: $(RECORDS) build/check.json build/errata.json companion ## Derive and check every scene, compare the paper as printed (the default)
 	@echo "The derivations are in build/examples/, the verdicts in build/check.json, the misprints in build/errata.json, the textbook companion in build/companion/index.html."
 
-companion: setup ## Make the textbook companion: build/companion/index.html
-	$(BIN)/holonom companion -o build/companion
-	$(BIN)/python -m holonom.reference.manual build/holonom.1
+companion: build/companion/index.html build/holonom.1 ## Make the textbook companion: build/companion/index.html
+
+build/check.json: $(SCENES) $(SOURCES) | setup
+	$(BIN)/holonom check $(SCENES) --json $@
+
+build/errata.json: $(PRINTED) $(SCENES) $(SOURCES) | setup
+	$(BIN)/holonom errata --json $@
+
+build/companion/index.html: $(PRINTED) $(SCENES) $(HARD) $(SOURCES) | setup
+	$(BIN)/holonom companion -o $(@D)
+
+build/holonom.1: $(SOURCES) | setup
+	@mkdir -p $(@D)
+	$(BIN)/python -m holonom.reference.manual $@
 
 check: setup ## Lint, then run the tests, Maxima's own rtest files among them
 	$(BIN)/ruff check .
@@ -31,7 +42,7 @@ check-long: setup ## Run the tests that take too long for every change
 mutants: setup ## Make wrong programs of a fixed list, one at a time, and tell which of them no test finds
 	nice $(BIN)/python tests/mutants/run.py build/mutants.json
 
-setup: have-maxima have-compiler have-gsl have-bubblewrap $(STAMP) ## Install what is missing: Maxima, a C compiler, GSL, bubblewrap, and the Python packages in .venv
+setup: have-programs $(STAMP) ## Install what is missing: Maxima, a C compiler, GSL, bubblewrap, and the Python packages in .venv
 
 install: setup ## Put Holonom into Maxima's user directory, where load(holonom) finds it
 	$(BIN)/holonom maxima-path
@@ -64,38 +75,35 @@ build/%.json: %.mac $(SOURCES) | setup
 	@mkdir -p $(@D)
 	$(BIN)/holonom derive $< --json $@ > $(@:.json=.txt)
 
-# A Debian package, installed as root, or one sentence why not.
-define install
-{ as_root=sudo; if [ "$$(id -u)" = 0 ]; then as_root=env; fi; \
-  command -v apt-get >/dev/null && command -v $$as_root >/dev/null || { \
-    echo "Holonom needs $(1), and it takes apt-get and root rights to install it: please install it yourself." >&2; exit 2; }; \
-  $$as_root apt-get update -qq && $$as_root DEBIAN_FRONTEND=noninteractive apt-get install -qq $(1); }
-endef
-
-have-maxima:
-	@command -v maxima >/dev/null || $(call install,maxima)
-
-have-compiler:
-	@command -v cc >/dev/null || $(call install,gcc libc6-dev)
-
-have-gsl:
-	@command -v gsl-config >/dev/null || ( $(call install,libgsl-dev) ) || \
-	  echo "Without the GNU Scientific Library there is no Runge-Kutta engine; all the rest works." >&2
-
-have-bubblewrap:
-	@command -v bwrap >/dev/null || ( $(call install,bubblewrap) ) || \
-	  echo "Without bubblewrap a scene file is confined by limits alone and may reach your files; all works." >&2
-
 # The first Python that is new enough; python3 is the last resort because it may be anything.
 PYTHON = $(shell for python in python3.11 python3.12 python3.13 python3; do \
   $$python -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$python && break; done)
 
-have-python:
-	@command -v python3 >/dev/null || $(call install,python3-venv)
+# Debian's packages of what is missing: Maxima, a C compiler, GSL for the Runge-Kutta engine, bubblewrap, which keeps
+# scene files from your own, and Python's venv. They are installed as root; where that is not to be had, all of them are
+# told at once, and what can be made without them is.
+have-programs:
+	@missing=; python="$(PYTHON)"; \
+	command -v maxima >/dev/null || missing="$$missing maxima"; \
+	command -v cc >/dev/null || missing="$$missing gcc libc6-dev"; \
+	command -v gsl-config >/dev/null || missing="$$missing libgsl-dev"; \
+	command -v bwrap >/dev/null || missing="$$missing bubblewrap"; \
+	if [ -z "$$python" ]; then missing="$$missing python3-venv"; \
+	elif ! $$python -c 'import ensurepip' 2>/dev/null; then missing="$$missing $${python##*/}-venv"; fi; \
+	[ -n "$$missing" ] || exit 0; \
+	as_root=; \
+	if [ "$$(id -u)" = 0 ]; then as_root=env; \
+	elif sudo -n true 2>/dev/null; then as_root="sudo -n"; \
+	elif [ -t 0 ] && command -v sudo >/dev/null; then as_root=sudo; fi; \
+	if [ -n "$$as_root" ] && command -v apt-get >/dev/null && $$as_root apt-get update -qq && \
+	  $$as_root env DEBIAN_FRONTEND=noninteractive apt-get install -qq $$missing; then exit 0; fi; \
+	{ echo "Missing here, and not to be installed without root rights or apt-get:$$missing."; \
+	  echo "The line for an administrator: apt-get update && apt-get install$$missing"; \
+	  echo "make goes on with what is there."; } >&2
 
-$(STAMP): pyproject.toml constraints.txt | have-python
+$(STAMP): pyproject.toml constraints.txt | have-programs
 	@test -n "$(PYTHON)" || { echo "Holonom needs Python 3.11 or later: please install it." >&2; exit 2; }
-	@$(PYTHON) -c 'import ensurepip' 2>/dev/null || $(call install,$(notdir $(PYTHON))-venv)
+	@$(PYTHON) -c 'import ensurepip' || { echo "$(PYTHON) has no ensurepip, which makes .venv: please install its package for venv." >&2; exit 2; }
 	$(PYTHON) -m venv --clear .venv
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,motion,sweep,companion]'
 	@touch $@

@@ -1,0 +1,141 @@
+"""What make does: nothing twice, and without root rights what can be done, after one list of all that is missing."""
+
+import os
+import shutil
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+MAKEFILE = Path(__file__).resolve().parents[1] / "Makefile"
+TOOLS = ("sh", "env", "find", "sort", "mkdir", "dirname", "touch", "id", "sed", "expand", "nice", "true")
+HOLONOM = """#!/bin/sh
+echo "$1" >> calls
+while [ $# -gt 0 ]; do
+  case $1 in
+    --json) mkdir -p "$(dirname "$2")"; : > "$2" ;;
+    -o) mkdir -p "$2"; : > "$2/index.html" ;;
+  esac
+  shift
+done
+"""
+PYTHON = '#!/bin/sh\necho manual >> calls; : > "$3"\n'
+EVERYTHING = ("maxima", "cc", "gsl-config", "bwrap")
+
+pytestmark = pytest.mark.skipif(shutil.which("make") is None, reason="make is not installed")
+
+
+def program(file: Path, text: str) -> None:
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(text)
+    file.chmod(0o755)
+
+
+@pytest.fixture
+def make(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Run make in a house of empty rooms, with no programs but these."""
+    programs, house = tmp_path / "programs", tmp_path / "house"
+    house.mkdir()
+    shutil.copy(MAKEFILE, house)
+    rooms = ("examples/one.mac", "examples/paper/paper.mac", "examples/paper/printed.mac", "examples/hard/case.mac")
+    for name in (*rooms, "maxima/holonom.mac", "harness/scene.py", "pyproject.toml", "constraints.txt"):
+        (house / name).parent.mkdir(parents=True, exist_ok=True)
+        (house / name).touch()
+    program(house / ".venv/bin/holonom", HOLONOM)
+    program(house / ".venv/bin/python", PYTHON)
+    (house / ".venv/installed").touch()
+    program(programs / "python3.11", "#!/bin/sh\n")
+    for name in TOOLS:
+        (programs / name).symlink_to(shutil.which(name))
+
+    def run(*targets: str, present: tuple[str, ...] = EVERYTHING, **stubs: str) -> subprocess.CompletedProcess[str]:
+        for name in present:
+            program(programs / name, "#!/bin/sh\n")
+        for name, text in stubs.items():
+            (programs / name).unlink(missing_ok=True)
+            program(programs / name, f"#!/bin/sh\n{text}\n")
+        return subprocess.run(
+            [shutil.which("make"), *targets],
+            cwd=house,
+            env=os.environ | {"PATH": str(programs), "MAKEFLAGS": ""},
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+
+    run.house = house
+    return run
+
+
+def calls(make: Callable) -> list[str]:
+    """What has been made since the last time."""
+    log = make.house / "calls"
+    made = sorted(log.read_text().split()) if log.exists() else []
+    log.unlink(missing_ok=True)
+    return made
+
+
+def test_a_second_make_makes_nothing(make):
+    assert make().returncode == 0
+    assert calls(make) == ["check", "companion", "derive", "derive", "errata", "manual"]
+    done = make()
+    assert (done.returncode, calls(make)) == (0, [])
+    assert "build/companion/index.html" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("changed", "made"),
+    [
+        ("examples/one.mac", ["check", "companion", "derive", "errata"]),
+        ("examples/hard/case.mac", ["companion"]),
+        ("examples/paper/printed.mac", ["companion", "errata"]),
+        ("maxima/holonom.mac", ["check", "companion", "derive", "derive", "errata", "manual"]),
+    ],
+)
+def test_what_a_change_touches_is_made_again(make, changed, made):
+    make()
+    calls(make)
+    newer = (make.house / "build/check.json").stat().st_mtime + 5
+    os.utime(make.house / changed, (newer, newer))
+    assert make().returncode == 0
+    assert calls(make) == made
+
+
+def test_a_check_that_fails_is_made_again(make):
+    program(make.house / ".venv/bin/holonom", HOLONOM + 'case "$(tail -n 1 calls)" in check) exit 1 ;; esac\n')
+    assert make(tail="echo check").returncode == 2
+    assert not (make.house / "build/check.json").exists()
+
+
+def test_without_root_rights_all_that_is_missing_is_told_at_once_and_make_goes_on(make):
+    (make.house / "calls").touch()
+    done = make("setup", present=("cc",), id="echo 1000")
+    assert done.returncode == 0
+    assert done.stderr.count("Missing here") == 1
+    assert "apt-get update && apt-get install maxima libgsl-dev bubblewrap\n" in done.stderr
+
+
+def test_with_root_rights_what_is_missing_is_installed_and_nothing_else(make):
+    install = 'echo "$@" >> asked'
+    done = make("setup", present=("maxima", "cc", "bwrap"), id="echo 0", **{"apt-get": install})
+    assert (done.returncode, done.stderr) == (0, "")
+    assert (make.house / "asked").read_text() == "update -qq\ninstall -qq libgsl-dev\n"
+
+
+def test_a_package_that_cannot_be_installed_is_told(make):
+    done = make("setup", present=("maxima", "cc", "bwrap"), id="echo 0", **{"apt-get": "exit 100"})
+    assert done.returncode == 0
+    assert "apt-get install libgsl-dev" in done.stderr
+
+
+def test_no_python_that_is_new_enough_is_one_sentence(make):
+    """There is nothing to go on with."""
+    newer = (make.house / "pyproject.toml").stat().st_mtime + 5
+    os.utime(make.house / "pyproject.toml", (newer, newer))
+    refusing = "exit 1"
+    done = make("setup", id="echo 1000", python3=refusing, **{"python3.11": refusing})
+    assert done.returncode == 2
+    assert "Holonom needs Python 3.11 or later: please install it." in done.stderr
+    assert "apt-get install python3-venv" in done.stderr
