@@ -1,5 +1,6 @@
 """Maxima with the library already loaded, kept as an image in the user's cache: each run is spared the loading.
 
+In it the library's Lisp functions are compiled (`preload.lisp`).
 An image is made when it is first wanted, by Maxima itself, and bears the name of all that it depends on: the program,
 the library's text, this file. It is used only where it belongs to the user, is out of others' reach, and has the
 checksum that it was made with; where there is none, or none can be made, a run loads the library, and finds the same.
@@ -7,14 +8,15 @@ Only GCL, on which Debian's Maxima runs, makes them here.
 """
 
 import os
+import shutil
 import stat
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import cache
 from hashlib import file_digest, sha256
 from pathlib import Path
-from shutil import disk_usage, move
+from shutil import disk_usage
 
 from .confined import MIB, Confinement, LimitExceeded, Limits, Sandbox, run_confined
 from .files import draft_of, private_directory
@@ -27,13 +29,9 @@ QUIET = ("--init=/dev/null", "--very-quiet")
 KEPT = 3  # images, of so many versions or installations; more while they are in use
 IN_USE = 3600.0  # seconds after its last use in which an image is not removed
 FREE_SPACE = 1024 * MIB  # on a fuller disk none is made
-MAKING = Limits(seconds=20.0, sandbox=Sandbox.TRUSTED)  # the library alone is run
-SAVE = """(in-package :maxima)
-(mfuncall '$load "{library}/holonom.mac")
-(setq *maxima-started* nil *asked-for* nil)
-#+gcl (si::save-system "image")
-(quit)
-"""
+MAKING = Limits(seconds=40.0, sandbox=Sandbox.TRUSTED)  # the library alone is run
+PRELOAD = Path(__file__).with_name("preload.lisp")
+COMPILED = ("functions.lisp", "functions.o")  # the library's Lisp functions, and what they were compiled to
 
 
 @cache
@@ -78,7 +76,7 @@ def _own_folder() -> Path:
 def _name(maxima: str, library: Path, environment: frozenset[tuple[str, str]]) -> str:
     program = Path(maxima).resolve()
     known = [program, program.stat().st_size, program.stat().st_mtime_ns, library, sorted(environment)]
-    texts = [Path(__file__), *sorted(_texts(library))]
+    texts = [Path(__file__), PRELOAD, *sorted(_texts(library))]
     return sha256(b"\0".join([repr(known).encode(), *(each.read_bytes() for each in texts)])).hexdigest()
 
 
@@ -86,39 +84,59 @@ def _texts(library: Path) -> Iterator[Path]:
     return (file for file in library.rglob("*") if file.suffix in (".mac", ".lisp"))
 
 
-def _is_whole(image: Path) -> bool:
-    """Whether an image is there, with its checksum."""
+def _is_whole(*files: Path) -> bool:
+    """Whether files are there with the checksum that was taken when they were made."""
     try:
-        with image.open("rb") as file:
-            return file_digest(file, "sha256").hexdigest() == _checksum(image).read_text(encoding="ascii")
+        return _checksum(files) == _checksum_file(files).read_text(encoding="ascii")
     except (OSError, UnicodeDecodeError):
         return False
 
 
-def _checksum(image: Path) -> Path:
-    return image.with_suffix(".sha256")
+def _checksum(files: Sequence[Path]) -> str:
+    whole = sha256()
+    for each in files:
+        with each.open("rb") as file:
+            whole.update(file_digest(file, "sha256").digest())
+    return whole.hexdigest()
+
+
+def _checksum_file(files: Sequence[Path]) -> Path:
+    return files[0].with_suffix(".sha256")
 
 
 def _make(image: Path, maxima: str, library: Path, environment: Mapping[str, str]) -> None:
     """Have Maxima save itself with the library; an empty file says that it cannot, or that the image does not run."""
     if disk_usage(image.parent).free < FREE_SPACE:
         raise OSError(None, "there is too little space", str(image))
+    kept = [image.with_name(name) for name in COMPILED]
     with private_directory() as directory, draft_of(image) as draft:
+        if _is_whole(*kept):
+            for each in kept:
+                shutil.copy(each, directory / f"kept{each.suffix}")
         quoted = str(library).replace("\\", "\\\\").replace('"', '\\"')
-        (directory / "save.lisp").write_text(SAVE.format(library=quoted), encoding="utf-8")
-        inside = {"HOME": str(directory), "MAXIMA_USERDIR": str(directory), "LC_ALL": "C"}
+        asked = f'{PRELOAD.read_text(encoding="utf-8")}\n(save-with-library "{quoted}")\n'
+        (directory / "save.lisp").write_text(asked, encoding="utf-8")
+        inside = {"HOME": str(directory), "TMPDIR": str(directory), "MAXIMA_USERDIR": str(directory), "LC_ALL": "C"}
         confinement = Confinement(directory, {**environment, **ENVIRONMENT, **inside}, (), MAKING)
         run_confined([maxima, *QUIET, "--preload-lisp=save.lisp"], confinement, bytearray())
         if (directory / "image").exists():
-            move(directory / "image", draft)
+            shutil.move(directory / "image", draft)
             draft.chmod(0o500)
         if run_confined([str(draft), *ARGUMENTS, *QUIET, "--batch-string=quit();"], confinement, bytearray()) != 0:
             draft.unlink(missing_ok=True)
             draft.touch()
-        with draft.open("rb") as file:
-            checksum = file_digest(file, "sha256").hexdigest()
-        _checksum(image).write_text(checksum, encoding="ascii")
+        _keep([directory / name for name in COMPILED], kept)
+        _checksum_file([image]).write_text(_checksum([draft]), encoding="ascii")
         draft.replace(image)
+
+
+def _keep(made: Sequence[Path], kept: Sequence[Path]) -> None:
+    """Keep what was compiled; while it is exchanged it has not its checksum, and nobody takes it."""
+    if all(each.exists() for each in made):
+        _checksum_file(kept).unlink(missing_ok=True)
+        for source, target in zip(made, kept, strict=True):
+            shutil.move(source, target)
+        _checksum_file(kept).write_text(_checksum(kept), encoding="ascii")
 
 
 def _remove_older_ones(folder: Path) -> None:
@@ -126,4 +144,4 @@ def _remove_older_ones(folder: Path) -> None:
     for image in sorted(last_used, key=last_used.__getitem__, reverse=True)[KEPT:]:
         if last_used[image] < time.time() - IN_USE:
             image.unlink(missing_ok=True)
-            _checksum(image).unlink(missing_ok=True)
+            _checksum_file([image]).unlink(missing_ok=True)

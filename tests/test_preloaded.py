@@ -12,21 +12,30 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 make_image = preloaded.preloaded_image.__wrapped__
 
 
+def image(library: Path = maxima.LIBRARY) -> Path | None:
+    return make_image(shutil.which("maxima"), library, frozenset({("PATH", "/usr/bin:/bin")}))
+
+
+@pytest.fixture(scope="module")
+def first_made(tmp_path_factory) -> Path:
+    """A cache with an image, and with what its functions were compiled to."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+        if (found := image()) is None:
+            pytest.skip("this Maxima's Lisp cannot save itself")
+    return found.parent
+
+
 @pytest.fixture
 def cache(tmp_path, monkeypatch) -> Path:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     return tmp_path / "holonom"
 
 
-def image() -> Path | None:
-    return make_image(shutil.which("maxima"), maxima.LIBRARY, frozenset({("PATH", "/usr/bin:/bin")}))
-
-
 @pytest.fixture
-def made(cache) -> Path:
-    if (found := image()) is None:
-        pytest.skip("this Maxima's Lisp cannot save itself")
-    return found
+def made(first_made, cache) -> Path:
+    shutil.copytree(first_made, cache)
+    return image()
 
 
 @pytest.mark.parametrize("example", ["paper/paper.mac", "pendulum.mac"])
@@ -68,14 +77,25 @@ def test_a_maxima_that_cannot_save_itself_is_asked_once(cache, tmp_path, monkeyp
 
 
 @pytest.mark.parametrize(("in_use", "left"), [(3600.0, 2), (-1.0, 1)])
-def test_another_text_of_the_library_has_another_image_and_unused_ones_go(cache, tmp_path, monkeypatch, in_use, left):
+def test_another_text_of_the_library_has_another_image_and_unused_ones_go(made, tmp_path, monkeypatch, in_use, left):
     monkeypatch.setattr(preloaded, "KEPT", 1)
     monkeypatch.setattr(preloaded, "IN_USE", in_use)
     library = shutil.copytree(maxima.LIBRARY, tmp_path / "library")
-    first = make_image(shutil.which("maxima"), library, frozenset())
+    second = image(library)
+    assert second in (kept := list(made.parent.glob("*.image")))
+    assert second != made
+    assert len(kept) == left
+
+
+def test_compiled_functions_serve_until_they_are_torn_or_changed(made, tmp_path):
+    compiled = made.with_name("functions.o")
+    before = compiled.stat().st_mtime_ns
+    library = shutil.copytree(maxima.LIBRARY, tmp_path / "library")
+    image(library)
+    assert compiled.stat().st_mtime_ns == before
+    compiled.write_bytes(compiled.read_bytes()[:-1])
     with (library / "notation.mac").open("a") as file:
         file.write("/* another text */\n")
-    second = make_image(shutil.which("maxima"), library, frozenset())
-    assert first != second
-    assert second in (kept := list(cache.glob("*.image")))
-    assert len(kept) == left
+    image(library)
+    assert compiled.stat().st_mtime_ns != before
+    assert preloaded._is_whole(made.with_name("functions.lisp"), compiled)

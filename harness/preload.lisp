@@ -1,0 +1,43 @@
+;;; Maxima with the library loaded, saved as an image
+;;;
+;;; GCL interprets what it loads as text. The library's Lisp functions are compiled first, all as one file, where there
+;;; is a C compiler; the file is kept with what it was compiled to, and serves as long as the functions do not change.
+
+(in-package :maxima)
+
+(defun save-with-library (library)
+  "Load the library, compile its functions, and save this Maxima in a file called image, in the working directory."
+  (mfuncall '$load (concatenate 'string library "/holonom.mac"))
+  (ignore-errors (load-compiled (library-functions library)))
+  (setq *maxima-started* nil *asked-for* nil)
+  #+gcl (si::save-system "image")
+  (quit))
+
+(defun library-functions (library)
+  "The text of all functions that the library defines in Lisp."
+  (with-output-to-string (out)
+    (let ((*package* (find-package :maxima)) (*print-pretty* nil))
+      (dolist (path (directory (concatenate 'string library "/*/*.lisp")))
+        (with-open-file (in path)
+          (dolist (form (lisp-in-namespace (lisp-forms in)))
+            (if (and (eq (first form) 'defun) (fboundp (second form))) (format out "~S~%" form))))))))
+
+(defun load-compiled (text)
+  "Load functions, compiled now or kept from before: kept.lisp and kept.o."
+  (if (and (probe-file "kept.o") (string= text (text-in "kept.lisp")))
+      (load "kept.o")
+      (compile-anew text)))
+
+(defun compile-anew (text)
+  (with-open-file (out "functions.lisp" :direction :output)
+    (format out "(in-package :maxima)~%~A" text))
+  #+gcl (progn
+          (setq compiler::*opt-two* "-O1" compiler::*opt-three* "-O1") ; as quick as with -O2, and sooner there
+          (compile-file "functions.lisp")
+          (load "functions.o")))
+
+(defun text-in (file)
+  (with-open-file (in file)
+    (read-line in)                      ; (in-package :maxima)
+    (let* ((text (make-string (file-length in))) (end (read-sequence text in)))
+      (subseq text 0 end))))
