@@ -50,7 +50,8 @@ open_namespace()$
 derived : append(general_equations(), as_the_library_reads(example_equations(system, initial_motion_scene)))$
 texts : [{texts}]$
 agreeing(texts) := sublist(makelist(x, x, length(texts)), lambda([x],
-  vanishing(deviation_of(second(texts[x]), derived_counterpart(printed_equations[first(texts[x])], derived)))))$
+  vanishing(deviation_of(parts_of(second(texts[x])),
+                         derived_counterpart(printed_equations[first(texts[x])], derived)))))$
 write_agreeing(file) := write_json(json_list(lambda([x], x), agreeing(texts)), file)$
 """
 
