@@ -23,7 +23,7 @@
   '(mplus mtimes mexpt mlist mequal rat $matrix
     mcond mgreaterp mgeqp mlessp mleqp mand mor mnot mnotequal $equal $kind
     $max %max $min %min $unit_step %unit_step $hstep %hstep
-    $point $segment $polyline $circle $mechanical_system $motion_scene)
+    $cubic_spline $point $segment $polyline $circle $mechanical_system $motion_scene)
   "What a description may hold besides the functions that documents know.")
 
 ;;; The first fields of the structures in system.mac and scene.mac

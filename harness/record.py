@@ -194,6 +194,8 @@ class Scene:
         The equations of its initial motion.
     left_out : LeftOut or None
         Those of them that were not made.
+    law_around_start : bool
+        Whether the control law is switched, as by a table, and held as it is around the initial instant.
     """
 
     name: str
@@ -209,6 +211,7 @@ class Scene:
     observe: tuple[str, ...]
     equations: tuple[Equation, ...]
     left_out: LeftOut | None = None
+    law_around_start: bool = False
 
 
 @dataclass(frozen=True)
@@ -314,6 +317,7 @@ def _scene(scene: dict[str, Any]) -> Scene:
         derivation=scene["derivation"],
         effects=tuple(scene["effects"]),
         control_law=_values(scene["control_law"]),
+        law_around_start=scene.get("law_around_start", False),
         parameter_values=_values(scene["parameter_values"]),
         initial_state=_values(scene["initial_state"]),
         given=tuple(scene["given"]),

@@ -116,6 +116,8 @@ class MotionProblem:
         ``energy``, the energy function, and ``power``, its rate along the motion; they need the multipliers.
     drawing : Drawing or None
         How the system looks; None where it does not say.
+    law_end : str or None
+        The last instant at which the control law has values, where tables give it.
     signs : tuple of Sign
         Of the functions whose changes of sign switch the motion; empty where it is analytic.
     switching : Program or None
@@ -145,6 +147,7 @@ class MotionProblem:
     matrices: Program
     energy: Program
     drawing: "Drawing | None"
+    law_end: str | None = None
     signs: tuple[Sign, ...] = ()
     switching: Program | None = None
     parameters: tuple[str, ...] = ()
@@ -280,6 +283,7 @@ def read_problem(text: str) -> MotionProblem:
         matrices=program_of(document["matrices"]),
         energy=program_of(document["energy"]),
         drawing=_drawing(document["drawing"]),
+        law_end=document.get("law_end"),
         signs=tuple(Sign(sign["name"], sign["of"], By(sign["by"])) for sign in document["signs"]),
         switching=_optional(document["switching"]),
         parameters=tuple(document["parameters"]),

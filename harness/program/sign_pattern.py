@@ -160,7 +160,7 @@ def with_numbers(program: Program, numbers: Mapping[str, Fraction]) -> Program:
         assignments=tuple(kept),
         outputs={name: _substituted(value, known) for name, value in program.outputs.items()},
     )
-    return replace(part, operations=count_operations(part))
+    return computing(part, part.outputs)
 
 
 def _with_programs(problem: MotionProblem, changed: Callable[[Program], Program]) -> MotionProblem:

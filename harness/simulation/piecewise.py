@@ -15,10 +15,12 @@ state, an impulse of a surface whose law of impact nobody has given.
 
 from bisect import bisect_left, bisect_right
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from enum import StrEnum
+from fractions import Fraction
 from functools import cached_property
+from itertools import islice
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,6 +29,7 @@ from ..failures import Failure, HolonomError
 from ..program.motion_problem import By, MotionProblem, Sign, computing
 from ..program.precision import Precision
 from ..program.sign_pattern import HELD, Pattern, drive, holdable, in_numbers, problem_in, program_in
+from .clock import Tick, ticks
 from .constraints.program_projection import ProgramProjection
 from .constraints.projection import project
 from .constraints.singularity import require_gradient, shortly_before, vanishing_instants
@@ -79,14 +82,22 @@ class Part:
     problem : MotionProblem
         Its start is where the motion first has this pattern.
     pattern : Pattern
+    clock : mapping of str to Tick
+        The signs that the time alone decides.
     request, precision, end
         As for `PiecewiseMotion`.
     """
 
     def __init__(
-        self, problem: MotionProblem, pattern: Pattern, request: SimulationRequest, precision: Precision, end: Any
+        self,
+        problem: MotionProblem,
+        pattern: Pattern,
+        clock: Mapping[str, Tick],
+        request: SimulationRequest,
+        precision: Precision,
+        end: Any,
     ) -> None:
-        self._whole, self.pattern, self._precision = problem, pattern, precision
+        self._whole, self.pattern, self._precision, self._clock = problem, pattern, precision, clock
         analytic = problem_in(problem, pattern)
         self.matrices = MotionMatrices(analytic)
         obstacle = analytic.obstacle or dependence(self.matrices, Instant(*start_of(analytic)))
@@ -103,7 +114,7 @@ class Part:
     @cached_property
     def surfaces(self) -> Surfaces:
         """The surfaces on which the pattern ends."""
-        return Surfaces(self._whole, self.pattern, self._precision)
+        return Surfaces(self._whole, self.pattern, self._precision, self._clock)
 
     @cached_property
     def momenta(self) -> Any:
@@ -159,6 +170,8 @@ class PiecewiseMotion:
     def __init__(self, problem: MotionProblem, request: SimulationRequest, precision: Precision, end: Any) -> None:
         self._problem, self._request, self._precision, self._end = problem, request, precision, end
         self._signs = {sign.name: sign for sign in problem.signs}
+        self._clock = ticks(problem)
+        self._to_come = deque(sorted({tick.t for tick in self._clock.values()}))
         self._parts: dict[tuple[Any, ...], Part] = {}
         self._span = float(end) - float(problem.start["t"])
         self._left: tuple[str, ...] = ()
@@ -277,9 +290,10 @@ class PiecewiseMotion:
 
     def _next_stop(self, until: Any) -> Any:
         stops, step = self.part.stops, self._request.max_step
+        ticking = [self._precision.ratio(t) for t in islice(self._to_come, 1)]
         ahead = stops[bisect_right(stops, float(self.time)) :][:1]
         limits = [self.time + self._precision.number(repr(step))] if step is not None else []
-        return min([until, *limits, *(self._precision.number(repr(t)) for t in ahead)])
+        return min([until, *limits, *ticking, *(self._precision.number(repr(t)) for t in ahead)])
 
     def _require_way_on(self, until: Any) -> None:
         by_time = self.part.by_time
@@ -302,8 +316,21 @@ class PiecewiseMotion:
                     yield Piece(piece.start, crossing.t, piece.states)
                 self._switch(crossing, piece.states(np.array([crossing.t]))[:, 0])
                 return
+        if self._to_come and self._precision.ratio(self._to_come[0]) == self.time != self._end:
+            self._tick(self._to_come.popleft())
 
     # ---- switching ----
+
+    def _tick(self, instant: Fraction) -> None:
+        """Go on from an instant at which signs change that the time alone decides."""
+        t, state, before = self.time, self.state.copy(), self.part
+        changed = [name for name, tick in self._clock.items() if tick.t == instant]
+        after = self._part(
+            {**before.pattern, **{name: self._clock[name].to for name in changed}}, self._started_at(t, state)
+        )
+        passages = self._enter(before, after, self._signs[changed[0]], t, state)
+        self._left = self._left if t == self.phases[-2].start else ()
+        self.switchings += [Switching(float(t), self._signs[name].of, passages) for name in changed]
 
     def _switch(self, crossing: Crossing, state: Numbers) -> None:
         t, sign, before = crossing.t, self._signs[crossing.name], self.part
@@ -315,18 +342,21 @@ class PiecewiseMotion:
         if not held and sign.by is not By.TIME:
             pattern[sign.name] = self._behind(sign, pattern, t, state, crossing.to)
         after = self._part(pattern, self._started_at(t, state))
-        moved = self._passed(before, after, sign, t, state)
-        after.engine.restart(t, moved)
-        self.phases.append(Phase(t, after))
+        passage = self._enter(before, after, sign, t, state)
         self._left = (*self._left, sign.name) if t == self.phases[-2].start else (sign.name,)
-        self._jump = self._jump + (self._energy(after, t, moved) - self._energy(before, t, state))
         if held:
             passage = Passage.RELEASED
         elif pattern[sign.name] == HELD:
             passage = Passage.HELD
-        else:
-            passage = Passage.CROSSED if _close(moved, state) else Passage.IMPULSE
         self.switchings.append(Switching(float(t), sign.of, passage))
+
+    def _enter(self, before: Part, after: Part, sign: Sign, t: Any, state: Numbers) -> Passage:
+        """Go on with another part; how the surface is passed where nothing holds the motion on it."""
+        moved = self._passed(before, after, sign, t, state)
+        after.engine.restart(t, moved)
+        self.phases.append(Phase(t, after))
+        self._jump = self._jump + (self._energy(after, t, moved) - self._energy(before, t, state))
+        return Passage.CROSSED if _close(moved, state) else Passage.IMPULSE
 
     def _behind(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers, to: int) -> int | str:
         """The sign with which a motion goes on from a surface of the state."""
@@ -378,7 +408,13 @@ class PiecewiseMotion:
     def _first_pattern(self, t: Any, state: Numbers) -> Pattern:
         """Signs at the start, each function after those that it may contain."""
         pattern: dict[str, int | str] = dict.fromkeys(self._signs, 1)
+        for name, tick in self._clock.items():
+            pattern[name] = tick.to if self._precision.ratio(tick.t) <= t else -tick.to
+        while self._to_come and self._precision.ratio(self._to_come[0]) <= t:
+            self._to_come.popleft()
         for sign in self._problem.signs:
+            if sign.name in self._clock:
+                continue
             found = self._output("switch", sign, pattern, t, state)
             if abs(found) <= ZERO * _size(state):
                 pattern[sign.name] = self._leaving(sign, pattern, t, state)
@@ -435,7 +471,7 @@ class PiecewiseMotion:
     def _part(self, pattern: Pattern, problem: MotionProblem) -> Part:
         key = tuple(pattern.values())
         if key not in self._parts:
-            self._parts[key] = Part(problem, pattern, self._request, self._precision, self._end)
+            self._parts[key] = Part(problem, pattern, self._clock, self._request, self._precision, self._end)
         return self._parts[key]
 
     def _started_at(self, t: Any, state: Numbers) -> MotionProblem:

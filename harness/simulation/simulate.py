@@ -125,13 +125,15 @@ def last_instant(problem: MotionProblem, until: Fraction | None, precision: Prec
     Raises
     ------
     HolonomError
-        There is none, or it is not after the start.
+        There is none, it is not after the start, or a table of the control law ends before it.
     """
     if until is None and problem.time_span is None:
         raise HolonomError(Failure.NO_END, problem.scene)
     end = precision.number(problem.time_span[1]) if until is None else precision.ratio(until)
     if not end > precision.number(problem.start["t"]):
         raise HolonomError(Failure.NOT_AFTER_START, detail=f"{float(end):g} is not after {problem.start['t']}")
+    if problem.law_end is not None and end > precision.number(problem.law_end):
+        raise HolonomError(Failure.LAW_ENDS, detail=f"{float(problem.law_end):.10g}")
     return end
 
 

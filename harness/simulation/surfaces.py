@@ -4,7 +4,7 @@ They are sampled at Chebyshev's points of a step and interpolated between, by po
 engine is resolved by fewer. The instant is found by halving, to the last bit of its numbers.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -52,13 +52,19 @@ class Surfaces:
         With signs.
     pattern : Pattern
     precision : Precision
+    known : collection of str
+        Signs whose changes are known without looking for them.
     """
 
-    def __init__(self, problem: MotionProblem, pattern: Pattern, precision: Precision) -> None:
+    def __init__(
+        self, problem: MotionProblem, pattern: Pattern, precision: Precision, known: Collection[str] = ()
+    ) -> None:
         self._precision, self._unused = precision, len(problem.multipliers)
         self._rows: list[tuple[str, int, int]] = []
         programs = []
         for index, sign in enumerate(problem.signs, start=1):
+            if sign.name in known:
+                continue
             if (value := pattern[sign.name]) == HELD:
                 for to in (1, -1):
                     self._rows.append((sign.name, to, -to))
@@ -100,6 +106,8 @@ class Surfaces:
         -------
         Crossing or None
         """
+        if not self._rows:
+            return None
         places, values = self._samples(piece, NODES)
         for row, (name, *_) in enumerate(self._rows):
             if name in left:

@@ -122,7 +122,8 @@ def _derivation(derivation: Derivation) -> str:
 
 
 def _scene(scene: Scene) -> str:
-    given = [("Control law", scene.control_law), ("Parameters", scene.parameter_values)]
+    law = "Control law around the initial instant" if scene.law_around_start else "Control law"
+    given = [(law, scene.control_law), ("Parameters", scene.parameter_values)]
     return _section(
         scene.title or scene.name,
         [*(_inline(what, _equalities(values)) for what, values in given if values), *map(_equation, scene.equations)],

@@ -1,0 +1,127 @@
+"""Control laws given by tables, against SciPy's splines: x'' = u(t), so x is the spline's second antiderivative."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.interpolate import CubicSpline
+
+import holonom
+from holonom.failures import HolonomError
+from holonom.simulation.clock import ticks
+
+POINTS = [(0, 0), (1, 2), (1.3, 0.5), (3.5, 1), (4, -1)]
+ENDS = {"natural": "natural", "clamped": "clamped", "[3, -1/2]": ((1, 3.0), (1, -0.5))}
+ENGINES = {"taylor": 1e-14, "runge-kutta": 1e-12, "robust": 1e-10}
+SCENE = """
+load("holonom.mac")$
+system : holonomic_system(coordinates = [x], controls = [u], kinetic_energy = dot(x)^2/2, forces = [u])$
+drive : holonomic_scene(system, control_law = [u = {law}], initial_state = [x = 1, dot(x) = -2], time_span = [{span}])$
+"""
+
+
+@pytest.fixture
+def driven(tmp_path: Path):
+    """A scene under a law, beside a CSV file."""
+
+    def write(law: str, span: str = "0, 4", csv: str = "") -> holonom.Scene:
+        (tmp_path / "drive.csv").write_text(csv, encoding="utf-8")
+        (tmp_path / "scene.mac").write_text(SCENE.format(law=law, span=span), encoding="utf-8")
+        return holonom.load(tmp_path / "scene.mac")
+
+    return write
+
+
+def points(rows=POINTS):
+    return "[" + ", ".join(f"[{t}, {u}]" for t, u in rows) + "]"
+
+
+def truth(instants, ends="natural", rows=POINTS, start=0.0):
+    """The motion from x = 1, dot(x) = -2 at the start."""
+    spline = CubicSpline(*np.array(rows, dtype=float).T, bc_type=ENDS[ends])
+    rate, place = spline.antiderivative(1), spline.antiderivative(2)
+    since = instants - start
+    return 1 - 2 * since + place(instants) - place(start) - rate(start) * since
+
+
+@pytest.mark.parametrize("ends", ENDS)
+def test_the_motion_under_a_table_is_the_splines_second_antiderivative(driven, ends):
+    motion = driven(f"table({points()}, {ends})").simulate(samples=9)
+    assert motion["x"] == pytest.approx(truth(motion.instants, ends), rel=1e-14, abs=1e-14)
+
+
+@pytest.mark.parametrize("engine", ["runge-kutta", "robust"])
+def test_every_engine_follows_it(driven, engine, gsl):
+    motion = driven(f"table({points()})").simulate(samples=9, engine=engine)
+    assert motion["x"] == pytest.approx(truth(motion.instants), rel=ENGINES[engine], abs=ENGINES[engine])
+
+
+def test_a_csv_file_beside_the_scene_gives_the_same_motion(driven):
+    csv = "# measured\ntime, u\n\n" + "".join(f"{t:.1e},  {u}\r\n" for t, u in POINTS)
+    motion = driven('table("drive.csv")', csv=csv).simulate(samples=5)
+    assert motion["x"] == pytest.approx(truth(motion.instants), rel=1e-14, abs=1e-14)
+
+
+def test_steps_end_at_every_point_and_on_the_number_nearest_to_it(driven):
+    motion = driven(f"table({points()})").simulate()
+    assert {1.0, 1.3, 3.5} <= set(motion.instants.tolist())
+    assert [switching.t for switching in motion.report.switchings] == [1.0, 1.3, 3.5]
+
+
+def test_a_motion_may_start_at_a_point(driven):
+    """The spline is not analytic there; the motion goes on from it all the same."""
+    motion = driven(f"table({points()})", span="1.3, 4").simulate(samples=5)
+    assert motion["x"] == pytest.approx(truth(motion.instants, start=1.3), rel=1e-14, abs=1e-14)
+
+
+def test_the_check_takes_the_law_around_the_start(driven):
+    scene = driven(f"1/2 + table({points()})*sin(t)")
+    assert scene.record.scenes[0].law_around_start
+    found = {verdict.number: verdict.verdict.value for verdict in scene.check().verdicts}
+    assert found["13"] in ("proved", "agrees")
+    assert found["18"] in ("proved", "agrees")
+
+
+def test_signs_of_the_time_alone_change_at_known_instants(driven):
+    problem = driven("if 3*t < 7 then t else sin(t) + max(t^2 - 9, 0) - 2", span="0, 4")._problem("direct", 17)
+    known = ticks(problem)
+    assert [(sign.of, known[sign.name].to) for sign in problem.signs if sign.name in known] == [("3*t-7", 1)]
+    assert float(next(iter(known.values())).t) == pytest.approx(7 / 3)
+
+
+def test_many_points(driven):
+    """One part of the motion for each interval, of a program as short as under one polynomial."""
+    rows = [(k / 8, round(math.sin(k), 6)) for k in range(14)]
+    motion = driven(f"table({points(rows)})", span="0, 13/8").simulate(samples=3)
+    assert motion["x"] == pytest.approx(truth(motion.instants, rows=rows), rel=1e-14, abs=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("law", "span", "csv", "said"),
+    [
+        ("table([[0, 0], [1, 2], [1, 3]])", "0, 1", "", "table: the times must increase; point 3 has 1 after 1"),
+        ("table([[0, 0]])", "0, 1", "", "a table needs two points at least; it has 1"),
+        ("table([[0, 0], [1, u0]])", "0, 1", "", "the point [1,u0] is not made of two numbers"),
+        ("table([0, 1])", "0, 1", "", "the points must be a list of lists [t, u]"),
+        ("table([[0, 0], [1, 2]], parabolic)", "0, 1", "", "after the points stands natural, clamped, or the list"),
+        ("table([[0, 0], [1, 2]])", "0, 2", "", "time_span ends at 2, and the table of u at 1"),
+        ("table([[1, 0], [2, 2]])", "0, 2", "", "the motion starts at t = 0, and the table of u reaches from 1 to 2"),
+        ('table("drive.csv")', "0, 1", "0, 0\n1, 2x\n", "drive.csv, line 2: '2x' is no number"),
+        ('table("drive.csv")', "0, 1", "0, 0\n1, 2, 3\n", "drive.csv, line 2: a line must hold two numbers"),
+        ('table("drive.csv")', "0, 1", "0, 0\n1, 1e999\n", "drive.csv, line 2: '1e999' is no number"),
+        ('table("drive.csv")', "0, 1", "", "drive.csv: a table needs two points at least; it has 0"),
+        ('table("other.csv")', "0, 1", "", "there is no file other.csv beside the scene"),
+        ("diff(table([[0, 0], [1, 2]]), t)", "0, 1", "", "derivative"),
+    ],
+)
+def test_a_bad_table_is_refused_in_one_sentence(driven, law, span, csv, said):
+    with pytest.raises(HolonomError) as refused:
+        driven(law, span, csv).simulate()
+    assert said in str(refused.value)
+
+
+def test_no_motion_leads_beyond_the_last_point(driven):
+    scene = driven(f"table({points()})")
+    with pytest.raises(HolonomError, match="the tables of the control law end at t = 4"):
+        scene.simulate(until=5)
