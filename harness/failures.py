@@ -100,6 +100,10 @@ class Failure(Enum):
     )
     NO_END = ("the scene has no time span", "give it one, or the last instant with --until")
     NOT_AFTER_START = ("the last instant is not after the start: {detail}", "give a later one with --until")
+    NO_EVENT_VALUE = (
+        "an expression in 'until' has no real, finite value: {detail}",
+        "give one that has values along the whole motion",
+    )
     LAW_ENDS = ("the tables of the control law end at t = {detail}", "let the motion end there or before, with --until")
     GSL_MISSING = (
         "the Runge-Kutta engine needs the GNU Scientific Library with its headers",

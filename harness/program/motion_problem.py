@@ -118,6 +118,11 @@ class MotionProblem:
         How the system looks; None where it does not say.
     law_end : str or None
         The last instant at which the control law has values, where tables give it.
+    until : tuple of str
+        Expressions whose first zero crossing ends the motion, as Maxima prints them; empty where the time span alone
+        does.
+    events : Program or None
+        ``event[i]``, their values; they may need the multipliers. None without `until`.
     signs : tuple of Sign
         Of the functions whose changes of sign switch the motion; empty where it is analytic.
     switching : Program or None
@@ -148,6 +153,8 @@ class MotionProblem:
     energy: Program
     drawing: "Drawing | None"
     law_end: str | None = None
+    until: tuple[str, ...] = ()
+    events: Program | None = None
     signs: tuple[Sign, ...] = ()
     switching: Program | None = None
     parameters: tuple[str, ...] = ()
@@ -284,6 +291,8 @@ def read_problem(text: str) -> MotionProblem:
         energy=program_of(document["energy"]),
         drawing=_drawing(document["drawing"]),
         law_end=document.get("law_end"),
+        until=tuple(document.get("until", ())),
+        events=_optional(document.get("events")),
         signs=tuple(Sign(sign["name"], sign["of"], By(sign["by"])) for sign in document["signs"]),
         switching=_optional(document["switching"]),
         parameters=tuple(document["parameters"]),

@@ -172,6 +172,7 @@ def _with_programs(problem: MotionProblem, changed: Callable[[Program], Program]
         matrices=changed(problem.matrices),
         energy=changed(problem.energy),
         drawing=problem.drawing and replace(problem.drawing, program=changed(problem.drawing.program)),
+        events=problem.events and changed(problem.events),
     )
 
 

@@ -44,7 +44,9 @@ def report_document(report: Report) -> dict[str, Any]:
     said = {"engine": engine_text(report.legs), "remarks": tuple(remarks(report.legs, report.cases))}
     lists = {name: tuple(each._asdict() for each in getattr(report, name)) for name in ("legs", "switchings", "doubts")}
     correction = report.correction and dict(zip(("name", "size"), report.correction, strict=True))
-    attributes = vars(report) | lists | said | {"trusted": report.trusted, "correction": correction}
+    ending = None if report.ending is None else report.ending._asdict()
+    attributes = vars(report) | lists | said
+    attributes |= {"trusted": report.trusted, "correction": correction, "ending": ending}
     return published(Publication.SIMULATION, {k: _published(value, report.digits) for k, value in attributes.items()})
 
 

@@ -11,6 +11,7 @@ from ..failures import missing_package
 from ..shown import Show, Shown
 from .diagnosis import HardCase
 from .engines.switching import Leg
+from .events import Ending
 from .piecewise import Switching
 from .trust import Doubt
 
@@ -59,6 +60,8 @@ class Report:
         Instants at which the motion is not analytic, and how it passed them.
     doubts : tuple of Doubt
         What is out of proportion to the tolerance; a motion with any is no result.
+    ending : Ending or None
+        Whether an event ended the motion; None where the scene names none.
     """
 
     t: Any
@@ -80,6 +83,7 @@ class Report:
     cases: tuple[HardCase, ...]
     switchings: tuple[Switching, ...]
     doubts: tuple[Doubt, ...]
+    ending: Ending | None = None
 
     @property
     def trusted(self) -> bool:

@@ -17,6 +17,7 @@ from .diagnosis import HardCase, Instant, hard_cases
 from .diagnostics import condition, residuals
 from .engines.engine import Piece, Solutions
 from .evaluation import Numbers, as_floats
+from .events import Ending, first_event
 from .faint import may_hide
 from .matrices import Matrices, Vector
 from .passed_over import StepsHeldAgainstTheEquations
@@ -78,10 +79,25 @@ def follow(
         The request cannot be met: its precision, tolerance, engine or end; or the motion cannot be followed so far.
     """
     with one_blas_thread():
+        end, ending = _end_of(problem, request)
         with doing("compiling the motion"):
-            prepared = _Simulation(followable(problem, request), request, take)
+            prepared = _Simulation(followable(problem, request), request, take, end, ending)
         with doing("following the motion"):
             return prepared.run(progress)
+
+
+def _end_of(problem: MotionProblem, request: SimulationRequest) -> tuple[Any, Ending | None]:
+    """The last instant of a motion, and whether an event makes it so."""
+    precision = read_precision(str(request.precision))
+    end = last_instant(problem, request.until, precision)
+    if not problem.until:
+        return end, None
+    with doing("looking for the end of the motion"):
+        closed = with_values_in(problem)
+        event = first_event(PiecewiseMotion(closed, request, precision, end), closed, precision, end)
+    if event is None:
+        return end, Ending(problem.until, None)
+    return event.t, Ending(problem.until, event.name)
 
 
 def followable(problem: MotionProblem, request: SimulationRequest) -> MotionProblem:
@@ -140,11 +156,12 @@ def last_instant(problem: MotionProblem, until: Fraction | None, precision: Prec
 class _Simulation:
     """One simulation on its way: what the steps of `simulate` share."""
 
-    def __init__(self, problem: MotionProblem, request: SimulationRequest, take: TakeSamples) -> None:
+    def __init__(
+        self, problem: MotionProblem, request: SimulationRequest, take: TakeSamples, end: Any, ending: Ending | None
+    ) -> None:
         self.problem, self.samples, self.take = problem, request.samples, take
-        self.precision = read_precision(str(request.precision))
+        self.precision, self.end, self.ending = read_precision(str(request.precision)), end, ending
         self.start = self.precision.number(problem.start["t"])
-        self.end = last_instant(problem, request.until, self.precision)
         begun = time.perf_counter()
         self.motion = PiecewiseMotion(problem, request, self.precision, self.end)
         self.first = self.motion.state.copy()
@@ -265,6 +282,7 @@ class _Simulation:
             correction=self.problem.correction,
             cases=self._cases(state, as_floats(multipliers)),
             switchings=tuple(self.motion.switchings),
+            ending=self.ending,
             doubts=tuple(doubts(self._missed(left, at), self.motion.tol, self.motion.steps)),
         )
 

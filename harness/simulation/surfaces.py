@@ -1,9 +1,11 @@
 """Switching functions along a motion: where the first of them changes its sign within a step.
 
 They are sampled at Chebyshev's points of a step and interpolated between, by polynomials of degree 32; a step of an
-engine is resolved by fewer. The instant is found by halving, to the last bit of its numbers.
+engine is resolved by fewer. Two zeros close together show by the polynomial's minimum between them. The instant is
+found by halving, to the last bit of its numbers.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
@@ -17,13 +19,14 @@ from ..program.precision import Precision
 from ..program.sign_pattern import HELD, Pattern, drive, program_in
 from .engines.engine import Piece
 from .evaluation import Numbers, as_floats, evaluation, zeros
+from .matrices import Vector
 
 DEGREE, FINE = 32, 256
 NODES = np.concatenate([[0.0], np.sort(1 + chebyshev.chebpts1(DEGREE + 1)) / 2, [1.0]])
 PLACES = np.linspace(0.0, 1.0, FINE + 1)
-INTERPOLATED = chebyshev.chebvander(2 * PLACES - 1, DEGREE) @ np.linalg.inv(
-    chebyshev.chebvander(2 * NODES[1:-1] - 1, DEGREE)
-)
+TO_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(2 * NODES[1:-1] - 1, DEGREE))
+BETWEEN = chebyshev.chebvander(2 * PLACES - 1, DEGREE)
+CORRECTIONS = 4  # of a minimum, by Newton's method
 
 
 class Crossing(NamedTuple):
@@ -43,55 +46,27 @@ class Crossing(NamedTuple):
     to: int
 
 
-class Surfaces:
-    """The surfaces on which a pattern of signs ends.
+class SignedFunctions(ABC):
+    """Functions along a motion, each with the sign that it has until its first crossing.
 
     Parameters
     ----------
-    problem : MotionProblem
-        With signs.
-    pattern : Pattern
     precision : Precision
-    known : collection of str
-        Signs whose changes are known without looking for them.
     """
 
-    def __init__(
-        self, problem: MotionProblem, pattern: Pattern, precision: Precision, known: Collection[str] = ()
-    ) -> None:
-        self._precision, self._unused = precision, len(problem.multipliers)
-        self._rows: list[tuple[str, int, int]] = []
-        programs = []
-        for index, sign in enumerate(problem.signs, start=1):
-            if sign.name in known:
-                continue
-            if (value := pattern[sign.name]) == HELD:
-                for to in (1, -1):
-                    self._rows.append((sign.name, to, -to))
-                    programs.append(_alone(drive(problem, sign.name, to, pattern), len(programs)))
-            else:
-                self._rows.append((sign.name, -value, value))
-                function = computing(problem.switching, {f"switch[{index}]"})
-                programs.append(_alone(program_in(problem, function, pattern), len(programs)))
-        self._functions = [evaluation(program, precision) for program in programs]
+    def __init__(self, precision: Precision) -> None:
+        self._precision = precision
+        self._rows: list[tuple[str, int, int]] = []  # name, value after the crossing, sign before it
 
+    @abstractmethod
     def values(self, instants: Numbers, states: Numbers) -> Numbers:
-        """How far inside of its pattern the motion is, by each surface; negative outside.
+        """Each function times its sign, shape (functions, k): negative behind its crossing.
 
         Parameters
         ----------
         instants : ndarray, shape (k,)
         states : ndarray, shape (2n, k)
-
-        Returns
-        -------
-        ndarray of float, shape (surfaces, k)
         """
-        unused = zeros(self._precision, self._unused, len(instants))
-        inputs = np.ascontiguousarray(np.concatenate([np.reshape(instants, (1, -1)), states, unused]))
-        found = [as_floats(function(inputs)[0]) for function in self._functions]
-        inside = np.array([side for *_, side in self._rows], dtype=float)
-        return inside[:, None] * np.reshape(found, (len(self._rows), len(instants)))
 
     def first_crossing(self, piece: Piece, left: Sequence[str]) -> Crossing | None:
         """Where the motion first leaves its pattern within a step.
@@ -132,11 +107,13 @@ class Surfaces:
         inner = values[1:-1]
         if not np.isfinite(inner).all() or np.min(inner) > np.ptp(inner):
             return None
-        between = INTERPOLATED @ inner
+        coefficients = TO_COEFFICIENTS @ inner
+        between = BETWEEN @ coefficients
         places = np.flatnonzero((between < 0) & (PLACES > 0) & (end > PLACES))
-        if not places.size:
+        around = PLACES[places[0] + np.array([-1, 0])] if places.size else _narrow_dip(coefficients, between, end)
+        if around is None:
             return None
-        instants, found = self._samples(piece, PLACES[[places[0] - 1, places[0]]])
+        instants, found = self._samples(piece, around)
         return tuple(instants) if found[row, 0] >= 0 > found[row, 1] else None
 
     def _samples(self, piece: Piece, places: Numbers) -> tuple[Numbers, Numbers]:
@@ -156,6 +133,72 @@ class Surfaces:
             else:
                 before = middle
         return before
+
+
+class Surfaces(SignedFunctions):
+    """The surfaces on which a pattern of signs ends.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        With signs.
+    pattern : Pattern
+    precision : Precision
+    known : collection of str
+        Signs whose changes are known without looking for them.
+    """
+
+    def __init__(
+        self, problem: MotionProblem, pattern: Pattern, precision: Precision, known: Collection[str] = ()
+    ) -> None:
+        super().__init__(precision)
+        self._unused = len(problem.multipliers)
+        programs = []
+        for index, sign in enumerate(problem.signs, start=1):
+            if sign.name in known:
+                continue
+            if (value := pattern[sign.name]) == HELD:
+                for to in (1, -1):
+                    self._rows.append((sign.name, to, -to))
+                    programs.append(_alone(drive(problem, sign.name, to, pattern), len(programs)))
+            else:
+                self._rows.append((sign.name, -value, value))
+                function = computing(problem.switching, {f"switch[{index}]"})
+                programs.append(_alone(program_in(problem, function, pattern), len(programs)))
+        self._functions = [evaluation(program, precision) for program in programs]
+
+    def values(self, instants: Numbers, states: Numbers) -> Numbers:
+        """How far inside of its pattern the motion is, by each surface; negative outside.
+
+        Parameters
+        ----------
+        instants : ndarray, shape (k,)
+        states : ndarray, shape (2n, k)
+
+        Returns
+        -------
+        ndarray of float, shape (surfaces, k)
+        """
+        unused = zeros(self._precision, self._unused, len(instants))
+        inputs = np.ascontiguousarray(np.concatenate([np.reshape(instants, (1, -1)), states, unused]))
+        found = [as_floats(function(inputs)[0]) for function in self._functions]
+        inside = np.array([side for *_, side in self._rows], dtype=float)
+        return inside[:, None] * np.reshape(found, (len(self._rows), len(instants)))
+
+
+def _narrow_dip(coefficients: Vector, between: Vector, end: float) -> Vector | None:
+    """A place and a later one where a polynomial that no sample shows negative is so: the first minimum below zero."""
+    slope = chebyshev.chebder(coefficients)
+    bend = chebyshev.chebder(slope)
+    for least in 1 + np.flatnonzero((between[1:-1] <= between[:-2]) & (between[1:-1] <= between[2:])):
+        low, place, high = 2 * PLACES[least - 1 : least + 2] - 1
+        for _ in range(CORRECTIONS):
+            if (curvature := chebyshev.chebval(place, bend)) <= 0:
+                break
+            place = min(max(place - chebyshev.chebval(place, slope) / curvature, low), high)
+        if chebyshev.chebval(place, coefficients) < 0 and (1 + place) / 2 < end:
+            return (1 + np.array([low, place])) / 2
+    return None
 
 
 def _alone(program: Program, index: int) -> Program:

@@ -77,6 +77,17 @@ def _quality(report: "Report") -> Iterator[str]:
     yield f"{report.compile_seconds:.3f} s to compile{code}, {report.run_seconds:.3g} s to run"
     yield from remarks(report.legs, report.cases)
     yield from _switchings(report.switchings)
+    if report.ending is not None:
+        yield _ending(report)
+
+
+def _ending(report: "Report") -> str:
+    """Why the motion ends where it does."""
+    if report.ending.crossed is not None:
+        return f"The motion ends at t = {float(report.t):.10g}, where {report.ending.crossed} crosses zero."
+    of = report.ending.of
+    never = f"{of[0]} does not cross zero" if len(of) == 1 else f"none of {', '.join(of)} crosses zero"
+    return f"The motion ends with the time span at t = {float(report.t):.10g}; {never} before."
 
 
 def _switchings(switchings: "Sequence[Switching]") -> Iterator[str]:

@@ -1,0 +1,99 @@
+"""Motions that end at an event, against the instants that closed forms give."""
+
+import io
+
+import mpmath
+import pytest
+from rich.console import Console
+
+import holonom
+from holonom.cli.tables.simulation import show_simulation
+from holonom.failures import HolonomError
+from holonom.simulation.document import report_document
+from holonom.simulation.events import Ending
+
+THROWN = """
+system : holonomic_system(coordinates = [x, y], parameters = [g], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  potential_energy = g*y)$
+thrown : holonomic_scene(system, parameter_values = [g = 981/100],
+  initial_state = [x = 0, y = 0, dot(x) = 3, dot(y) = 4], time_span = [0, 5], until = [{until}])$
+"""
+STRING = """
+system : holonomic_system(coordinates = [x, y], parameters = [g], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  potential_energy = g*y, constraints = [x^2 + y^2 - 1])$
+swung : holonomic_scene(system, parameter_values = [g = 981/100],
+  initial_state = [x = 0, y = -1, dot(x) = 2*sqrt(981/100)], time_span = [0, 5], until = [lambda1])$
+"""
+ENGINES = {"taylor": 1e-14, "runge-kutta": 1e-12, "robust": 1e-10}
+FALL = 8 / 9.81  # until a body thrown upward at 4 m/s is back
+
+
+def thrown(until: str) -> holonom.Scene:
+    return holonom.system(THROWN.format(until=until))
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_body_thrown_upward_is_back_after_2_v_over_g(engine, gsl):
+    motion = thrown("y, x = 100").simulate(samples=5, engine=engine)
+    assert float(motion.report.t) == pytest.approx(FALL, rel=ENGINES[engine])
+    assert motion.report.ending == Ending(("y", "x-100"), "y")
+    assert motion.instants == pytest.approx([FALL * k / 4 for k in range(5)], rel=ENGINES[engine])
+    assert motion["y"][-1] == pytest.approx(0, abs=ENGINES[engine])
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_string_is_slack_at_two_thirds_of_its_length_above_the_centre(engine, gsl):
+    """From below at 2 sqrt(g l): the tension vanishes where v^2 = g y, and v^2 = 4 g - 2 g (1 + y)."""
+    report = holonom.system(STRING).simulate(samples=2, engine=engine).report
+    assert float(report.coordinates["y"]) == pytest.approx(2 / 3, rel=10 * ENGINES[engine])
+    assert float(report.multipliers["lambda1"]) == pytest.approx(0, abs=100 * ENGINES[engine])
+
+
+def test_the_end_has_as_many_digits_as_the_motion():
+    report = thrown("y").simulate(samples=2, precision=40).report
+    with mpmath.workdps(45):
+        assert abs(mpmath.mpf(str(report.t)) - mpmath.mpf(800) / 981) < mpmath.mpf("1e-38")
+
+
+def test_what_never_crosses_zero_leaves_the_end_to_the_time_span():
+    report = thrown("x + 1, (t - 1)^2").simulate(samples=2).report  # the second touches zero
+    assert report.t == 5
+    assert report.ending.crossed is None
+    assert report_document(report)["ending"] == {"of": ["x+1", "(t-1)^2"], "crossed": None}
+
+
+def test_two_crossings_within_one_step_are_seen():
+    """The motion is a parabola, one step of the engine; the expression is negative for 2 ms."""
+    report = thrown("(t - 1)^2 - 10^-6").simulate(samples=2).report
+    assert float(report.t) == pytest.approx(0.999, rel=1e-14)
+
+
+def test_a_switched_motion_ends_in_a_later_part():
+    """Pushed by 1 until t = 1 and by -1 from there, a body is at 1/2 and as fast as 1 at t = 1, and rests at t = 2."""
+    scene = holonom.system("""
+        system : holonomic_system(coordinates = [x], controls = [u], kinetic_energy = dot(x)^2/2, forces = [u])$
+        braked : holonomic_scene(system, control_law = [u = if t < 1 then 1 else -1],
+          initial_state = [x = 0, dot(x) = 0], time_span = [0, 5], until = [dot(x)])$""")
+    report = scene.simulate(samples=2).report
+    assert (report.t, report.coordinates["x"]) == pytest.approx((2, 1), rel=1e-14)
+    assert [switching.t for switching in report.switchings] == [1]
+
+
+@pytest.mark.parametrize(
+    ("until", "said"),
+    [
+        ("y - h", "in until, 'y-h' contains 'h', which is none of t, x, y, dot(x), dot(y), g"),
+        ("g - 3", "in until, 'g-3' does not change along a motion"),
+        ("log(1/2 - t) + 9", "an expression in 'until' has no real, finite value: log(1/2-t)+9 at t = "),
+    ],
+)
+def test_what_cannot_end_a_motion_is_refused(until, said):
+    with pytest.raises(HolonomError) as refused:
+        thrown(until).simulate(samples=2)
+    assert said in str(refused.value)
+
+
+def test_the_table_says_what_ended_the_motion():
+    console = Console(file=io.StringIO(), width=200)
+    show_simulation(console, thrown("y").simulate(samples=2))
+    assert f"The motion ends at t = {FALL:.10g}, where y crosses zero." in console.file.getvalue()
