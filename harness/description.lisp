@@ -15,7 +15,8 @@
 ;;;                                                 [ y2:$x ... ]      a name with its indices
 ;;;
 ;;; Nothing is evaluated while it is read. An operator that is not known, or a symbol that is no name in Maxima's
-;;; language, is refused.
+;;; language, is refused. Files of many bodies are long: they are read from memory, and without `loop', which an
+;;; interpreter is slow at.
 
 (in-package :maxima)
 
@@ -110,7 +111,7 @@
 
 (defun describe-anew (file)
   "Describe the systems and scenes in FILE, under their names."
-  (destructuring-bind (used size facts systems names scenes) (cdr (with-open-file (in file) (read-datum in)))
+  (destructuring-bind (used size facts systems names scenes) (cdr (with-input-from-string (in (text-of-file file)) (read-datum in)))
     (setq $settings_used used)
     (setq $closed_form_size (required-size size))
     (mapc #'assume-anew (cdr facts))
@@ -150,18 +151,21 @@
                           (list (list 'bigfloat 'simp bits) (read-whole in) (read-whole in))))))
 
 (defun read-until (closing in)
-  (loop until (eql (peek-char t in) closing) collect (read-datum in)
-        finally (read-char in)))
+  (let ((items nil))
+    (do () ((eql (peek-char t in) closing) (read-char in) (nreverse items))
+      (push (read-datum in) items))))
 
 (defun read-whole (in)
   "An integer and the one character after it."
-  (parse-integer (coerce (loop for c = (read-char in)
-                               while (or (digit-char-p c) (char= c #\-)) collect c)
-                         'string)))
+  (let ((digits nil))
+    (do ((c (read-char in) (read-char in)))
+        ((not (or (digit-char-p c) (char= c #\-))) (parse-integer (coerce (nreverse digits) 'string)))
+      (push c digits))))
 
 (defun read-text (in)
   (let ((text (make-string (read-whole in))))
-    (dotimes (i (length text) text) (setf (char text i) (read-char in)))))
+    (read-sequence text in)
+    text))
 
 (defun described-symbol (name)
   "Names of Maxima's language begin with $ or %, but for true, false and the operators."
@@ -179,7 +183,7 @@
       (merror "the scene describes its system with ~M, which no document can hold" operator))
     (if (member operator '($mechanical_system $motion_scene))
         (cons (list operator 'simp) arguments)
-        (simplifya (cons (list operator) arguments) nil))))
+        (simplifya (cons (list operator) (if (eq operator 'mplus) (reverse arguments) arguments)) nil))))
 
 (defun indexed-name (items)
   (cons (list (first items) 'simp 'array) (rest items)))

@@ -46,8 +46,13 @@
         (push node live)
         (dolist (part (nodes-in node))
           (if (first-use-p part census) (push part waiting)))))
-    (setf (census-nodes census) (sort live #'< :key #'node-number))
+    (setf (census-nodes census) (in-order-of-birth live))
     census))
+
+(defun in-order-of-birth (nodes)
+  (let ((places (make-array (1+ (expression-graph-size $expression_graph)) :initial-element nil)))
+    (dolist (node nodes) (setf (aref places (node-number node)) node))
+    (delete nil (coerce places 'list))))
 
 (defun first-use-p (node census)
   (eql 1 (incf (gethash (node-number node) (census-uses census) 0))))

@@ -38,31 +38,39 @@
         (t (merror "write_json: cannot write ~M" tree))))
 
 (defun write-members (members out)
-  (write-char #\{ out)
-  (loop for (nil name value) in members
-        for first = t then nil
-        do (unless first (write-char #\, out))
-           (write-json-string name out)
-           (write-char #\: out)
-           (write-json value out))
+  (let ((before #\{))
+    (dolist (member members)
+      (write-char before out)
+      (write-json-string (second member) out)
+      (write-char #\: out)
+      (write-json (third member) out)
+      (setq before #\,))
+    (if (null members) (write-char #\{ out)))
   (write-char #\} out))
 
 (defun write-bracketed (items writer out)
-  (write-char #\[ out)
-  (loop for item in items
-        for first = t then nil
-        do (unless first (write-char #\, out))
-           (funcall writer item out))
+  (let ((before #\[))
+    (dolist (item items)
+      (write-char before out)
+      (funcall writer item out)
+      (setq before #\,))
+    (if (null items) (write-char #\[ out)))
   (write-char #\] out))
 
 (defun write-json-string (text out)
   (write-char #\" out)
-  (loop for c across text
-        do (cond ((char= c #\") (write-string "\\\"" out))
-                 ((char= c #\\) (write-string "\\\\" out))
-                 ((< (char-code c) 32) (format out "\\u~4,'0x" (char-code c)))
-                 (t (write-char c out))))
+  (if (some #'to-be-escaped-p text)
+      (map nil #'(lambda (c) (write-string (escaped c) out)) text)
+      (write-string text out))
   (write-char #\" out))
+
+(defun to-be-escaped-p (c) (or (char= c #\") (char= c #\\) (< (char-code c) 32)))
+
+(defun escaped (c)
+  (cond ((char= c #\") "\\\"")
+        ((char= c #\\) "\\\\")
+        ((< (char-code c) 32) (format nil "\\u~4,'0x" (char-code c)))
+        (t (string c))))
 
 (defun write-mathjson (e out)
   (cond ((integerp e) (write-integer e out))

@@ -1,0 +1,48 @@
+;;; Long expressions in one pass
+;;;
+;;; What a system of many bodies says is long: its kinetic energy is a sum over them all. Asked for one
+;;; name after the other, it takes a time that grows like the square of their number; here it is gone
+;;; through once.
+;;;
+;;; Maxima's sum compares each new term with those it has, from the greatest on. Terms that come in
+;;; descending order find their place at once.
+
+(in-package :maxima)
+
+(defun $names_in (e)
+  "The variables of an expression, as listofvars finds them, in the order in which they are met."
+  (let ((met (make-hash-table :test 'equal)) (names nil) (waiting (list e)))
+    (do () ((null waiting) (cons '(mlist simp) (nreverse names)))
+      (let ((part (pop waiting)))
+        (cond ((numberp part))
+              ((or (symbolp part) (and (consp part) (member 'array (car part))))
+               (if (not (or (gethash part met) ($constantp part)))
+                   (setf (gethash part met) t names (cons part names))))
+              ((atom part))
+              ((specrepp part) (push (specdisrep part) waiting))
+              (t (setq waiting (append (cdr part) waiting))))))))
+
+(defun $contains_floats (e)
+  (cond ((atom e) (floatp e))
+        ((eq (caar e) 'bigfloat) t)
+        ((member 'array (car e)) nil)
+        ((specrepp e) ($contains_floats (specdisrep e)))
+        (t (some #'$contains_floats (cdr e)))))
+
+(defun $substituted (values e)
+  "The expression with  name = value  put in for its symbols, all at once."
+  (let ((table (make-hash-table)))
+    (dolist (item (cdr values)) (setf (gethash (second item) table) (third item)))
+    (if (cdr values) (put-in table e) e)))
+
+(defun put-in (table e)
+  (cond ((symbolp e) (gethash e table e))
+        ((atom e) e)
+        ((specrepp e) (put-in table (specdisrep e)))
+        (t (let ((parts (mapcar #'(lambda (part) (put-in table part)) (cdr e))))
+             (cond ((every #'eq parts (cdr e)) e)
+                   ((eq (caar e) 'mplus) (sum-of-many parts))
+                   (t (simplifya (cons (remove 'simp (car e)) parts) t)))))))
+
+(defun sum-of-many (terms)
+  (simplifya (cons '(mplus) (sort (copy-list terms) #'great)) t))
