@@ -180,12 +180,31 @@ class PrescribedReactions:
     controls: Law
 
 
+@dataclass(frozen=True)
+class OpenAccelerations:
+    """What the forces leave open where the mass matrix is singular.
+
+    Attributes
+    ----------
+    rank : int
+        Of the mass matrix.
+    directions : tuple of Law
+        Directions that it turns into zero, each by the accelerations in it; empty where they were not worked out.
+    deciding : tuple of int
+        Numbers of the constraints that decide, from 1.
+    """
+
+    rank: int
+    directions: tuple[Law, ...]
+    deciding: tuple[int, ...]
+
+
 @dataclass(frozen=True, repr=False)
 class FreeMotion(Shown):
     """The answers about one scene.
 
     ``condition`` is None where (10) is not written out, and ``left_out`` says why; ``prescribed`` is None where the
-    scene prescribes no reactions.
+    scene prescribes no reactions, ``open`` where the mass matrix is regular.
     """
 
     scene: str
@@ -195,6 +214,7 @@ class FreeMotion(Shown):
     universal: UniversalControls
     trajectory: TrajectoryControl
     prescribed: PrescribedReactions | None
+    open: OpenAccelerations | None
 
     def _table(self) -> Show:
         from .cli.tables.free_motion import show_free_motion
@@ -236,7 +256,9 @@ def free_motion(
     """
     text = ask(Document.FREE_MOTION, file, scene, order, settings=settings, limits=limits)
     document = read(Document.FREE_MOTION, text)
-    motion, trajectory, prescribed = (document[part] for part in ("motion", "trajectory", "prescribed"))
+    motion, trajectory, prescribed, left_open = (
+        document[part] for part in ("motion", "trajectory", "prescribed", "open")
+    )
     return FreeMotion(
         document["scene"],
         None if document["condition"] is None else _expressions(document["condition"]),
@@ -259,6 +281,10 @@ def free_motion(
             trajectory["reason"],
         ),
         prescribed and PrescribedReactions(_law(prescribed["reactions"]), _law(prescribed["controls"])),
+        left_open
+        and OpenAccelerations(
+            left_open["rank"], tuple(map(_law, left_open["directions"])), tuple(left_open["deciding"])
+        ),
     )
 
 

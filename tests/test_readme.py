@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from holonom import system
 from holonom.cli import holonom
 
 ROOT = Path(__file__).parents[1]
@@ -30,7 +31,7 @@ def commands() -> list[list[str]]:
 def place(tmp_path_factory) -> Path:
     """A directory with the README's scene and the examples."""
     directory = tmp_path_factory.mktemp("readme")
-    [scene] = blocks("maxima")
+    scene, _ = blocks("maxima")
     (directory / "my_pendulum.mac").write_text(scene, encoding="utf-8")
     for name in ("examples", "maxima"):
         (directory / name).symlink_to(ROOT / name)
@@ -71,3 +72,10 @@ def test_the_python_of_the_readme_runs(place, monkeypatch):
 def test_what_the_readme_points_to_is_there():
     targets = re.findall(r"\]\(([^)#:]+)\)", README)
     assert [target for target in targets if not (ROOT / target).exists()] == []
+
+
+def test_the_parts_of_the_readme_make_a_pendulum():
+    _, parts = blocks("maxima")
+    described = system(parts).system
+    assert described.coordinates == ("x", "y")
+    assert [str(constraint) for constraint in described.constraints] == ["-l**2/2 + y**2/2 + (-u + x)**2/2"]

@@ -106,6 +106,8 @@ def _moved(problem: MotionProblem, settings: Mapping[str, str]) -> MotionProblem
     """The motion for other settings; None where its programs do not stand, or its start does not follow."""
     from .initial_state import at_values
 
+    if not problem.parameters:
+        return problem  # what is set is no parameter, as the length of a chain is none
     values = {name: Fraction(settings[name]) for name in problem.parameters}
     try:
         moved = at_values(problem, values)

@@ -10,7 +10,7 @@ from .series import short_number
 from .text import formula
 
 if TYPE_CHECKING:
-    from ...free_motion import FreeMotion, Law, MotionVerdict, UniversalControls, UniversalLaw
+    from ...free_motion import FreeMotion, Law, MotionVerdict, OpenAccelerations, UniversalControls, UniversalLaw
 
 
 def show_free_motion(console: Console, found: "FreeMotion") -> None:
@@ -19,6 +19,8 @@ def show_free_motion(console: Console, found: "FreeMotion") -> None:
         _show_list(console, "condition of free motion (10): not written out", [found.left_out or ""])
     else:
         _show_list(console, "condition of free motion (10)", [f"{formula(e)} = 0" for e in found.condition])
+    if found.open is not None:
+        _show_open(console, found.open)
     _show_list(console, f"{found.scene}: {_verdict(found.motion)}", [_first(found.motion), found.motion.evidence])
     _show_universal(console, found.universal)
     trajectory = found.trajectory
@@ -62,6 +64,15 @@ def _universal_law(law: "UniversalLaw") -> list[str]:
         ", ".join(filter(None, (_law(law.controls), free))) + (f"  where {where}" if where else ""),
         f"  SymPy, from the equations of motion: {found}{': ' + check.detail if check.detail else ''}",
     ]
+
+
+def _show_open(console: Console, found: "OpenAccelerations") -> None:
+    directions = [f"any multiple of {_law(direction)}" for direction in found.directions]
+    plural = "s" if len(found.deciding) > 1 else ""
+    numbers = ", ".join(map(str, found.deciding))
+    decided = f"constraint{plural} {numbers} decide{'' if plural else 's'}"
+    title = f"accelerations that the forces leave open: the mass matrix is singular, of rank {found.rank}"
+    _show_list(console, title, [*directions, decided])
 
 
 def _show_list(console: Console, title: str, lines: Iterable[str]) -> None:

@@ -133,6 +133,35 @@ EXHIBITS = (
         ),
     ),
     Exhibit(
+        "heavy-top",
+        "examples/heavy_top.mac",
+        (
+            "A spinning top, its tip on a support that is shaken to and fro: the axis goes round the vertical, and "
+            "nods as it is shaken.",
+            "Three multipliers are the force at the tip. The first belongs to |e| = 1 and acts on no body.",
+        ),
+        until=Fraction(2),
+    ),
+    Exhibit(
+        "satellite",
+        "examples/satellite.mac",
+        (
+            "A satellite runs out two masts with masses at their ends: it turns ever more slowly.",
+            "The forces on the masses fall, although the masts grow longer: the spin falls faster.",
+        ),
+        scene="slowed_scene",
+    ),
+    Exhibit(
+        "ring",
+        "examples/ring.mac",
+        (
+            "Three bars joined to a ring, free of forces. It turns in its plane at first, but one bar spins about its "
+            "own axis, and turns the plane.",
+            "The first three multipliers belong to |e| = 1 and act on no body; the others are the components of the "
+            "forces at the joints, which turn with the ring.",
+        ),
+    ),
+    Exhibit(
         "andrews",
         "examples/andrews.mac",
         (
@@ -173,6 +202,15 @@ EXHIBITS = (
             "Two pairs of hinged plates at right angles let the table go straight down and no other way, with one "
             "constraint more than it needs.",
             "The table's corners fall alike. The multipliers are those of the smallest norm.",
+        ),
+    ),
+    Exhibit(
+        "bricard-linkage",
+        "examples/hard/bricard_linkage.mac",
+        (
+            "Five bars and the ground along the edges of a cube, with six hinges. By the count of its constraints it "
+            "should be rigid, and it falls.",
+            "The forces of the constraints are unique. The multipliers are those of the smallest norm.",
         ),
     ),
     Exhibit(
