@@ -126,6 +126,10 @@ class Failure(Enum):
         "follow it with `holonom simulate`, which steps to such instants",
     )
     METHOD_GAVE_UP = ("{detail}", "ask for a larger tolerance, or for another method")
+    MASS_INDEFINITE = (
+        "the kinetic energy is negative for some velocities, and it measures how far a state is from the constraints",
+        "look for a mass of the wrong sign, or take the power series, which measures nothing",
+    )
     MASS_SINGULAR = (
         "the mass matrix is singular along a direction that the constraints leave free",
         "give every coordinate a mass or a constraint",

@@ -7,8 +7,9 @@ import re
 import secrets
 import shutil
 import tempfile
+import weakref
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from difflib import get_close_matches
 from pathlib import Path
 from typing import BinaryIO
@@ -49,6 +50,25 @@ def private_directory() -> Iterator[Path]:
     finally:
         _remove_private_directory(path)
         os.close(lock)
+
+
+class KeptDirectory:
+    """A private directory that is there for as long as somebody refers to this object.
+
+    Attributes
+    ----------
+    path : Path
+
+    Raises
+    ------
+    HolonomError
+        It cannot be made.
+    """
+
+    def __init__(self) -> None:
+        held = ExitStack()
+        self.path = held.enter_context(private_directory())
+        weakref.finalize(self, held.close)
 
 
 def sweep_private_directories() -> None:

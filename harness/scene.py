@@ -11,13 +11,12 @@ from enum import StrEnum
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 from .confined import Limits
 from .documents import Document, ask, read
 from .failures import Failure, HolonomError, naming_the_extra
-from .files import near_file, write_files, write_whole
+from .files import KeptDirectory, near_file, write_files, write_whole
 from .program.motion_program import Program, Solve, read_program
 from .program.request import Request, program_document, read_settings
 from .simulation.derivations import Derivations
@@ -90,8 +89,8 @@ def system(text: str, scene: str | None = None, limits: Limits | None = None, **
     HolonomError
         A setting is no number.
     """
-    directory = TemporaryDirectory(prefix="holonom-")
-    file = Path(directory.name, "system.mac")
+    directory = KeptDirectory()
+    file = directory.path / "system.mac"
     library = "" if LOADS_THE_LIBRARY.search(text) else 'load("holonom.mac")$ '
     file.write_text(library + text, encoding="utf-8")
     opened = Scene(file, scene, _settings(settings), limits or Limits())
@@ -113,7 +112,7 @@ class Scene:
     def __init__(self, file: Path, name: str | None, settings: Mapping[str, str], limits: Limits) -> None:
         self.file, self.settings, self.limits = file, dict(settings), limits
         self._name = name
-        self._directory: TemporaryDirectory[str] | None = None
+        self._directory: KeptDirectory | None = None
         self._derived = Derivations(file, limits)
 
     def with_settings(self, settings: Mapping[str, Number] | None = None, **more: Number) -> "Scene":

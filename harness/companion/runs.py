@@ -4,7 +4,6 @@ They are performed by processes, not by threads: mpmath's precision belongs to t
 """
 
 import os
-import tempfile
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
@@ -18,6 +17,7 @@ from ..crosscheck import CheckReport, check_record
 from ..documents import Document, ask, read
 from ..errata import errata
 from ..failures import HolonomError
+from ..files import private_directory
 from ..free_motion import FreeMotion, free_motion
 from ..program.motion_problem import motion_problem
 from ..program.request import Request
@@ -177,8 +177,8 @@ def _simulate(file: Path, scene: str | None, until: Fraction | None, samples: in
 
 def drawn(draw: Callable[[Path], None]) -> str:
     """The text of the SVG document that a function writes to a file."""
-    with tempfile.TemporaryDirectory(prefix="holonom-") as directory:
-        file = Path(directory) / "figure.svg"
+    with private_directory() as directory:
+        file = directory / "figure.svg"
         draw(file)
         return file.read_text(encoding="utf-8")
 

@@ -10,10 +10,10 @@ import platform
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from xml.etree import ElementTree
 
 from ..failures import Failure, HolonomError
+from ..files import private_directory
 from .c_function import compile_shared
 from .c_library import c_library
 from .model import Model
@@ -158,11 +158,11 @@ def _require_start(model: Model) -> None:
 
 
 def _compiled(sources: dict[str, str], name: str) -> bytes:
-    with TemporaryDirectory(prefix="holonom-") as directory:
+    with private_directory() as directory:
         for file, text in sources.items():
-            Path(directory, file).write_text(text, encoding="utf-8")
-        library = Path(directory, "library")
-        compile_shared([Path(directory, f"{name}.c"), Path(directory, "fmi3.c")], library, *OPTIONS)
+            (directory / file).write_text(text, encoding="utf-8")
+        library = directory / "library"
+        compile_shared([directory / f"{name}.c", directory / "fmi3.c"], library, *OPTIONS)
         return library.read_bytes()
 
 

@@ -1,12 +1,12 @@
 """How to do it with a system of your own."""
 
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from ...documents import Document, ask
 from ...failures import HolonomError
+from ...files import private_directory
 from ..chapter import Chapter, Page, Run
 from ..examples import PENDULUM
 from ..excerpts import excerpt
@@ -49,8 +49,8 @@ def chapter(root: Path) -> Chapter:
 def refusal_of_the_change(file: Path, given: str, changed: str) -> str:
     """What Holonom says to a scene file in which one entry is changed."""
     text = file.read_text(encoding="utf-8").replace(given, changed)
-    with tempfile.TemporaryDirectory(prefix="holonom-") as directory:
-        copy = Path(directory) / file.name
+    with private_directory() as directory:
+        copy = directory / file.name
         copy.write_text(_loading_the_library(text), encoding="utf-8")
         try:
             ask(Document.RECORD, copy)

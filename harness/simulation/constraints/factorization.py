@@ -5,8 +5,8 @@ An orthonormal basis Q of what they span splits every acceleration L^T a in two:
 ask, across Q what the forces give. W is never squared, so that near a singular configuration the accelerations keep
 about half of the digits that G = J A^-1 J^T would lose (Golub & Van Loan, Matrix Computations, sections 5.3 and 6.1).
 
-Where A is singular, A + rho J^T J and h - rho J^T c take the place of A and h: they have the same accelerations and
-the same multipliers, since J a = -c.
+Where A is not positive definite, A + rho J^T J and h - rho J^T c take the place of A and h: they have the same
+accelerations and the same multipliers, since J a = -c.
 
 Each factorisation costs O(n^3) operations for n coordinates: g^2 n by Householder's method where the constraints are
 independent, a singular value decomposition where they are not.
@@ -23,6 +23,7 @@ from ..matrices import Matrix, Vector
 EPSILON = float(np.finfo(float).eps)
 DEPENDENT = 1e-12  # singular values of the scaled constraints, relative to the largest, that count as rounding
 INVOLVED = 1e-6  # share of a constraint in a vanishing combination that is more than rounding
+NEGATIVE = 1e-12  # masses below zero, relative to the largest, that are more than rounding
 SINGULAR_MASS = 64 * EPSILON  # what elimination may leave of a diagonal entry of A before A counts as singular
 
 
@@ -39,7 +40,7 @@ class WeightedConstraints:
     directions : ndarray, shape (n, g)
         W = L^-1 J^T D.
     stiffening : ndarray, shape (n, g), or None
-        rho J^T where A is singular.
+        rho J^T where A is not positive definite.
     """
 
     factor: Matrix
@@ -168,7 +169,7 @@ def weighted_constraints(mass: Matrix, jacobian: Matrix) -> WeightedConstraints:
     Parameters
     ----------
     mass : ndarray, shape (n, n)
-        A, symmetric, positive definite or semidefinite.
+        A, symmetric; positive definite together with the constraints.
     jacobian : ndarray, shape (g, n)
         J; its rows may be dependent, and of any scale.
 
@@ -179,16 +180,19 @@ def weighted_constraints(mass: Matrix, jacobian: Matrix) -> WeightedConstraints:
     Raises
     ------
     HolonomError
-        A is singular along a direction that the constraints leave free.
+        A is singular along a direction that the constraints leave free, or it is indefinite and the constraints do not
+        make up for it.
     """
     peaks = _or_one(np.max(np.abs(jacobian), axis=1, initial=0.0))
     rows = jacobian / peaks[:, None]
     factor, stiffening = _cholesky(mass), None
     if factor is None:
-        stiffening = np.trace(mass) / max(1, len(rows)) * rows.T
+        stiffening = np.abs(np.diag(mass)).sum() / max(1, len(rows)) * rows.T
         factor, stiffening = _cholesky(mass + stiffening @ rows), stiffening / peaks
     if factor is None:
-        raise HolonomError(Failure.MASS_SINGULAR)
+        masses = np.linalg.eigvalsh(mass)
+        indefinite = masses[0] < -NEGATIVE * np.max(np.abs(masses))
+        raise HolonomError(Failure.MASS_INDEFINITE if indefinite else Failure.MASS_SINGULAR)
     directions = lapack.dtrtrs(factor, rows.T, lower=1)[0] if rows.size else rows.T
     lengths = _or_one(np.sqrt(np.einsum("sb,sb->b", directions, directions)))
     return WeightedConstraints(factor, 1 / (peaks * lengths), directions / lengths, stiffening)

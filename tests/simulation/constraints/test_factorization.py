@@ -110,6 +110,17 @@ def test_a_free_coordinate_without_mass_is_refused():
     assert refused.value.failure is Failure.MASS_SINGULAR
 
 
+def test_a_negative_mass_was_called_singular():
+    """On x = 2 y it leaves 3/2 dot(y)^2 of kinetic energy; on x = y nothing, and without a constraint it is no metric."""
+    mass, force = np.diag([1.0, -1.0]), np.array([-2.0, 1.0])
+    accelerations, _ = solve(mass, force, np.array([[1.0, -2.0]]), np.zeros(1))
+    assert accelerations == pytest.approx([-2.0, -1.0], abs=1e-14)  # 3 ddot(y) = 2 h_x + h_y
+    for jacobian in (np.array([[1.0, -1.0]]), np.zeros((0, 2))):
+        with pytest.raises(HolonomError) as refused:
+            weighted_constraints(mass, jacobian)
+        assert refused.value.failure is Failure.MASS_INDEFINITE
+
+
 def test_without_constraints_the_forces_alone_decide():
     mass, force = np.array([[2.0, 1.0], [1.0, 3.0]]), np.array([1.0, -1.0])
     accelerations, multipliers = solve(mass, force, np.empty((0, 2)), np.empty(0))
