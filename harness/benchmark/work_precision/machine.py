@@ -60,11 +60,16 @@ def this_machine(packages: tuple[str, ...] = PACKAGES) -> Machine:
             continue
     return Machine(
         processor=_processor(),
-        cores=len(os.sched_getaffinity(0)),
+        cores=_cores(),
         system=f"{platform.system()} {platform.machine()}",
         versions=versions,
         date=date.today().isoformat(),
     )
+
+
+def _cores() -> int:
+    """Those that this process may use, where the system can tell; else those that there are."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _processor() -> str:

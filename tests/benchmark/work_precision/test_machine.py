@@ -21,3 +21,8 @@ def test_the_machine_names_its_processor_cores_versions_and_the_day():
     assert machine.date == date.today().isoformat()
     for part in (machine.processor, machine.system, machine.date, numpy.__version__):
         assert part in str(machine)
+
+
+def test_where_the_system_cannot_tell_what_a_process_may_use_all_cores_count(monkeypatch):
+    monkeypatch.delattr(os, "sched_getaffinity", raising=False)
+    assert this_machine(()).cores == os.cpu_count()
