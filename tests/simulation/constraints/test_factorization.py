@@ -111,7 +111,7 @@ def test_a_free_coordinate_without_mass_is_refused():
 
 
 def test_a_negative_mass_was_called_singular():
-    """On x = 2 y it leaves 3/2 dot(y)^2 of kinetic energy; on x = y nothing, and without a constraint it is no metric."""
+    """On x = 2 y it leaves 3/2 dot(y)^2 of kinetic energy; on x = y nothing, and alone it is no metric."""
     mass, force = np.diag([1.0, -1.0]), np.array([-2.0, 1.0])
     accelerations, _ = solve(mass, force, np.array([[1.0, -2.0]]), np.zeros(1))
     assert accelerations == pytest.approx([-2.0, -1.0], abs=1e-14)  # 3 ddot(y) = 2 h_x + h_y
