@@ -22,6 +22,16 @@
               ((specrepp part) (push (specdisrep part) waiting))
               (t (setq waiting (append (cdr part) waiting))))))))
 
+(defun $applications_of (operator e)
+  "The different parts of an expression that apply the operator, in the order in which they are met."
+  (let ((found nil) (waiting (list e)))
+    (do () ((null waiting) (cons '(mlist simp) (nreverse found)))
+      (let ((part (pop waiting)))
+        (cond ((atom part))
+              ((specrepp part) (push (specdisrep part) waiting))
+              ((eq (caar part) operator) (if (not (member part found :test #'alike1)) (push part found)))
+              (t (setq waiting (append (cdr part) waiting))))))))
+
 (defun $contains_floats (e)
   (cond ((atom e) (floatp e))
         ((eq (caar e) 'bigfloat) t)
