@@ -99,7 +99,13 @@ class Copy:
 
     def passes(self, tests: Iterable[str]) -> bool:
         """Whether the tests pass, in time."""
-        environment = os.environ | {"PYTHONPATH": str(self.directory / "site"), "PYTHONDONTWRITEBYTECODE": "1"}
+        environment = os.environ | {
+            "PYTHONPATH": str(self.directory / "site"),
+            "PYTHONDONTWRITEBYTECODE": "1",  # which two files of one size and second would share
+            "XDG_CACHE_HOME": str(
+                self.directory / "pyproject.toml"
+            ),  # no directory: an image for one test does not pay
+        }
         command = [sys.executable, "-m", "pytest", "-q", "-x", "-n", "0", "-p", "no:cacheprovider"]
         command += map(for_pytest, tests)
         try:
