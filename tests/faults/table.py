@@ -357,6 +357,29 @@ WORK = [
     Fault("one digit", "simulate scene.mac --until 1 --precision 1 --final", "", 0, long=True),
     Fault("a setting that nobody asks for", "derive scene.mac --set k=1", "k", long=True),
     Fault(
+        "a law that ends within the time span",
+        "simulate law.mac --until 1",
+        "cannot be followed beyond t = 0.5, where",
+        prepare=holding("law.mac", PARTICLE.replace("u = t]", "u = (1/2-t)^(5/2)]")),
+        long=True,
+    ),
+    Fault(
+        "a law that swings faster and faster",
+        "simulate law.mac --until 1 --time-limit 8 --final",
+        "ran out of them while following the motion",
+        prepare=holding("law.mac", PARTICLE.replace("u = t]", "u = sin(1/(t-1/2))]")),
+        long=True,
+    ),
+    Fault(
+        "masses of opposite sign that cancel",
+        "simulate negative.mac --until 1",
+        "masses of opposite sign cancel",
+        prepare=holding(
+            "negative.mac", PARTICLE.replace("dot(x)^2 + dot(z)^2", "dot(x)^2 - dot(z)^2").replace("z - u", "z - x - u")
+        ),
+        long=True,
+    ),
+    Fault(
         "a motion that takes too long",
         "simulate swing.mac --until 1e9 --time-limit 8 --final",
         "ran out of them while following the motion",

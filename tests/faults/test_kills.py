@@ -5,7 +5,8 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Container, Iterable
+from pathlib import Path
 
 import psutil
 import pytest
@@ -25,33 +26,58 @@ VERBS = {
 SIGNALS = (signal.SIGTERM, signal.SIGHUP, signal.SIGINT, signal.SIGKILL)
 
 
-def cases() -> list:
-    """Each verb by each signal; of these the short form has each verb and each signal once or twice."""
-    short = {("derive", each) for each in SIGNALS} | {("simulate", signal.SIGTERM), ("companion", signal.SIGKILL)}
+OF_THEIR_OWN = {"errata": ["--json", "out.json"], "stability": ["--json", "out.json"]}
+"""Verbs that run scenes of the package."""
+
+
+def cases(verbs: Iterable[str], short: Container[tuple[str, int]]) -> list:
+    """Each verb by each signal, and those that belong to the short form."""
     return [
         pytest.param(verb, number, marks=[] if (verb, number) in short else [pytest.mark.long])
-        for verb in VERBS
+        for verb in verbs
         for number in SIGNALS
     ]
 
 
-@pytest.mark.parametrize(("verb", "number"), cases())
+ONCE_OR_TWICE = {("derive", each) for each in SIGNALS} | {("simulate", signal.SIGTERM), ("companion", signal.SIGKILL)}
+
+
+@pytest.mark.parametrize(("verb", "number"), cases(VERBS, ONCE_OR_TWICE))
 def test_a_signal_ends_all_and_leaves_nothing(verb, number, tmp_path):
-    here, temporary = tmp_path / "here", tmp_path / "temporary"
-    here.mkdir()
+    (tmp_path / "here").mkdir()
+    (tmp_path / "here" / "scene.mac").write_text(ENDLESS, encoding="utf-8")
+    end_in_the_middle([verb, "scene.mac", *VERBS[verb]], number, tmp_path, "sleep")
+    assert [path.name for path in (tmp_path / "here").iterdir()] == ["scene.mac"]
+
+
+@pytest.mark.parametrize(
+    ("verb", "number"), cases(OF_THEIR_OWN, {("errata", signal.SIGKILL), ("stability", signal.SIGTERM)})
+)
+def test_a_signal_ends_what_runs_scenes_of_its_own(verb, number, tmp_path):
+    (tmp_path / "here").mkdir()
+    end_in_the_middle([verb, *OF_THEIR_OWN[verb]], number, tmp_path, "")
+    assert list((tmp_path / "here").iterdir()) == []
+
+
+def end_in_the_middle(command: list[str], number: int, place: Path, begun: str) -> None:
+    """Run a command in a folder `here`, end it once a program of that name runs in it, and see that nothing is left."""
+    temporary = place / "temporary"
     temporary.mkdir()
-    (here / "scene.mac").write_text(ENDLESS, encoding="utf-8")
     environment = os.environ | {"TMPDIR": str(temporary)}
-    command = [sys.executable, "-m", "holonom", verb, "scene.mac", *VERBS[verb]]
-    process = subprocess.Popen(command, cwd=here, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-    assert soon(lambda: any("sleep" in name for name in names(running(process))))
+    process = subprocess.Popen(
+        [sys.executable, "-m", "holonom", *command],
+        cwd=place / "here",
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
+    assert soon(lambda: any(begun in name for name in names(running(process))))
     started = running(process)
     process.send_signal(number)
     said = process.communicate(timeout=60)[1].decode()
     assert process.returncode == (-number if number == signal.SIGKILL else 128 + number)
     assert "Traceback" not in said
     assert soon(lambda: not any(each.is_running() and each.status() != psutil.STATUS_ZOMBIE for each in started))
-    assert [path.name for path in here.iterdir()] == ["scene.mac"]
     if number == signal.SIGKILL:  # nobody is left to tidy up; the next command does
         subprocess.run([sys.executable, "-m", "holonom", "derive", "no.mac"], env=environment, capture_output=True)
     assert list(temporary.iterdir()) == []
