@@ -24,7 +24,7 @@
   '(mplus mtimes mexpt mlist mequal rat $matrix
     mcond mgreaterp mgeqp mlessp mleqp mand mor mnot mnotequal $equal $kind
     $max %max $min %min $unit_step %unit_step $hstep %hstep
-    $cubic_spline $point $segment $polyline $circle $mechanical_system $motion_scene)
+    $cubic_spline $point $segment $polyline $circle $mechanical_system $motion_scene $servo_motion)
   "What a description may hold besides the functions that documents know.")
 
 ;;; The first fields of the structures in system.mac and scene.mac
@@ -181,7 +181,7 @@
   (destructuring-bind (operator &rest arguments) items
     (unless (known-operator-p operator)
       (merror "the scene describes its system with ~M, which no document can hold" operator))
-    (if (member operator '($mechanical_system $motion_scene))
+    (if (member operator '($mechanical_system $motion_scene $servo_motion))
         (cons (list operator 'simp) arguments)
         (simplifya (cons (list operator) (if (eq operator 'mplus) (reverse arguments) arguments)) nil))))
 

@@ -118,6 +118,10 @@ class MotionProblem:
         How the system looks; None where it does not say.
     law_end : str or None
         The last instant at which the control law has values, where tables give it.
+    controls : Program or None
+        The controls, by name; None where the scene does not observe them.
+    servo : int
+        How many of the constraints, the last ones, controls in forces keep, so that their multipliers are zero.
     until : tuple of str
         Expressions whose first zero crossing ends the motion, as Maxima prints them; empty where the time span alone
         does.
@@ -153,6 +157,8 @@ class MotionProblem:
     energy: Program
     drawing: "Drawing | None"
     law_end: str | None = None
+    controls: Program | None = None
+    servo: int = 0
     until: tuple[str, ...] = ()
     events: Program | None = None
     signs: tuple[Sign, ...] = ()
@@ -188,6 +194,11 @@ class MotionProblem:
     def state(self) -> tuple[str, ...]:
         """Names of the coordinates, then of the velocities."""
         return (*self.coordinates, *(f"dot({name})" for name in self.coordinates))
+
+    @property
+    def reactions(self) -> tuple[str, ...]:
+        """Names of the multipliers that are not zero by being those of servo-constraints."""
+        return self.multipliers[: len(self.multipliers) - self.servo]
 
 
 def require_analytic(problem: MotionProblem) -> None:
@@ -291,6 +302,8 @@ def read_problem(text: str) -> MotionProblem:
         energy=program_of(document["energy"]),
         drawing=_drawing(document["drawing"]),
         law_end=document.get("law_end"),
+        controls=_optional(document.get("controls")),
+        servo=document.get("servo", 0),
         until=tuple(document.get("until", ())),
         events=_optional(document.get("events")),
         signs=tuple(Sign(sign["name"], sign["of"], By(sign["by"])) for sign in document["signs"]),

@@ -173,6 +173,7 @@ def _with_programs(problem: MotionProblem, changed: Callable[[Program], Program]
         energy=changed(problem.energy),
         drawing=problem.drawing and replace(problem.drawing, program=changed(problem.drawing.program)),
         events=problem.events and changed(problem.events),
+        controls=problem.controls and changed(problem.controls),
     )
 
 

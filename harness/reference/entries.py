@@ -28,6 +28,8 @@ class EntryText:
     function, name, type, default, text, example : str
     also : tuple of str
         Entries that the example needs beside it.
+    system : tuple of str
+        Entries of the system that the example needs in the place of those of the same names.
     refused : tuple of Refusal
     """
 
@@ -39,6 +41,7 @@ class EntryText:
     example: str
     also: tuple[str, ...]
     refused: tuple[Refusal, ...]
+    system: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -121,6 +124,7 @@ def _function(name: str, described: dict) -> FunctionText:
         EntryText(
             function=name,
             also=tuple(entry.pop("also", ())),
+            system=tuple(entry.pop("system", ())),
             refused=tuple(Refusal(r["given"], r["said"], tuple(r.get("also", ()))) for r in entry.pop("refused")),
             **entry,
         )

@@ -77,6 +77,9 @@ def _entry(entry: EntryText) -> str:
         f"{_filled(f'What it is: {entry.type}.')}{_filled(f'Without it: {entry.default}.')}\n"
         f"{_filled('For instance:')}\n{_shown(example)}"
     )
+    if entry.system:
+        system = ",\n".join(entry.system)
+        text += f"{_filled('of a system with')}\n{_shown(system)}"
     return text + (_refused(entry.refused) if entry.refused else "")
 
 

@@ -87,6 +87,8 @@ def entry_topics() -> Iterator[Topic]:
 def _entry_topic(entry: EntryText) -> Topic:
     facts = Table("In short", ("", ""), (("what it is", entry.type), ("without it", entry.default)))
     parts: list[Table | Code] = [facts, Code("For instance", ",\n".join([entry.example, *entry.also]))]
+    if entry.system:
+        parts.append(Code("of a system with", ",\n".join(entry.system)))
     if entry.refused:
         parts.append(_refusals(entry.refused))
     slug = f"{entry.function}-{entry.name}"

@@ -37,7 +37,7 @@ from .diagnosis import Instant, dependence
 from .diagnostics import EnergyBalance, residuals
 from .engines.engine import Piece, Solutions
 from .engines.switching import Leg, SwitchingEngine
-from .evaluation import Numbers, as_floats, evaluation
+from .evaluation import Evaluation, Numbers, as_floats, evaluation, zeros
 from .matrices import Matrices, MotionMatrices, Vector, start_of
 from .request import SimulationRequest
 from .surfaces import Crossing, Surfaces
@@ -122,6 +122,15 @@ class Part:
         wanted = {name for name in self._whole.switching.outputs if name.startswith("momentum[")}
         program = program_in(self._whole, computing(self._whole.switching, wanted), self.pattern)
         return evaluation(program, self._precision)
+
+    def controls(self, instants: Numbers, states: Numbers) -> Numbers:
+        """The controls at instants, shape (k,), and states, shape (2n, k)."""
+        unused = zeros(self._precision, len(self.problem.multipliers), len(instants))
+        return self._controls(np.ascontiguousarray(np.concatenate([instants[None, :], states, unused])))
+
+    @cached_property
+    def _controls(self) -> Evaluation:
+        return evaluation(in_numbers(self.problem, self.problem.controls), self._precision)
 
     @cached_property
     def projection(self) -> ProgramProjection:
@@ -266,6 +275,13 @@ class PiecewiseMotion:
         return np.concatenate(
             [part.balance.energy(instants[here], states[:, here]) for part, here in self._by_phase(instants)]
         )
+
+    def controls(self, instants: Numbers, states: Numbers) -> dict[str, Numbers]:
+        """The controls at states of the motion, by name, each of shape (k,); empty where they are not observed."""
+        if self._problem.controls is None:
+            return {}
+        found = [part.controls(instants[here], states[:, here]) for part, here in self._by_phase(instants)]
+        return dict(zip(self._problem.controls.outputs, np.concatenate(found, axis=1), strict=True))
 
     def matrices(self, t: float, state: Vector) -> Matrices:
         """The matrices at a state of the motion, in its phase."""

@@ -1,7 +1,7 @@
 """What came of a simulation: samples of the motion, and a report on how well it was followed."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -62,6 +62,8 @@ class Report:
         What is out of proportion to the tolerance; a motion with any is no result.
     ending : Ending or None
         Whether an event ended the motion; None where the scene names none.
+    controls : mapping of str to number
+        Empty where the scene does not observe them.
     """
 
     t: Any
@@ -84,6 +86,7 @@ class Report:
     switchings: tuple[Switching, ...]
     doubts: tuple[Doubt, ...]
     ending: Ending | None = None
+    controls: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def trusted(self) -> bool:
@@ -98,7 +101,7 @@ class Sampled:
     Attributes
     ----------
     instants : ndarray, shape (k,)
-    coordinates, velocities, multipliers, constraint_forces : mapping of str to ndarray of shape (k,)
+    coordinates, velocities, multipliers, constraint_forces, controls : mapping of str to ndarray of shape (k,)
         At the instants; empty where the scene does not observe them.
     energy, residuals : mapping of str to ndarray of shape (k,)
         ``energy`` and ``energy_error``; ``position``, ``velocity`` and ``acceleration``. Empty likewise.
@@ -111,11 +114,13 @@ class Sampled:
     constraint_forces: Samples
     energy: Samples
     residuals: Samples
+    controls: Samples = field(default_factory=dict)
 
     def columns(self) -> Iterator[tuple[str, NDArray[Any]]]:
         """The time, then every series of samples with its name; residuals are named ``residual.position`` and so on."""
         yield "t", self.instants
-        for group in (self.coordinates, self.velocities, self.multipliers, self.constraint_forces, self.energy):
+        forces = self.multipliers, self.constraint_forces, self.controls
+        for group in (self.coordinates, self.velocities, *forces, self.energy):
             yield from group.items()
         for name, samples in self.residuals.items():
             yield f"residual.{name}", samples

@@ -196,6 +196,7 @@ class _Simulation:
                 **self._motion(states, self.solutions),
                 energy=energies if "energy" in self.problem.observe else {},
                 residuals=self._residual_samples(instants, states, self.solutions),
+                controls=self.motion.controls(instants, states),
             )
         )
 
@@ -242,7 +243,7 @@ class _Simulation:
         return {
             "coordinates": dict(zip(names, followed, strict=False)),
             "velocities": dict(zip(self.problem.state[len(names) :], followed[len(names) :], strict=False)),
-            "multipliers": dict(zip(self.problem.multipliers, reactions, strict=False)),
+            "multipliers": dict(zip(self.problem.reactions, reactions, strict=False)),
             "constraint_forces": {f"Lambda[{s}]": row for s, row in enumerate(forces, start=1)},
         }
 
@@ -259,7 +260,7 @@ class _Simulation:
 
     def _report(self, seconds: float) -> Report:
         state, n = self.motion.state.copy(), len(self.problem.coordinates)
-        observed = self.problem.multipliers if "multipliers" in self.problem.observe else ()
+        observed = self.problem.reactions if "multipliers" in self.problem.observe else ()
         at = self.motion.matrices(float(self.end), as_floats(state))
         multipliers = self.solutions.multipliers[:, -1]
         left = residuals(at, as_floats(state), as_floats(self.solutions.accelerations[:, -1]))
@@ -283,6 +284,9 @@ class _Simulation:
             cases=self._cases(state, as_floats(multipliers)),
             switchings=tuple(self.motion.switchings),
             ending=self.ending,
+            controls={
+                name: values[-1] for name, values in self.motion.controls(np.array([self.end]), state[:, None]).items()
+            },
             doubts=tuple(doubts(self._missed(left, at), self.motion.tol, self.motion.steps)),
         )
 
@@ -304,6 +308,8 @@ class _Simulation:
         start, end = Instant(float(self.start), as_floats(self.first)), Instant(float(self.end), as_floats(state))
         called_for = [leg.case for leg in self.motion.legs if leg.case is not None]
         found = hard_cases(self.motion.matrices, start, end, multipliers, self.motion.steps)
+        answering = self.problem.reactions or not self.problem.servo  # servo-constraints have no reaction by themselves
+        found = (case for case in found if answering or case is not HardCase.FREE_CANCELLATION)
         return tuple(dict.fromkeys([*called_for, *found]))
 
 

@@ -12,16 +12,22 @@ from holonom.reference.entries import EntryText, FunctionText, function_texts, p
 SYSTEM, SCENE = function_texts()
 
 
-def call(function: FunctionText, *replacing: str) -> str:
+def call(function: FunctionText, *replacing: str, system: tuple[str, ...] = ()) -> str:
     first = "base, " if function is SCENE else ""
+    if system:
+        first = f"{call(SYSTEM, *system)}, "
     return f"{function.name}({first}{function.with_entries(*replacing)})"
 
 
 BODIES = ", ".join(dict.fromkeys(line.rstrip("$") for part in part_texts() for line in part.context))
 CASES = [
-    *((call(function, entry.example, *entry.also), None) for function in (SYSTEM, SCENE) for entry in function.entries),
     *(
-        (call(function, refusal.given, *refusal.also), refusal.said)
+        (call(function, entry.example, *entry.also, system=entry.system), None)
+        for function in (SYSTEM, SCENE)
+        for entry in function.entries
+    ),
+    *(
+        (call(function, refusal.given, *refusal.also, system=entry.system), refusal.said)
         for function in (SYSTEM, SCENE)
         for entry in function.entries
         for refusal in entry.refused

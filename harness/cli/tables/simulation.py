@@ -53,7 +53,7 @@ def show_report(console: "Console", scene: str, title: str, report: "Report") ->
     document = report_document(report)
     console.print(f"{scene}: {title}, at t = {document['t']}", soft_wrap=True, markup=False)
     table = Table("", "", show_header=False)
-    for group in ("coordinates", "velocities", "multipliers"):
+    for group in ("coordinates", "velocities", "multipliers", "controls"):
         for name, value in document[group].items():
             table.add_row(name, str(value))
         table.add_section()
