@@ -227,3 +227,24 @@ def test_json_has_the_stated_shape(capsys, monkeypatch):
     assert document["trajectory"]["kind"] == "closed form"
     assert document["trajectory"]["samples"][0] == [0, 0.3]
     assert document["prescribed"] is None
+
+
+FRICTION = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  forces = [-signum(x), -signum(y)], constraints = [y - u*x])$
+alike : holonomic_scene(system, control_law = [u = 1], initial_state = [x = 1, dot(x) = 0], time_span = [0, 3])$
+unlike : holonomic_scene(system, control_law = [u = if t < 1/2 then 2 else 2 + (t - 1/2)^2],
+  initial_state = [x = 1, dot(x) = 0], time_span = [0, 3])$"""
+
+
+@pytest.mark.parametrize(
+    ("scene", "verdict", "first"),
+    [
+        ("alike", "free", None),  # both fall alike, wherever they are
+        ("unlike", "not free", FirstCoefficient("lambda1", 0, "-1/5")),  # (x'', y'') = (-1, -1) + lambda (-2, 1)
+    ],
+)
+def test_kinked_forces_and_laws_in_parts_were_refused_a_verdict(write_scene, scene, verdict, first):
+    found = free_motion(write_scene(FRICTION), scene, {}, Limits())
+    assert (found.motion.verdict, found.motion.first) == (verdict, first)
+    assert found.trajectory.kind == "series"
