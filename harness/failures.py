@@ -226,6 +226,9 @@ class HolonomError(Exception):
         return located.rstrip(".") + (f"; {remedy}." if remedy else ".")
 
 
+NO_ROOM = ("failed to map segment", "annot allocate memory")  # what the loader of libraries says
+
+
 def _argument(option: re.Match[str]) -> str:
     return "limits" if option[0] in LIMITS else option[0].removeprefix("--").replace("-", "_")
 
@@ -239,6 +242,18 @@ def missing_package(package: str) -> HolonomError:
     return HolonomError(Failure.EXTRA_MISSING, detail=f"{package}, which is not installed; run `pip install '{named}'`")
 
 
+def require_room(error: ImportError) -> None:
+    """Tell a package that memory was too short to load from one that is not there.
+
+    Raises
+    ------
+    MemoryError
+        It was.
+    """
+    if any(sign in str(error) for sign in NO_ROOM):
+        raise MemoryError(str(error)) from error
+
+
 @contextmanager
 def naming_the_extra() -> Iterator[None]:
     """Around what needs the packages of an extra, also as a decorator: where one is missing, say which and the remedy.
@@ -247,6 +262,8 @@ def naming_the_extra() -> Iterator[None]:
     ------
     HolonomError
         A package of an extra is not installed.
+    MemoryError
+        There is no room to load it.
     """
     try:
         yield
@@ -257,3 +274,6 @@ def naming_the_extra() -> Iterator[None]:
         if extra_of(package) is None:
             raise
         raise missing_package(package) from None
+    except ImportError as error:
+        require_room(error)
+        raise

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..failures import Failure, HolonomError, missing_package
+from ..failures import Failure, HolonomError, missing_package, require_room
 from .arithmetic import Arithmetic, run_program
 from .motion_program import Constant, Operation, Program
 
@@ -209,7 +209,8 @@ def import_heyoka() -> ModuleType:
 
         heyoka.llvm_state.set_diskcache_enabled(False)
         heyoka.set_logger_level_critical()
-    except ImportError:
+    except ImportError as error:
+        require_room(error)
         raise missing_package("heyoka") from None
     return heyoka
 

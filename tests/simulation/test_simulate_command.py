@@ -134,5 +134,16 @@ def test_an_interrupted_run_leaves_no_file(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_heyoka_was_called_not_installed_where_memory_was_short(tmp_path):
+    package = tmp_path / "heyoka"
+    package.mkdir()
+    (package / "__init__.py").write_text('raise ImportError("core.so: failed to map segment from shared object")')
+    asked = [*SIMULATE, str(PENDULUM), "--until", "1"]
+    environment = os.environ | {"PYTHONPATH": str(tmp_path)}
+    done = subprocess.run(asked, capture_output=True, text=True, timeout=120, env=environment)
+    assert (done.returncode, done.stderr.count("\n")) == (3, 1)
+    assert "there is not enough memory for this" in done.stderr
+
+
 def in_place() -> dict[str, str]:
     return os.environ | {"PYTHONPATH": str(EXAMPLES.parent)}
