@@ -12,7 +12,7 @@ from holonom.maxima_path import put_into_maxima
 from holonom.reference.entries import function_texts
 
 ROOT = Path(__file__).parents[1]
-[README_SCENE] = re.findall(r"^```maxima\n(.*?)^```$", (ROOT / "README.md").read_text(encoding="utf-8"), re.M | re.S)
+README_SCENE, *_ = re.findall(r"^```maxima\n(.*?)^```$", (ROOT / "README.md").read_text(encoding="utf-8"), re.M | re.S)
 
 
 def run(*command: object, user_directory: Path, **options) -> subprocess.CompletedProcess[str]:
