@@ -39,7 +39,7 @@ def cases(verbs: Iterable[str], short: Container[tuple[str, int]]) -> list:
     ]
 
 
-ONCE_OR_TWICE = {("derive", each) for each in SIGNALS} | {("simulate", signal.SIGTERM), ("companion", signal.SIGKILL)}
+ONCE_OR_TWICE = {("derive", each) for each in SIGNALS} | {("simulate", signal.SIGTERM)}
 
 
 @pytest.mark.parametrize(("verb", "number"), cases(VERBS, ONCE_OR_TWICE))
