@@ -87,6 +87,11 @@ class Failure(Enum):
         "no C compiler is installed",
         "install one, for instance the package `gcc` of your distribution, or name one in the variable CC",
     )
+    BROWSER_MISSING = (
+        "no browser is installed that prints",
+        "install one, for instance the package `chromium` of your distribution",
+    )
+    NOT_PRINTED = ("the browser did not print the book: {detail}", "")
     COMPILER_REFUSED = ("the C compiler refused the motion program: {detail}", "")
     EXTRA_MISSING = ("this needs {detail}", "")
     BEYOND_RADIUS = ("{detail}", "ask for an earlier time, or continue the motion with --until")

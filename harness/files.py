@@ -269,15 +269,15 @@ def require_own_files(directory: Path, names: Iterable[str]) -> None:
             raise HolonomError(Failure.FOREIGN_FILE, directory / name)
 
 
-def write_whole_directory(path: Path, files: Mapping[str, str]) -> None:
+def write_whole_directory(path: Path, files: Mapping[str, str | bytes]) -> None:
     """Write a directory so that nobody ever sees half of it.
 
     Parameters
     ----------
     path : Path
         The directory. Of one that is there the files that its manifest lists are replaced, and the others stay.
-    files : mapping of str to str
-        The text of each file, by its path in the directory.
+    files : mapping of str to str or bytes
+        What each file holds, text in UTF-8, by its path in the directory.
 
     Raises
     ------
@@ -289,9 +289,9 @@ def write_whole_directory(path: Path, files: Mapping[str, str]) -> None:
     require_own_files(path, files)
     try:
         with draft_of(target) as draft:
-            for name, text in {**files, MANIFEST: _manifest(files)}.items():
+            for name, content in {**files, MANIFEST: _manifest(files)}.items():
                 (draft / name).parent.mkdir(parents=True, exist_ok=True)
-                (draft / name).write_text(text, encoding="utf-8")
+                (draft / name).write_bytes(content.encode() if isinstance(content, str) else content)
             if target.exists():
                 _take_along(target, draft)
             _exchange(target, draft)

@@ -10,9 +10,9 @@ from ..confined import Limits
 from ..failures import missing_package
 from .group import holonom
 from .options import runs_scenes, takes_settings
-from .outputs import SceneFile
+from .outputs import OutputFile, SceneFile
 
-EXTRAS = ("jinja2", "latex2mathml", "matplotlib", "heyoka")
+EXTRAS = ("jinja2", "latex2mathml", "matplotlib", "heyoka", "ziamath", "pypdf")
 
 
 @holonom.command()
@@ -26,9 +26,12 @@ EXTRAS = ("jinja2", "latex2mathml", "matplotlib", "heyoka")
     type=click.Path(path_type=Path),
     help="Where the pages are put; begin to read with index.html.",
 )
+@click.option("--pdf", type=OutputFile("pdf"), help="A file that all pages are printed to as one book, by Chromium.")
 @takes_settings
 @runs_scenes
-def companion(scenes: Sequence[Path], directory: Path, settings: Sequence[str], limits: Limits) -> int:
+def companion(
+    scenes: Sequence[Path], directory: Path, pdf: Path | None, settings: Sequence[str], limits: Limits
+) -> int:
     """Make the textbook companion of the paper, or of the SCENEs given, as pages for a browser."""
     require_extras()
     from ..companion.book import make_book
@@ -43,7 +46,7 @@ def companion(scenes: Sequence[Path], directory: Path, settings: Sequence[str], 
         raise click.UsageError("--set needs a SCENE")
     book = book_of_scenes(scenes, given, limits) if scenes else book_of_the_paper()
     with progress(f"Making {directory}", len(book.runs)) as done:
-        make_book(book, directory, done)
+        make_book(book, directory, pdf, done)
     done_line = f"The companion is in {directory}: open {directory / 'index.html'} in a browser."
     make_console().print(done_line, soft_wrap=True, markup=False)
     return 0

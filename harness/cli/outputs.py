@@ -26,6 +26,7 @@ EARLIER = {
     "tex": re.compile(rb"\A% Written by Holonom\n"),
     "svg": re.compile(rb"\A\s*(<\?xml|<svg).*(Holonom|class=\"errata|rich-terminal)", re.DOTALL),
     "png": re.compile(rb"\A\x89PNG\r\n.*Holonom", re.DOTALL),
+    "pdf": re.compile(rb"\A%PDF-.*Skia/PDF", re.DOTALL),
     "csv": re.compile(rb"\At(,[^,\n]+)*\n"),
     "npz": re.compile(rb"\APK\x03\x04.{26,60}t\.npy", re.DOTALL),
     "parquet": re.compile(rb"\APAR1.*holonom", re.DOTALL),

@@ -1,7 +1,7 @@
 """The book: chapters in their order, their runs performed, their pages written."""
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import count
 from pathlib import Path
 from string import ascii_uppercase
@@ -10,7 +10,10 @@ from typing import Any
 from ..failures import Failure, HolonomError
 from ..files import write_whole_directory, written_before
 from .chapter import Chapter, Page, Run
+from .finish import finished, terms
+from .fonts import mathematics_font
 from .pages import STYLE, Contents, Entry, Part, chapter_page, index_page, source_name, source_page, topic_page
+from .printing import browser, print_book
 from .runs import Derived, FileAnswers, perform
 
 APPENDICES = "Appendices"  # title of the part whose chapters have letters
@@ -31,6 +34,8 @@ class Book:
         What the names of source files are relative to.
     parts : tuple of (str, tuple of Chapter)
         Title and chapters of each part.
+    sessions : mapping of str to str
+        Text of the Maxima session of each chapter that has one, by the chapter's slug.
     """
 
     title: str
@@ -39,6 +44,7 @@ class Book:
     command: str
     root: Path
     parts: tuple[tuple[str, tuple[Chapter, ...]], ...]
+    sessions: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def runs(self) -> dict[Run, None]:
@@ -51,14 +57,16 @@ class Book:
         return [chapter for _, chapters in self.parts for chapter in chapters]
 
 
-def make_book(book: Book, directory: Path, done: Callable[[], None]) -> None:
-    """Perform a book's runs and write its pages.
+def make_book(book: Book, directory: Path, pdf: Path | None, done: Callable[[], None]) -> None:
+    """Perform a book's runs and write its pages, and print them.
 
     Parameters
     ----------
     book : Book
     directory : Path
         Where the pages are put; of a companion that is there, the pages are replaced and what else there is stays.
+    pdf : Path or None
+        The file that they are printed to as one book.
     done : callable
         Called each time that one of the runs is done.
 
@@ -68,8 +76,13 @@ def make_book(book: Book, directory: Path, done: Callable[[], None]) -> None:
         A run fails, or the directory holds something else or cannot be written.
     """
     require_companion_or_nothing(directory)
+    if pdf is not None:
+        browser()  # before the work, not after it
     results = perform(book.runs, done)
-    write_whole_directory(directory, pages(book, results))
+    files = pages(book, results)
+    if pdf is not None:
+        print_book(contents_of(book, results), files, pdf)
+    write_whole_directory(directory, files)
 
 
 def require_companion_or_nothing(directory: Path) -> None:
@@ -86,7 +99,7 @@ def require_companion_or_nothing(directory: Path) -> None:
         raise HolonomError(Failure.NOT_A_COMPANION, directory)
 
 
-def pages(book: Book, results: Mapping[Run, Any]) -> dict[str, str]:
+def pages(book: Book, results: Mapping[Run, Any]) -> dict[str, str | bytes]:
     """The files of a book.
 
     Parameters
@@ -97,15 +110,23 @@ def pages(book: Book, results: Mapping[Run, Any]) -> dict[str, str]:
 
     Returns
     -------
-    dict of str to str
-        Text by file name.
+    dict of str to str or bytes
+        What each file holds, by its name.
     """
-    contents = _contents(book, results)
+    contents = contents_of(book, results)
     made = {chapter: _page(chapter, results) for chapter in book.chapters}
-    files = {"companion.css": STYLE.read_text(encoding="utf-8"), "index.html": index_page(contents)}
-    for chapter, page in made.items():
-        files[f"{chapter.slug}.html"] = chapter_page(contents, chapter, page.content)
-        files |= {f"figures/{name}.svg": svg for name, svg in page.figures.items()}
+    written = {f"{chapter.slug}.html": chapter_page(contents, chapter, page.content) for chapter, page in made.items()}
+    parts = [[f"{chapter.slug}.html" for chapter in chapters] for _, chapters in book.parts]
+    written["index.html"] = index_page(contents, terms(written))
+    font, notice = mathematics_font()
+    files = finished(written, parts) | {
+        "companion.css": STYLE.read_text(encoding="utf-8"),
+        "fonts/mathematics.woff": font,
+        "fonts/mathematics.txt": notice,
+    }
+    files |= {f"sessions/{slug}.mac": text for slug, text in book.sessions.items()}
+    for page in made.values():
+        files |= {f"figures/{name}.svg": svg for name, svg in page.figures.items()} | page.files
     for topic in (topic for page in made.values() for topic in page.topics):
         files[f"reference/{topic.slug}.html"] = topic_page(contents, topic)
     for file in dict.fromkeys(source for page in made.values() for source in page.sources):
@@ -117,7 +138,8 @@ def _page(chapter: Chapter, results: Mapping[Run, Any]) -> Page:
     return chapter.page({name: results[run] for name, run in chapter.runs.items()})
 
 
-def _contents(book: Book, results: Mapping[Run, Any]) -> Contents:
+def contents_of(book: Book, results: Mapping[Run, Any]) -> Contents:
+    """What every page of a book knows about it."""
     numbers, letters = map(str, count(1)), iter(ascii_uppercase)
     return Contents(
         title=book.title,
@@ -129,6 +151,7 @@ def _contents(book: Book, results: Mapping[Run, Any]) -> Contents:
             Part(title, tuple(_entries(chapters, letters if title == APPENDICES else numbers)))
             for title, chapters in book.parts
         ),
+        sessions=frozenset(book.sessions),
     )
 
 

@@ -37,12 +37,15 @@ class Page:
         Maxima files that the page refers to, relative to the book's root; each becomes a page of its own.
     topics : tuple of Topic
         Pages of the reference that the page leads to.
+    files : mapping of str to str
+        Text of other files beside the page, by name.
     """
 
     content: Mapping[str, Any]
     figures: Mapping[str, str] = field(default_factory=dict)
     sources: tuple[str, ...] = ()
     topics: tuple[Topic, ...] = ()
+    files: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,24 +1,32 @@
 """Mathematics on a page: what the templates call to have formulas typeset."""
 
 import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 
+import sympy
 from markupsafe import Markup, escape
-from sympy import Expr, Symbol, sympify
+from sympy import Expr, IndexedBase, Symbol, sympify
 
 from ..errata import PrintedEquation
 from ..mathjson import Tree, from_sympy
-from ..record import Equation, Relation
+from ..record import Equation, Relation, System
 from ..typeset.equations import latex_equation
 from ..typeset.latex import CORRECTION, MISPRINT, latex, latex_marked, latex_relation, latex_tree
 from ..typeset.mathml import inline_mathml, mathml
 
-WIDTH = 62  # digits that fit in a card on a desk; a phone scrolls the card
+WIDTH, NARROW = 62, 30  # digits that fit in a card on a desk and on a phone
+TALL = 14  # lines of a formula that is folded, for it would fill a screen
 NOTHING = {
     "6": "There are none: the mass matrix does not depend on the coordinates.",
     "19": "No formula: the constraints are not linear in what the scene leaves out, or it leaves nothing out.",
 }
 UNCONSTRAINED = "There are no constraints, and so no multipliers: every motion is free."
+LINE_BREAK = r"\\"
 FORMULA_IN_PROSE = re.compile(r"\$([^$]+)\$")
+
+
+Formulas = Callable[[int], Sequence[str]]  # LaTeX at a width in digits
 
 
 def tex(formula: str) -> Markup:
@@ -46,7 +54,7 @@ def equality(name: str, value: Expr) -> Markup:
 def display(left: Expr, right: Expr | int) -> Markup:
     """Both sides of an equation on lines of its own."""
     relation = Relation(from_sympy(left), from_sympy(sympify(right)))
-    return Markup(mathml(latex_relation(relation, WIDTH), f"{left} = {right}"))
+    return _at_each_width(lambda width: [latex_relation(relation, width)], f"{left} = {right}")
 
 
 def display_named(name: str, value: Expr) -> Markup:
@@ -56,7 +64,7 @@ def display_named(name: str, value: Expr) -> Markup:
 
 def display_expression(value: Expr) -> Markup:
     """An expression on lines of its own."""
-    return Markup(mathml(latex(value, WIDTH), str(value)))
+    return _at_each_width(lambda width: [latex(value, width)], str(value))
 
 
 def symbol(name: str) -> Markup:
@@ -64,10 +72,32 @@ def symbol(name: str) -> Markup:
     return expression(Symbol(name, real=True))
 
 
-def typeset(equation: Equation) -> list[Markup]:
+@dataclass(frozen=True)
+class Typeset:
+    """An equation as it is shown.
+
+    Attributes
+    ----------
+    formula : Markup
+        Empty where it has no relations.
+    lines : int
+        How many it takes on a desk.
+    """
+
+    formula: Markup
+    lines: int
+
+    @property
+    def is_tall(self) -> bool:
+        """Whether it would fill a screen."""
+        return self.lines > TALL
+
+
+def typeset(equation: Equation) -> Typeset:
     """The relations of an equation; those of the entries of one array as one, where it is narrow enough."""
     said = "; ".join(f"{relation.left} = {relation.right}" for relation in equation.relations)
-    return [Markup(mathml(formula, said)) for formula in latex_equation(equation, WIDTH)]
+    lines = sum(formula.count(LINE_BREAK) + 1 for formula in latex_equation(equation, WIDTH))
+    return Typeset(_at_each_width(lambda width: latex_equation(equation, width), said), lines)
 
 
 def nothing_to_show(equation: Equation) -> str:
@@ -89,12 +119,46 @@ def as_corrected(printed: PrintedEquation) -> Markup:
 
 def difference(printed: PrintedEquation) -> Markup:
     """What is printed less what is derived."""
-    return _block(latex_tree(printed.difference_tree, WIDTH), printed.difference)
+    return _block(lambda width: [latex_tree(printed.difference_tree, width)], printed.difference)
 
 
 def _printed(tree: Tree, other: Tree, colour: str, text: str) -> Markup:
-    return _block(latex_marked(tree, other, colour, WIDTH), text)
+    return _block(lambda width: [latex_marked(tree, other, colour, width)], text)
 
 
-def _block(formula: str, said: str) -> Markup:
-    return Markup('<div class="formula" tabindex="0">{}</div>').format(Markup(mathml(formula, said)))
+def _block(formulas: Formulas, said: str) -> Markup:
+    return Markup('<div class="formula">{}</div>').format(_at_each_width(formulas, said))
+
+
+def _at_each_width(formulas: Formulas, said: str) -> Markup:
+    """Formulas as they are broken on a desk and on a phone; the style shows the one that fits."""
+    wide, narrow = formulas(WIDTH), formulas(NARROW)
+    if wide == narrow:
+        return _blocks(wide, said)
+    return Markup('<div class="wide">{}</div><div class="narrow">{}</div>').format(
+        _blocks(wide, said), _blocks(narrow, said)
+    )
+
+
+def _blocks(formulas: Sequence[str], said: str) -> Markup:
+    return Markup("").join(Markup(mathml(formula, said)) for formula in formulas)
+
+
+def description(system: System) -> list[Markup]:
+    """T, V, Q and f of a system, those that it has."""
+    return [display(left, right) for left, right in _parts(system)]
+
+
+def _parts(system: System) -> Iterator[tuple[Expr, Expr]]:
+    yield _letter("T"), sympy.Add(*(effect.value for effect in system.kinetic_energy))
+    if system.potential_energy:
+        yield _letter("V"), sympy.Add(*(effect.value for effect in system.potential_energy))
+    if system.forces:
+        for s, components in enumerate(zip(*(effect.value for effect in system.forces), strict=True), 1):
+            yield IndexedBase(_letter("Q"))[s], sympy.Add(*components)
+    for beta, constraint in enumerate(system.constraints, 1):
+        yield IndexedBase(_letter("f"))[beta], constraint
+
+
+def _letter(name: str) -> Symbol:
+    return Symbol(name, real=True)

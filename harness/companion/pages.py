@@ -16,6 +16,8 @@ from ..simulation.diagnosis import engine_text, remarks
 from . import mathematics
 from .chapter import Chapter
 from .excerpts import Excerpt
+from .finish import Place
+from .finish import terms as terms_in
 
 TEMPLATES = Path(__file__).with_name("templates")
 LONGEST_COEFFICIENT = 12  # characters of an exact number in a table
@@ -64,6 +66,8 @@ class Contents:
     maxima : str
         Version of Maxima that derived it.
     parts : tuple of Part
+    sessions : frozenset of str
+        Slugs of the chapters that have a session of Maxima.
     """
 
     title: str
@@ -72,6 +76,7 @@ class Contents:
     command: str
     maxima: str
     parts: tuple[Part, ...]
+    sessions: frozenset[str] = frozenset()
 
     @property
     def entries(self) -> list[Entry]:
@@ -79,9 +84,9 @@ class Contents:
         return [entry for part in self.parts for entry in part.entries]
 
 
-def index_page(book: Contents) -> str:
-    """The first page: foreword and contents."""
-    return _rendered("index.html", book=book)
+def index_page(book: Contents, terms: Sequence[Place]) -> str:
+    """The first page: foreword, contents, and where each word is defined."""
+    return _rendered("index.html", book=book, terms=terms)
 
 
 def chapter_page(book: Contents, chapter: Chapter, content: Mapping[str, Any]) -> str:
@@ -117,6 +122,24 @@ def chapter_page(book: Contents, chapter: Chapter, content: Mapping[str, Any]) -
         "next": entries[place + 1] if place + 1 < len(entries) else None,
     }
     return _rendered(chapter.template, book=book, chapter=about, **content)
+
+
+def printed_page(
+    book: Contents, front: Markup, chapters: Sequence[tuple[Entry, Markup]], sheets: Mapping[str, int]
+) -> str:
+    """The whole book as one page.
+
+    Parameters
+    ----------
+    book : Contents
+    front : Markup
+        Title and foreword.
+    chapters : sequence of (Entry, Markup)
+    sheets : mapping of str to int
+        The sheet that each place is on, as far as it is known.
+    """
+    terms = terms_in({f"{entry.slug}.html": text for entry, text in chapters})
+    return _rendered("print.html", book=book, front=front, chapters=chapters, sheets=sheets, terms=terms)
 
 
 def source_page(book: Contents, file: str, text: str) -> str:

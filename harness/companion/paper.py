@@ -8,6 +8,7 @@ from .chapters import (
     effects,
     equations_of_motion,
     free_motion,
+    further_reading,
     gallery,
     hard_cases,
     initial_motion,
@@ -18,6 +19,7 @@ from .chapters import (
     reference,
     the_system,
     trajectory_control,
+    turn_the_knob,
     universal_controls,
     worked_example,
     your_own_system,
@@ -25,6 +27,7 @@ from .chapters import (
 from .chapters import (
     work_precision as accuracy,
 )
+from .sessions import sessions
 
 REPOSITORY = shared("maxima").parent
 
@@ -35,11 +38,12 @@ CHAPTERS = {
         trajectory_control,
         prescribed_reactions,
         radius_of_convergence,
+        turn_the_knob,
         accuracy,
         hard_cases,
         effects,
     ),
-    APPENDICES: (misprints, notation, your_own_system, gallery, reference),
+    APPENDICES: (misprints, notation, your_own_system, gallery, reference, further_reading),
 }
 
 
@@ -51,6 +55,7 @@ def book_of_the_paper(root: Path = REPOSITORY) -> Book:
     root : Path
         The repository whose examples and Maxima files it shows.
     """
+    parts = tuple((title, tuple(each.chapter(root) for each in chapters)) for title, chapters in CHAPTERS.items())
     return Book(
         title="Free motion and initial motion",
         subtitle="A textbook companion to Chen, Guo & Mei, “Free motion and initial motion of controllable holonomic "
@@ -58,5 +63,6 @@ def book_of_the_paper(root: Path = REPOSITORY) -> Book:
         foreword="foreword.html",
         command="make companion",
         root=root,
-        parts=tuple((title, tuple(each.chapter(root) for each in chapters)) for title, chapters in CHAPTERS.items()),
+        parts=parts,
+        sessions=sessions(root, (chapter for _, chapters in parts for chapter in chapters)),
     )

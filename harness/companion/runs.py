@@ -105,9 +105,11 @@ def series(
     return Run(_series, (file, scene, order, settings, limits))
 
 
-def simulation(file: Path, scene: str | None, until: Fraction | None, samples: int | None) -> Run:
+def simulation(
+    file: Path, scene: str | None, until: Fraction | None, samples: int | None, settings: Settings = NO_SETTINGS
+) -> Run:
     """A scene's motion followed through its time span or to an instant: a `Simulation`."""
-    return Run(_simulate, (file, scene, until, samples))
+    return Run(_simulate, (file, scene, until, samples, settings))
 
 
 def figure(draw: Callable[[Path], None]) -> Run:
@@ -168,10 +170,12 @@ def _series(file: Path, scene: str | None, order: int, settings: Settings, limit
     return motion
 
 
-def _simulate(file: Path, scene: str | None, until: Fraction | None, samples: int | None) -> Simulation:
+def _simulate(
+    file: Path, scene: str | None, until: Fraction | None, samples: int | None, settings: Settings
+) -> Simulation:
     from ..simulation.simulate import simulate
 
-    problem = motion_problem(file, Request(scene), DEFAULT_LIMITS)
+    problem = motion_problem(file, Request(scene, settings=dict(settings)), DEFAULT_LIMITS)
     return simulate(problem, SimulationRequest(until=until, samples=samples))
 
 

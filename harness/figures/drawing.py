@@ -32,7 +32,7 @@ BODY, HINGE = 5.0, 3.5  # radii, pixels
 STEADY = 1e-9  # of the picture: what moves less does not move
 STILL = {"class": "fixed"}
 STYLE = (
-    f"{INK_RULE}svg{{font:14px 'DejaVu Sans',sans-serif}}"
+    f"{INK_RULE}svg{{font:18px 'DejaVu Sans',sans-serif}}"
     "line,polyline,circle{fill:none;stroke:currentColor;stroke-width:1.5;stroke-linejoin:round;stroke-linecap:round}"
     "text{fill:currentColor}"
     f".rod{{stroke:{BLUE};stroke-width:2.5}}.body{{fill:{VERMILION};stroke:none}}"

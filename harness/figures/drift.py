@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ..simulation.request import Stabilization
 from ..simulation.result import Simulation
-from .style import LINES, PALETTE, figure_style, new_figure, svg_text
+from .style import LINES, PALETTE, figure_style, legend_above, new_figure, svg_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,7 +39,7 @@ def draw_drift(motions: Mapping[Stabilization, Simulation]) -> str:
         constraints.set_ylabel("distance from the constraints\n(dimensionless)")
         energy.set_ylabel("energy out of balance\n(units of the scene)")
         energy.set_xlabel("t (units of the scene)")
-        constraints.legend(ncols=len(motions), loc="lower right")
+        legend_above(constraints)
         return svg_text(figure)
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..benchmark.hard_cases.case import CaseReport, Outcome, Result, Sweep
-from .style import BLUE, LINES, MARKERS, PALETTE, VERMILION, figure_style, new_figure, write_figure
+from .style import BLUE, LINES, MARKERS, PALETTE, VERMILION, figure_style, legend_above, new_figure, write_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -66,4 +66,4 @@ def _draw_sweep(axes: "Axes", sweep: Sweep) -> None:
         axes.semilogx(sweep.values, digits, marker=marker, linestyle=line, color=colour, label=method)
     axes.invert_xaxis()
     axes.set(xlabel=sweep.variable, ylabel="digits of the accelerations", ylim=(0, MOST_DIGITS))
-    axes.legend()
+    legend_above(axes)

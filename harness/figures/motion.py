@@ -8,13 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..simulation.result import Simulation
-from .style import LINES, PALETTE, figure_style, new_figure, write_figure
+from .style import LINES, PALETTE, figure_style, lettered, new_figure, write_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 WIDTH, HEIGHT_OF_PANEL = 9.0, 3.2  # inches
+UNLIKE = 30.0  # how many times larger a curve is that leaves another one flat
+NOTHING = 1e-9  # size of a curve that is rounding alone
 LEGIBLE = 12  # curves that a legend can still tell apart
 
 
@@ -50,11 +52,11 @@ def motion_figure(simulation: Simulation) -> "Figure":
         "multipliers": simulation.multipliers,
         "constraint forces": simulation.constraint_forces,
     }
-    drawn = {title: curves for title, curves in groups.items() if curves}
+    drawn = [(title, part) for title, curves in groups.items() for part in of_like_size(curves)]
     with figure_style():
         figure = new_figure(WIDTH, HEIGHT_OF_PANEL * len(drawn))
         panels = figure.subplots(len(drawn), 1, sharex=True, squeeze=False)[:, 0]
-        for panel, (title, curves) in zip(panels, drawn.items(), strict=True):
+        for panel, (title, curves) in zip(panels, drawn, strict=True):
             _draw(panel, simulation.instants.astype(float), curves)
             panel.set_ylabel(f"{title}\n(units of the scene)")
         panels[0].set_title(simulation.title)
@@ -62,10 +64,26 @@ def motion_figure(simulation: Simulation) -> "Figure":
     return figure
 
 
+def of_like_size(curves: Mapping[str, NDArray]) -> list[dict[str, NDArray]]:
+    """Curves in groups, each of which can be read on one axis: the largest first, none hundreds of times another.
+
+    Curves that are zero but for rounding go with the smallest.
+    """
+    sizes = {name: float(np.max(np.abs(samples.astype(float)), initial=0.0)) for name, samples in curves.items()}
+    parts: list[dict[str, NDArray]] = []
+    top = 0.0
+    for name in sorted(curves, key=sizes.__getitem__, reverse=True):
+        if not parts or NOTHING < sizes[name] < top / UNLIKE:
+            parts.append({})
+            top = sizes[name]
+        parts[-1][name] = curves[name]
+    return [{name: curves[name] for name in curves if name in part} for part in parts]
+
+
 def _draw(axes: "Axes", instants: NDArray[np.float64], curves: Mapping[str, NDArray]) -> None:
     for index, (name, samples) in enumerate(curves.items()):
         line = LINES[index // len(PALETTE) % len(LINES)]
         colour = PALETTE[index % len(PALETTE)]
-        axes.plot(instants, samples.astype(float), linestyle=line, color=colour, label=name)
+        axes.plot(instants, samples.astype(float), linestyle=line, color=colour, label=lettered(name))
     if len(curves) <= LEGIBLE:
         axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..series.radius import Radius
-from .style import INK, LINES, PALETTE, figure_style, new_figure, svg_text
+from .style import INK, LINES, PALETTE, figure_style, legend_above, new_figure, svg_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -60,4 +60,4 @@ def _finish(curves: "Axes", errors: "Axes", name: str, motion: NDArray, radius: 
     for axes in (curves, errors):
         axes.axvline(radius.estimate, color=INK, linestyle=":", linewidth=1)
     curves.text(radius.estimate, curves.get_ylim()[1], " radius", va="top")
-    curves.legend(loc="lower left", ncols=2)
+    legend_above(curves)

@@ -47,7 +47,7 @@ def draw_radius(file: Path) -> None:
         As `holonom.series.power_series.compute_series`; Matplotlib is not installed; the file cannot be written.
     """
     with figure_style():
-        figure = new_figure(10, 4.2)
+        figure = new_figure(10, 5)
         radii, plane = figure.subplots(1, 2)
         coarse, fine = (_radii(LINEAR, order) for order in ORDERS)
         _draw_radii(radii, coarse, fine, _radii(EXPONENTIAL, ORDER_OF_ENTIRE))
@@ -76,7 +76,7 @@ def _draw_radii(axes: "Axes", coarse: Sequence[Radius], fine: Sequence[Radius], 
     axes.plot(infinite, [HIGHEST] * len(infinite), "^", color=GREEN, clip_on=False, label="u = u₀ exp(t): entire")
     axes.set(xlabel="initial control u₀", ylabel="radius of convergence", ylim=(0, HIGHEST))
     axes.set_title("How far the series of the motion holds", pad=12)
-    axes.legend(loc="lower center", ncols=2)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)
 
 
 def _draw_singularities(axes: "Axes", radii: Sequence[Radius]) -> None:
@@ -86,12 +86,12 @@ def _draw_singularities(axes: "Axes", radii: Sequence[Radius]) -> None:
     found = [z for _, radius in drawn for z in radius.singularities]
     axes.plot(*_parts(found), "x", color=BLUE, label=f"from {ORDERS[1]} orders")
     for u0, _ in drawn:
-        axes.annotate(f"u₀ = {float(u0):g}", (-float(u0), 0.88), ha="center", rotation=40, fontsize=8)
+        axes.annotate(f"u₀ = {float(u0):g}", (-float(u0), 0.88), ha="center", rotation=40, fontsize="small")
     axes.plot(0, 0, "+", color=INK)
     axes.annotate("t = 0", (0.07, 0.05))
     axes.set(xlabel="Re t", ylabel="Im t", xlim=(-2.4, 2.4), ylim=(-1.5, 1.5))
     axes.set_title("What stops it: singularities in the complex time plane", pad=12)
-    axes.legend(loc="lower center", ncols=2)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)
 
 
 def _parts(points: Sequence[complex]) -> tuple[list[float], list[float]]:

@@ -16,6 +16,8 @@ Okabe & Ito, Color Universal Design (2008).
 """
 
 import io
+import re
+import unicodedata
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -26,6 +28,7 @@ from ..failures import missing_package
 from ..files import write_whole
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 BLUE, VERMILION, GREEN = "#0072b2", "#d55e00", "#009e73"
@@ -33,6 +36,10 @@ ORANGE, SKY, PURPLE = "#e69f00", "#56b4e9", "#cc79a7"
 PALETTE = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY)
 MARKERS = ("o", "s", "^", "D", "v", "P")
 LINES = ("-", "--", "-.", ":")
+RATE, NUMBERED = re.compile(r"(d{1,3})ot\((.+)\)"), re.compile(r"(.*?)(\d*)", re.DOTALL)
+WORD = re.compile(r"[A-Za-z]+\d*")
+DOTS = {"d": "\N{COMBINING DOT ABOVE}", "dd": "\N{COMBINING DIAERESIS}", "ddd": "\N{COMBINING THREE DOTS ABOVE}"}
+LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 INK = "#1f2328"
 INK_ON_DARK = "#d1d7e0"
 
@@ -103,6 +110,34 @@ def new_figure(width: float, height: float) -> "Figure":
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width, height), layout="constrained")
+
+
+def legend_above(axes: "Axes") -> None:
+    """The legend of a panel above it, where it lies on no data."""
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
+
+
+def lettered(name: str) -> str:
+    """The name of a quantity as a reader writes it: λ₁ for lambda1, φ̇ for dot(phi)."""
+    if rate := RATE.fullmatch(name):
+        letter, *rest = lettered(rate[2])
+        return letter + DOTS[rate[1]] + "".join(rest)
+    stem, number = NUMBERED.fullmatch(name).groups()
+    return _in_greek(stem) + number.translate(LOWERED)
+
+
+def lettered_text(text: str) -> str:
+    """A text in which names of quantities are written in their letters."""
+    return WORD.sub(lambda word: lettered(word[0]), text)
+
+
+def _in_greek(name: str) -> str:
+    """The Greek letter of that name, or the name where there is none."""
+    case = "SMALL" if name.islower() else "CAPITAL"
+    try:
+        return unicodedata.lookup(f"GREEK {case} LETTER {name.lower().replace('lambda', 'lamda')}")
+    except KeyError:
+        return name
 
 
 def write_figure(figure: "Figure", path: Path) -> None:

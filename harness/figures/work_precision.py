@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from ..benchmark.work_precision.study import Study
 
-WIDTH, HEIGHT = 10.0, 13.0  # inches
+WIDTH, HEIGHT = 11.0, 16.0  # inches
 FEW_DIGITS = 20  # as far as numbers of the hardware reach, and a little beyond
 SECONDS, OPERATIONS = "time / s", "operations"
 
@@ -59,7 +59,7 @@ def draw_study(study: "Study", path: Path) -> None:
             _draw(axes, [m for m in study.measurements if panel.shows(m)], panel.quantity)
             axes.set_title(panel.title.format(until=float(study.until), instant=_instant_of_series(study)))
         figure.suptitle(TITLE.format(scene=study.scene), x=0.01, ha="left")
-        figure.supxlabel(str(study.machine), x=0.01, ha="left", fontsize="x-small")
+        figure.supxlabel(str(study.machine), x=0.01, ha="left", fontsize="small")
     write_figure(figure, path)
 
 
@@ -79,7 +79,7 @@ def _draw(axes: "Axes", measurements: Sequence[Measurement], quantity: str) -> N
         axes.semilogy([digits_of(m) for m in rows], work, color=colour, marker=marker, linestyle=line, label=method)
     axes.set(xlabel="digits kept", ylabel=quantity)
     if measurements:
-        axes.legend(fontsize="x-small")
+        axes.legend(fontsize="small", loc="upper left", bbox_to_anchor=(0.0, -0.2), ncols=2)
 
 
 def _in_contest(measurement: Measurement) -> bool:

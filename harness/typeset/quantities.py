@@ -12,7 +12,7 @@ from .boxes import COMMA, SEMICOLON, Box, above, below, beside, bracketed, digit
 RATE = re.compile(r"(d{1,3})ot\((.+)\)(\w*)")
 UNDERSCORE = r"\_"  # of a name that is nothing else
 NUMBERED = re.compile(r"([^\W\d]+?)(\d*)")
-OPEN = {"phi": r"\varphi"}  # the shape that mechanics writes
+OPEN = {"phi": r"\varphi", "th": r"\theta"}  # the shape that mechanics writes, and its shorthand
 GREEK = {name.replace("lamda", "lambda") for name in greeks}
 
 
@@ -47,7 +47,7 @@ def _letter_and_number(stem: str) -> tuple[str, str]:
 def letter_box(letter: str) -> Box:
     """A letter, Latin or Greek, or a word."""
     letter = spelled_out(letter)
-    if letter.lower() in GREEK:
+    if letter.lower() in GREEK or letter in OPEN:
         return word(OPEN.get(letter) or tex_greek_dictionary.get(letter, rf"\{letter}"), 1)
     if len(letter) == 1 and letter.isascii():
         return word(letter, 1)

@@ -34,6 +34,11 @@ def test_free_motion_and_series_are_answered(own):
     assert "The series converges for" in pages.words(own / "1-my-system-initial-motion.html")
 
 
+def test_numbers_come_before_closed_forms(own):
+    page = (own / "1-my-system-initial-motion.html").read_text()
+    assert page.index("First coefficients of") < page.index("smooth_scene-eq-12")
+
+
 def test_an_answer_that_mathematics_refuses_is_replaced_by_the_reason(tmp_path):
     outcome, directory = made(tmp_path, ROUGH)
     assert outcome.return_value == 0

@@ -20,7 +20,7 @@ def made(tmp_path_factory) -> Path:
     page = chapter.page({})
     files = {"companion.css": STYLE.read_text(), f"{chapter.slug}.html": chapter_page(contents, chapter, page.content)}
     files |= {f"reference/{topic.slug}.html": topic_page(contents, topic) for topic in page.topics}
-    files["index.html"] = index_page(contents)
+    files["index.html"] = index_page(contents, ())
     for name, text in files.items():
         (directory / name).parent.mkdir(exist_ok=True)
         (directory / name).write_text(text, encoding="utf-8")

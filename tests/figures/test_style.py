@@ -6,7 +6,7 @@ import matplotlib
 import pytest
 
 from holonom.failures import HolonomError
-from holonom.figures.style import INK, PALETTE, figure_style, new_figure, write_figure
+from holonom.figures.style import INK, PALETTE, figure_style, lettered, new_figure, write_figure
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -52,3 +52,11 @@ def test_settings_of_matplotlib_are_left_as_they_were(tmp_path):
 def test_what_cannot_be_written_is_refused(tmp_path):
     with pytest.raises(HolonomError, match="cannot be written"):
         drawn(tmp_path / "nowhere" / "figure.svg")
+
+
+@pytest.mark.parametrize(
+    ("name", "letters"),
+    [("lambda1", "λ₁"), ("q12", "q₁₂"), ("dot(phi)", "φ̇"), ("Lambda", "Λ"), ("x", "x"), ("slider", "slider")],
+)
+def test_quantities_are_named_by_their_letters(name, letters):
+    assert lettered(name) == letters

@@ -1,14 +1,19 @@
 """Free motion: the condition (10), and whether the example satisfies it."""
 
 from collections.abc import Mapping
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from ..cards import derivation_cards, files_of, named_equations, printed_card, scene_cards
+from ...figures.curves import Panel, draw_curves
+from ...simulation.result import Simulation
+from ..cards import derivation_cards, files_of, named_equations, printed_card, scene_cards, scene_named
 from ..chapter import Chapter, Page
 from ..examples import BOB, CABIN, FREE_SCENE, INITIAL_SCENE, PAPER, PENDULUM
-from ..runs import derived, free, printed
+from ..power import EnergyBalance, energy_balance
+from ..runs import derived, free, printed, simulation
 
+UNTIL, SAMPLES = Fraction(3), 2001
 PARABOLIC_FLIGHT = "parabolic_flight_scene"
 LIFT = "lift_scene"
 UNPUSHED = "Lagrange's equations on a free motion"
@@ -31,8 +36,14 @@ def chapter(root: Path) -> Chapter:
                 "cabin": named_equations(cabin),
                 "flight": results["flight"].motion,
                 "lift": results["lift"].motion,
+                "balance": (
+                    balance := energy_balance(paper.record.system, scene_named(paper, INITIAL_SCENE), results["pushed"])
+                ),
+                "spent": float(balance.by_knob[-1]),
+                "pushed_until": float(results["pushed"].instants[-1]),
                 "pendulum": named_equations(results["pendulum"]),
             },
+            figures={"cost": draw_curves(panels(results["unpushed"], results["pushed"], balance), "t (dimensionless)")},
             sources=files_of(cards),
         )
 
@@ -49,8 +60,27 @@ def chapter(root: Path) -> Chapter:
             "printed": printed(),
             "free_law": free(root / PAPER, FREE_SCENE),
             "other_law": free(root / PAPER, INITIAL_SCENE),
+            "unpushed": simulation(root / PAPER, FREE_SCENE, UNTIL, SAMPLES),
+            "pushed": simulation(root / PAPER, INITIAL_SCENE, UNTIL, SAMPLES),
             "flight": free(root / CABIN, PARABOLIC_FLIGHT),
             "lift": free(root / CABIN, LIFT),
         },
         page=page,
     )
+
+
+def panels(unpushed: Simulation, pushed: Simulation, balance: EnergyBalance) -> list[Panel]:
+    """The multiplier under both laws, and where the energy goes under the second."""
+    multipliers = {"u = u₀ exp(t)": unpushed, "u = u₀ + t": pushed}
+    work = {
+        "kinetic energy gained": balance.gained,
+        "work of spring and damping": balance.by_forces,
+        "work at the knob": balance.by_knob,
+    }
+    return [
+        Panel(
+            "multiplier λ₁\n(dimensionless)",
+            {law: (motion.instants, motion.multipliers["lambda1"]) for law, motion in multipliers.items()},
+        ),
+        Panel("u = u₀ + t: energy\n(dimensionless)", {name: (pushed.instants, each) for name, each in work.items()}),
+    ]

@@ -58,6 +58,15 @@ EXHIBITS = (
         until=Fraction(3),
     ),
     Exhibit(
+        "rocked-particle",
+        "examples/paper/knob.mac",
+        (
+            "The same once more, but the plane is rocked to and fro.",
+            "The multiplier changes its sign with every turn, and the particle slides off all the same.",
+        ),
+        scene="swinging_scene",
+    ),
+    Exhibit(
         "pendulum",
         "examples/pendulum.mac",
         (
@@ -66,6 +75,15 @@ EXHIBITS = (
         ),
         scene="lengthening_scene",
         until=Fraction(20),
+    ),
+    Exhibit(
+        "hoist",
+        "examples/hoist.mac",
+        (
+            "A winch takes up the rope as it was recorded, through the points of a table, and the load swings.",
+            "The multiplier has no jumps, for the spline through the points has a continuous second rate.",
+        ),
+        scene="recorded_scene",
     ),
     Exhibit(
         "whirling-bob",
@@ -160,6 +178,15 @@ EXHIBITS = (
             "The first three multipliers belong to |e| = 1 and act on no body; the others are the components of the "
             "forces at the joints, which turn with the ring.",
         ),
+    ),
+    Exhibit(
+        "arm",
+        "examples/arm.mac",
+        (
+            "The tip of the arm goes round a circle, as it was told; the motors find the torques.",
+            "Both angles follow from the tip: no motion is left to the arm itself.",
+        ),
+        scene="circle_scene",
     ),
     Exhibit(
         "andrews",

@@ -6,8 +6,11 @@ from pathlib import Path
 from typing import Any
 
 import mpmath
+import numpy as np
 from sympy import Expr, Symbol
 
+from ...figures.curves import Panel, draw_curves
+from ...figures.style import lettered
 from ...record import Equation, Scene
 from ...series.power_series import MotionSeries, NumberTexts, number, numbers
 from ..cards import derivation_cards, files_of, named_equations, scene_cards, scene_named
@@ -16,7 +19,8 @@ from ..examples import BOB, BOB_SCENE, INITIAL_SCENE, PAPER
 from ..runs import derived, printed, series
 
 LOW_ORDER, HIGH_ORDER = 3, 40
-INSTANT = Fraction(1, 10)
+INSTANT, LAST = Fraction(1, 10), Fraction(1, 2)
+SHOWN = "q1"  # the coordinate that is drawn
 
 
 def chapter(root: Path) -> Chapter:
@@ -41,6 +45,7 @@ def chapter(root: Path) -> Chapter:
                 "orders": (LOW_ORDER, HIGH_ORDER),
                 "compared": compared(results["expanded"]),
             },
+            figures={"first-instants": draw_curves([beginning(results["expanded"])], "t (dimensionless)")},
             sources=files_of([*eliminated, *cards]),
         )
 
@@ -79,3 +84,13 @@ def compared(expanded: MotionSeries) -> list[tuple[str, mpmath.mpf, mpmath.mpf]]
 def partial_sum(coefficients: NumberTexts, step: mpmath.mpf) -> mpmath.mpf:
     """The sum of a power series as far as its coefficients go."""
     return mpmath.polyval(numbers(coefficients)[::-1], step)
+
+
+def beginning(expanded: MotionSeries) -> Panel:
+    """The first instants of a coordinate: the motion, and what the lowest orders make of it."""
+    with mpmath.workdps(expanded.digits):
+        coefficients = [float(each) for each in numbers(expanded.coordinates[SHOWN])]
+    times = np.linspace(0, float(LAST), 101)
+    orders = {f"order {order}": order for order in range(1, LOW_ORDER + 1)} | {"motion": HIGH_ORDER}
+    sums = {name: np.polynomial.polynomial.polyval(times, coefficients[: k + 1]) for name, k in orders.items()}
+    return Panel(f"{lettered(SHOWN)} (dimensionless)", {name: (times, values) for name, values in sums.items()})

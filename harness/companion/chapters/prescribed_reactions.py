@@ -1,19 +1,23 @@
 """Prescribed reactions: the constraints push as hard as they are told to, and the controls see to it."""
 
 from collections.abc import Mapping
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+from ...figures.curves import Panel, draw_curves
+from ...simulation.result import Simulation
 from ..chapter import Chapter, Page
-from ..description import description
 from ..examples import PRESCRIBED_TENSION
 from ..excerpts import excerpt
-from ..runs import derived, free, series
+from ..mathematics import description
+from ..runs import derived, free, series, simulation
 
 SOURCE = "maxima/free_motion/prescribed_reactions.mac"
 FUNCTIONS = ("released_system", "controls_under_reactions")
 SCENES = ("thrown_scene", "steady_scene", "growing_scene")
 ORDER = 40
+UNTIL, SAMPLES = Fraction(2), 201
 
 
 def chapter(root: Path) -> Chapter:
@@ -31,6 +35,7 @@ def chapter(root: Path) -> Chapter:
                 "series": {name: results[f"{name} series"] for name in SCENES},
                 "excerpts": [excerpt(root, SOURCE, name) for name in FUNCTIONS],
             },
+            figures={"winch": draw_curves(panels(results), "t (units of the scene)")},
             sources=(SOURCE, PRESCRIBED_TENSION),
         )
 
@@ -40,7 +45,24 @@ def chapter(root: Path) -> Chapter:
         aim="Free motion asks for reactions that are zero; one may as well ask for any other.",
         template="prescribed_reactions.html",
         runs={"tension": derived(file)}
+        | {f"{name} motion": simulation(file, name, UNTIL, SAMPLES) for name in SCENES[1:]}
         | {f"{name} free": free(file, name) for name in SCENES}
         | {f"{name} series": series(file, name, ORDER) for name in SCENES},
         page=page,
     )
+
+
+def panels(results: Mapping[str, Simulation]) -> list[Panel]:
+    """What is prescribed, and what the winch does."""
+    motions = {name: results[f"{name} motion"] for name in SCENES[1:]}
+    labels = {name: "steady" if name == SCENES[1] else "growing" for name in motions}
+    return [
+        Panel(
+            "multiplier λ₁\n(units of the scene)",
+            {labels[name]: (motion.instants, motion.multipliers["lambda1"]) for name, motion in motions.items()},
+        ),
+        Panel(
+            "length u of the string\n(units of the scene)",
+            {labels[name]: (motion.instants, motion.coordinates["u"]) for name, motion in motions.items()},
+        ),
+    ]

@@ -20,6 +20,7 @@ from ..expressions import zeros
 from ..runs import Derived, derived, figure, series, simulation
 
 ORDER = 80
+ORDERS, INSTANTS = (5, 10, 20, 40, 80), (0.5, 1.0)  # within the radius and beyond it
 COORDINATE = "q3"
 UNTIL, SAMPLES = Fraction(3, 2), 301
 SWING = "swing_scene"
@@ -44,6 +45,8 @@ def chapter(root: Path) -> Chapter:
                 "exact": exact,
                 "exact_radius": min(sympy.Abs(instant - start) for instant in exact),
                 "coordinate": COORDINATE,
+                "confronted": confronted(results["initial"], results["motion"]),
+                "orders": ORDERS,
                 "instants": [
                     float(instant) for instant in (results["motion"].instants[0], results["motion"].instants[-1])
                 ],
@@ -88,3 +91,19 @@ def partial_sums(expanded: MotionSeries, motion: Simulation) -> str:
         coefficients = [float(each) for each in numbers(expanded.coordinates[COORDINATE])]
         times = motion.instants - float(number(expanded.t0))
     return draw_partial_sums(COORDINATE, coefficients, expanded.radius, times, motion.coordinates[COORDINATE])
+
+
+def confronted(expanded: MotionSeries, motion: Simulation) -> dict[float, list[float]]:
+    """Errors of the partial sums at an instant within the radius and at one beyond it, order by order."""
+    truth = motion.coordinates[COORDINATE]
+    with mpmath.workdps(expanded.digits):
+        coefficients = numbers(expanded.coordinates[COORDINATE])
+        start = number(expanded.t0)
+        places = [min(range(len(truth)), key=lambda k: abs(motion.instants[k] - each)) for each in INSTANTS]
+        return {
+            float(motion.instants[k]): [
+                float(abs(mpmath.polyval(coefficients[order::-1], mpmath.mpf(motion.instants[k]) - start) - truth[k]))
+                for order in ORDERS
+            ]
+            for k in places
+        }

@@ -4,11 +4,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ..cards import derivation_cards, files_of
+from ...figures.tilted_plane import draw_tilted_plane
+from ..cards import derivation_cards, files_of, scene_named
 from ..chapter import Chapter, Page
-from ..description import description
 from ..examples import CABIN, FREE_SCENE, LINKAGE, PAPER, PENDULUM
 from ..excerpts import excerpt
+from ..mathematics import description
 from ..runs import derived, printed
 
 
@@ -18,8 +19,12 @@ def chapter(root: Path) -> Chapter:
     def page(results: Mapping[str, Any]) -> Page:
         paper = results["paper"]
         cards = derivation_cards(["1"], [paper, results["pendulum"]], results["printed"], root)
+        scene = scene_named(paper, FREE_SCENE)
+        start = {name: scene.initial_state[name] for name in paper.record.system.coordinates}
+        tilt = float(scene.parameter_values["u0"])
         return Page(
             {
+                "start": {"u": scene.parameter_values["u0"], **start},
                 "system": paper.record.system,
                 "description": description(paper.record.system),
                 "description_lines": excerpt(root, PAPER, "system"),
@@ -30,6 +35,7 @@ def chapter(root: Path) -> Chapter:
                 "cabin": results["cabin"].record.system,
                 "cabin_lines": excerpt(root, CABIN, "system"),
             },
+            figures={"tilted-plane": draw_tilted_plane([float(value) for value in start.values()], tilt)},
             sources=(PAPER, CABIN, *files_of(cards)),
         )
 

@@ -4,6 +4,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from ...figures.curves import Panel, draw_curves
+from ...free_motion import FreeMotion
 from ..chapter import Chapter, Page
 from ..examples import BEAD, BOB, CABIN, INITIAL_SCENE, PAPER, PENDULUM, SPHERICAL_PENDULUM
 from ..excerpts import excerpt
@@ -33,6 +37,7 @@ def chapter(root: Path) -> Chapter:
                 "titles": {name: results[name].record.system.title for name in FILES},
                 "excerpts": [excerpt(root, SOURCE, name) for name in FUNCTIONS],
             },
+            figures={"strings": draw_curves([lengths(results)], "t (units of the scene)")},
             sources=(SOURCE,),
         )
 
@@ -44,4 +49,15 @@ def chapter(root: Path) -> Chapter:
         runs={name: derived(root / file) for name, file in FILES.items()}
         | {f"{name} free": free(root / file, SCENES.get(name)) for name, file in FILES.items()},
         page=page,
+    )
+
+
+def lengths(results: Mapping[str, FreeMotion]) -> Panel:
+    """The lengths of two strings that never pull."""
+    shown = {"pendulum: thrown, and falling": "pendulum", "bob on the table: straight on": "bob"}
+    curves = {
+        label: np.array(results[f"{name} free"].trajectory.samples, dtype=float).T for label, name in shown.items()
+    }
+    return Panel(
+        "length u of the string\n(units of the scene)", {label: (each[0], each[1]) for label, each in curves.items()}
     )

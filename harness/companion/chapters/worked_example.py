@@ -2,24 +2,32 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from itertools import dropwhile
 from pathlib import Path
 from typing import Any
 
 import sympy
+from sympy import Expr, Symbol
 
 from ...errata import PrintedEquation
+from ...figures.curves import Panel, draw_curves
+from ...free_motion import FreeMotion
 from ...mathjson import from_sympy
 from ...record import Equation, Relation
+from ...simulation.result import Simulation
 from ..cards import Card, Instance, anchors, files_of, named_equations, scene_named, verdicts_on
 from ..chapter import Chapter, Page
 from ..examples import FREE_SCENE, INITIAL_SCENE, PAPER
 from ..excerpts import excerpt
 from ..expressions import right_side, under, zeros
-from ..runs import Derived, derived, free, printed
+from ..power import values_along
+from ..runs import Derived, derived, free, printed, simulation
 from ..steps import step
 
 FIRST_NUMBER = "14"
+UNTIL, SAMPLES, TIME = Fraction(3), 2001, "t (dimensionless)"
+RATES = ("{}".format, "dot({})".format, "ddot({})".format)  # names of a quantity and its rates
 
 
 @dataclass(frozen=True)
@@ -78,8 +86,12 @@ def chapter(root: Path) -> Chapter:
         derived_multiplier = named_equations(paper)["multipliers"].relations[0].right
         printed_multiplier = right_side(next(each for each in example if each.name == "multiplier").printed_tree)
         laws = {name: scene_named(paper, name).control_law for name in (FREE_SCENE, INITIAL_SCENE)}
+        pencil = worked(paper, results["free"], results["pushed"])
         return Page(
             {
+                **pencil,
+                "scene": scene_named(paper, INITIAL_SCENE),
+                "steps": named_equations(paper),
                 "sections": _sections(cards),
                 "equations": len(example),
                 "misprints": [each for each in example if not each.agrees],
@@ -92,6 +104,9 @@ def chapter(root: Path) -> Chapter:
                 "printed_under_law": under(laws[FREE_SCENE], printed_multiplier),
                 "difference": under(laws[INITIAL_SCENE], derived_multiplier - printed_multiplier),
             },
+            figures={
+                "misprint": draw_curves([printed_and_derived(paper, printed_multiplier, results["pushed"])], TIME)
+            },
             sources=files_of(cards),
         )
 
@@ -100,9 +115,56 @@ def chapter(root: Path) -> Chapter:
         title="The worked example",
         aim="Section 4 of the paper, equation by equation: as printed, and as derived.",
         template="worked_example.html",
-        runs={"paper": derived(root / PAPER), "printed": printed(), "free": free(root / PAPER, INITIAL_SCENE)},
+        runs={
+            "paper": derived(root / PAPER),
+            "printed": printed(),
+            "free": free(root / PAPER, INITIAL_SCENE),
+            "pushed": simulation(root / PAPER, INITIAL_SCENE, UNTIL, SAMPLES),
+        },
         page=page,
     )
+
+
+def in_sum(expression: Expr) -> Expr:
+    """An expression of the example in S = q1 + q2, where it depends on q1 and q2 by their sum alone."""
+    replaced = {
+        Symbol(name("q2"), real=True): Symbol(name("S"), real=True) - Symbol(name("q1"), real=True) for name in RATES
+    }
+    found = sympy.simplify(expression.subs(replaced))
+    return sympy.collect(
+        sympy.expand(sympy.numer(found)), [Symbol(name("S"), real=True) for name in RATES]
+    ) / sympy.factor(sympy.denom(found))
+
+
+def worked(paper: Derived, found: FreeMotion, pushed: Simulation) -> dict[str, Any]:
+    """What the derivation with a pencil shows beyond the equations of the record."""
+    equations = named_equations(paper)
+    laws = {name: scene_named(paper, name) for name in (FREE_SCENE, INITIAL_SCENE)}
+    multiplier = in_sum(equations["multipliers"].relations[0].right)
+    first, second = (relation.right for relation in equations["driven_accelerations"].relations[:2])
+    sum_of_free = sympy.simplify(found.trajectory.motion["q1"] + found.trajectory.motion["q2"])
+    start = laws[INITIAL_SCENE].initial_state
+    begun = {f"{name}_0": value for name, value in start.items()} | dict(laws[INITIAL_SCENE].parameter_values)
+    numbers = {Symbol(name, real=True): value for name, value in begun.items()} | {Symbol("t", real=True): 0}
+    at_start = {Symbol(each("S"), real=True): start[each("q1")] + start[each("q2")] for each in RATES[:2]}
+    return {
+        "multiplier_in_sum": multiplier,
+        "sum_acceleration": sympy.collect(in_sum(sympy.expand(first + second)), Symbol("lambda1", real=True)),
+        "multiplier_under_exponential": under(laws[FREE_SCENE].control_law, multiplier),
+        "free_sum": sum_of_free,
+        "free_height": sympy.simplify(under(laws[FREE_SCENE].control_law, Symbol("u", real=True)) * sum_of_free),
+        "start_of_sum": {str(symbol): value for symbol, value in at_start.items()},
+        "values": laws[INITIAL_SCENE].parameter_values,
+        "multiplier_at_start": under(laws[INITIAL_SCENE].control_law, multiplier).subs(at_start).subs(numbers),
+        "multiplier_followed": float(pushed.multipliers["lambda1"][0]),
+    }
+
+
+def printed_and_derived(paper: Derived, printed: Expr, pushed: Simulation) -> Panel:
+    """The multiplier along the second task's motion, as derived and by the formula in print."""
+    values = values_along(printed, scene_named(paper, INITIAL_SCENE), pushed)
+    shown = {"as derived": pushed.multipliers["lambda1"], "by the formula in print": values}
+    return Panel("multiplier λ₁ (dimensionless)", {name: (pushed.instants, each) for name, each in shown.items()})
 
 
 def _cards(example: list[PrintedEquation], paper: Derived, laws: tuple, root: Path) -> list[Card]:

@@ -30,12 +30,35 @@ function wider(width) {
 const cutOff = () => told(everything.filter(element => !inPicture(element) && shown(element)
   && ["hidden", "clip"].includes(style(element).overflowY) && element.scrollHeight > element.clientHeight + ROUNDING));
 
-const outOfReach = () => told([...scrollBoxes].filter(element => shown(element)
-  && element.scrollWidth > element.clientWidth + ROUNDING && element.tabIndex < 0));
+const scrolls = element => shown(element) && element.scrollWidth > element.clientWidth + ROUNDING;
+
+// The browser itself lets the keyboard reach what scrolls, if nothing in it is reached already.
+function reached(element) {
+  if (element.tabIndex >= 0 || element.querySelector("a[href], button, input, select, summary")) return true;
+  element.focus({preventScroll: true});
+  return document.activeElement === element;
+}
+
+const outOfReach = () => told([...scrollBoxes].filter(element => scrolls(element) && !reached(element)));
+
+// ---- stops of the keyboard that are none, formulas that the reader has to push about -----------------------------
+
+const idleStops = () => told([...document.querySelectorAll("[tabindex='0']")].filter(element => !scrolls(element)));
+
+const offScreen = () => told([...document.querySelectorAll(".formula")].filter(scrolls));
+
+const TALLEST = 600;  // CSS pixels of a formula that is not folded
+
+const towering = () => told([...document.querySelectorAll(".formula")]
+  .filter(element => !element.closest("details.tall, details.lines") && box(element).height > TALLEST));
 
 // ---- mathematics and pictures ---------------------------------------------------------------------------------
 
-const flatMathematics = () => told([...document.querySelectorAll("math")].filter(element => !drawn(element)));
+// Of a formula that is broken in two ways one is shown.
+const eitherWay = element => element.closest(".wide, .narrow")?.parentElement ?? element;
+const heads = "thead *";  // those of a folded table stand before its cells, as words
+const flatMathematics = () => told([...document.querySelectorAll("math")]
+  .filter(element => !drawn(eitherWay(element)) && !element.matches(heads)));
 
 const brokenMathematics = () => told([...document.querySelectorAll("merror, math:empty")]);
 
@@ -97,6 +120,10 @@ return {
   wider: wider(arguments[0]),
   cut_off: cutOff(),
   out_of_reach: outOfReach(),
+  idle_stops: idleStops(),
+  off_screen: offScreen(),
+  towering: towering(),
+  fonts: [...document.fonts].filter(font => font.status === "loaded").map(font => font.family),
   flat_mathematics: flatMathematics(),
   broken_mathematics: brokenMathematics(),
   empty_pictures: emptyPictures(),

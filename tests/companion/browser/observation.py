@@ -24,6 +24,10 @@ class Observation:
     wider: list[str]  # reaches over the page's edge
     cut_off: list[str]  # holds more than it shows, and does not scroll
     out_of_reach: list[str]  # scrolls, but not by the keyboard
+    idle_stops: list[str]  # the keyboard stops there, and nothing scrolls
+    off_screen: list[str]  # formulas that reach beyond the screen
+    towering: list[str]  # formulas taller than most screens, and not folded
+    fonts: list[str]  # loaded by the page
     flat_mathematics: list[str]
     broken_mathematics: list[str]
     empty_pictures: list[str]

@@ -4,7 +4,9 @@ from itertools import pairwise
 from pathlib import Path
 from urllib.parse import unquote, urldefrag, urlsplit
 
+import pages
 import pytest
+from observation import observe
 from selenium.webdriver.common.keys import Keys
 from views import DESK
 
@@ -40,6 +42,21 @@ def test_nothing_is_cut_off(seen):
 
 def test_what_scrolls_is_scrolled_by_keys_too(seen):
     assert told(seen, "out_of_reach") == []
+
+
+def test_the_keyboard_stops_only_where_something_scrolls(seen):
+    assert told(seen, "idle_stops") == []
+
+
+def test_no_formula_reaches_beyond_the_screen(seen):
+    """Not even on a phone, where a misprint was once to the right of it."""
+    assert told(seen, "off_screen") == []
+
+
+def test_formulas_are_set_in_the_font_that_travels_with_the_pages(seen):
+    for each in seen:
+        if pages.parsed(each.page).find(f".//{pages.MATHML}math") is not None:
+            assert each.fonts == ["Companion Math"], each.page.name
 
 
 def test_mathematics_is_drawn(seen):
@@ -135,3 +152,52 @@ def test_whoever_wants_no_motion_is_shown_the_still_picture(browser, exhibit):
 def test_what_is_printed_stands_still(browser, exhibit):
     browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
     assert shown_pictures(exhibit) == ["still"]
+
+
+@pytest.mark.long
+def test_no_formula_of_an_own_scene_is_taller_than_a_screen(browser, own):
+    for page in own.glob("*.html"):
+        assert observe(browser, page, DESK).towering == [], page.name
+
+
+@pytest.fixture
+def knob(browser, companion):
+    """The page of the knob, on a desk."""
+    DESK.take(browser)
+    browser.get((companion / "turn-the-knob.html").as_uri())
+    return browser
+
+
+def curve(browser, name: str) -> str:
+    return browser.find_element("css selector", f"[data-curve='{name}']").get_attribute("points")
+
+
+def turn(browser, name: str, value: str) -> None:
+    """Let the reader move a slider, or choose a law."""
+    browser.execute_script(
+        "const control = document.getElementById('knob').elements[arguments[0]]; control.value = arguments[1];"
+        "control.dispatchEvent(new Event('input', {bubbles: true}));",
+        name,
+        value,
+    )
+
+
+def output(browser, name: str) -> str:
+    return browser.execute_script("return document.querySelector(`output[name=${arguments[0]}]`).value", name)
+
+
+def test_turning_the_knob_redraws_the_multiplier_and_the_circle(knob):
+    before, radius = curve(knob, "lambda1"), float(output(knob, "radius"))
+    turn(knob, "u0", "1")
+    assert curve(knob, "lambda1") != before
+    assert float(output(knob, "radius")) > radius
+    turn(knob, "law", "exponential")
+    assert output(knob, "radius") == "\N{INFINITY}"
+
+
+def test_without_scripts_the_page_of_the_knob_shows_still_figures_alone(companion):
+    page = pages.parsed(companion / "turn-the-knob.html")
+    form = next(page.iter(f"{pages.HTML}form"))
+    assert form.get("hidden")
+    assert not list(form.iter(f"{pages.HTML}img"))
+    assert list(page.iter(f"{pages.HTML}img"))

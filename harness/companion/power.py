@@ -1,0 +1,73 @@
+"""What turning the knob costs: the power of the reactions along a motion, and the balance of energy that checks it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import sympy
+from numpy.typing import NDArray
+from scipy.integrate import cumulative_simpson
+from sympy import Expr, Symbol
+
+from ..crosscheck.reaction_power import power_of_forces, reaction_power
+from ..crosscheck.system import described_system
+from ..record import Scene, System
+from ..simulation.result import Simulation
+from .expressions import under
+
+
+@dataclass(frozen=True)
+class EnergyBalance:
+    """Where the kinetic energy of a motion comes from; arrays of shape (k,) at its instants.
+
+    Attributes
+    ----------
+    power : ndarray
+        Of the reactions, -lambda (df/dt + du/dt df/du).
+    gained : ndarray
+        Kinetic energy since the start.
+    by_forces, by_knob : ndarray
+        Work of the forces and of the reactions since then.
+    """
+
+    power: NDArray[np.float64]
+    gained: NDArray[np.float64]
+    by_forces: NDArray[np.float64]
+    by_knob: NDArray[np.float64]
+
+    @property
+    def error(self) -> float:
+        """The largest energy that no work accounts for."""
+        return float(np.max(np.abs(self.gained - self.by_forces - self.by_knob)))
+
+
+def energy_balance(system: System, scene: Scene, motion: Simulation) -> EnergyBalance:
+    """Take stock of the energy of a motion, from the description of the system alone.
+
+    Parameters
+    ----------
+    system : System
+        Without potential energy.
+    scene : Scene
+    motion : Simulation
+        Of that scene, with its multipliers, at many equidistant instants.
+    """
+    described = described_system(system, scene.effects)
+    power, forces, kinetic = (
+        values_along(expression, scene, motion)
+        for expression in (reaction_power(described), power_of_forces(described), described.kinetic_energy)
+    )
+    instants = motion.instants.astype(float)
+    by_forces, by_knob = (cumulative_simpson(rate, x=instants, initial=0.0) for rate in (forces, power))
+    return EnergyBalance(power, kinetic - kinetic[0], by_forces, by_knob)
+
+
+def values_along(expression: Expr, scene: Scene, motion: Simulation) -> NDArray[np.float64]:
+    """An expression in the state, the multipliers and the controls with their rates, along a motion under the law."""
+    known = {"t": motion.instants, **motion.coordinates, **motion.velocities, **motion.multipliers}
+    values: Mapping[Symbol, Expr] = {Symbol(name, real=True): value for name, value in scene.parameter_values.items()}
+    expression = under(scene.control_law, expression).subs(values)
+    names = sorted(str(symbol) for symbol in expression.free_symbols)
+    function = sympy.lambdify([Symbol(name, real=True) for name in names], expression, "numpy")
+    found = function(*(np.asarray(known[name], dtype=float) for name in names))
+    return np.broadcast_to(np.asarray(found, dtype=float), motion.instants.shape)

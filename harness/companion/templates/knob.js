@@ -1,0 +1,217 @@
+/* Turn the knob: the motion programs above, followed by the method of Dormand and Prince (1980) of order 5(4). */
+"use strict";
+
+const knob = (() => {
+  const TOLERANCE = 1e-10, SHORTEST = 1e-9;
+  const NODES = [0, 1/5, 3/10, 4/5, 8/9, 1, 1];
+  const STAGES = [
+    [], [1/5], [3/40, 9/40], [44/45, -56/15, 32/9],
+    [19372/6561, -25360/2187, 64448/6561, -212/729],
+    [9017/3168, -355/33, 46732/5247, 49/176, -5103/18656],
+    [35/384, 0, 500/1113, 125/192, -2187/6784, 11/84]];
+  const ERRORS = [71/57600, 0, -71/16695, 71/1920, -17253/339200, 22/525, -1/40];
+
+  const sum = numbers => numbers.reduce((a, b) => a + b, 0);
+  const combined = (y, h, weights, slopes) => y.map((value, i) => value + h*sum(weights.map((w, k) => w*slopes[k][i])));
+
+  /* A step: the state at its end, and its error relative to the tolerance. */
+  function step(rate, t, y, h) {
+    const slopes = [];
+    let end = y;
+    for (let k = 0; k < NODES.length; k++) {
+      end = combined(y, h, STAGES[k], slopes);
+      slopes.push(rate(t + NODES[k]*h, end));
+    }
+    const errors = combined(y.map(() => 0), h, ERRORS, slopes);
+    return [end, Math.max(...errors.map((error, i) => Math.abs(error)/(TOLERANCE*(1 + Math.abs(end[i])))))];
+  }
+
+  /* The states at the instants, the first of which is that of y. */
+  function states(rate, instants, y) {
+    const found = [y];
+    let t = instants[0], h = 0.01;
+    for (const until of instants.slice(1)) {
+      while (t < until) {
+        const taken = Math.min(h, until - t);
+        const [end, error] = step(rate, t, y, taken);
+        if (!(error <= 1) && taken > SHORTEST) {
+          h = taken*Math.max(0.1, 0.9*Math.pow(error, -0.2) || 0.1);
+          continue;
+        }
+        [t, y] = [taken === until - t ? until : t + taken, end];
+        h = Math.max(h, taken)*Math.min(5, 0.9*Math.pow(Math.max(error, 1e-10), -0.2));
+      }
+      found.push(y);
+    }
+    return found;
+  }
+
+  /* A program's outputs by name, given its inputs by name. */
+  function run(program, values) {
+    const results = program.evaluate(program.inputs.map(name => values[name]));
+    return Object.fromEntries(program.outputs.map((name, k) => [name, results[k]]));
+  }
+
+  /* The motion under settings { law, u0, omega, c, q1, q2, dot(q1), dot(q2) }: q3 and its rate follow from the constraint. */
+  function follow(settings, until = DATA.until, samples = DATA.samples) {
+    const law = LAWS[settings.law], places = DATA.coordinates, rates = places.map(name => `dot(${name})`);
+    const known = (t, y) => {
+      const values = {...settings, t};
+      places.forEach((name, i) => { values[name] = y[i]; values[rates[i]] = y[places.length + i]; });
+      return Object.assign(values, run(law, values));
+    };
+    const rate = (t, y) => {
+      const found = run(motion, known(t, y));
+      return [...y.slice(places.length), ...places.map(name => found[`ddot(${name})`])];
+    };
+    const start = [...places, ...rates].map(name => settings[name] ?? 0), last = places.length;
+    for (const [place, residual] of [[last - 1, "residual[1]"], [2*last - 1, "residual_rate[1]"]]) {
+      const kept = run(constraints, known(0, start));
+      start[place] -= kept[residual]/kept[`J[1,${last}]`];
+    }
+    const instants = Array.from({length: samples}, (_, k) => until*k/(samples - 1));
+    const seen = states(rate, instants, start).map((y, k) => {
+      const values = known(instants[k], y), kept = run(constraints, values), lambda = run(motion, values).lambda1;
+      const power = lambda*sum(rates.map((name, i) => (kept[`J[1,${i + 1}]`] ?? 0)*values[name]));
+      return {...values, lambda1: lambda, power};
+    });
+    return {instants, seen};
+  }
+
+  /* The singular instants nearest to t = 0: zeros, by Newton's method, of what the accelerations are divided by. */
+  function singularities(settings) {
+    if (settings.law === DATA.free.law && settings.c === DATA.free.c) return [];
+    const at = (a, b) => run(SINGULAR[settings.law], {...settings, a, b});
+    const found = [];
+    for (let a = -4; a <= 4; a += 0.5) for (let b = 0.1; b <= 4.2; b += 0.5) {
+      let [x, y, size] = [a, b, Infinity];
+      for (let turn = 0; turn < 40 && size > 1e-13; turn++) {
+        const value = at(x, y), right = at(x + 1e-6, y), left = at(x - 1e-6, y);
+        const [re, im] = [(right.re - left.re)/2e-6, (right.im - left.im)/2e-6], square = re*re + im*im;
+        [x, y] = [x - (value.re*re + value.im*im)/square, y - (value.im*re - value.re*im)/square];
+        size = Math.hypot(value.re, value.im);
+      }
+      if (size < 1e-9) found.push([x, Math.abs(y)]);
+    }
+    const nearest = Math.min(...found.map(([x, y]) => Math.hypot(x, y)));
+    return found.filter(([x, y], k) => Math.hypot(x, y) < nearest + 1e-6
+      && found.findIndex(([p, q]) => Math.hypot(x - p, y - q) < 1e-5) === k);
+  }
+
+  const radius = settings => Math.min(Infinity, ...singularities(settings).map(([x, y]) => Math.hypot(x, y)));
+
+  return {follow, singularities, radius};
+})();
+
+if (typeof module === "object") module.exports = knob;
+
+/* ---- the page ---------------------------------------------------------------------------------------------- */
+
+if (typeof document === "object") document.addEventListener("DOMContentLoaded", () => {
+  const form = document.getElementById("knob"), instant = form.elements.instant;
+  const WIDTH = 360, HEIGHT = 190, LEFT = 46, BELOW = 24, TOP = 8;
+  const COLOURS = ["#0072b2", "#d55e00", "#009e73"], DASHES = ["none", "7 4", "2 4"];
+
+  const element = (name, attributes, text) => {
+    const made = document.createElementNS("http://www.w3.org/2000/svg", name);
+    for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+    if (text !== undefined) made.textContent = text;
+    return made;
+  };
+  const line = (points, attributes) => element("polyline", {points: points.map(p => p.map(x => x.toFixed(2)).join()).join(" "),
+    fill: "none", "stroke-width": 1.8, ...attributes});
+  const rounded = x => String(Number(x.toPrecision(3)));
+
+  /* Axes that hold the points; what turns a point into a place. */
+  function frame(svg, [left, right], [low, high], square) {
+    svg.replaceChildren();
+    svg.setAttribute("viewBox", `0 0 ${WIDTH} ${HEIGHT}`);
+    if (high - low < 1e-9) [low, high] = [low - 1, high + 1];
+    let [wide, tall] = [(WIDTH - LEFT - 10)/(right - left), (HEIGHT - TOP - BELOW)/(high - low)];
+    if (square) wide = tall = Math.min(wide, tall);
+    const place = ([x, y]) => [LEFT + wide*(x - left), HEIGHT - BELOW - tall*(y - low)];
+    for (const x of [left, (left + right)/2, right]) {
+      svg.append(element("text", {x: place([x, low])[0], y: HEIGHT - 7, "text-anchor": "middle"}, rounded(x)));
+    }
+    for (const y of [low, (low + high)/2, high]) {
+      svg.append(line([place([left, y]), place([right, y])], {stroke: "currentColor", opacity: 0.2}));
+      svg.append(element("text", {x: LEFT - 5, y: place([left, y])[1] + 4, "text-anchor": "end"}, rounded(y)));
+    }
+    return place;
+  }
+
+  function curves(svg, {instants, seen}, names, now) {
+    const values = seen.flatMap(each => names.map(name => each[name])), t = instants[instants.length - 1];
+    const place = frame(svg, [0, t], [Math.min(0, ...values), Math.max(0, ...values)]);
+    names.forEach((name, k) => svg.append(line(seen.map(each => place([each.t, each[name]])),
+      {stroke: COLOURS[k], "stroke-dasharray": DASHES[k], "data-curve": name})));
+    svg.append(line([[place([now, 0])[0], TOP], [place([now, 0])[0], HEIGHT - BELOW]], {stroke: "currentColor", opacity: 0.5}));
+  }
+
+  function plane(svg, found) {
+    const reach = Math.min(3, ...found.map(([x, y]) => Math.hypot(x, y)));
+    const place = frame(svg, [-3.4, 3.4], [-3.2, 3.2], true), [x, y] = place([0, 0]);
+    const [edge] = place([reach, 0]);
+    svg.append(element("circle", {cx: x, cy: y, r: edge - x, fill: found.length ? COLOURS[0] : "none", "fill-opacity": 0.15,
+      stroke: found.length ? COLOURS[0] : "none"}));
+    svg.append(line([place([-3.4, 0]), place([3.4, 0])], {stroke: "currentColor", opacity: 0.5}));
+    for (const [re, im] of found) for (const sign of [1, -1]) {
+      const [p, q] = place([re, sign*im]);
+      svg.append(line([[p - 4, q - 4], [p + 4, q + 4]], {stroke: COLOURS[1]}), line([[p - 4, q + 4], [p + 4, q - 4]], {stroke: COLOURS[1]}));
+    }
+  }
+
+  /* The system as its file draws it, at one of the samples. */
+  function picture(svg, {seen}, now) {
+    const shapes = each => {
+      const found = drawing.evaluate(drawing.inputs.map(name => each[name] ?? 0));
+      return DATA.shapes.map((_, i) => drawing.outputs.flatMap((name, k) => name.startsWith(`drawing[${i + 1},`) ? [found[k]] : []));
+    };
+    const pairs = numbers => numbers.flatMap((x, k) => k % 2 ? [] : [[x, numbers[k + 1]]]);
+    const all = seen.map(shapes), points = all.flat().flatMap(pairs);
+    const extent = k => [Math.min(...points.map(p => p[k])), Math.max(...points.map(p => p[k]))];
+    const place = frame(svg, extent(0), extent(1), true);
+    const last = DATA.shapes.length - 1;
+    svg.replaceChildren(line(all.map(each => place(each[last])), {stroke: COLOURS[1], opacity: 0.5}));
+    DATA.shapes.forEach((shape, i) => {
+      const places = pairs(all[now][i]).map(place);
+      svg.append(shape === "point" ? element("circle", {cx: places[0][0], cy: places[0][1], r: 5, fill: COLOURS[1]})
+        : line(places, {stroke: places.length > 3 ? COLOURS[0] : "currentColor"}));
+    });
+  }
+
+  const settings = () => Object.fromEntries([...new FormData(form)].map(([name, value]) => [name, name === "law" ? value : Number(value)]));
+  let followed;
+
+  function show() {
+    const now = Number(instant.value), seen = followed.seen[now];
+    for (const output of form.querySelectorAll("output")) {
+      const shown = {...settings(), ...seen, radius: followed.radius}[output.name];
+      output.value = shown === Infinity ? "∞" : Math.abs(shown) < 1e-9 ? "0" : rounded(shown);
+    }
+    for (const svg of document.querySelectorAll("svg[data-curves]")) curves(svg, followed, svg.dataset.curves.split(" "), seen.t);
+    picture(document.getElementById("picture"), followed, now);
+  }
+
+  function turn() {
+    const given = settings(), singular = knob.singularities(given);
+    followed = {...knob.follow(given), radius: knob.radius(given)};
+    instant.max = followed.seen.length - 1;
+    plane(document.getElementById("plane"), singular);
+    show();
+  }
+
+  form.addEventListener("input", event => event.target === instant ? show() : turn());
+  form.elements.play.addEventListener("click", () => {
+    const forward = () => {
+      if (Number(instant.value) >= Number(instant.max)) return;
+      instant.value = Number(instant.value) + 1;
+      show();
+      requestAnimationFrame(forward);
+    };
+    instant.value = 0;
+    forward();
+  });
+  form.hidden = false;
+  turn();
+});
