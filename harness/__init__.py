@@ -13,18 +13,19 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from .confined import Limits
     from .failures import HolonomError
-    from .scene import Equations, MotionProgram, Scene, load, system
+    from .scene import Equations, MotionProgram, Scene, load, sweep, system
 
 PUBLIC = {
     "load": ".scene",
     "system": ".scene",
+    "sweep": ".scene",
     "Scene": ".scene",
     "Equations": ".scene",
     "MotionProgram": ".scene",
     "Limits": ".confined",
     "HolonomError": ".failures",
 }
-__all__ = ["Equations", "HolonomError", "Limits", "MotionProgram", "Scene", "load", "system"]
+__all__ = ["Equations", "HolonomError", "Limits", "MotionProgram", "Scene", "load", "sweep", "system"]
 
 
 def __getattr__(name: str) -> Any:

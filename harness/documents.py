@@ -59,6 +59,7 @@ class Publication(StrEnum):
     SERIES = "series"
     SIMULATION = "simulation"
     DOCTOR = "doctor"
+    SWEEP = "sweep"
     COSTS = "costs"
     HARD_CASES = "hard-cases"
     ACCURACY = "accuracy"
@@ -125,7 +126,7 @@ def read(document: Document, text: str) -> dict[str, Any]:
     return content
 
 
-def require(document: Document, content: Any) -> None:
+def require(document: Document | Publication, content: Any) -> None:
     """Refuse what has not the shape of a document.
 
     Raises
@@ -174,5 +175,5 @@ def _maxima_text(argument: Argument) -> str:
             return f"[{', '.join(map(_maxima_text, argument))}]"
 
 
-def _refusal(document: Document, detail: str) -> HolonomError:
+def _refusal(document: Document | Publication, detail: str) -> HolonomError:
     return HolonomError(Failure.NOT_A_DOCUMENT, detail=f"holonom-{document}: {detail}")

@@ -103,6 +103,18 @@ class Failure(Enum):
         "the start does not follow these parameters: {detail}",
         "",
     )
+    NOTHING_VARIES = ("no parameter varies", "name one with --grid, --list or --sample")
+    NOT_AN_AXIS = (
+        "{detail}",
+        "write for instance --grid m=50:500:1000, --list m=1,2,5 or --sample 'm=normal(100,5)' --size 1000",
+    )
+    NOT_KEPT = ("{detail}", "keep for instance final, x, at(x,2), max(abs(lambda1)), zero(y), radius, free")
+    NOT_PLOTTED = ("this cannot be drawn: {detail}", "")
+    OTHER_SWEEP = ("the folder holds another sweep: {detail}", "give another folder")
+    FOREIGN_FOLDER = ("the folder holds other things than a sweep", "give the name of a new folder")
+    FOLDER_TAKEN = ("another command is at work in this folder", "wait until it ends")
+    NOTHING_TO_RESUME = ("there is no sweep to resume", "leave --resume out to begin one")
+    WORKERS_LOST = ("the workers are gone: {detail}", "run the same command again; what is finished stays")
     NO_END = ("the scene has no time span", "give it one, or the last instant with --until")
     NOT_AFTER_START = ("the last instant is not after the start: {detail}", "give a later one with --until")
     NO_EVENT_VALUE = (
@@ -167,6 +179,7 @@ FAULTS_OF_THE_MACHINE = frozenset(
         "COMPILER_UNUSABLE",
         "EXTRA_MISSING",
         "GSL_MISSING",
+        "WORKERS_LOST",
     }
 )
 

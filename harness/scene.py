@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from .record import Equation, Record, System
     from .series.power_series import MotionSeries
     from .simulation.result import Simulation
+    from .sweeps.run import Sweep
     from .typeset.notebook import Letter
 
 Choice = TypeVar("Choice", bound=StrEnum)
@@ -96,6 +97,85 @@ def system(text: str, scene: str | None = None, limits: Limits | None = None, **
     opened = Scene(file, scene, _settings(settings), limits or Limits())
     opened._directory = directory  # it is removed with the last scene that reads the file
     return opened
+
+
+def sweep(
+    scene: "Scene | str | Path",
+    grid: Mapping[str, tuple[Number, Number, int]] | None = None,
+    values: Mapping[str, Sequence[Number]] | None = None,
+    sample: Mapping[str, str] | None = None,
+    keep: Sequence[str] = ("final",),
+    output: str | Path | None = None,
+    size: int | None = None,
+    seed: int | None = None,
+    tol: float = 1e-12,
+    until: Number | None = None,
+    drift: str = "projection",
+    solve: str = "direct",
+    chunk: int = 10_000,
+    workers: int = 1,
+    scheduler: str | None = None,
+) -> "Sweep":
+    """Follow a motion for many values of its parameters.
+
+    Parameters
+    ----------
+    scene : Scene, str or Path
+        A scene, or the path of its file.
+    grid : mapping of str to (first, last, count)
+        Equidistant values.
+    values : mapping of str to sequence
+        These values.
+    sample : mapping of str to str
+        ``normal(MEAN,DEVIATION)``, ``uniform(LEAST,GREATEST)`` or ``loguniform(LEAST,GREATEST)``.
+    keep : sequence of str
+        As for ``holonom sweep --keep``.
+    output : str, Path or None
+        The folder of its files; None for one that is removed with the result.
+    size, seed : int or None
+        Of the sample.
+    tol : float
+        Tolerance of a step.
+    until : number or None
+        The last instant; None for the end of the scene's time span.
+    drift : str
+        ``projection`` or ``none``.
+    solve : str
+        ``direct`` or ``orthogonal``.
+    chunk : int
+        Rows of a file.
+    workers : int
+        Processes that compute. A program that asks for more than this one must guard its main part by
+        ``if __name__ == "__main__"``, since each of them imports it.
+    scheduler : str or None
+        Address of a running Dask scheduler that is to be used instead.
+
+    Returns
+    -------
+    Sweep
+        ``sweep.dataset`` is lazy, ``sweep.to_pandas()`` all of it, ``sweep.plot()`` a map or a curve.
+
+    Raises
+    ------
+    HolonomError
+        The request cannot be met, or the folder holds something else.
+    """
+    from .simulation.request import Stabilization
+    from .sweeps.axes import read_axes
+    from .sweeps.kept import read_kept
+    from .sweeps.run import SweepRequest, run_sweep
+
+    opened = scene if isinstance(scene, Scene) else load(scene)
+    grids = [f"{name}={first}:{last}:{count}" for name, (first, last, count) in (grid or {}).items()]
+    lists = [f"{name}={','.join(map(str, numbers))}" for name, numbers in (values or {}).items()]
+    samples = [f"{name}={text}" for name, text in (sample or {}).items()]
+    axes = read_axes(grids, lists, samples, size, seed)
+    cure = _choice(Stabilization, drift)
+    wanted = SweepRequest(axes, read_kept(keep), tol, _instant(until), cure, chunk, workers, scheduler)
+    directory = KeptDirectory() if output is None else None
+    folder = directory.path if directory is not None else Path(output)
+    found = run_sweep(opened.file, opened._request(solve), wanted, folder, opened.limits)
+    return replace(found, _directory=directory)
 
 
 class Scene:
@@ -563,5 +643,5 @@ def _choice(choices: type[Choice], text: str) -> Choice:
 
 def _settings(settings: Mapping[str, Number]) -> dict[str, str]:
     """Numbers in Maxima's notation."""
-    texts = {name: repr(value) if isinstance(value, float) else str(value) for name, value in settings.items()}
+    texts = {name: repr(float(value)) if isinstance(value, float) else str(value) for name, value in settings.items()}
     return read_settings(f"{name}={text.replace('e+', 'e').replace('E+', 'e')}" for name, text in texts.items())

@@ -15,7 +15,7 @@ ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```(\w*)\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
 # Commands that other tests run; here, that they take their arguments.
-LONG = ("companion", "accuracy", "stability", "errata")
+LONG = ("companion", "accuracy", "stability", "errata", "sweep")
 
 
 def blocks(language: str) -> list[str]:

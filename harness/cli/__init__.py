@@ -14,6 +14,7 @@ from . import (
     programs,
     series,
     simulation,
+    sweep,
 )
 from . import (
     hard_cases as stability,
@@ -36,4 +37,5 @@ __all__ = [
     "series",
     "simulation",
     "stability",
+    "sweep",
 ]

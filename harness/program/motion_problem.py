@@ -185,6 +185,10 @@ class MotionProblem:
             self._compiled[key] = program, build()  # with the program, so that no other one takes its id
         return self._compiled[key][1]
 
+    def __getstate__(self) -> dict[str, Any]:
+        """What another process gets: not what is compiled for this one."""
+        return {**vars(self), "_compiled": {}}
+
     @property
     def numbers(self) -> tuple[float, ...]:
         """Values of the open parameters, in double precision."""

@@ -22,7 +22,8 @@ from .matrices import LaneMatrices
 
 LIMITED_DIGITS = 1e-9  # share of the largest datum by which data may be corrected, and of coordinates a residual
 ROUNDING = 8 * np.finfo(float).eps  # relative size of a correction that is none
-ITERATIONS = 25
+ITERATIONS = 60  # Newton's method halves the way to a double root
+SETTLED = 1e-12  # relative size of a last correction that rounding may have made
 
 
 class Starts(NamedTuple):
@@ -141,13 +142,11 @@ class InitialStates:
             change = _step(mass, jacobian, residual, self._redundant)
             here = states[np.ix_(places, active)]
             states[np.ix_(places, active)] = here + change
-            small = np.max(np.abs(change), axis=0) <= ROUNDING * np.maximum(1.0, np.max(np.abs(here), axis=0))
-            arrived[active[small]] = True
-            active = active[~small & np.isfinite(change).all(axis=0)]
+            share = np.max(np.abs(change), axis=0) / np.maximum(1.0, np.max(np.abs(here), axis=0))
+            arrived[active] = share <= SETTLED
+            active = active[np.isfinite(share) & (share > ROUNDING)]
             if not len(active):
                 break
-        else:
-            arrived[active] = True  # rounding goes to and fro; the residuals tell
         return arrived
 
 
@@ -204,7 +203,12 @@ def at_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionP
 def started(problem: MotionProblem, values: Mapping[str, Fraction], state: Numbers) -> MotionProblem:
     """The motion for values of its open parameters, from a state that belongs to them, shape (2n,)."""
     texts = {name: repr(float(number)) for name, number in zip(problem.state, state, strict=True)}
-    return replace(problem, values=dict(values), start={"t": problem.start["t"], **texts})
+    return replace(with_values(problem, values), start={"t": problem.start["t"], **texts})
+
+
+def with_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionProblem:
+    """The motion with values of its open parameters, its start as it was."""
+    return replace(problem, values=dict(values))
 
 
 def _step(mass: Numbers | None, jacobian: Numbers, residual: Numbers, redundant: bool) -> Numbers:

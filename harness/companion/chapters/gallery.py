@@ -134,6 +134,15 @@ EXHIBITS = (
         ),
     ),
     Exhibit(
+        "crane",
+        "examples/crane.mac",
+        (
+            "The motor pushes the trolley along its rail, and the load swings after it on a rope that is paid out and "
+            "drawn in.",
+            "The load follows the trolley with a swing of its own; the multiplier is negative, for the rope pulls.",
+        ),
+    ),
+    Exhibit(
         "chain",
         "examples/chain.mac",
         (

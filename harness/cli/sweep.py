@@ -1,0 +1,121 @@
+"""The command about many motions: sweep."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from pathlib import Path
+
+import click
+
+from ..confined import Limits
+from .group import holonom
+from .options import asks_one_scene, chooses_solve, json_text, publish, read_instant, runs_scenes, writes_json
+from .outputs import STANDARD_OUTPUT, OutputFile
+
+FAILED = 1  # exit status of a sweep none of whose rows came about
+
+
+@holonom.command()
+@asks_one_scene
+@click.option("--grid", "grids", metavar="NAME=FIRST:LAST:COUNT", multiple=True, help="Equidistant values.")
+@click.option("--list", "lists", metavar="NAME=VALUE,...", multiple=True, help="These values.")
+@click.option(
+    "--sample",
+    "samples",
+    metavar="NAME=normal(A,B)|uniform(A,B)|loguniform(A,B)",
+    multiple=True,
+    help="Random values: mean and deviation, or least and greatest.",
+)
+@click.option("--size", metavar="N", type=click.IntRange(min=1), help="Members of the sample.")
+@click.option("--seed", metavar="N", type=click.IntRange(min=0), help="Of the sample; without it, 0.")
+@click.option(
+    "--keep",
+    metavar="WHAT,...",
+    multiple=True,
+    default=("final",),
+    show_default=True,
+    help="final, EXPR, at(EXPR,T), max(EXPR), max(abs(EXPR)), min(EXPR), mean(EXPR), zero(EXPR), free, radius.",
+)
+@click.option(
+    "-o", "--output", metavar="FOLDER", required=True, type=click.Path(path_type=Path), help="Where the rows go."
+)
+@click.option("--tol", type=float, default=1e-12, show_default=True, help="Tolerance of a step.")
+@click.option("--until", metavar="T", callback=read_instant, help="The last instant, in place of the scene's.")
+@click.option(
+    "--drift",
+    type=click.Choice(["projection", "none"]),
+    default="projection",
+    show_default=True,
+    help="What keeps the constraints.",
+)
+@chooses_solve
+@click.option(
+    "--chunk", metavar="ROWS", type=click.IntRange(1, 10**7), default=10_000, show_default=True, help="Rows of a file."
+)
+@click.option("--workers", metavar="N", type=click.IntRange(1, 4096), help="Processes; without it, one a processor.")
+@click.option("--dask", "scheduler", metavar="ADDRESS", help="A running Dask scheduler, whose workers compute instead.")
+@click.option("--resume", is_flag=True, help="Go on with what is there; without it, that or begin.")
+@click.option(
+    "--plot",
+    "plot_file",
+    metavar="FILE.svg|.png",
+    type=OutputFile("svg", "png"),
+    help="Also draw the first that is kept: a curve over one parameter, a map over two.",
+)
+@writes_json
+@runs_scenes
+def sweep(
+    scene_file: Path,
+    scene: str | None,
+    settings: Sequence[str],
+    grids: Sequence[str],
+    lists: Sequence[str],
+    samples: Sequence[str],
+    size: int | None,
+    seed: int | None,
+    keep: Sequence[str],
+    output: Path,
+    tol: float,
+    until: Fraction | None,
+    drift: str,
+    solve: str,
+    chunk: int,
+    workers: int | None,
+    scheduler: str | None,
+    resume: bool,
+    plot_file: Path | None,
+    json_file: Path | None,
+    limits: Limits,
+) -> int:
+    """Follow the motion of a SCENE for many values of its parameters.
+
+    The rows go into a folder of Parquet files, each with its parameters, what is kept, its residual and its status.
+    The same command again computes only what is missing there. The exit status is 1 where no row came about.
+    """
+    from ..program.motion_program import Solve
+    from ..program.request import Request, read_settings
+    from ..simulation.output import require_formats
+    from ..simulation.request import Stabilization
+    from ..sweeps.axes import read_axes
+    from ..sweeps.kept import read_kept
+    from ..sweeps.run import SweepRequest, run_sweep
+    from .tables.sweep import show_sweep, sweep_progress
+
+    axes, kept = read_axes(grids, lists, samples, size, seed), read_kept(keep)
+    if plot_file is not None:
+        from ..figures.sweep import require_plottable
+
+        require_formats(None, plot_file)
+        require_plottable(axes)
+    request = Request(scene, Solve(solve), read_settings(settings))
+    wanted = SweepRequest(axes, kept, tol, until, Stabilization(drift), chunk, workers, scheduler, resume)
+    with sweep_progress(axes.rows) as progress:
+        found = run_sweep(scene_file, request, wanted, output, limits, progress)
+    if plot_file is not None:
+        found.plot().save(plot_file)
+    statuses = found.statuses
+    publish(json_text({**found.document, "statuses": statuses}), json_file)
+    if json_file != STANDARD_OUTPUT:
+        from .tables.text import make_console
+
+        show_sweep(make_console(), found, statuses)
+    return 0 if statuses.get("ok") else FAILED

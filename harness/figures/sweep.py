@@ -1,0 +1,90 @@
+"""A sweep as a picture: a map over two parameters, or a curve over one."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..failures import Failure, HolonomError
+from .style import BLUE, figure_style, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ..sweeps.axes import Axes as SweepAxes
+    from ..sweeps.run import Sweep
+
+WIDTH, HEIGHT = 7.0, 5.0  # inches
+BESIDE = ("row", "residual", "status", "remark")
+
+
+def sweep_figure(sweep: "Sweep", quantity: str | None = None) -> "Figure":
+    """The figure of a sweep.
+
+    Parameters
+    ----------
+    sweep : Sweep
+    quantity : str or None
+        A column; None for the first that is kept.
+
+    Returns
+    -------
+    Figure
+        Of rows that have no such value nothing is drawn.
+
+    Raises
+    ------
+    HolonomError
+        Matplotlib is not installed; there is no such quantity; not one parameter varies, nor two in a grid.
+    """
+    names = [axis["name"] for axis in sweep.document["parameters"]]
+    shown = quantity or plotted(sweep.document)
+    if shown not in sweep.document["columns"] or shown in ("status", "remark"):
+        raise HolonomError(Failure.NOT_PLOTTED, detail=f"the sweep keeps no {shown}")
+    table = sweep.dataset.to_table(columns=[*names, shown])
+    columns = [np.array(table.column(name).to_numpy(zero_copy_only=False), dtype=float) for name in [*names, shown]]
+    with figure_style():
+        figure = new_figure(WIDTH, HEIGHT)
+        panel = figure.subplots()
+        if len(names) == 1:
+            _curve(panel, *columns)
+            panel.set_ylabel(f"{shown} (units of the scene)")
+        else:
+            _map(figure, panel, columns, f"{shown} (units of the scene)")
+            panel.set_ylabel(f"{names[1]} (units of the scene)")
+        panel.set_xlabel(f"{names[0]} (units of the scene)")
+        panel.set_title(sweep.document["scene"]["title"])
+    return figure
+
+
+def require_plottable(axes: "SweepAxes") -> None:
+    """Refuse to draw what neither a curve nor a map can show.
+
+    Raises
+    ------
+    HolonomError
+        There are more than two parameters, or two that are no grid.
+    """
+    if len(axes.names) > 2 or (len(axes.names) == 2 and axes.samples):
+        raise HolonomError(Failure.NOT_PLOTTED, detail="a curve takes one parameter, a map two in grids or lists")
+
+
+def plotted(document: dict[str, Any]) -> str:
+    """The first quantity that a sweep keeps; its residual where it keeps none."""
+    names = {axis["name"] for axis in document["parameters"]}
+    kept = [name for name in document["columns"] if name not in names and name not in BESIDE]
+    return kept[0] if kept else "residual"
+
+
+def _curve(panel: "Axes", values: NDArray[np.float64], quantity: NDArray[np.float64]) -> None:
+    order = np.argsort(values, kind="stable")
+    panel.plot(values[order], quantity[order], color=BLUE, marker="." if len(values) < 100 else "")
+
+
+def _map(figure: "Figure", panel: "Axes", columns: list[NDArray[np.float64]], label: str) -> None:
+    across, up = np.unique(columns[0]), np.unique(columns[1])
+    cells = np.full((len(up), len(across)), np.nan)
+    cells[np.searchsorted(up, columns[1]), np.searchsorted(across, columns[0])] = columns[2]
+    drawn = panel.pcolormesh(across, up, cells, shading="nearest", rasterized=True)
+    figure.colorbar(drawn, ax=panel, label=label)

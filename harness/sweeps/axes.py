@@ -1,0 +1,259 @@
+"""What a sweep varies: grids, lists and samples of parameters, and the rows that they make.
+
+The rows are the product of all grids and lists, the last one named varying fastest, for each member of the sample in
+turn. Row i is a function of i and the seed alone: random numbers come in blocks of their own generators.
+"""
+
+import math
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from fractions import Fraction
+from itertools import chain
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..documents import NAME
+from ..failures import Failure, HolonomError
+from ..program.request import within_reach
+
+BLOCK = 1024  # members of a sample that one generator draws
+MOST_ROWS = 10**12
+NUMBER = r"[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?(?:/\d+)?"
+DRAWN = re.compile(rf"(\w+)\(\s*({NUMBER})\s*,\s*({NUMBER})\s*\)")
+
+
+class Distribution(StrEnum):
+    """What a sample is drawn from, and what its two numbers are: mean and deviation, or the least and the greatest."""
+
+    NORMAL = "normal"
+    UNIFORM = "uniform"
+    LOGUNIFORM = "loguniform"
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Equidistant numbers.
+
+    Attributes
+    ----------
+    name : str
+    first, last : float
+    count : int
+    text : str
+        How they were asked for.
+    """
+
+    name: str
+    first: float
+    last: float
+    count: int
+    text: str
+
+    def at(self, places: NDArray[np.intp]) -> NDArray[np.float64]:
+        """The numbers at some places, from zero."""
+        inside = self.first + places * ((self.last - self.first) / max(1, self.count - 1))
+        return np.where((places == self.count - 1) & (places > 0), self.last, inside)
+
+
+@dataclass(frozen=True)
+class Listed:
+    """Numbers one after the other.
+
+    Attributes
+    ----------
+    name : str
+    numbers : tuple of float
+    text : str
+        How they were asked for.
+    """
+
+    name: str
+    numbers: tuple[float, ...]
+    text: str
+
+    @property
+    def count(self) -> int:
+        """How many there are."""
+        return len(self.numbers)
+
+    def at(self, places: NDArray[np.intp]) -> NDArray[np.float64]:
+        """The numbers at some places, from zero."""
+        return np.array(self.numbers)[places]
+
+
+Values = Grid | Listed
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Numbers that a parameter takes at random.
+
+    Attributes
+    ----------
+    name : str
+    distribution : Distribution
+    first, second : float
+    text : str
+        How they were asked for.
+    """
+
+    name: str
+    distribution: Distribution
+    first: float
+    second: float
+    text: str
+
+    def draw(self, generator: np.random.Generator, count: int) -> NDArray[np.float64]:
+        """So many numbers."""
+        match self.distribution:
+            case Distribution.NORMAL:
+                return generator.normal(self.first, self.second, count)
+            case Distribution.UNIFORM:
+                return generator.uniform(self.first, self.second, count)
+            case Distribution.LOGUNIFORM:
+                return np.exp(generator.uniform(math.log(self.first), math.log(self.second), count))
+
+
+@dataclass(frozen=True)
+class Axes:
+    """What a sweep varies.
+
+    Attributes
+    ----------
+    values : tuple of Grid or Listed
+    samples : tuple of Sample
+    size : int
+        Members of the sample; one without samples.
+    seed : int
+    """
+
+    values: tuple[Values, ...]
+    samples: tuple[Sample, ...]
+    size: int
+    seed: int
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The parameters that vary."""
+        return tuple(axis.name for axis in (*self.values, *self.samples))
+
+    @property
+    def rows(self) -> int:
+        """How many rows there are."""
+        return self.size * math.prod(axis.count for axis in self.values)
+
+    def numbers(self, first: int, last: int) -> NDArray[np.float64]:
+        """The parameters of the rows from the first up to the last, which is not among them.
+
+        Returns
+        -------
+        ndarray, shape (names, rows)
+        """
+        rows = np.arange(first, last)
+        member, *places = np.unravel_index(rows, (self.size, *(axis.count for axis in self.values)))
+        chosen = [axis.at(place) for axis, place in zip(self.values, places, strict=True)]
+        drawn = [self._drawn(place, axis, member) for place, axis in enumerate(self.samples)]
+        return np.array([*chosen, *drawn])
+
+    def _drawn(self, place: int, axis: Sample, members: NDArray[np.intp]) -> NDArray[np.float64]:
+        blocks = range(int(members[0]) // BLOCK, int(members[-1]) // BLOCK + 1)
+        numbers = [axis.draw(np.random.default_rng((self.seed, place, block)), BLOCK) for block in blocks]
+        return np.concatenate(numbers)[members - blocks[0] * BLOCK]
+
+
+def read_axes(
+    grids: Iterable[str], lists: Iterable[str], samples: Iterable[str], size: int | None, seed: int | None
+) -> Axes:
+    """Read what a sweep varies, as it stands on a command line.
+
+    Parameters
+    ----------
+    grids : iterable of str
+        ``NAME=FIRST:LAST:COUNT``, equidistant numbers.
+    lists : iterable of str
+        ``NAME=VALUE,VALUE,...``.
+    samples : iterable of str
+        ``NAME=normal(MEAN,DEVIATION)``, ``NAME=uniform(LEAST,GREATEST)`` or ``NAME=loguniform(LEAST,GREATEST)``.
+    size : int or None
+        Members of the sample; there is one where there are samples.
+    seed : int or None
+        Of the sample; None for zero.
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    HolonomError
+        One of them is not of its form; a parameter comes twice, none does; there are too many rows.
+    """
+    values, drawn = [*map(_grid, grids), *map(_list, lists)], [*map(_sample, samples)]
+    names = [axis.name for axis in chain(values, drawn)]
+    if not names:
+        raise HolonomError(Failure.NOTHING_VARIES)
+    if twice := next((name for name in names if names.count(name) > 1), None):
+        raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{twice} is varied twice")
+    if bool(drawn) != (size is not None):
+        missing = "a sample needs its --size" if drawn else "--size is that of a --sample, and there is none"
+        raise HolonomError(Failure.NOT_AN_AXIS, detail=missing)
+    axes = Axes(tuple(values), tuple(drawn), size or 1, seed or 0)
+    if axes.rows > MOST_ROWS:
+        raise HolonomError(Failure.NOT_AN_AXIS, detail=f"these are {axes.rows} rows, and {MOST_ROWS} are the most")
+    return axes
+
+
+def _grid(text: str) -> Grid:
+    name, rest = _named(text)
+    first, last, count = _parts(rest, ":", 3, text)
+    if not count.isdecimal() or not 1 <= len(count) <= 12 or int(count) < 1:
+        raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{text} has no number of values")
+    return Grid(name, _number(first, text), _number(last, text), int(count), text)
+
+
+def _list(text: str) -> Listed:
+    name, rest = _named(text)
+    return Listed(name, tuple(_number(part, text) for part in rest.split(",")), text)
+
+
+def _sample(text: str) -> Sample:
+    name, rest = _named(text)
+    found = DRAWN.fullmatch(rest.strip())
+    if found is None or found[1] not in set(Distribution):
+        raise HolonomError(
+            Failure.NOT_AN_AXIS, detail=f"{text} draws from none of {', '.join(Distribution)}(NUMBER,NUMBER)"
+        )
+    kind, first, second = Distribution(found[1]), _number(found[2], text), _number(found[3], text)
+    if kind is Distribution.NORMAL and not second > 0:
+        raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{text} has no positive deviation")
+    if kind is not Distribution.NORMAL and not first < second:
+        raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{text} has no least number below its greatest")
+    if kind is Distribution.LOGUNIFORM and not first > 0:
+        raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{text} has no logarithm")
+    return Sample(name, kind, first, second, text)
+
+
+def _named(text: str) -> tuple[str, str]:
+    name, equals, rest = text.partition("=")
+    if not equals or not NAME.fullmatch(name.strip()):
+        raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{text} names no parameter")
+    return name.strip(), rest
+
+
+def _parts(text: str, separator: str, count: int, whole: str) -> Sequence[str]:
+    parts = [part.strip() for part in text.split(separator)]
+    if len(parts) != count:
+        raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{whole} has not {count} parts")
+    return parts
+
+
+def _number(text: str, whole: str) -> float:
+    if not re.fullmatch(NUMBER, text.strip()) or not within_reach(text.strip().lstrip("+-")):
+        raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{whole} holds what is no number, {text.strip()!r}")
+    try:
+        return float(Fraction(text.strip()))
+    except ZeroDivisionError:
+        raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{whole} divides by zero") from None

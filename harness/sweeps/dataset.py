@@ -1,0 +1,187 @@
+"""The folder of a sweep: one Parquet file a chunk, each there whole or not at all, and a document that says of what.
+
+The same sweep asked for again finds its chunks there and computes those that are missing; another one is refused.
+"""
+
+import fcntl
+import json
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..documents import Publication, published, require
+from ..failures import Failure, HolonomError
+from ..files import write_whole
+
+if TYPE_CHECKING:
+    import pyarrow
+
+DOCUMENT = "_sweep.json"  # readers of datasets pass over names that begin so
+LOCK = "_sweep.lock"
+UNCOMPARED = ("file",)  # what a sweep may be called from and is still the same
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """Rows that one file holds.
+
+    Attributes
+    ----------
+    index, first, last : int
+        The last row is not among them.
+    """
+
+    index: int
+    first: int
+    last: int
+
+    @property
+    def name(self) -> str:
+        """Of the file."""
+        return f"part-{self.index:07d}.parquet"
+
+
+class SweepFolder:
+    """A folder that holds a sweep, or is to hold one.
+
+    Parameters
+    ----------
+    path : Path
+    document : mapping
+        What the sweep is, as `sweep.json` among the schemas says.
+
+    Raises
+    ------
+    HolonomError
+        It holds another sweep, or other things; it cannot be written.
+    """
+
+    def __init__(self, path: Path, document: Mapping[str, Any]) -> None:
+        self.path, self.document = path, published(Publication.SWEEP, document)
+
+    @contextmanager
+    def held(self, resume: bool) -> Iterator[None]:
+        """Keep other commands out while the block runs.
+
+        Parameters
+        ----------
+        resume : bool
+            Whether the sweep must have been begun before.
+
+        Raises
+        ------
+        HolonomError
+            There is another sweep or something else in the folder; another command is at work there; there is
+            nothing to resume.
+        """
+        self._require_ours(resume)
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+            lock = os.open(self.path / LOCK, os.O_RDWR | os.O_CREAT, 0o644)
+        except OSError as error:
+            raise HolonomError(Failure.UNWRITABLE, self.path, error.strerror or str(error)) from None
+        try:
+            _lock(lock, self.path)
+            self._require_ours(resume)
+            for left in self.path.glob(".part-*.new"):  # of a command that was killed
+                left.unlink(missing_ok=True)
+            if not (self.path / DOCUMENT).exists():
+                write_whole(self.path / DOCUMENT, json.dumps(self.document, ensure_ascii=False, indent=1) + "\n")
+            yield
+        finally:
+            os.close(lock)
+
+    def missing(self) -> list[Chunk]:
+        """Chunks whose files are not there, or are not whole."""
+        return [chunk for chunk in chunks_of(self.document) if not self._is_whole(chunk)]
+
+    def write(self, chunk: Chunk, content: bytes) -> None:
+        """Put a chunk in its place, whole.
+
+        Raises
+        ------
+        HolonomError
+            There is no space for it, or it cannot be written.
+        """
+        write_whole(self.path / chunk.name, content)
+
+    def _is_whole(self, chunk: Chunk) -> bool:
+        import pyarrow
+        import pyarrow.parquet
+
+        try:
+            return pyarrow.parquet.read_metadata(self.path / chunk.name).num_rows == chunk.last - chunk.first
+        except (OSError, pyarrow.ArrowInvalid):
+            return False
+
+    def _require_ours(self, resume: bool) -> None:
+        if not (self.path / DOCUMENT).exists():
+            if self.path.exists() and (not self.path.is_dir() or set(os.listdir(self.path)) - {LOCK}):
+                raise HolonomError(Failure.FOREIGN_FOLDER, self.path)
+            if resume:
+                raise HolonomError(Failure.NOTHING_TO_RESUME, self.path)
+            return
+        there = read_document(self.path)
+        for name, ours in self.document.items():
+            if without_places(there.get(name)) != without_places(ours):
+                raise HolonomError(Failure.OTHER_SWEEP, self.path, f"its {name} is {_shown(there.get(name))}")
+
+
+def read_document(folder: Path) -> dict[str, Any]:
+    """The document of a sweep.
+
+    Parameters
+    ----------
+    folder : Path
+
+    Returns
+    -------
+    dict
+
+    Raises
+    ------
+    HolonomError
+        There is none, or it is no such document.
+    """
+    try:
+        document = json.loads((folder / DOCUMENT).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        raise HolonomError(Failure.FOREIGN_FOLDER, folder) from None
+    require(Publication.SWEEP, document)
+    return document
+
+
+def chunks_of(document: Mapping[str, Any]) -> list[Chunk]:
+    """The chunks that a sweep is made of."""
+    rows, size = document["rows"], document["chunk"]
+    return [Chunk(k, first, min(first + size, rows)) for k, first in enumerate(range(0, rows, size))]
+
+
+def part_of(table: "pyarrow.Table") -> bytes:
+    """A table as the bytes of a Parquet file."""
+    import pyarrow.parquet
+
+    buffer = BytesIO()
+    pyarrow.parquet.write_table(table.replace_schema_metadata({"holonom": "sweep"}), buffer)
+    return buffer.getvalue()
+
+
+def without_places(value: Any) -> Any:
+    """What is compared of an entry."""
+    return {k: v for k, v in value.items() if k not in UNCOMPARED} if isinstance(value, Mapping) else value
+
+
+def _lock(lock: int, path: Path) -> None:
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise HolonomError(Failure.FOLDER_TAKEN, path) from None
+
+
+def _shown(value: Any) -> str:
+    text = json.dumps(value, ensure_ascii=False)
+    return text if len(text) <= 60 else f"{text[:57]}..."

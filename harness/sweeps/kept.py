@@ -1,0 +1,181 @@
+"""What a sweep keeps of each motion.
+
+    final               the coordinates and velocities at the end
+    EXPR                a quantity at the end, at(EXPR, T) at an instant
+    max(EXPR)           its largest value on the way; so min, mean, and max(abs(EXPR))
+    zero(EXPR)          the first instant after the start at which it crosses zero; empty where it does not
+    free                whether the multipliers stay at zero, as the condition (10) of free motion says
+    radius              radius of convergence of the initial motion
+    residual            how far the end is from the constraints; it is kept in any case
+
+EXPR is made of t, coordinates, dot(x), ddot(x), multipliers, Lambda[s], energy and the parameters. It becomes an
+expression of the motion program; nothing of it is run as code.
+"""
+
+import ast
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+from fractions import Fraction
+from math import isfinite
+
+from ..failures import Failure, HolonomError
+from ..program.motion_program import Call, Constant, Expression, Name, Operation
+from ..program.request import within_reach
+
+LONGEST = 500  # characters of an item
+OPERATORS = {
+    ast.Add: Operation.ADD,
+    ast.Sub: Operation.SUBTRACT,
+    ast.Mult: Operation.MULTIPLY,
+    ast.Div: Operation.DIVIDE,
+    ast.Pow: Operation.POWER,
+}
+FUNCTIONS = {
+    name: Operation(name.capitalize()) for name in ("abs", "sqrt", "exp", "sin", "cos", "tan", "sinh", "cosh", "tanh")
+} | {"log": Operation.LN, "asin": Operation.ARCSIN, "acos": Operation.ARCCOS, "atan": Operation.ARCTAN}
+DERIVATIVES = ("dot", "ddot")
+
+
+class Kind(StrEnum):
+    """What is made of a quantity, or of the motion."""
+
+    FINAL = "final"
+    AT = "at"
+    MAX = "max"
+    MIN = "min"
+    LARGEST = "largest"  # max(abs(...)), which is not analytic where its quantity changes its sign
+    MEAN = "mean"
+    ZERO = "zero"
+    FREE = "free"
+    RADIUS = "radius"
+    RESIDUAL = "residual"
+
+
+ALONG = (Kind.MAX, Kind.MIN, Kind.LARGEST, Kind.MEAN, Kind.ZERO)
+WHOLE = {kind.value: kind for kind in (Kind.FINAL, Kind.FREE, Kind.RADIUS, Kind.RESIDUAL)}
+
+
+@dataclass(frozen=True)
+class Kept:
+    """One thing that is kept.
+
+    Attributes
+    ----------
+    text : str
+        As it was asked for, without blanks: the name of its column.
+    kind : Kind
+    quantity : Expression or None
+        None where the whole motion is meant.
+    instant : Fraction or None
+        Of `Kind.AT`; None for the end.
+    """
+
+    text: str
+    kind: Kind
+    quantity: Expression | None = None
+    instant: Fraction | None = None
+
+
+def read_kept(texts: Iterable[str]) -> tuple[Kept, ...]:
+    """Read what is to be kept, as it stands on a command line.
+
+    Parameters
+    ----------
+    texts : iterable of str
+        Items, or several of them with commas between them.
+
+    Returns
+    -------
+    tuple of Kept
+        Each once.
+
+    Raises
+    ------
+    HolonomError
+        One of them cannot be kept.
+    """
+    items = [item for text in texts for item in _items(text)]
+    return tuple(dict.fromkeys(_kept(item) for item in items))
+
+
+def _items(text: str) -> Iterator[str]:
+    """The parts between commas that no bracket encloses."""
+    depth, begin = 0, 0
+    for place, letter in enumerate(text):
+        depth += (letter in "([") - (letter in ")]")
+        if letter == "," and depth == 0:
+            yield text[begin:place]
+            begin = place + 1
+    yield text[begin:]
+
+
+def _kept(item: str) -> Kept:
+    text = "".join(item.split())
+    if text in WHOLE:
+        return Kept(text, WHOLE[text])
+    match _tree(text):
+        case ast.Call(ast.Name("max"), [ast.Call(ast.Name("abs"), [quantity], [])], []):
+            return Kept(text, Kind.LARGEST, _analytic(quantity, text))
+        case ast.Call(ast.Name("max" | "min" | "mean" | "zero" as kind), [quantity], []):
+            return Kept(text, Kind(kind), _analytic(quantity, text))
+        case ast.Call(ast.Name("at"), [quantity, _], []):
+            inside, _, instant = text[len("at(") : -1].rpartition(",")
+            return Kept(text, Kind.AT, _expression(quantity, text), _instant(instant, text))
+        case quantity:
+            return Kept(text, Kind.AT, _expression(quantity, text))
+
+
+def _tree(text: str) -> ast.expr:
+    try:
+        if not text or len(text) > LONGEST or text.count("(") > LONGEST // 10:
+            raise ValueError
+        return ast.parse(text.replace("^", "**"), mode="eval").body
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        raise _refusal(text or "nothing", "is no expression") from None
+
+
+def _analytic(tree: ast.expr, text: str) -> Expression:
+    if any(isinstance(node, ast.Name) and node.id == "abs" for node in ast.walk(tree)):
+        raise _refusal(text, "holds abs inside of what is followed along the motion; only max(abs(...)) may")
+    return _expression(tree, text)
+
+
+def _expression(tree: ast.expr, text: str) -> Expression:
+    match tree:
+        case ast.BinOp(left, operator, right) if type(operator) in OPERATORS:
+            return Call(OPERATORS[type(operator)], (_expression(left, text), _expression(right, text)))
+        case ast.UnaryOp(ast.USub(), operand):
+            return Call(Operation.NEGATE, (_expression(operand, text),))
+        case ast.Call(ast.Name(mark), [ast.Name(name)], []) if mark in DERIVATIVES:
+            return Name(f"{mark}({name})")
+        case ast.Call(ast.Name(function), [argument], []) if function in FUNCTIONS:
+            return Call(FUNCTIONS[function], (_expression(argument, text),))
+        case ast.Subscript(ast.Name(name), ast.Constant(int(place))):
+            return Name(f"{name}[{place}]")
+        case ast.Name("pi"):
+            return Constant.PI
+        case ast.Name(name):
+            return Name(name)
+        case ast.Constant(int(value) | float(value)) if _is_number(value):
+            return Fraction(repr(value))
+        case _:
+            raise _refusal(text, "is made of something else than numbers, + - * / ^, functions and quantities")
+
+
+def _is_number(value: int | float) -> bool:
+    return not isinstance(value, bool) and isfinite(value) and within_reach(repr(value))
+
+
+def _instant(written: str, text: str) -> Fraction:
+    if not re.fullmatch(r"-?\d+(\.\d*)?(/\d+)?", written) or not within_reach(written):
+        raise _refusal(text, "names no instant")
+    try:
+        return Fraction(written)
+    except ZeroDivisionError:
+        raise _refusal(text, "names no instant") from None
+
+
+def _refusal(text: str, reason: str) -> HolonomError:
+    return HolonomError(Failure.NOT_KEPT, detail=f"{text[:60]} {reason}")

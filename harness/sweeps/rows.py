@@ -1,0 +1,337 @@
+"""The rows of a sweep: for each set of parameters what is kept of its motion, how it went, and what it misses.
+
+A row that cannot be computed says so and why; no row is left out.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..failures import HolonomError
+from ..program.heyoka_function import import_heyoka
+from ..program.motion_problem import MotionProblem
+from ..program.motion_program import Expression
+from ..program.sign_pattern import problem_in
+from ..simulation.diagnostics import scaled_residual
+from ..simulation.evaluation import in_full_vectors
+from ..simulation.faint import may_hide
+from ..simulation.initial_state import InitialStates, started
+from ..simulation.matrices import LaneMatrices
+from ..simulation.request import SimulationRequest, Stabilization
+from ..simulation.trust import FINEST, MARGIN
+from .axes import Axes
+from .extremes import Steps, first_zero, largest, largest_size
+from .kept import ALONG, Kept, Kind
+from .lanes import LANES, LaneEngine
+from .quantities import along_motion, constraint_forces, expressions_of, other_forces, require_known
+from .series import lane_radii
+from .single import SingleMotions, end_of
+from .time_watch import TimeWatch
+
+if TYPE_CHECKING:
+    import pyarrow
+
+TOLERANCE = 1e-12  # of a step
+FEW = 10  # steps
+GROUP = 1024  # rows that are held in memory at a time, whatever the chunk
+
+Floats = NDArray[np.float64]
+
+
+class Status(StrEnum):
+    """How a row came about."""
+
+    OK = "ok"
+    DOUBTFUL = "doubtful"  # what it misses is out of proportion to the tolerance
+    NO_START = "no start"
+    BROKEN_OFF = "broken off"
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A sweep as its workers get it.
+
+    Attributes
+    ----------
+    problem : MotionProblem
+        Its open parameters are those that vary.
+    axes : Axes
+    kept : tuple of Kept
+    tol : float
+        Tolerance of a step.
+    until : Fraction or None
+        The last instant; None for the end of the scene's time span.
+    drift : Stabilization
+        ``PROJECTION`` or ``NONE``.
+    lanes : int
+        That are followed at once.
+    """
+
+    problem: MotionProblem
+    axes: Axes
+    kept: tuple[Kept, ...]
+    tol: float = TOLERANCE
+    until: Fraction | None = None
+    drift: Stabilization = Stabilization.PROJECTION
+    lanes: int = LANES
+
+
+class RowMaker:
+    """Makes the rows of a plan; what is compiled for it is compiled once.
+
+    Parameters
+    ----------
+    plan : Plan
+
+    Raises
+    ------
+    HolonomError
+        The start does not follow the parameters, the motion has no end, or something kept is not known of it.
+    """
+
+    def __init__(self, plan: Plan) -> None:
+        problem = self._problem = plan.problem
+        self.plan, self._n = plan, len(problem.coordinates)
+        require_known(problem, [kept.quantity for kept in plan.kept if kept.quantity is not None])
+        self._analytic = problem_in(problem, dict.fromkeys((sign.name for sign in problem.signs), 1))
+        self._starts = InitialStates(self._analytic)  # no sign decides about constraints, or they would jump
+        self._moves = any(kept.kind is not Kind.RADIUS for kept in plan.kept)
+        self._end = end_of(problem, plan.until) if self._moves else float(problem.start["t"])
+        self._asked = sorted({self._end, *(self._instant(kept) for kept in plan.kept if kept.kind is Kind.AT)})
+        self._points = [kept.quantity for kept in plan.kept if kept.kind is Kind.AT]
+        self._looks = [kept for kept in plan.kept if kept.kind in ALONG]
+        free = any(kept.kind is Kind.FREE for kept in plan.kept)
+        self._free = (constraint_forces(problem), other_forces(problem)) if free else ([], [])
+        self._along: list[Expression] = [*(kept.quantity for kept in self._looks), *self._free[0], *self._free[1]]
+        self._hides = may_hide(problem.matrices, problem.parameters)
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Names of the columns that are kept, in order."""
+        names = [self._problem.state if kept.kind is Kind.FINAL else (kept.text,) for kept in self.plan.kept]
+        return tuple(dict.fromkeys(name for group in names for name in group if name != Kind.RESIDUAL))
+
+    def table(self, first: int, last: int) -> "pyarrow.Table":
+        """The rows from the first up to the last, which is not among them.
+
+        Returns
+        -------
+        pyarrow.Table
+            ``row``, the parameters, what is kept, ``residual``, ``status`` and ``remark``; empty where there is none.
+        """
+        import pyarrow as pa
+
+        groups = [self._group(begin, min(begin + GROUP, last)) for begin in range(first, last, GROUP)]
+        return pa.concat_tables(groups)
+
+    def _group(self, first: int, last: int) -> "pyarrow.Table":
+        import pyarrow as pa
+
+        rows = _Rows(self.plan.axes.numbers(first, last), self.columns)
+        with np.errstate(all="ignore"):
+            self._fill(rows)
+        arrays = {"row": pa.array(np.arange(first, last))}
+        arrays |= {name: pa.array(x) for name, x in zip(self.plan.axes.names, rows.values, strict=True)}
+        columns = {**rows.kept, "residual": rows.residual}
+        for name, column in columns.items():
+            missing = np.isnan(column)
+            is_truth = any(kept.text == name and kept.kind is Kind.FREE for kept in self.plan.kept)
+            arrays[name] = pa.array(column == 1 if is_truth else column, mask=missing)
+        arrays["status"] = pa.array([str(status) for status in rows.status])
+        arrays["remark"] = pa.array(rows.remarks, pa.string())
+        return pa.table(arrays)
+
+    # ---- rows ----
+
+    def _fill(self, rows: "_Rows") -> None:
+        starts = self._starts(rows.values)
+        rows.mark(~starts.found, Status.NO_START, "no state was found that satisfies the constraints at the start")
+        there = np.flatnonzero(starts.found)
+        if len(there) and any(kept.kind is Kind.RADIUS for kept in self.plan.kept):
+            name = next(kept.text for kept in self.plan.kept if kept.kind is Kind.RADIUS)
+            rows.kept[name][there] = lane_radii(self._problem, starts.states[:, there], rows.values[:, there])
+        if not len(there) or not self._moves:
+            rows.residual[there] = self._residuals(starts.states[:, there], rows.values[:, there], start=True)
+            return
+        for row in self._left_alone(rows, there, starts.states):
+            self._by_itself(rows, row, starts.states[:, row])
+
+    def _left_alone(self, rows: "_Rows", there: NDArray, states: Floats) -> NDArray:
+        """Follow in lanes what can be followed so; the other rows."""
+        if not self._batched:
+            return there
+        alone, stops = self._watch.look(rows.values[:, there])
+        together = there[~alone]
+        if not len(together):
+            return there
+        left = self._together(rows, together, states[:, together], stops)
+        return np.concatenate([there[alone], left])
+
+    @property
+    def _batched(self) -> bool:
+        """Whether lanes can follow motions of the problem at all."""
+        return not self._problem.signs and self._problem.obstacle is None and not self._hides
+
+    def _together(self, rows: "_Rows", there: NDArray, states: Floats, stops: Sequence[float]) -> NDArray:
+        """Follow motions in lanes; those that this does not do for."""
+        values, instants = rows.values[:, there], sorted({*self._asked, *(t for t in stops if t < self._end)})
+        found = self._engine.follow(states, values, instants)
+        residual = self._residuals(found.states[-1], values, start=False)
+        well = found.arrived & (residual <= self._allowed)
+        done = there[well]
+        at = {stop: found.states[place] for place, stop in enumerate(instants)}
+        points = {stop: self._at(stop, at[stop], values) for stop in self._asked}
+        rows.residual[done] = residual[well]
+        self._keep(rows, done, at[self._end][:, well], {stop: numbers[:, well] for stop, numbers in points.items()})
+        for here, steps in found.steps:
+            lanes = well[here]
+            self._keep_along(rows, there[here][lanes], [_chosen(part, lanes) for part in steps])
+        return there[~well]
+
+    def _by_itself(self, rows: "_Rows", row: int, state: Floats) -> None:
+        numbers = {
+            name: Fraction(float(x)) for name, x in zip(self._problem.parameters, rows.values[:, row], strict=True)
+        }
+        problem = started(self._problem, numbers, state)
+        try:
+            found = self._singles.follow(problem, self._asked)
+        except HolonomError as error:
+            rows.mark(np.array([row]), Status.BROKEN_OFF, f"{error.failure.value[0].format(detail=error.detail)}")
+            return
+        here, end = np.array([row]), found.states[-1][:, None]
+        rows.residual[row] = self._residuals(end, rows.values[:, here], start=False)[0]
+        points = {stop: found.points[place][:, None] for place, stop in enumerate(self._asked)}
+        self._keep(rows, here, end, points)
+        self._keep_along(rows, here, found.steps)
+        if not max(rows.residual[row], found.missed if self._hides else 0.0) <= self._allowed:
+            rows.mark(here, Status.DOUBTFUL, "what it misses is out of proportion to the tolerance")
+
+    # ---- what is kept ----
+
+    def _keep(self, rows: "_Rows", there: NDArray, end: Floats, points: Mapping[float, Floats]) -> None:
+        """What is kept at instants."""
+        place = 0
+        for kept in self.plan.kept:
+            if kept.kind is Kind.FINAL:
+                for name, numbers in zip(self._problem.state, end, strict=True):
+                    rows.kept[name][there] = numbers
+            elif kept.kind is Kind.AT:
+                rows.kept[kept.text][there] = points[self._instant(kept)][place]
+                place += 1
+
+    def _keep_along(self, rows: "_Rows", there: NDArray, steps: Sequence[Steps]) -> None:
+        """What is kept of quantities along the motion."""
+        if not len(there):
+            return
+        for kept, along in zip(self._looks, steps, strict=False):
+            rows.kept[kept.text][there] = self._made(kept.kind, along)
+        if not any(kept.kind is Kind.FREE for kept in self.plan.kept):
+            return
+        sizes = [largest_size(along) for along in steps[len(self._looks) :]]
+        reactions, others = sizes[: len(self._free[0])], sizes[len(self._free[0]) :]
+        forces = np.max(others, axis=0, initial=0.0)
+        free = np.max(reactions, axis=0, initial=0.0) <= MARGIN * self.plan.tol * np.where(forces > 0, forces, 1.0)
+        rows.kept[Kind.FREE][there] = free
+
+    def _made(self, kind: Kind, along: Steps) -> Floats:
+        match kind:
+            case Kind.MAX:
+                return largest(along)
+            case Kind.MIN:
+                return -largest(along.negative())
+            case Kind.LARGEST:
+                return largest_size(along)
+            case Kind.ZERO:
+                return first_zero(along)
+            case _:
+                return _mean(along)
+
+    def _instant(self, kept: Kept) -> float:
+        return self._end if kept.instant is None else float(kept.instant)
+
+    def _at(self, instant: float, states: Floats, values: Floats) -> Floats:
+        """The quantities kept at instants, shape (quantities, k)."""
+        if not self._points:
+            return np.empty((0, states.shape[1]))
+        return self._evaluate(np.concatenate([np.full((1, states.shape[1]), instant), states, values]))
+
+    def _residuals(self, states: Floats, values: Floats, start: bool) -> Floats:
+        at = self._lane_matrices(float(self._problem.start["t"]) if start else self._end, states, values)
+        position = scaled_residual(at.residual, at.jacobian, states[: self._n])
+        return np.maximum(position, scaled_residual(at.residual_rate, at.jacobian, states[self._n :]))
+
+    @property
+    def _allowed(self) -> float:
+        """What a motion may miss, as `holonom.simulation.trust` expects of one that takes few steps."""
+        return MARGIN * max(self.plan.tol, FINEST) * FEW
+
+    # ---- compiled when first needed ----
+
+    @cached_property
+    def _lane_matrices(self) -> LaneMatrices:
+        return LaneMatrices(self._analytic)
+
+    @cached_property
+    def _engine(self) -> LaneEngine:
+        projects = self.plan.drift is Stabilization.PROJECTION
+        return LaneEngine(self._problem, self.plan.tol, projects, self._along, self.plan.lanes)
+
+    @cached_property
+    def _evaluate(self) -> "NDArray":
+        heyoka = import_heyoka()
+        known = {name: heyoka.expression(name) for name in ("t", *self._problem.state, *self._problem.parameters)}
+        quantities = expressions_of(self._points, along_motion(self._problem, known))
+        return in_full_vectors(heyoka.cfunc(quantities, vars=list(known.values())))
+
+    @cached_property
+    def _singles(self) -> SingleMotions:
+        request = SimulationRequest(tol=self.plan.tol, drift=self.plan.drift, until=self.plan.until)
+        return SingleMotions(self._problem, request, self._along, self._points, self._hides)
+
+    @cached_property
+    def _watch(self) -> TimeWatch:
+        return TimeWatch(self._problem, self._end)
+
+
+class _Rows:
+    """Rows as they are filled.
+
+    Parameters
+    ----------
+    values : ndarray, shape (p, k)
+    columns : tuple of str
+    """
+
+    def __init__(self, values: Floats, columns: tuple[str, ...]) -> None:
+        self.values, k = values, values.shape[1]
+        self.kept = {name: np.full(k, np.nan) for name in columns}
+        self.residual = np.full(k, np.nan)
+        self.status, self.remarks = np.full(k, Status.OK, dtype=object), np.full(k, None, dtype=object)
+
+    def mark(self, rows: NDArray, status: Status, remark: str) -> None:
+        """Say of rows what became of them."""
+        self.status[rows], self.remarks[rows] = status, remark
+
+
+def _chosen(steps: Steps, lanes: NDArray[np.bool_]) -> Steps:
+    """Some of the lanes."""
+    if lanes.all():
+        return steps
+    return Steps(steps.coefficients[:, :, lanes], steps.middle[:, lanes], steps.length[:, lanes], steps.least)
+
+
+def _mean(along: Steps) -> Floats:
+    """The integral of the polynomials, by the time that they take."""
+    total, time = np.zeros(along.length.shape[1]), np.zeros(along.length.shape[1])
+    for coefficients, length in zip(along.coefficients, along.length, strict=True):
+        integral = np.zeros_like(total)
+        for power, coefficient in enumerate(coefficients, start=1):
+            integral = integral + coefficient * ((1.0 - along.least**power) / power)
+        total, time = total + integral * length, time + length * (1.0 - along.least)
+    return total / time

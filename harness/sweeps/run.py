@@ -1,0 +1,239 @@
+"""A sweep from its request to its folder: derived once, computed chunk by chunk, read lazily."""
+
+import hashlib
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..confined import Limits
+from ..failures import Failure, HolonomError
+from ..program.motion_problem import DOUBLE_DIGITS, MotionProblem, problem_document, read_problem
+from ..program.precision import read_precision
+from ..program.request import Request
+from ..simulation.engines.taylor import held
+from ..simulation.request import Stabilization
+from .axes import Axes, Grid, Listed, Sample
+from .dataset import SweepFolder, chunks_of, read_document
+from .kept import Kept, Kind
+from .rows import TOLERANCE, Plan, RowMaker
+from .workers import compute
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+    from pyarrow.dataset import Dataset
+
+    from ..figures.style import Picture
+
+CHUNK = 10_000
+PACKAGES = ("holonom", "heyoka", "numpy", "pyarrow")  # whose versions may decide about the last bit
+Progress = Callable[[int], None]
+
+
+@dataclass(frozen=True)
+class SweepRequest:
+    """What a sweep is asked for.
+
+    Parameters
+    ----------
+    axes : Axes
+    kept : tuple of Kept
+    tol : float
+        Tolerance of a step.
+    until : Fraction or None
+        The last instant; None for the end of the scene's time span.
+    drift : Stabilization
+        ``PROJECTION`` or ``NONE``.
+    chunk : int
+        Rows of a file.
+    workers : int or None
+        Processes that compute; None for one a processor.
+    scheduler : str or None
+        Address of a running Dask scheduler that is to be used instead.
+    resume : bool
+        Whether the sweep must have been begun before.
+    """
+
+    axes: Axes
+    kept: tuple[Kept, ...]
+    tol: float = TOLERANCE
+    until: Fraction | None = None
+    drift: Stabilization = Stabilization.PROJECTION
+    chunk: int = CHUNK
+    workers: int | None = None
+    scheduler: str | None = None
+    resume: bool = False
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """A sweep in its folder; rows are read when they are asked for.
+
+    Attributes
+    ----------
+    path : Path
+        The folder.
+    document : mapping
+        What was swept, and how; see the schema ``sweep``.
+    """
+
+    path: Path
+    document: Mapping[str, Any]
+    _directory: Any = field(default=None, repr=False, compare=False)  # a folder that goes with the last of its sweeps
+
+    @property
+    def dataset(self) -> "Dataset":
+        """The rows as a dataset of pyarrow, nothing of which is read yet."""
+        import pyarrow.dataset
+
+        return pyarrow.dataset.dataset([self.path / chunk.name for chunk in chunks_of(self.document)], format="parquet")
+
+    @property
+    def statuses(self) -> dict[str, int]:
+        """How many rows came about how."""
+        counts: dict[str, int] = {}
+        for batch in self.dataset.to_batches(columns=["status"]):
+            for entry in batch.column(0).value_counts().to_pylist():
+                counts[entry["values"]] = counts.get(entry["values"], 0) + entry["counts"]
+        return dict(sorted(counts.items()))
+
+    def to_pandas(self) -> "DataFrame":
+        """All rows as a pandas DataFrame, by their numbers."""
+        return self.dataset.to_table().to_pandas().set_index("row")
+
+    def plot(self, quantity: str | None = None) -> "Picture":
+        """A map over two parameters, or a curve over one.
+
+        Parameters
+        ----------
+        quantity : str or None
+            A column; None for the first that is kept.
+
+        Raises
+        ------
+        HolonomError
+            Matplotlib is not installed; there are not one or two parameters in rows and columns, or no such quantity.
+        """
+        from ..figures.style import Picture
+        from ..figures.sweep import sweep_figure
+
+        return Picture(sweep_figure(self, quantity))
+
+
+def run_sweep(
+    file: Path,
+    request: Request,
+    wanted: SweepRequest,
+    folder: Path,
+    limits: Limits,
+    progress: Progress | None = None,
+) -> Sweep:
+    """Compute what is missing of a sweep.
+
+    Parameters
+    ----------
+    file : Path
+        The scene file.
+    request : Request
+    wanted : SweepRequest
+    folder : Path
+        Where its files are, or are to be.
+    limits : Limits
+        What Maxima may take.
+    progress : callable or None
+        Told how many rows are there, now and then.
+
+    Returns
+    -------
+    Sweep
+
+    Raises
+    ------
+    HolonomError
+        The request cannot be met, or the folder holds something else; as `holonom.program.motion_problem`.
+    """
+    held(wanted.tol, read_precision("double"))
+    text = _derived(file, request, wanted.axes, limits)
+    problem = read_problem(text)
+    _require_parameters(problem, wanted.axes)
+    plan = Plan(problem, wanted.axes, wanted.kept, wanted.tol, wanted.until, wanted.drift)
+    maker = RowMaker(plan)  # refuses what cannot be computed before there is a folder
+    target = SweepFolder(folder, _document(file, request, wanted, text, maker))
+    with target.held(wanted.resume):
+        chunks = target.missing()
+        done = wanted.axes.rows - sum(chunk.last - chunk.first for chunk in chunks)
+
+        def take(chunk: Any, content: bytes) -> None:
+            nonlocal done
+            target.write(chunk, content)
+            done += chunk.last - chunk.first
+            if progress is not None:
+                progress(done)
+
+        if chunks:
+            compute(plan, chunks, take, wanted.workers or os.cpu_count() or 1, wanted.scheduler)
+    return Sweep(folder, target.document)
+
+
+def load_sweep(folder: Path) -> Sweep:
+    """A sweep that is in a folder, whole or not."""
+    return Sweep(folder, read_document(folder))
+
+
+def _derived(file: Path, request: Request, axes: Axes, limits: Limits) -> str:
+    """The document of the motion with its parameters open; where it takes values to derive it, the middle ones."""
+    try:
+        return problem_document(file, request, limits, DOUBLE_DIGITS, axes.names)
+    except HolonomError as refused:
+        if refused.failure is not Failure.REFUSED:
+            raise
+        middle = axes.numbers(axes.rows // 2, axes.rows // 2 + 1)[:, 0]
+        numbers = {name: str(Fraction(float(x))) for name, x in zip(axes.names, middle, strict=True)}
+        given = Request(request.scene, request.solve, {**request.settings, **numbers})
+        try:
+            return problem_document(file, given, limits, DOUBLE_DIGITS, axes.names)
+        except HolonomError:
+            raise refused from None
+
+
+def _require_parameters(problem: MotionProblem, axes: Axes) -> None:
+    if foreign := [name for name in axes.names if name not in problem.parameters]:
+        raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{foreign[0]} is no parameter of {problem.scene}")
+
+
+def _document(file: Path, request: Request, wanted: SweepRequest, derived: str, maker: RowMaker) -> dict[str, Any]:
+    text, problem, axes = file.read_text(encoding="utf-8"), maker.plan.problem, wanted.axes
+    return {
+        "scene": {
+            "file": str(file),
+            "name": problem.scene,
+            "title": problem.title,
+            "system": problem.system,
+            "text": text,
+            "sha256": hashlib.sha256(text.encode()).hexdigest(),
+            "motion_sha256": hashlib.sha256(derived.encode()).hexdigest(),
+        },
+        "settings": dict(request.settings),
+        "parameters": [_axis(axis) for axis in (*axes.values, *axes.samples)],
+        "size": axes.size if axes.samples else None,
+        "seed": axes.seed if axes.samples else None,
+        "rows": axes.rows,
+        "chunk": wanted.chunk,
+        "keep": [kept.text for kept in wanted.kept],
+        "columns": ["row", *axes.names, *maker.columns, str(Kind.RESIDUAL), "status", "remark"],
+        "options": {
+            "tol": wanted.tol,
+            "until": None if wanted.until is None else str(wanted.until),
+            "drift": str(wanted.drift),
+            "solve": str(request.solve),
+        },
+        "versions": {name: version(name) for name in PACKAGES},
+    }
+
+
+def _axis(axis: Grid | Listed | Sample) -> dict[str, str]:
+    kind = str(axis.distribution) if isinstance(axis, Sample) else "values"
+    return {"name": axis.name, "kind": kind, "asked": axis.text}

@@ -1,0 +1,81 @@
+"""Radius of convergence of the initial motions of a sweep, from their power series, expanded lane by lane."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..program.heyoka_function import dynamics, heyoka_expressions, import_heyoka, zero_multipliers
+from ..program.motion_problem import MotionProblem
+from ..series.radius import estimate_radius
+
+ORDER = 40
+LANES = 8
+
+Floats = NDArray[np.float64]
+
+
+def lane_radii(problem: MotionProblem, states: Floats, values: Floats) -> Floats:
+    """Radius of convergence of each motion about its start.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        With open parameters, without signs and obstacle.
+    states : ndarray, shape (2n, k)
+        At the starts.
+    values : ndarray, shape (p, k)
+
+    Returns
+    -------
+    ndarray, shape (k,)
+        Infinite for an entire motion, nan where the orders do not tell.
+    """
+    series = expanded(problem, states, values)
+    return np.array([_radius(series[:, :, lane]) for lane in range(states.shape[1])])
+
+
+def expanded(problem: MotionProblem, states: Floats, values: Floats) -> Floats:
+    """Power series of the coordinates and multipliers, shape (n + g, orders, k)."""
+    integrator = problem.once("expansion", problem.motion, lambda: _expanding(problem))
+    k, n, g = states.shape[1], len(problem.coordinates), len(problem.multipliers)
+    found = np.empty((n + g, ORDER + 1, k))
+    for first in range(0, k, LANES):
+        here = np.minimum(np.arange(first, first + LANES), k - 1)
+        integrator.set_time(float(problem.start["t"]))
+        integrator.state[: 2 * n] = states[:, here]
+        integrator.state[2 * n :] = 0.0
+        integrator.pars[:] = values[: len(integrator.pars), here]
+        integrator.step(write_tc=True)
+        count = min(LANES, k - first)
+        found[:n, :, first : first + count] = integrator.tc[:n, : ORDER + 1, :count]
+        rates = integrator.tc[2 * n :, 1:, :count] * np.arange(1, integrator.tc.shape[1])[:, None]
+        found[n:, :, first : first + count] = rates[:, : ORDER + 1]
+    return found
+
+
+def _expanding(problem: MotionProblem) -> Any:
+    """Heyoka's batch integrator, its state ending with the integrals of the multipliers."""
+    heyoka = import_heyoka()
+    parameters = {name: heyoka.par[place] for place, name in enumerate(problem.parameters)}
+    given = parameters | zero_multipliers(problem.multipliers, 0.0)
+    variables = {name: heyoka.expression(name) for name in problem.state}
+    solved = heyoka_expressions(problem.motion, {"t": heyoka.time, **variables, **given})
+    integrals = [(heyoka.expression(f"integral of {name}"), solved[name]) for name in problem.multipliers]
+    return heyoka.taylor_adaptive_batch(
+        [*dynamics(problem.motion, given), *integrals],
+        np.zeros((len(problem.state) + len(integrals), LANES)),
+        tol=float(np.exp(-2 * ORDER)),
+        pars=np.zeros((len(problem.parameters), LANES)),
+        compact_mode=True,
+    )
+
+
+def _radius(series: Floats) -> float:
+    """The radius of one motion, shape (series, orders)."""
+    if not np.isfinite(series).all():
+        return np.nan
+    found = estimate_radius(series)
+    if found.estimate is not None:
+        return found.estimate
+    return np.inf if found.remark.startswith("infinite") else np.nan

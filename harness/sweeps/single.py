@@ -1,0 +1,152 @@
+"""One motion of a sweep, followed as `holonom simulate` follows it: where a lane of many does not do.
+
+Through singular configurations, switchings and redundant constraints, past narrow places, and to the sentence with
+which a motion ends that cannot be followed to the end.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+import numpy as np
+from numpy.polynomial import polynomial
+from numpy.typing import NDArray
+
+from ..program.heyoka_function import import_heyoka
+from ..program.motion_problem import MotionProblem
+from ..program.motion_program import Expression
+from ..program.precision import read_precision
+from ..simulation.engines.engine import Piece
+from ..simulation.evaluation import in_full_vectors
+from ..simulation.passed_over import StepsHeldAgainstTheEquations
+from ..simulation.piecewise import PiecewiseMotion
+from ..simulation.request import SimulationRequest
+from ..simulation.simulate import followable
+from .extremes import Steps
+from .quantities import expressions_of, solved_names
+
+PARTS = 4  # of a step, each with a polynomial of its own
+NODES = -np.cos(np.pi * (np.arange(9) + 0.5) / 9)  # of Chebyshev
+TO_POWERS = np.linalg.inv(polynomial.polyvander(NODES, len(NODES) - 1))
+
+Floats = NDArray[np.float64]
+
+
+class SingleMotions:
+    """Follows motions of a problem one by one.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+    request : SimulationRequest
+    along, points : sequence of Expression
+        Quantities to look at along the motion, and at the instants asked for.
+    may_hide : bool
+        Whether steps may pass over narrow places.
+    """
+
+    def __init__(
+        self,
+        problem: MotionProblem,
+        request: SimulationRequest,
+        along: Sequence[Expression],
+        points: Sequence[Expression],
+        may_hide: bool,
+    ) -> None:
+        self._problem, self._request, self._may_hide = problem, request, may_hide
+        self._along, self._precision = len(along), read_precision("double")
+        heyoka = import_heyoka()
+        n, g = len(problem.coordinates), len(problem.multipliers)
+        self._solved = len(solved_names(problem))
+        fields = [f"h[{s}]" for s in range(1, n + 1)]
+        fields += [f"J[{beta},{s}]" for beta in range(1, g + 1) for s in range(1, n + 1)]
+        names = ["t", *problem.state, *solved_names(problem), "energy", *fields, *problem.parameters]
+        known = {name: heyoka.expression(name) for name in names}
+        quantities = expressions_of([*along, *points], known) if along or points else []
+        self._quantities = (
+            in_full_vectors(heyoka.cfunc(quantities, vars=list(known.values()), opt_level=0)) if quantities else None
+        )
+
+    def follow(self, problem: MotionProblem, stops: Sequence[float]) -> "SingleMotion":
+        """Follow one motion.
+
+        Parameters
+        ----------
+        problem : MotionProblem
+            With values for the open parameters, and its start.
+        stops : sequence of float
+            As for `LaneEngine.follow`.
+
+        Returns
+        -------
+        SingleMotion
+
+        Raises
+        ------
+        HolonomError
+            The motion cannot be followed to the end.
+        """
+        motion = PiecewiseMotion(followable(problem, self._request), self._request, self._precision, stops[-1])
+        held = StepsHeldAgainstTheEquations(motion, stops[-1] - motion.time, self._precision)
+        states, points, taken = [], [], []
+        for stop in stops:
+            for piece in motion.pieces(stop):
+                if self._may_hide:
+                    held.take(piece)
+                if self._along:
+                    taken += self._polynomials(motion, problem, piece)
+            states.append(motion.state.copy())
+            values = self._values(motion, problem, np.array([stop]), motion.state.copy()[:, None])
+            points.append(values[self._along :, 0])
+        return SingleMotion(np.array(states), np.array(points), _steps(taken, self._along), held.missed)
+
+    def _polynomials(self, motion: PiecewiseMotion, problem: MotionProblem, piece: Piece) -> list[tuple]:
+        """The quantities on the parts of a step: middle, half length, coefficients."""
+        edges = np.linspace(float(piece.start), float(piece.end), PARTS + 1)
+        middles, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2
+        instants = (middles[:, None] + half[:, None] * NODES).ravel()
+        values = self._values(motion, problem, instants, piece.states(instants))[: self._along]
+        parts = values.reshape(self._along, PARTS, len(NODES)) @ TO_POWERS.T
+        return list(zip(middles, half, np.moveaxis(parts, 1, 0), strict=True))
+
+    def _values(self, motion: PiecewiseMotion, problem: MotionProblem, instants: Floats, states: Floats) -> Floats:
+        """All quantities at states of the motion, shape (quantities, k)."""
+        if self._quantities is None:
+            return np.empty((0, len(instants)))
+        solved = np.concatenate(motion.solutions(instants, states))[: self._solved]
+        energy = motion.energy(instants, states)[None]
+        matrices = [motion.matrices(float(t), state) for t, state in zip(instants, states.T, strict=True)]
+        fields = np.array([[*at.force, *at.jacobian.ravel()] for at in matrices]).T
+        parameters = np.repeat(np.array(problem.numbers)[:, None], len(instants), axis=1)
+        inputs = [instants[None], states, solved, energy, fields, parameters.reshape(-1, len(instants))]
+        return self._quantities(np.concatenate(inputs))
+
+
+class SingleMotion:
+    """What came of one motion.
+
+    Parameters
+    ----------
+    states : ndarray, shape (stops, 2n)
+    points : ndarray, shape (stops, quantities)
+    steps : list of Steps
+        Each quantity along the motion, with one lane.
+    missed : float
+        What steps passed over, as `holonom.simulation.passed_over` says.
+    """
+
+    def __init__(self, states: Floats, points: Floats, steps: list[Steps], missed: float) -> None:
+        self.states, self.points, self.steps, self.missed = states, points, steps, missed
+
+
+def end_of(problem: MotionProblem, until: Fraction | None) -> float:
+    """The instant at which motions end, in double precision; raises as `holonom.simulation.simulate.last_instant`."""
+    from ..simulation.simulate import last_instant
+
+    return float(last_instant(problem, until, read_precision("double")))
+
+
+def _steps(taken: list[tuple], quantities: int) -> list[Steps]:
+    if not taken:
+        return []
+    middle, half = (np.array([part[k] for part in taken])[:, None] for k in (0, 1))
+    return [Steps(np.array([part[2][k] for part in taken])[:, :, None], middle, half, -1.0) for k in range(quantities)]

@@ -1,0 +1,137 @@
+"""Which motions of a sweep need to be looked at one by one because of what they depend on in time.
+
+`holonom.simulation.time_dependence` finds the instants at which steps are to end, and `holonom.simulation.constraints.
+singularity` those at which a controlled length may vanish. Both take one motion. Here they are asked once where the
+parameters that vary do not come into it, or else once for each set of those that do; polynomials of low degree in the
+time have no narrow features, so nobody is asked about them.
+"""
+
+from collections.abc import Mapping
+from fractions import Fraction
+from math import inf
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..program.motion_problem import MotionProblem
+from ..program.motion_program import Call, Expression, Name, Operation, names_in
+from ..program.sign_pattern import with_numbers
+from ..simulation.constraints.singularity import zeros_of_controls
+from ..simulation.initial_state import with_values
+from ..simulation.time_dependence import TimeDependence, time_dependence
+
+LOW = 2  # degree in the time up to which a polynomial rises or falls all over a time span as it does at its beginning
+
+Floats = NDArray[np.float64]
+
+
+class TimeWatch:
+    """Tells motions that a lane may follow from those that it may not.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        With open parameters.
+    end : float
+        The last instant.
+    """
+
+    def __init__(self, problem: MotionProblem, end: float) -> None:
+        self._problem, self._start, self._end = problem, float(problem.start["t"]), end
+        degrees, self._involved = _in_time(problem)
+        self._smooth = all(degree <= LOW for degree in degrees)
+        self._known: dict[tuple[float, ...], tuple[bool, tuple[float, ...]]] = {}
+
+    def look(self, values: Floats) -> tuple[NDArray[np.bool_], tuple[float, ...]]:
+        """Look at motions.
+
+        Parameters
+        ----------
+        values : ndarray, shape (p, k)
+
+        Returns
+        -------
+        ndarray of bool, shape (k,)
+            Which are to be followed one by one.
+        tuple of float
+            Instants at which the others are to stop.
+        """
+        if not self._involved:
+            alone, stops = self._of(values[:, 0])
+            return np.full(values.shape[1], alone), stops
+        places = [self._problem.parameters.index(name) for name in self._involved]
+        chosen, which = np.unique(values[places], axis=1, return_inverse=True)
+        row = values[:, 0].copy()
+        alone = []
+        for column in chosen.T:
+            row[places] = column
+            apart, stops = self._of(row)
+            alone.append(apart or bool(stops))
+        return np.array(alone)[which.ravel()], ()
+
+    def _of(self, row: Floats) -> tuple[bool, tuple[float, ...]]:
+        """Whether a motion is to be followed by itself, and where it is to stop otherwise."""
+        key = tuple(row)
+        if key not in self._known:
+            numbers = {name: Fraction(float(x)) for name, x in zip(self._problem.parameters, row, strict=True)}
+            by_time = self._dependence(numbers)
+            crossing = zeros_of_controls(with_values(self._problem, numbers), self._start, self._end)
+            self._known[key] = bool(crossing) or by_time.end is not None, by_time.stops
+        return self._known[key]
+
+    def _dependence(self, numbers: Mapping[str, Fraction]) -> TimeDependence:
+        if self._smooth:
+            return TimeDependence()
+        return time_dependence(with_numbers(self._problem.matrices, numbers), self._start, self._end)
+
+
+def _in_time(problem: MotionProblem) -> tuple[list[float], tuple[str, ...]]:
+    """Degrees in the time of what is a function of time and parameters alone, and the parameters in these."""
+    known: dict[str, tuple[float, frozenset[str]]] = {"t": (1, frozenset())}
+    known |= {name: (0, frozenset({name})) for name in problem.parameters}
+    degrees, involved = [0.0], set()
+    for name, expression in problem.matrices.assignments:
+        if names_in(expression) <= known.keys():
+            degree = _degree(expression, known)
+            inside = frozenset().union(*(known[each][1] for each in names_in(expression)))
+            known[name] = degree, inside
+            if degree:
+                degrees.append(degree)
+                involved |= inside
+        else:
+            for part in _largest(expression, known.keys()):
+                degree = _degree(part, known)
+                if degree:
+                    degrees.append(degree)
+                    involved |= frozenset().union(*(known[each][1] for each in names_in(part)))
+    return degrees, tuple(name for name in problem.parameters if name in involved)
+
+
+def _largest(expression: Expression, known: set[str]) -> list[Expression]:
+    """The largest parts of an expression that are made of known names alone."""
+    if names_in(expression) <= known:
+        return [expression]
+    return (
+        [part for argument in expression.arguments for part in _largest(argument, known)]
+        if isinstance(expression, Call)
+        else []
+    )
+
+
+def _degree(expression: Expression, known: Mapping[str, tuple[float, frozenset[str]]]) -> float:
+    """Degree of a polynomial in the time, infinite where it is none."""
+    match expression:
+        case Name(text):
+            return known[text][0]
+        case Call(Operation.ADD | Operation.SUBTRACT | Operation.NEGATE, arguments):
+            return max(_degree(argument, known) for argument in arguments)
+        case Call(Operation.MULTIPLY, arguments):
+            return sum(_degree(argument, known) for argument in arguments)
+        case Call(Operation.POWER, (base, Fraction(denominator=1) as exponent)) if exponent >= 0:
+            return _degree(base, known) * int(exponent)
+        case Call(Operation.DIVIDE, (above, below)) if _degree(below, known) == 0:
+            return _degree(above, known)
+        case Call(_, arguments):
+            return inf if any(_degree(argument, known) for argument in arguments) else 0
+        case _:
+            return 0

@@ -1,0 +1,150 @@
+"""Who computes the chunks of a sweep: this process, workers that it starts, or those of a running Dask scheduler.
+
+Workers get the plan with each chunk, compile what it takes once, and send back the bytes of its file; the command that
+asked writes them. So nothing hangs on which worker computes what, or on how often one is lost.
+"""
+
+import logging
+import pickle
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+from ..failures import Failure, HolonomError
+from ..threads import one_blas_thread
+from .dataset import Chunk, part_of
+from .rows import Plan, RowMaker
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+AHEAD = 3  # chunks that wait at each worker
+ATTEMPTS = 10  # workers that a chunk may outlive
+PATIENCE = 20  # seconds that a scheduler may take to answer
+
+Take = Callable[[Chunk, bytes], None]
+
+
+def compute(plan: Plan, chunks: Sequence[Chunk], take: Take, workers: int, scheduler: str | None) -> None:
+    """Compute chunks, in any order.
+
+    Parameters
+    ----------
+    plan : Plan
+    chunks : sequence of Chunk
+    take : callable
+        Is given each chunk with the bytes of its file.
+    workers : int
+        Processes to start; with one, or for one chunk, this process does it.
+    scheduler : str or None
+        Address of a Dask scheduler that is to be used instead.
+
+    Raises
+    ------
+    HolonomError
+        As `RowMaker`; the workers are lost.
+    """
+    if scheduler is None and min(workers, len(chunks)) <= 1:
+        maker = RowMaker(plan)
+        with one_blas_thread():
+            for chunk in chunks:
+                take(chunk, part_of(maker.table(chunk.first, chunk.last)))
+        return
+    with _client(min(workers, len(chunks)), scheduler) as client:
+        _compute_by(client, plan, chunks, take)
+
+
+def make_part(plan: bytes, chunk: Chunk) -> bytes:
+    """What a worker does.
+
+    Parameters
+    ----------
+    plan : bytes
+        A plan, pickled.
+    chunk : Chunk
+
+    Returns
+    -------
+    bytes
+        Of the chunk's file.
+    """
+    with one_blas_thread():
+        return part_of(_maker(plan).table(chunk.first, chunk.last))
+
+
+@lru_cache(maxsize=2)
+def _maker(plan: bytes) -> RowMaker:
+    return RowMaker(pickle.loads(plan))
+
+
+def _compute_by(client: "Client", plan: Plan, chunks: Sequence[Chunk], take: Take) -> None:
+    """Keep all workers busy, and few chunks on their way."""
+    from distributed import as_completed
+
+    written, waiting = pickle.dumps(plan), iter(chunks)
+    with _told_when_lost():
+        ahead = AHEAD * max(1, len(client.scheduler_info(n_workers=-1)["workers"]))
+        doing = {_submitted(client, written, chunk): chunk for _, chunk in zip(range(ahead), waiting, strict=False)}
+        arriving = as_completed(list(doing), with_results=False)
+        for future in arriving:
+            take(doing.pop(future), future.result())
+            for chunk in waiting:
+                following = _submitted(client, written, chunk)
+                doing[following] = chunk
+                arriving.add(following)
+                break
+
+
+def _submitted(client: "Client", plan: bytes, chunk: Chunk) -> Any:
+    return client.submit(make_part, plan, chunk, pure=False)
+
+
+@contextmanager
+def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
+    """A client of the scheduler, or of one that is started here with its workers, and ended."""
+    import dask
+    from distributed import Client, LocalCluster
+
+    for name in ("distributed", "tornado"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)
+    settings = {
+        "distributed.scheduler.allowed-failures": ATTEMPTS,
+        "distributed.comm.timeouts.connect": PATIENCE,
+        "distributed.admin.system-monitor.gil.enabled": False,
+    }
+    with dask.config.set(settings):
+        if scheduler is not None:
+            with _told_when_lost(), Client(scheduler, timeout=PATIENCE) as client:
+                yield client
+            return
+        cluster = LocalCluster(
+            n_workers=workers,
+            threads_per_worker=1,
+            host="127.0.0.1",
+            security=True,  # other users of this machine reach its address, too
+            dashboard_address=None,
+            memory_limit=0,
+            silence_logs=logging.CRITICAL,
+        )
+        with cluster, Client(cluster, timeout=PATIENCE) as client:
+            yield client
+
+
+@contextmanager
+def _told_when_lost() -> Iterator[None]:
+    """Say in one sentence that the workers are gone."""
+    from asyncio import CancelledError
+
+    from distributed import CancelledError as TaskCancelled
+    from distributed import KilledWorker
+    from distributed.comm import CommClosedError
+
+    try:
+        yield
+    except HolonomError:
+        raise
+    except (KilledWorker, CommClosedError, TaskCancelled, CancelledError, TimeoutError, OSError) as error:
+        with suppress(AttributeError):
+            error = error.args[0]
+        raise HolonomError(Failure.WORKERS_LOST, detail=str(error).splitlines()[0] or "they do not answer") from None

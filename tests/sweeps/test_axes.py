@@ -1,0 +1,58 @@
+"""What a sweep varies: every row is a function of its number and the seed."""
+
+import numpy as np
+import pytest
+
+from holonom.failures import HolonomError
+from holonom.sweeps.axes import read_axes
+
+
+def test_the_last_parameter_varies_fastest():
+    axes = read_axes(["m=1:3:3"], ["c=5,7/2"], [], None, None)
+    assert (axes.names, axes.rows) == (("m", "c"), 6)
+    assert axes.numbers(0, 6).tolist() == [[1, 1, 2, 2, 3, 3], [5, 3.5, 5, 3.5, 5, 3.5]]
+    assert axes.numbers(3, 5).tolist() == [[2, 3], [3.5, 5]]
+
+
+def test_a_row_of_a_sample_does_not_hang_on_where_the_chunks_are_cut():
+    axes = read_axes(["c=0:1:2"], [], ["m=normal(100,5)", "k=loguniform(1e-3,10)"], 5000, 7)
+    whole = axes.numbers(0, axes.rows)
+    assert (axes.numbers(3000, 5000) == whole[:, 3000:5000]).all()
+    assert (axes.numbers(4711, 4712) == whole[:, 4711:4712]).all()
+    assert (axes.numbers(0, 10) != read_axes(["c=0:1:2"], [], ["m=normal(100,5)"], 5000, 8).numbers(0, 10)[0]).any()
+
+
+def test_samples_have_the_moments_of_their_distributions():
+    drawn = ["a=normal(100,5)", "b=uniform(-1,3)", "c=loguniform(0.01,100)"]
+    a, b, c = read_axes([], [], drawn, 200_000, 3).numbers(0, 200_000)
+    assert (a.mean(), a.std()) == (pytest.approx(100, abs=0.05), pytest.approx(5, abs=0.03))
+    assert (b.mean(), b.std()) == (pytest.approx(1, abs=0.02), pytest.approx(4 / 12**0.5, abs=0.01))
+    assert np.log10(c).mean() == pytest.approx(0, abs=0.02)
+    assert np.corrcoef([a, b, c])[np.triu_indices(3, 1)] == pytest.approx([0, 0, 0], abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("grids", "lists", "samples", "size", "told"),
+    [
+        ([], [], [], None, "no parameter varies"),
+        (["m=1:2"], [], [], None, "has not 3 parts"),
+        (["m=1:2:0"], [], [], None, "no number of values"),
+        (["m=1:x:3"], [], [], None, "no number, 'x'"),
+        (["=1:2:3"], [], [], None, "names no parameter"),
+        (["m=1:2:3"], ["m=1,2"], [], None, "m is varied twice"),
+        (["m=1:1/0:3"], [], [], None, "divides by zero"),
+        (["m=0:1e999:3"], [], [], None, "no number"),
+        ([], ["m="], [], None, "no number"),
+        ([], [], ["m=cauchy(0,1)"], 10, "draws from none of normal"),
+        ([], [], ["m=normal(0,0)"], 10, "no positive deviation"),
+        ([], [], ["m=uniform(2,1)"], 10, "no least number"),
+        ([], [], ["m=loguniform(0,1)"], 10, "no logarithm"),
+        ([], [], ["m=normal(0,1)"], None, "needs its --size"),
+        (["m=1:2:3"], [], [], 10, "there is none"),
+        (["m=0:1:999999999", "c=0:1:999999999"], [], [], None, "are the most"),
+    ],
+)
+def test_what_is_no_axis_is_told_in_one_sentence(grids, lists, samples, size, told):
+    with pytest.raises(HolonomError, match=told) as refused:
+        read_axes(grids, lists, samples, size, None)
+    assert "\n" not in str(refused.value)

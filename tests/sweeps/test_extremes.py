@@ -1,0 +1,64 @@
+"""Largest values and zeros of polynomials, step by step, against NumPy's roots and fine samples."""
+
+import numpy as np
+import pytest
+from numpy.polynomial import Polynomial
+
+from holonom.sweeps.extremes import Steps, first_zero, largest, largest_size
+
+LANES = 40
+
+
+@pytest.fixture(scope="module", params=[0.0, -1.0])
+def steps(request) -> Steps:
+    """One function along four steps, its polynomials falling off as those of a Taylor step do."""
+    random = np.random.default_rng(5)
+    taylor = random.normal(size=(12, LANES)) * 0.6 ** np.arange(12)[:, None]
+    whole = [Polynomial(column, domain=[0, 4], window=[-1, 1]) for column in taylor.T]
+    coefficients = np.zeros((4, 12, LANES))
+    for lane, function in enumerate(whole):
+        for step in range(4):
+            inner = Polynomial([step, 1.0]) if request.param == 0 else Polynomial([step + 0.5, 0.5])
+            coefficients[step, :, lane] = function.convert(domain=[-1, 1])(inner).coef
+    length = np.full((4, LANES), 1.0 if request.param == 0 else 0.5)
+    middle = np.arange(4)[:, None] + (0.0 if request.param == 0 else 0.5) + np.zeros((4, LANES))
+    return Steps(coefficients, middle, length, request.param)
+
+
+def dense(steps: Steps) -> tuple[np.ndarray, np.ndarray]:
+    x = np.linspace(steps.least, 1, 20001)
+    values = [sum(c * x[:, None] ** k for k, c in enumerate(step)) for step in steps.coefficients]
+    times = [m + x[:, None] * h for m, h in zip(steps.middle, steps.length, strict=True)]
+    return np.concatenate(times), np.concatenate(values)
+
+
+def test_the_largest_value_is_that_of_fine_samples(steps):
+    _, values = dense(steps)
+    assert largest(steps) == pytest.approx(values.max(axis=0), rel=1e-6)
+    assert (largest(steps) >= values.max(axis=0) - 1e-12).all()
+    assert -largest(steps.negative()) == pytest.approx(values.min(axis=0), rel=1e-6)
+    assert largest_size(steps) == pytest.approx(np.maximum(largest(steps), largest(steps.negative())), rel=1e-14)
+
+
+def test_the_first_zero_is_where_fine_samples_first_change_their_sign(steps):
+    times, values = dense(steps)
+    found, crossed = first_zero(steps), np.diff(np.sign(values), axis=0) != 0
+    assert (np.isnan(found) == ~crossed.any(axis=0)).all()
+    assert 5 < np.isnan(found).sum() < LANES - 5
+    for lane in np.flatnonzero(~np.isnan(found)):
+        place = crossed[:, lane].argmax()
+        assert times[place, lane] - 1e-9 <= found[lane] <= times[place + 1, lane] + 1e-9
+
+
+def test_a_zero_at_the_start_is_no_crossing_and_one_between_two_steps_is():
+    ramp = np.array([[[0.0], [1.0]], [[1.0], [-1.0]], [[0.0], [-1.0]]])  # 0..1, 1..0, 0..-1
+    steps = Steps(ramp, np.array([[0.0], [1.0], [2.0]]), np.ones((3, 1)), 0.0)
+    assert first_zero(steps) == pytest.approx([2.0])
+
+
+def test_what_comes_out_for_a_lane_does_not_hang_on_the_others(steps):
+    for function in (largest, largest_size, first_zero):
+        whole = function(steps)
+        for lanes in (slice(3, 4), slice(10, 27)):
+            part = Steps(steps.coefficients[:, :, lanes], steps.middle[:, lanes], steps.length[:, lanes], steps.least)
+            assert np.array_equal(function(part), whole[lanes], equal_nan=True)

@@ -1,0 +1,141 @@
+"""The rows of sweeps: against closed forms, against `holonom simulate`, and against themselves however they are cut."""
+
+import numpy as np
+import pyarrow as pa
+import pytest
+
+import holonom
+from holonom.failures import HolonomError
+from holonom.simulation.request import Stabilization
+from holonom.sweeps.rows import Status
+
+OSCILLATOR = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x], parameters = [m, k],
+  kinetic_energy = m*dot(x)^2/2, potential_energy = k*x^2/2, constraints = [])$
+released : holonomic_scene(system, initial_state = [x = 1, dot(x) = 0], time_span = [0, 3])$"""
+HANGING = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [m, g],
+  kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2, potential_energy = m*g*y, constraints = [x^2 + y^2 - u^2])$
+hanging : holonomic_scene(system, control_law = [u = l + v*t], parameter_values = [m = 1, g = 10, l = 1, v = 0],
+  initial_state = [x = 1/2, dot(x) = 0], initial_guess = [y = -1, dot(y) = 0], time_span = [0, 2])$"""
+FRICTION = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x], parameters = [m, mu],
+  kinetic_energy = m*dot(x)^2/2, forces = [-mu*signum(dot(x))], constraints = [])$
+braked : holonomic_scene(system, parameter_values = [m = 1, mu = 1],
+  initial_state = [x = 0, dot(x) = 1], time_span = [0, 3])$"""
+
+
+def columns(table: pa.Table) -> dict[str, np.ndarray]:
+    return {name: table[name].to_numpy(zero_copy_only=False) for name in table.column_names}
+
+
+@pytest.fixture(scope="module")
+def scenes(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("scenes")
+    for name, text in {"oscillator": OSCILLATOR, "hanging": HANGING, "friction": FRICTION}.items():
+        (folder / f"{name}.mac").write_text(text)
+    return folder
+
+
+def test_the_oscillator_is_the_cosine(rows_of, scenes):
+    keep = "final,x,at(x,1/2),max(x),min(dot(x)),max(abs(ddot(x))),mean(x),zero(x),energy"
+    found = columns(rows_of(scenes / "oscillator.mac", keep, "k=4:25:22", "m=1:4:4").table(0, 88))
+    w = np.sqrt(found["k"] / found["m"])
+    truths = {
+        "x": np.cos(3 * w),
+        "dot(x)": -w * np.sin(3 * w),
+        "at(x,1/2)": np.cos(w / 2),
+        "max(x)": np.ones(88),
+        "min(dot(x))": -w * np.where(3 * w >= np.pi / 2, 1, np.sin(3 * w)),
+        "max(abs(ddot(x)))": w**2,
+        "mean(x)": np.sin(3 * w) / (3 * w),
+        "zero(x)": np.where(3 * w > np.pi / 2, np.pi / 2 / w, np.nan),
+        "energy": found["k"] / 2,
+    }
+    for name, truth in truths.items():
+        assert found[name] == pytest.approx(truth, rel=1e-11, abs=1e-11, nan_ok=True), name
+    assert (found["status"] == Status.OK).all()
+
+
+def test_rows_are_the_same_to_the_last_bit_however_they_are_cut(rows_of):
+    asked = ("crane.mac", "final,max(abs(lambda1)),zero(x-s),mean(y)", "m=50:500:7", "c=0:40:11")
+    whole = rows_of(*asked).table(0, 77)
+    for lanes in (2, 8):
+        maker = rows_of(*asked, lanes=lanes)
+        assert pa.concat_tables([maker.table(0, 5), maker.table(5, 40), maker.table(40, 77)]).equals(whole)
+    assert rows_of(*asked[:1], "final", *asked[2:]).table(30, 31)["x"][0] == whole["x"][30]
+
+
+def test_rows_are_those_of_single_simulations(rows_of):
+    keep = "final,lambda1,max(abs(lambda1)),min(y),zero(x-1)"
+    found = columns(rows_of("crane.mac", keep, "m=50:500:4", "c=0:40:3").table(0, 12))
+    scene = holonom.load("examples/crane.mac")
+    for row in (0, 5, 11):
+        motion = scene.simulate(samples=2001, m=found["m"][row], c=found["c"][row])
+        for name in ("s", "x", "y", "dot(s)", "dot(x)", "dot(y)", "lambda1"):
+            assert found[name][row] == pytest.approx(motion[name][-1], rel=1e-10, abs=1e-10)
+        assert found["max(abs(lambda1))"][row] == pytest.approx(peak(np.abs(motion["lambda1"])), rel=1e-9)
+        assert found["min(y)"][row] == pytest.approx(-peak(-motion["y"]), rel=1e-9)
+        place = np.flatnonzero(np.diff(np.sign(motion["x"] - 1)))[0]
+        assert motion["t"][place] <= found["zero(x-1)"][row] <= motion["t"][place + 1]
+
+
+def peak(samples: np.ndarray) -> float:
+    """The largest value of a smooth function, from the parabola through the samples around the largest."""
+    k = samples.argmax()
+    if k in (0, len(samples) - 1):
+        return samples[k]
+    before, at, after = samples[k - 1 : k + 2]
+    return at + (after - before) ** 2 / (8 * (2 * at - before - after))
+
+
+def test_impossible_rows_are_marked_and_the_rest_is_right(rows_of, scenes):
+    found = columns(rows_of(scenes / "hanging.mac", "final", "l=0:2:5", "m=0:1:2").table(0, 10))
+    expected = np.where(found["l"] < 0.5, "no start", np.where(found["m"] == 0, "broken off", "ok"))
+    assert (found["status"] == expected).all()
+    scene = holonom.load(scenes / "hanging.mac")
+    for row in np.flatnonzero(expected == "ok"):
+        motion = scene.simulate(samples=2, l=found["l"][row])
+        assert found["y"][row] == pytest.approx(motion["y"][-1], rel=1e-10)
+    assert np.isnan(found["x"][found["status"] != "ok"]).all()
+    assert all(found["remark"][found["status"] != "ok"])
+
+
+@pytest.mark.long
+def test_a_length_that_vanishes_on_the_way_ends_its_row_and_no_other(rows_of, scenes):
+    found = columns(rows_of(scenes / "hanging.mac", "final", "v=-1:1:3").table(0, 3))
+    assert found["status"].tolist() == ["broken off", "ok", "ok"]
+    assert "the gradient of the constraint" in found["remark"][0] or "cannot be followed" in found["remark"][0]
+
+
+def test_motions_that_switch_are_followed_one_by_one(rows_of, scenes):
+    found = columns(rows_of(scenes / "friction.mac", "final,max(x)", "mu=0.5:2:4").table(0, 4))
+    assert found["x"] == pytest.approx(1 / (2 * found["mu"]), rel=1e-10)  # v^2/(2 mu), then it sticks
+    assert found["max(x)"] == pytest.approx(found["x"], rel=1e-10)
+    assert (found["status"] == Status.OK).all()
+
+
+def test_motions_under_the_exponential_law_are_free_and_others_are_not(rows_of):
+    free = columns(rows_of("paper/paper.mac", "free", "u0=1/4:1:4", scene="free_motion_scene", until=2).table(0, 4))
+    bound = columns(rows_of("paper/paper.mac", "free", "u0=1/4:1:4", scene="initial_motion_scene", until=2).table(0, 4))
+    assert free["free"].all()
+    assert not bound["free"].any()
+
+
+def test_the_radius_is_the_distance_of_the_nearest_singularity(rows_of):
+    found = columns(rows_of("paper/paper.mac", "radius", "u0=-2:2:9", scene="initial_motion_scene").table(0, 9))
+    assert found["radius"] == pytest.approx(np.sqrt(found["u0"] ** 2 + 0.5), rel=1e-3)
+
+
+def test_without_projection_the_constraints_drift(rows_of):
+    kept, left = (
+        columns(rows_of("crane.mac", "final", "m=50:500:3", drift=drift, tol=1e-6).table(0, 3))["residual"]
+        for drift in (Stabilization.PROJECTION, Stabilization.NONE)
+    )
+    assert (kept < 1e-14).all()
+    assert (left > 100 * kept).all()
+
+
+def test_a_quantity_that_the_motion_does_not_have_is_refused(rows_of):
+    with pytest.raises(HolonomError, match="the motion has no lambda2; it has t, s, x, y"):
+        rows_of("crane.mac", "max(lambda2)", "m=50:500:3")

@@ -1,0 +1,154 @@
+"""The command sweep: its folder, what it refuses, and how it goes on."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+import pyarrow.dataset
+import pytest
+from click.testing import CliRunner
+
+import holonom
+import holonom.cli
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+CRANE = EXAMPLES / "crane.mac"
+ASKED = (CRANE, "--grid", "m=50:500:6", "--list", "c=0,10,40", "--keep", "final,max(abs(lambda1))", "--chunk", "5")
+
+
+class Done(NamedTuple):
+    """How a command ended."""
+
+    returncode: int
+    stderr: str
+
+
+def sweep(*arguments: str | Path) -> Done:
+    """The command, in this process."""
+    command = ["sweep", *map(str, arguments), "--workers", "1"]
+    done = CliRunner(mix_stderr=False).invoke(holonom.cli.holonom, command, standalone_mode=False)
+    assert done.exception is None
+    return Done(done.return_value, done.stderr)
+
+
+def rows(folder: Path):
+    return pyarrow.dataset.dataset(folder, format="parquet").to_table().sort_by("row")
+
+
+@pytest.fixture(scope="module")
+def swept(tmp_path_factory) -> Path:
+    folder = tmp_path_factory.mktemp("sweep")
+    done = sweep(*ASKED, "-o", folder / "runs", "--plot", folder / "map.png", "--json", folder / "runs.json")
+    assert (done.returncode, done.stderr) == (0, "")
+    return folder
+
+
+def test_the_folder_holds_a_part_a_chunk_and_says_of_what(swept):
+    assert sorted(path.name for path in (swept / "runs").glob("part*")) == [f"part-000000{k}.parquet" for k in range(4)]
+    document = json.loads((swept / "runs" / "_sweep.json").read_text())
+    assert document["scene"]["text"] == CRANE.read_text()
+    assert (document["rows"], document["seed"]) == (18, None)
+    assert json.loads((swept / "runs.json").read_text()) == {**document, "statuses": {"ok": 18}}
+    table = rows(swept / "runs")
+    assert table.column_names == document["columns"]
+    assert table["row"].to_pylist() == list(range(18))
+    assert (swept / "map.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_same_command_computes_the_missing_parts_alone(swept):
+    first, second = swept / "runs" / "part-0000000.parquet", swept / "runs" / "part-0000002.parquet"
+    whole, stamp = rows(swept / "runs"), first.stat().st_mtime_ns
+    second.write_bytes(second.read_bytes()[:100])
+    (swept / "runs" / ".part-0000003.parquet.99999.new").write_bytes(b"torn")
+    assert sweep(*ASKED, "-o", swept / "runs", "--resume").returncode == 0
+    assert rows(swept / "runs").equals(whole)
+    assert first.stat().st_mtime_ns == stamp
+    assert not list((swept / "runs").glob(".part*"))
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (("--grid", "m=50:500:7"), "another sweep: its parameters"),
+        pytest.param(("--tol", "1e-10"), "another sweep: its options", marks=pytest.mark.long),
+        pytest.param(("--chunk", "6"), "another sweep: its chunk", marks=pytest.mark.long),
+        (("--set", "M=300"), "another sweep: its scene"),
+    ],
+)
+def test_another_sweep_in_the_same_folder_is_refused(swept, change, told):
+    arguments = list(ASKED)
+    if change[0] in arguments:
+        place = arguments.index(change[0])
+        arguments[place : place + 2] = change
+    else:
+        arguments += change
+    refused = sweep(*arguments, "-o", swept / "runs")
+    assert refused.returncode == 2
+    assert told in refused.stderr
+    assert refused.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (("--keep", "final"), "no parameter varies"),
+        (("--grid", "m=1:2"), "has not 3 parts"),
+        (("--grid", "m=1:2:3", "--keep", "x.y"), "is made of something else"),
+        (("--grid", "m=1:2:3", "--tol", "7"), "holds tolerances"),
+        (("--grid", "m=1:2:3", "--grid", "c=1:2:3", "--grid", "g=1:2:3", "--plot", "p.svg"), "a curve takes one"),
+        (("--grid", "m=1:2:3", "--resume"), "no sweep to resume"),
+        (("--grid", "nothing=1:2:3"), "nothing is no parameter of hoisting_scene"),
+        (("--grid", "m=1:2:3", "--keep", "lambda7"), "the motion has no lambda7"),
+    ],
+)
+def test_bad_options_are_told_in_one_sentence(tmp_path, monkeypatch, options, told):
+    monkeypatch.chdir(tmp_path)
+    refused = sweep(CRANE, *options, "-o", tmp_path / "runs")
+    assert refused.returncode == 2
+    assert told in refused.stderr
+    assert refused.stderr.count("\n") == 1
+    assert not (tmp_path / "runs").exists()
+
+
+def test_a_folder_with_other_things_is_left_alone(tmp_path):
+    (tmp_path / "thesis.tex").write_text("dear")
+    refused = sweep(CRANE, "--grid", "m=1:2:3", "-o", tmp_path)
+    assert (refused.returncode, [path.name for path in tmp_path.iterdir()]) == (2, ["thesis.tex"])
+
+
+FULL = """
+import resource, sys
+import holonom.sweeps.run as run
+from holonom.cli.group import run as command
+compute = run.compute
+def into_small_files(*arguments):
+    resource.setrlimit(resource.RLIMIT_FSIZE, (50_000, 50_000))
+    compute(*arguments)
+run.compute = into_small_files
+sys.argv[1:] = ["sweep", sys.argv[1], "--grid", "m=50:500:2000", "-o", sys.argv[2], "--workers", "1"]
+sys.exit(command())
+"""
+
+
+def test_a_full_disk_is_one_sentence_and_no_torn_part(tmp_path):
+    command = [sys.executable, "-c", FULL, str(CRANE), str(tmp_path / "runs")]
+    refused = subprocess.run(command, capture_output=True, text=True, timeout=200)
+    assert (refused.returncode, refused.stderr.count("\n")) == (3, 1)
+    assert "part-0000000.parquet: the output cannot be written" in refused.stderr
+    assert "free space" in refused.stderr
+    assert sorted(path.name for path in (tmp_path / "runs").iterdir()) == ["_sweep.json", "_sweep.lock"]
+
+
+def test_python_gets_a_lazy_dataset_and_leaves_nothing(tmp_path):
+    swept = holonom.sweep(holonom.load(CRANE), grid={"m": (50, 500, 6)}, values={"c": [0, 10, 40]}, keep=["final", "x"])
+    assert swept.dataset.count_rows() == 18
+    frame = swept.to_pandas()
+    assert frame.loc[4, "c"] == 10
+    assert (frame["status"] == "ok").all()
+    assert swept.plot("x")._repr_svg_().startswith("<?xml")
+    folder = swept.path
+    del swept
+    assert not os.path.exists(folder)
