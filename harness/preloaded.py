@@ -28,6 +28,7 @@ QUIET = ("--init=/dev/null", "--very-quiet")
 
 KEPT = 3  # images, of so many versions or installations; more while they are in use
 IN_USE = 3600.0  # seconds after its last use in which an image is not removed
+DAY = 86400.0  # seconds
 FREE_SPACE = 1024 * MIB  # on a fuller disk none is made
 MAKING = Limits(seconds=40.0, sandbox=Sandbox.TRUSTED)  # the library alone is run
 PRELOAD = Path(__file__).with_name("preload.lisp")
@@ -54,7 +55,7 @@ def preloaded_image(maxima: str, library: Path, environment: frozenset[tuple[str
     with suppress(OSError, RuntimeError, LimitExceeded):  # RuntimeError: there is no home directory
         folder = _own_folder()
         image = folder / f"{_name(maxima, library, environment)}.image"
-        if not _is_whole(image):
+        if not _is_whole(image) or _is_to_be_tried_again(image):
             _make(image, maxima, library, dict(environment))
             _remove_older_ones(folder)
         if image.stat().st_size:
@@ -90,6 +91,12 @@ def _is_whole(*files: Path) -> bool:
         return _checksum(files) == _checksum_file(files).read_text(encoding="ascii")
     except (OSError, UnicodeDecodeError):
         return False
+
+
+def _is_to_be_tried_again(image: Path) -> bool:
+    """Whether it is a day since no image could be made: what was in the way may be gone."""
+    found = image.stat()
+    return found.st_size == 0 and found.st_mtime < time.time() - DAY
 
 
 def _checksum(files: Sequence[Path]) -> str:

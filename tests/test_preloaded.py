@@ -67,13 +67,16 @@ def test_a_nearly_full_disk_is_not_filled(cache, monkeypatch):
     assert list(cache.iterdir()) == []
 
 
-def test_a_maxima_that_cannot_save_itself_is_asked_once(cache, tmp_path, monkeypatch):
+def test_a_maxima_that_cannot_save_itself_is_asked_once_a_day(cache, tmp_path, monkeypatch):
     stubborn = tmp_path / "maxima"
     stubborn.write_text(f"#!/bin/sh\necho asked >> {tmp_path}/asked\n")
     stubborn.chmod(0o755)
     for _ in range(2):
         assert make_image(str(stubborn), maxima.LIBRARY, frozenset()) is None
     assert (tmp_path / "asked").read_text() == "asked\n"
+    monkeypatch.setattr(preloaded, "DAY", -1.0)
+    assert make_image(str(stubborn), maxima.LIBRARY, frozenset()) is None
+    assert (tmp_path / "asked").read_text() == "asked\nasked\n"
 
 
 @pytest.mark.parametrize(("in_use", "left"), [(3600.0, 2), (-1.0, 1)])
