@@ -9,6 +9,7 @@ from scipy.integrate import quad, solve_ivp
 
 import holonom
 from holonom.crosscheck import Verdict
+from holonom.failures import HolonomError
 from holonom.simulation.result import Simulation
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -141,6 +142,21 @@ def test_bricards_linkage_moves_as_its_closure_says_with_forces_that_are_unique(
         assert cosines[k] == pytest.approx(cosines[k % 2], abs=1e-10)
     assert alpha + beta == pytest.approx(alpha * beta, abs=1e-10)
     assert np.ptp(alpha) > 0.1, "it moves"
+
+
+@pytest.mark.long
+def test_bricards_redundant_constraint_is_named():
+    # its Jacobian loses rank on the manifold alone, and it passed for independent
+    with pytest.raises(HolonomError, match="constraint 24 follows from the others"):
+        _ = holonom.load(EXAMPLES / "hard" / "bricard_linkage.mac").record
+
+
+def test_what_neither_forces_nor_constraints_decide_is_refused_with_its_direction():
+    scene = holonom.system("""
+        system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x) + dot(y))^2/2, constraints = [x + y])$
+        resting : holonomic_scene(system, initial_state = [x = 0, dot(x) = 0])$""")
+    with pytest.raises(HolonomError, match=r"in the direction ddot\(x\) = 1, ddot\(y\) = -1"):
+        scene.free()
 
 
 # ---- every verb on every one ------------------------------------------------------------------------------------
