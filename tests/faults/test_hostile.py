@@ -142,7 +142,7 @@ def test_a_description_that_is_changed_afterwards_is_refused(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "option", ["numer : true", "obase : 8", "keepfloat : true", "simp : true", "exptdispflag : false"]
+    "option", ["numer : true", "obase : 8", "modulus : 7", "keepfloat : true", "simp : true", "exptdispflag : false"]
 )
 def test_options_of_maxima_do_not_reach_the_derivation(option, tmp_path, particle_record):
     assert derivations(ask(Document.RECORD, scene(tmp_path, "", before=f"{option}$ "))) == derivations(particle_record)

@@ -25,6 +25,13 @@ def test_a_position_residual_of_0_04_and_an_energy_error_of_13_were_passed_over(
     assert found[1].missed == 13.0 / 40.0
 
 
+@pytest.mark.parametrize(("tol", "steps"), [(1e-15, 1), (1e-30, 1), (1e-30, 0), (1e-14, 10), (1e-12, 1000)])
+def test_errors_may_grow_with_tolerance_and_steps_and_rounding_is_no_error(tol, steps):
+    allowed = 1e4 * max(tol, 1e-15) * max(1, steps)
+    assert not list(doubts({"energy": 0.9 * allowed}, tol, steps))
+    assert list(doubts({"energy": 1.1 * allowed}, tol, steps)) == [("energy", 1.1 * allowed, pytest.approx(allowed))]
+
+
 def test_what_is_no_number_is_no_result():
     assert [doubt.quantity for doubt in doubts({**KEPT, "energy": math.nan}, 1e-3, 10)] == ["energy"]
 
@@ -64,12 +71,16 @@ def test_a_narrow_place_that_the_steps_look_at_is_no_ground_for_doubt(write_scen
 
 
 def test_exponentials_and_high_powers_of_the_state_alone_can_hide():
-    def of(expression) -> bool:
-        return may_hide(Program(None, Solve.DIRECT, "composed", 0, ("t", "x"), (("w", expression),), {"h": Name("w")}))
+    def of(*expressions) -> bool:
+        named = tuple((f"w{place}", expression) for place, expression in enumerate(expressions))
+        return may_hide(Program(None, Solve.DIRECT, "composed", 0, ("t", "x"), named, {"h": Name("w0")}))
 
     x, t = Name("x"), Name("t")
     assert of(Call(Operation.EXP, (x,)))
+    assert of(Call(Operation.NEGATE, (x,)), Call(Operation.EXP, (Name("w0"),)))
     assert of(Call(Operation.ADD, (Fraction(1), Call(Operation.POWER, (x, Fraction(-1000))))))
+    assert of(Call(Operation.POWER, (x, x)))
     assert not of(Call(Operation.EXP, (t,)))
+    assert not of(Call(Operation.NEGATE, (t,)), Call(Operation.EXP, (Name("w0"),)))
     assert not of(Call(Operation.SIN, (x,)))
     assert not of(Call(Operation.POWER, (x, Fraction(2))))
