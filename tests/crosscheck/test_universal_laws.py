@@ -30,6 +30,7 @@ PAPER = system(
 )
 CIRCLE = system("x y", (CENTRIPETAL * x, CENTRIPETAL * y), [x**2 + y**2 - u**2])
 SPRING = system("x", (-k * x,), [x - u], mass=m)
+PUSHED = system("x", (dotted("dot", x),), [x - u])
 SUM = system("x", (sp.Integer(-10),), [x - u - w], controls=(u, w))
 
 
@@ -40,8 +41,15 @@ SUM = system("x", (sp.Integer(-10),), [x - u - w], controls=(u, w))
         (CIRCLE, {u: sp.sqrt(2 * u0 + 2 * u1 * t)}, ()),
         (SPRING, {u: u0 * sp.cos(sp.sqrt(k / m) * t)}, (k / m,)),
         (SUM, {u: -w + u0 - 5 * t**2}, ()),
+        (PUSHED, {u: u0 * sp.exp(t)}, ()),
     ],
-    ids=["the paper's law", "on a curved manifold", "for one sign of a parameter", "with a free control"],
+    ids=[
+        "the paper's law",
+        "on a curved manifold",
+        "for one sign of a parameter",
+        "with a free control",
+        "only where the velocity is that of the constraint",
+    ],
 )
 def test_law_that_makes_every_motion_free_passes(moved, law, positive):
     found = judge_law(moved, {}, LawOfControls(law, positive))
