@@ -69,7 +69,7 @@
   (dolist (entry (entries-of structure))
     (let ((unknown (unknown-operator (third entry))))
       (when unknown
-        (merror "~M contains the function ~M, which no program or document can hold; write it with elementary functions"
+        (merror "~M contains the function ~M, which no program or document can hold; write it with elementary functions, or, where it is of the time alone, as a control with a table of its values"
                 (second entry) unknown)))))
 
 (defun unknown-operator (e)

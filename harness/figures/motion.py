@@ -51,6 +51,7 @@ def motion_figure(simulation: Simulation) -> "Figure":
         "velocities": simulation.velocities,
         "multipliers": simulation.multipliers,
         "constraint forces": simulation.constraint_forces,
+        "controls": simulation.controls,
     }
     drawn = [(title, part) for title, curves in groups.items() for part in of_like_size(curves)]
     with figure_style():

@@ -122,6 +122,8 @@ class MotionProblem:
         The controls, by name; None where the scene does not observe them.
     servo : int
         How many of the constraints, the last ones, controls in forces keep, so that their multipliers are zero.
+    relative_degrees : tuple of int
+        Of each output that servo-constraints prescribe: which of its rates the controls are in.
     until : tuple of str
         Expressions whose first zero crossing ends the motion, as Maxima prints them; empty where the time span alone
         does.
@@ -159,6 +161,7 @@ class MotionProblem:
     law_end: str | None = None
     controls: Program | None = None
     servo: int = 0
+    relative_degrees: tuple[int, ...] = ()
     until: tuple[str, ...] = ()
     events: Program | None = None
     signs: tuple[Sign, ...] = ()
@@ -308,6 +311,7 @@ def read_problem(text: str) -> MotionProblem:
         law_end=document.get("law_end"),
         controls=_optional(document.get("controls")),
         servo=document.get("servo", 0),
+        relative_degrees=tuple(document.get("relative_degrees", ())),
         until=tuple(document.get("until", ())),
         events=_optional(document.get("events")),
         signs=tuple(Sign(sign["name"], sign["of"], By(sign["by"])) for sign in document["signs"]),

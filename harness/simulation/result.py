@@ -64,6 +64,8 @@ class Report:
         Whether an event ended the motion; None where the scene names none.
     controls : mapping of str to number
         Empty where the scene does not observe them.
+    relative_degrees : tuple of int
+        Of each output that servo-constraints prescribe: which of its rates the controls are in.
     """
 
     t: Any
@@ -87,6 +89,7 @@ class Report:
     doubts: tuple[Doubt, ...]
     ending: Ending | None = None
     controls: Mapping[str, Any] = field(default_factory=dict)
+    relative_degrees: tuple[int, ...] = ()
 
     @property
     def trusted(self) -> bool:

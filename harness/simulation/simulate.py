@@ -287,6 +287,7 @@ class _Simulation:
             controls={
                 name: values[-1] for name, values in self.motion.controls(np.array([self.end]), state[:, None]).items()
             },
+            relative_degrees=self.problem.relative_degrees,
             doubts=tuple(doubts(self._missed(left, at), self.motion.tol, self.motion.steps)),
         )
 

@@ -83,6 +83,7 @@ def test_a_crane_whose_load_follows_a_line_is_flat(engine, gsl):
         [np.broadcast_to(row, 6) for row in sp.lambdify(t, [trolley, phi, force, -tension])(motion.instants)]
     )
     found = np.array([motion[name] for name in ("x", "phi", "F", "W")])
+    assert sorted(motion.report.relative_degrees) == [2, 4]
     assert found == pytest.approx(truth, rel=ENGINES[engine], abs=ENGINES[engine])
 
 

@@ -9,6 +9,9 @@ from scipy.interpolate import CubicSpline
 
 import holonom
 from holonom.failures import HolonomError
+from holonom.program.model import scene_model
+from holonom.program.numpy_function import NumpyFunction
+from holonom.program.request import Request
 from holonom.simulation.clock import ticks
 
 POINTS = [(0, 0), (1, 2), (1.3, 0.5), (3.5, 1), (4, -1)]
@@ -125,3 +128,14 @@ def test_no_motion_leads_beyond_the_last_point(driven):
     scene = driven(f"table({points()})")
     with pytest.raises(HolonomError, match="the tables of the control law end at t = 4"):
         scene.simulate(until=5)
+
+
+@pytest.mark.parametrize("law", [f"table({points()})", "if t < 13/10 then t^2 else max(2*t, 5)"])
+def test_a_library_takes_the_law_in_all_its_parts(driven, law):
+    scene = driven(law)
+    model = scene_model(scene.file, Request(), (), scene.limits)
+    instants = np.array([0.2, 1.1, 2.0, 3.75])
+    found = dict(zip(model.law.outputs, NumpyFunction(model.law)([instants]), strict=True))
+    spline = CubicSpline(*np.array(POINTS, dtype=float).T, bc_type="natural")
+    truth = spline(instants) if law.startswith("table") else [0.04, 1.21, 5, 7.5]
+    assert found["u"] == pytest.approx(truth, rel=1e-14)

@@ -77,6 +77,9 @@ def _quality(report: "Report") -> Iterator[str]:
     yield f"{report.compile_seconds:.3f} s to compile{code}, {report.run_seconds:.3g} s to run"
     yield from remarks(report.legs, report.cases)
     yield from _switchings(report.switchings)
+    if report.relative_degrees:
+        degrees = ", ".join(map(str, report.relative_degrees))
+        yield f"The outputs of the servo-constraints have the relative degrees {degrees}."
     if report.ending is not None:
         yield _ending(report)
 

@@ -105,6 +105,24 @@ EXHIBITS = (
         scene="steady_scene",
     ),
     Exhibit(
+        "winch",
+        "examples/hoist.mac",
+        (
+            "A winch takes the rope up as it was recorded, every half second, and the load swings higher and faster.",
+            "Between the recorded points the length is a spline, so that the pull has no steps.",
+        ),
+        scene="recorded_scene",
+    ),
+    Exhibit(
+        "arm",
+        "examples/arm.mac",
+        (
+            "The tip of a two-link arm follows a circle.",
+            "Nothing pushes the tip: the last curves are the torques that the two motors must give.",
+        ),
+        scene="circle_scene",
+    ),
+    Exhibit(
         "lift",
         "examples/weightless_cabin.mac",
         (
