@@ -73,3 +73,10 @@ def test_a_law_under_which_no_state_is_regular_is_neither_right_nor_wrong():
     found = judge_law(CIRCLE, {}, LawOfControls({u: sp.Integer(0)}))
     assert found.verdict is Verdict.UNDECIDED
     assert "only 0 regular states were found" in found.detail
+
+
+def test_a_law_for_one_sign_of_a_parameter_is_tried_for_that_sign_alone():
+    """cos(sqrt|k/m| t) is real for either sign, and a spring's motion for one."""
+    law = {u: u0 * sp.cos(sp.sqrt(sp.Abs(k / m)) * t)}
+    assert judge_law(SPRING, {}, LawOfControls(law, (k / m,))).verdict is Verdict.AGREES
+    assert judge_law(SPRING, {}, LawOfControls(law)).verdict is Verdict.DISAGREES
