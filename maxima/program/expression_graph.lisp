@@ -282,6 +282,9 @@
 
 ;;; ---- reading Maxima expressions --------------------------------------------------------
 
+(defvar *arctan2* (if (get '%atan2 'operators) '%atan2 '$atan2)
+  "The name under which this Maxima simplifies the function: it changed after 5.47.")
+
 (defun expression-term (e)
   "The term that a Maxima expression denotes."
   (cond ((term-p e) e)
@@ -294,7 +297,7 @@
              (mtimes (product-of (mapcar #'expression-term (cdr e))))
              (mminus (scaled-term -1 (expression-term (second e))))
              (mquotient (quotient-of (expression-term (second e)) (expression-term (third e))))
-             (%atan2 (call-term '$atan2 (mapcar #'expression-term (cdr e))))
+             (($atan2 %atan2) (call-term *arctan2* (mapcar #'expression-term (cdr e))))
              (mexpt (exponential-term (second e) (expression-term (third e))))
              (t (call-term (caar e) (mapcar #'expression-term (cdr e))))))))
 
@@ -347,6 +350,7 @@
 (define-derivative $atan2 (y x)
   (quotient-of x (sum-of (list (power-of x 2) (power-of y 2))))
   (scaled-term -1 (quotient-of y (sum-of (list (power-of x 2) (power-of y 2))))))
+(setf (get '%atan2 'graph-derivative) (get '$atan2 'graph-derivative))
 (define-derivative mexpt (a b)
   (if (number-term-p b)
       (scaled-term (term-coefficient b) (power-of a (1- (term-coefficient b))))
