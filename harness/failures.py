@@ -121,6 +121,10 @@ class Failure(Enum):
         "an expression in 'until' has no real, finite value: {detail}",
         "give one that has values along the whole motion",
     )
+    SERIES_SWITCHED = (
+        "where {detail} changes its sign the motion is another than the series, perhaps before the instant asked for",
+        "take holonom simulate, which steps to such instants",
+    )
     LAW_ENDS = ("the tables of the control law end at t = {detail}", "let the motion end there or before, with --until")
     GSL_MISSING = (
         "the Runge-Kutta engine needs the GNU Scientific Library with its headers",

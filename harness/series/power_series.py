@@ -81,6 +81,8 @@ class MotionSeries(Shown):
     coordinates, multipliers, constraint_forces : mapping of str to tuple of str
         Coefficients of (t - t0)^0 ... (t - t0)^order, by name.
     continuation : Continuation or None
+    switch : str or None
+        A function with whose sign the motion is another than the series; None where there is none.
     """
 
     scene: str
@@ -92,6 +94,7 @@ class MotionSeries(Shown):
     multipliers: Mapping[str, NumberTexts]
     constraint_forces: Mapping[str, NumberTexts]
     continuation: Continuation | None = None
+    switch: str | None = None
 
     @property
     def digits(self) -> int:
@@ -183,6 +186,7 @@ def read_series(text: str) -> MotionSeries:
         multipliers=_series(document["multipliers"]),
         constraint_forces=_series(document["constraint_forces"]),
         continuation=None if continuation is None else _continuation(continuation),
+        switch=document.get("switch"),
     )
 
 
@@ -202,10 +206,13 @@ def values_at(motion: MotionSeries, time: Fraction) -> Values:
     Raises
     ------
     HolonomError
-        The instant is not inside the radius of convergence; or that is unknown and the terms do not fall.
+        The instant is not inside the radius of convergence; or that is unknown and the terms do not fall; a sign in
+        the system or the law may have changed before.
     """
     with mpmath.workdps(motion.digits):
         step = mpmath.mpf(time.numerator) / time.denominator - number(motion.t0)
+        if motion.switch is not None and step:
+            raise HolonomError(Failure.SERIES_SWITCHED, motion.scene, motion.switch)
         _require_inside(motion, time, float(abs(step)))
         series = {name: numbers(texts) for name, texts in motion.all_series()}
         left_out = max(truncation_error(c, motion.radius, float(step)) for c in series.values())
@@ -226,6 +233,7 @@ def series_document(motion: MotionSeries, values: Values | None = None) -> dict[
     content = {
         "scene": motion.scene,
         "title": motion.title,
+        "switch": motion.switch,
         "order": motion.order,
         "t0": _published(motion, motion.t0),
         "arithmetic": motion.arithmetic,

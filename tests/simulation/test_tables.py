@@ -1,6 +1,7 @@
 """Control laws given by tables, against SciPy's splines: x'' = u(t), so x is the spline's second antiderivative."""
 
 import math
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from holonom.failures import HolonomError
 from holonom.program.model import scene_model
 from holonom.program.numpy_function import NumpyFunction
 from holonom.program.request import Request
+from holonom.series.power_series import values_at
 from holonom.simulation.clock import ticks
 
 POINTS = [(0, 0), (1, 2), (1.3, 0.5), (3.5, 1), (4, -1)]
@@ -122,6 +124,16 @@ def test_a_bad_table_is_refused_in_one_sentence(driven, law, span, csv, said):
     with pytest.raises(HolonomError) as refused:
         driven(law, span, csv).simulate()
     assert said in str(refused.value)
+
+
+def test_a_series_was_summed_up_where_the_law_is_another(driven):
+    """It gave x = 1 at t = 3/2, with status 0; the push begins at t = 1."""
+    series = driven("if t < 1 then 0 else 6*(t - 1)^2").series(order=12)
+    assert series.switch == "t-1"
+    assert values_at(series, Fraction(0)).values["x"] == 1
+    with pytest.raises(HolonomError, match="where t-1 changes its sign the motion is another"):
+        values_at(series, Fraction(3, 2))
+    assert driven("t^2").series(order=4).switch is None
 
 
 def test_no_motion_leads_beyond_the_last_point(driven):

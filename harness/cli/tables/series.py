@@ -25,6 +25,8 @@ def show_series(console: Console, motion: "MotionSeries", values: "Values | None
     radius = motion.radius
     size = "" if radius.estimate is None else f"{radius.estimate:.8g}, known to {radius.uncertainty:.1g}; "
     console.print(f"{motion.arithmetic} arithmetic; radius of convergence: {size}{radius.remark}", soft_wrap=True)
+    if motion.switch is not None:
+        console.print(f"This is the motion as long as {motion.switch} keeps its sign.", soft_wrap=True, markup=False)
     for z in radius.singularities:
         console.print(f"    singularity at t - t0 = {z.real:.8g} {z.imag:+.8g} i")
     if values is not None:
