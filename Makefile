@@ -56,9 +56,11 @@ bench: export OPENBLAS_NUM_THREADS = 1
 bench: setup ## Time the motion program, the power series and simulations against their peers: tables and figures
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,motion,sweep,companion,bench]'
 	$(BIN)/python tests/benchmarks/run.py build/benchmarks
+	$(BIN)/python tests/benchmarks/size.py build/benchmarks
 	$(BIN)/python tests/benchmarks/series.py build/benchmarks
 	$(BIN)/python tests/benchmarks/simulation.py build/benchmarks
 	cp build/benchmarks/chain.svg build/benchmarks/chain.txt tests/benchmarks/
+	cp build/benchmarks/size.txt tests/benchmarks/
 	cp build/benchmarks/series.svg build/benchmarks/series.txt tests/benchmarks/
 	cp build/benchmarks/simulation.svg build/benchmarks/simulation.txt tests/benchmarks/
 

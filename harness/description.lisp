@@ -41,8 +41,9 @@
 (defun write-description (file)
   "Write what the scene file described to FILE; nothing where it did not load the library."
   (when (and (boundp '*asked-for*) (symbol-value '*asked-for*))
-    (with-open-file (out file :direction :output)
-      (write-datum (description) out))))
+    (let ((*print-base* 10) (*print-radix* nil)) ; obase : 8 of a scene is none of a description's
+      (with-open-file (out file :direction :output)
+        (write-datum (description) out)))))
 
 (defun description ()
   (let* ((named (structures-of-kind '$mechanical_system))
@@ -88,7 +89,7 @@
         when (and (consp value) (consp (car value)) (eq (caar value) kind)) collect (cons name value)))
 
 (defun write-datum (e out)
-  (cond ((integerp e) (format out "i~D " e))
+  (cond ((integerp e) (write-char #\i out) (princ e out) (write-char #\Space out))
         ((stringp e) (format out "s~D:~A " (length e) e))
         ((floatp e) (format out "f~D/~D " (numerator (rational e)) (denominator (rational e))))
         ((symbolp e) (write-symbol e out))
@@ -99,7 +100,11 @@
         (t (write-application #\( e #\) out))))
 
 (defun write-symbol (symbol out)
-  (format out "y~D:~A " (length (symbol-name symbol)) (symbol-name symbol)))
+  (write-char #\y out)
+  (princ (length (symbol-name symbol)) out)
+  (write-char #\: out)
+  (write-string (symbol-name symbol) out)
+  (write-char #\Space out))
 
 (defun write-application (opening e closing out)
   (write-char opening out)

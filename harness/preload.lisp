@@ -17,7 +17,8 @@
   "The text of all functions that the library defines in Lisp."
   (with-output-to-string (out)
     (let ((*package* (find-package :maxima)) (*print-pretty* nil))
-      (dolist (path (directory (concatenate 'string library "/*/*.lisp")))
+      (dolist (path (append (directory (concatenate 'string library "/one_pass.lisp"))
+                            (directory (concatenate 'string library "/*/*.lisp"))))
         (with-open-file (in path)
           (dolist (form (lisp-in-namespace (lisp-forms in)))
             (if (and (eq (first form) 'defun) (fboundp (second form))) (format out "~S~%" form))))))))

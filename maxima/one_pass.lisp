@@ -32,6 +32,11 @@
               ((eq (caar part) operator) (if (not (member part found :test #'alike1)) (push part found)))
               (t (setq waiting (append (cdr part) waiting))))))))
 
+(defun $name_around (before name after)
+  "The name with letters before it and after it; concat would take  set,  an operator, by its sign {."
+  (let ((letters (subseq (print-invert-case (plain-name name)) 1)))
+    (intern-invert-case (concatenate 'string "$" before letters after))))
+
 (defun $contains_floats (e)
   (cond ((atom e) (floatp e))
         ((eq (caar e) 'bigfloat) t)

@@ -1,0 +1,83 @@
+"""`make bench`: what the whole command takes for chains of up to 2048 masses, one table.
+
+    python tests/benchmarks/size.py build/benchmarks
+
+Processor time of `holonom program` and of all that it starts, so that what else the machine does counts little; the
+least of a few runs.
+"""
+
+import json
+import os
+import subprocess
+import sys
+from dataclasses import dataclass
+from itertools import pairwise
+from math import log
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "chain.mac"
+LINKS = (64, 128, 256, 512, 1024, 2048)
+RUNS = 2
+FROM, TO = 128, 1024  # between which the exponent is taken
+HOLONOM = (sys.executable, "-m", "holonom")
+
+
+@dataclass(frozen=True)
+class Row:
+    """What one chain takes: processor seconds, the largest process in MiB, operations of the program."""
+
+    links: int
+    seconds: float
+    mebibytes: float
+    operations: int
+
+
+def measured(links: int) -> Row:
+    """The least that the command takes for a chain."""
+    runs = [one_run(links) for _ in range(RUNS)]
+    return Row(links, min(run.seconds for run in runs), min(run.mebibytes for run in runs), runs[0].operations)
+
+
+def one_run(links: int) -> Row:
+    """One run of the command, a process of its own."""
+    with TemporaryDirectory() as directory:
+        written = Path(directory, "program.json")
+        command = [*HOLONOM, "program", str(EXAMPLE), "--set", f"N={links}", "-o", str(written)]
+        process = subprocess.Popen(command)
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        if process.returncode != 0:
+            raise subprocess.CalledProcessError(process.returncode, command)
+        operations = json.loads(written.read_text(encoding="utf-8"))["operations"]
+    return Row(links, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024, operations)
+
+
+def report(rows: list[Row]) -> str:
+    """The table, and how it grows."""
+    lines = ["links  processor s  exponent  largest process MiB  operations  to hand"]
+    exponents = ["", *(f"{_exponent(a, b):.2f}" for a, b in pairwise(rows))]
+    for row, exponent in zip(rows, exponents, strict=True):
+        by_hand = row.operations / (23 * row.links - 9)
+        cells = (f"{row.seconds:<11.2f}", f"{exponent:<8}", f"{row.mebibytes:<19.0f}", f"{row.operations:<10}")
+        lines.append("  ".join((f"{row.links:<5}", *cells, f"{by_hand:.2f}")))
+    chosen = {row.links: row for row in rows}
+    lines.append(f"from {FROM} to {TO} links the time grows as N^{_exponent(chosen[FROM], chosen[TO]):.2f}")
+    return "\n".join(lines) + "\n"
+
+
+def _exponent(a: Row, b: Row) -> float:
+    return log(b.seconds / a.seconds) / log(b.links / a.links)
+
+
+def main(directory: Path) -> None:
+    """Measure, and write ``size.txt`` into a directory."""
+    measured(2)  # an image of Maxima is made where there is none yet
+    directory.mkdir(parents=True, exist_ok=True)
+    text = report([measured(links) for links in LINKS])
+    (directory / "size.txt").write_text(text, encoding="utf-8")
+    print(text)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))
