@@ -256,3 +256,10 @@ def test_a_law_that_sympy_contradicts_had_exit_status_0(particle_scene, monkeypa
     found = CliRunner().invoke(cli, ["free", str(particle_scene)], standalone_mode=False)
     assert found.return_value == 1
     assert "disagrees to 50 digits in 8 random states: lambda1 is 1" in found.output
+
+
+def test_an_internal_error_had_the_status_of_a_disagreement(monkeypatch):
+    monkeypatch.setattr("holonom.errata.errata", lambda: [].missing)
+    found = CliRunner().invoke(cli, ["errata"], standalone_mode=False)
+    assert found.return_value == 70
+    assert "an internal error, AttributeError" in found.output

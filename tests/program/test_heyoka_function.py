@@ -1,5 +1,7 @@
 """What is particular to heyoka: expressions for its integrators."""
 
+import os
+import subprocess
 import sys
 
 import heyoka
@@ -52,3 +54,11 @@ def test_a_missing_extra_is_one_sentence_that_names_it(monkeypatch):
     monkeypatch.setitem(sys.modules, "heyoka", None)
     with pytest.raises(HolonomError, match="this needs heyoka, which is not installed"):
         heyoka_function(PENDULUM)
+
+
+def test_machine_code_was_kept_in_the_home_directory_and_run_from_there(tmp_path):
+    compiling = "from holonom.program.heyoka_function import import_heyoka; heyoka = import_heyoka(); "
+    compiling += "x = heyoka.expression('x'); heyoka.cfunc([heyoka.sin(x)], vars=[x])"
+    home = os.environ | {"HOME": str(tmp_path), "XDG_CACHE_HOME": str(tmp_path / "cache")}
+    done = subprocess.run([sys.executable, "-c", compiling], env=home, capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stdout, list(tmp_path.rglob("*"))) == (0, "", [])
