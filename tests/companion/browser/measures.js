@@ -54,11 +54,14 @@ const towering = () => told([...document.querySelectorAll(".formula")]
 
 // ---- mathematics and pictures ---------------------------------------------------------------------------------
 
+// Nothing can be set on paper.
+const ofScreensOnly = element => matchMedia("print").matches && element.closest("form");
+
 // Of a formula that is broken in two ways one is shown.
 const eitherWay = element => element.closest(".wide, .narrow")?.parentElement ?? element;
 const heads = "thead *";  // those of a folded table stand before its cells, as words
 const flatMathematics = () => told([...document.querySelectorAll("math")]
-  .filter(element => !drawn(eitherWay(element)) && !element.matches(heads)));
+  .filter(element => !drawn(eitherWay(element)) && !element.matches(heads) && !ofScreensOnly(element)));
 
 const brokenMathematics = () => told([...document.querySelectorAll("merror, math:empty")]);
 
@@ -68,7 +71,7 @@ const loaded = picture => picture.localName !== "img" || picture.complete && pic
 // A figure may hold pictures of which the reader sees one at a time.
 const emptyPictures = () => told([
   ...pictures(document).filter(picture => !loaded(picture) || shown(picture) && !drawn(picture)),
-  ...[...document.querySelectorAll("figure")].filter(figure => !pictures(figure).some(drawn)),
+  ...[...document.querySelectorAll("figure")].filter(figure => !pictures(figure).some(drawn) && !ofScreensOnly(figure)),
 ]);
 
 // ---- contrast -------------------------------------------------------------------------------------------------
