@@ -53,16 +53,18 @@ install: setup ## Put Holonom into Maxima's user directory, where load(holonom) 
 	$(BIN)/holonom maxima-path
 
 bench: export OPENBLAS_NUM_THREADS = 1
-bench: setup ## Time the motion program, the power series and simulations against their peers: tables and figures
+bench: setup ## Time the motion program, power series, simulations and sweeps against their peers: tables and figures
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,motion,sweep,companion,bench]'
 	$(BIN)/python tests/benchmarks/run.py build/benchmarks
 	$(BIN)/python tests/benchmarks/size.py build/benchmarks
 	$(BIN)/python tests/benchmarks/series.py build/benchmarks
 	$(BIN)/python tests/benchmarks/simulation.py build/benchmarks
+	$(BIN)/python tests/benchmarks/sweep.py build/benchmarks
 	cp build/benchmarks/chain.svg build/benchmarks/chain.txt tests/benchmarks/
 	cp build/benchmarks/size.txt tests/benchmarks/
 	cp build/benchmarks/series.svg build/benchmarks/series.txt tests/benchmarks/
 	cp build/benchmarks/simulation.svg build/benchmarks/simulation.txt tests/benchmarks/
+	cp build/benchmarks/sweep.txt tests/benchmarks/
 
 pictures: setup ## Draw the README's pictures and run the notebooks again
 	$(BIN)/holonom errata --force --svg examples/paper/errata.svg > /dev/null

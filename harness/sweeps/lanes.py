@@ -79,7 +79,7 @@ class LaneEngine:
         self._start, self._n, self._lanes = float(problem.start["t"]), len(problem.coordinates), lanes
         self._along, self._size = len(along), len(problem.state)
         outcome = heyoka.taylor_outcome
-        self._limit, self._unharmed = outcome.time_limit, {outcome.time_limit, outcome.step_limit, outcome.success}
+        self._unharmed = {outcome.time_limit, outcome.step_limit, outcome.success}
         program = computing(problem.motion, {f"ddot({name})" for name in problem.coordinates})
         parameters = {name: heyoka.par[place] for place, name in enumerate(problem.parameters)}
         equations = dynamics(program, parameters | zero_multipliers(problem.multipliers, 0.0))
@@ -143,12 +143,11 @@ class LaneEngine:
     ) -> tuple[Floats, NDArray[np.bool_], list[Steps]]:
         """A batch, and again without lanes that fail: shapes (stops, 2n, m), (m,)."""
         count = states.shape[1]
-        chosen = np.arange(self._lanes)
+        chosen, well = np.arange(self._lanes), np.ones(count, dtype=bool)
         chosen[count:] = 0
-        well = np.ones(count, dtype=bool)
         while True:
             failing, reached, sound, steps = self._run(states[:, chosen], values[:, chosen], stops)
-            failed = np.unique(chosen[failing])
+            failed = np.unique(chosen[failing]) if failing.any() else ()
             if not len(failed):
                 return reached[:, :, :count], well & sound[:count], [_first(part, count) for part in steps]
             well[failed] = False
@@ -171,13 +170,14 @@ class LaneEngine:
         for place, stop in enumerate(stops):
             for _ in range(MOST_BLOCKS):
                 integrator.propagate_until(stop, max_steps=BLOCK, **options)
-                ends = integrator.propagate_res
-                ended = np.array([end[0] == self._limit for end in ends])
-                failing = np.array([end[0] not in self._unharmed for end in ends])
-                if failing.any():
-                    return failing, reached, sound, []
-                longest = np.maximum(longest, [end[2] for end in ends])
-                sound &= np.array([end[1] for end in ends]) * SHRUNK >= longest
+                ends, ended = integrator.propagate_res, integrator.time == stop
+                if not ended.all():
+                    failing = np.array([end[0] not in self._unharmed for end in ends])
+                    if failing.any():
+                        return failing, reached, sound, []
+                _, shortest, taken, _ = zip(*ends, strict=True)
+                longest = np.maximum(longest, np.array(taken))
+                sound &= np.array(shortest) * SHRUNK >= longest
                 if ended.all():
                     break
                 self._keep(~ended, values, sound)

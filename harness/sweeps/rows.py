@@ -143,7 +143,7 @@ class RowMaker:
             missing = np.isnan(column)
             is_truth = any(kept.text == name and kept.kind is Kind.FREE for kept in self.plan.kept)
             arrays[name] = pa.array(column == 1 if is_truth else column, mask=missing)
-        arrays["status"] = pa.array([str(status) for status in rows.status])
+        arrays["status"] = pa.array(list(map(str, Status))).take(pa.array(rows.statuses))
         arrays["remark"] = pa.array(rows.remarks, pa.string())
         return pa.table(arrays)
 
@@ -312,11 +312,11 @@ class _Rows:
         self.values, k = values, values.shape[1]
         self.kept = {name: np.full(k, np.nan) for name in columns}
         self.residual = np.full(k, np.nan)
-        self.status, self.remarks = np.full(k, Status.OK, dtype=object), np.full(k, None, dtype=object)
+        self.statuses, self.remarks = np.zeros(k, dtype=np.int8), np.full(k, None, dtype=object)
 
     def mark(self, rows: NDArray, status: Status, remark: str) -> None:
         """Say of rows what became of them."""
-        self.status[rows], self.remarks[rows] = status, remark
+        self.statuses[rows], self.remarks[rows] = list(Status).index(status), remark
 
 
 def _chosen(steps: Steps, lanes: NDArray[np.bool_]) -> Steps:

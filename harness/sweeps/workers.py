@@ -7,7 +7,7 @@ asked writes them. So nothing hangs on which worker computes what, or on how oft
 import logging
 import pickle
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -145,6 +145,5 @@ def _told_when_lost() -> Iterator[None]:
     except HolonomError:
         raise
     except (KilledWorker, CommClosedError, TaskCancelled, CancelledError, TimeoutError, OSError) as error:
-        with suppress(AttributeError):
-            error = error.args[0]
-        raise HolonomError(Failure.WORKERS_LOST, detail=str(error).splitlines()[0] or "they do not answer") from None
+        said = next(iter(str(error).splitlines()), "")
+        raise HolonomError(Failure.WORKERS_LOST, detail=said or "they do not answer") from None

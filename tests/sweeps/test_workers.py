@@ -1,0 +1,104 @@
+"""Sweeps by Dask workers: the same rows, whatever is killed on the way."""
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import psutil
+import pyarrow.dataset
+import pytest
+
+CRANE = Path(__file__).parents[2] / "examples" / "crane.mac"
+SWEEP = [sys.executable, "-m", "holonom", "sweep", str(CRANE), "--grid", "m=50:500:200", "--grid", "c=0:40:200"]
+ASKED = [*SWEEP, "--chunk", "400", "--keep", "final,max(abs(lambda1))"]
+
+pytestmark = pytest.mark.long
+
+
+def rows(folder: Path):
+    return pyarrow.dataset.dataset(folder, format="parquet").to_table().sort_by("row")
+
+
+def begun(folder: Path, *options: str) -> subprocess.Popen:
+    command = [*ASKED, "-o", str(folder), *options]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def until(condition: Callable[[], bool]) -> None:
+    for _ in range(6000):
+        if condition():
+            return
+        time.sleep(0.02)
+    raise AssertionError("it took too long")
+
+
+def parts(folder: Path) -> int:
+    return len(list(folder.glob("part-*.parquet")))
+
+
+def workers_of(process: subprocess.Popen) -> list[psutil.Process]:
+    return [child for child in psutil.Process(process.pid).children(recursive=True) if is_worker(child)]
+
+
+def is_worker(process: psutil.Process) -> bool:
+    try:
+        return "spawn_main" in " ".join(process.cmdline())
+    except psutil.Error:  # it has just ended
+        return False
+
+
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory) -> Path:
+    folder = tmp_path_factory.mktemp("undisturbed") / "runs"
+    assert begun(folder, "--workers", "1").communicate(timeout=600)[1] == ""
+    return folder
+
+
+def test_a_killed_worker_is_replaced(undisturbed, tmp_path):
+    process = begun(tmp_path / "runs", "--workers", "2")
+    until(lambda: parts(tmp_path / "runs") > 3)
+    workers_of(process)[-1].kill()
+    assert (process.communicate(timeout=600)[1], process.returncode) == ("", 0)
+    assert rows(tmp_path / "runs").equals(rows(undisturbed))
+
+
+def test_a_killed_command_leaves_whole_parts_and_the_same_command_the_rest(undisturbed, tmp_path):
+    process = begun(tmp_path / "runs", "--workers", "2")
+    until(lambda: parts(tmp_path / "runs") > 3)
+    started = workers_of(process)
+    process.send_signal(signal.SIGKILL)
+    process.communicate(timeout=60)
+    until(lambda: not any(worker.is_running() and worker.status() != psutil.STATUS_ZOMBIE for worker in started))
+    assert 3 < parts(tmp_path / "runs") < 100
+    assert begun(tmp_path / "runs", "--workers", "1", "--resume").communicate(timeout=600)[1] == ""
+    assert rows(tmp_path / "runs").equals(rows(undisturbed))
+
+
+def test_a_running_scheduler_is_used_and_its_end_told(undisturbed, tmp_path):
+    file = tmp_path / "scheduler.json"
+    dask = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--scheduler-file", str(file), "--no-dashboard"]
+    work = [sys.executable, "-m", "distributed.cli.dask_worker", "--scheduler-file", str(file), "--nthreads", "1"]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": tmp_path}
+    scheduler = subprocess.Popen([*dask, "--host", "127.0.0.1", "--port", "0"], **quiet)
+    until(file.exists)
+    worker = subprocess.Popen([*work, "--no-dashboard", "--death-timeout", "60"], **quiet)
+    try:
+        address = json.loads(file.read_text())["address"]
+        process = begun(tmp_path / "runs", "--dask", address)
+        until(lambda: parts(tmp_path / "runs") > 3)
+        scheduler.kill()
+        _, said = process.communicate(timeout=200)
+        assert process.returncode == 3
+        assert "the workers are gone" in said
+        assert said.count("\n") == 1
+    finally:
+        scheduler.kill()
+        worker.kill()
+        scheduler.wait()
+        worker.wait()
+    assert begun(tmp_path / "runs", "--workers", "1").communicate(timeout=600)[1] == ""
+    assert rows(tmp_path / "runs").equals(rows(undisturbed))
