@@ -28,6 +28,7 @@ UNLINKED = {
 REFERENCE = re.compile(r"\((\d{1,2}|3a)\)")
 EQUATION = re.compile(r'id="eq-(\d{1,2}|3a)"')
 HEADING = re.compile(r'<h2 id="([^"]+)">(.*?)</h2>', re.DOTALL)
+ANCHOR = re.compile(r"</?a\b[^>]*>")  # a link in a heading is none in the link to it
 TERM = re.compile(r'<dfn id="([^"]+)">(.*?)</dfn>', re.DOTALL)
 TABLE = re.compile(r"<table.*?</table>", re.DOTALL)
 HEADED = re.compile(r"<thead>.*?</thead>", re.DOTALL)
@@ -86,7 +87,8 @@ def with_sections(page: str) -> str:
     if len(headings) <= FEW:
         return NAVIGATION.sub("", page)
     items = Markup("").join(
-        Markup('<li><a href="#{}">{}</a></li>').format(anchor, Markup(title)) for anchor, title in headings
+        Markup('<li><a href="#{}">{}</a></li>').format(anchor, Markup(ANCHOR.sub("", title)))
+        for anchor, title in headings
     )
     return page.replace(SECTIONS, Markup('<ol class="sections">{}</ol>').format(items))
 
