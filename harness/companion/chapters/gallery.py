@@ -207,15 +207,6 @@ EXHIBITS = (
         ),
     ),
     Exhibit(
-        "arm",
-        "examples/arm.mac",
-        (
-            "The tip of the arm goes round a circle, as it was told; the motors find the torques.",
-            "Both angles follow from the tip: no motion is left to the arm itself.",
-        ),
-        scene="circle_scene",
-    ),
-    Exhibit(
         "andrews",
         "examples/andrews.mac",
         (
