@@ -77,15 +77,6 @@ EXHIBITS = (
         until=Fraction(20),
     ),
     Exhibit(
-        "hoist",
-        "examples/hoist.mac",
-        (
-            "A winch takes up the rope as it was recorded, through the points of a table, and the load swings.",
-            "The multiplier has no jumps, for the spline through the points has a continuous second rate.",
-        ),
-        scene="recorded_scene",
-    ),
-    Exhibit(
         "whirling-bob",
         "examples/whirling_bob.mac",
         (
