@@ -20,6 +20,7 @@ VERBS = {
     "program": ["-o", "out.json"],
     "effects": ["--json", "out.json"],
     "simulate": ["--until", "1", "-o", "out.csv"],
+    "sweep": ["--grid", "m=1:2:3", "-o", "runs"],
     "accuracy": ["--json", "out.json"],
     "companion": ["-o", "pages"],
 }

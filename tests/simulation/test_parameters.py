@@ -1,5 +1,7 @@
 """Open parameters: one derivation and one compilation for all their values, and a start that follows them."""
 
+from pathlib import Path
+
 import heyoka
 import numpy as np
 import pytest
@@ -15,6 +17,7 @@ from holonom.simulation import derivations
 from holonom.simulation.engines import taylor
 from holonom.simulation.initial_state import InitialStates, at_values
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 HANGING = """load("holonom.mac")$
 system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [m, g],
   kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2, potential_energy = m*g*y, constraints = [x^2 + y^2 - u^2])$
@@ -101,7 +104,7 @@ def test_a_start_with_more_than_one_solution_elsewhere_is_no_function(write_scen
 
 
 def test_data_that_contradict_the_constraints_for_other_values_are_refused_with_their_sentence():
-    scene = holonom.load("examples/pendulum.mac", scene="swing_scene")
+    scene = holonom.load(EXAMPLES / "pendulum.mac", scene="swing_scene")
     assert scene.simulate(until=1, samples=2, g=5)["x"][0] == pytest.approx(np.sin(np.pi / 13))
     with pytest.raises(HolonomError, match="contradicts constraint 1: the residual is"):
         scene.simulate(until=1, samples=2, l0=2)

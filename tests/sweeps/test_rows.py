@@ -1,5 +1,7 @@
 """The rows of sweeps: against closed forms, against `holonom simulate`, and against themselves however they are cut."""
 
+from pathlib import Path
+
 import numpy as np
 import pyarrow as pa
 import pytest
@@ -9,6 +11,7 @@ from holonom.failures import HolonomError
 from holonom.simulation.request import Stabilization
 from holonom.sweeps.rows import Status
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 OSCILLATOR = """load("holonom.mac")$
 system : holonomic_system(coordinates = [x], parameters = [m, k],
   kinetic_energy = m*dot(x)^2/2, potential_energy = k*x^2/2, constraints = [])$
@@ -69,7 +72,7 @@ def test_rows_are_the_same_to_the_last_bit_however_they_are_cut(rows_of):
 def test_rows_are_those_of_single_simulations(rows_of):
     keep = "final,lambda1,max(abs(lambda1)),min(y),zero(x-1)"
     found = columns(rows_of("crane.mac", keep, "m=50:500:4", "c=0:40:3").table(0, 12))
-    scene = holonom.load("examples/crane.mac")
+    scene = holonom.load(EXAMPLES / "crane.mac")
     for row in (0, 5, 11):
         motion = scene.simulate(samples=2001, m=found["m"][row], c=found["c"][row])
         for name in ("s", "x", "y", "dot(s)", "dot(x)", "dot(y)", "lambda1"):
