@@ -248,3 +248,11 @@ def test_kinked_forces_and_laws_in_parts_were_refused_a_verdict(write_scene, sce
     found = free_motion(write_scene(FRICTION), scene, {}, Limits())
     assert (found.motion.verdict, found.motion.first) == (verdict, first)
     assert found.trajectory.kind == "series"
+
+
+def test_a_system_without_constraints_ended_in_an_internal_error(write_scene):
+    text = """load("holonom.mac")$
+    system : holonomic_system(coordinates = [x], controls = [u], kinetic_energy = dot(x)^2/2, forces = [u])$
+    pushed : holonomic_scene(system, control_law = [u = t], initial_state = [x = 1, dot(x) = 0], time_span = [0, 1])$"""
+    found = free_motion(write_scene(text), None, {}, Limits())
+    assert (found.motion.verdict, found.universal.verdict) == ("free", "all")

@@ -136,6 +136,8 @@ class _MovedByLaw:
         self, state: dict[sp.Symbol, mp.mpf], unknowns: Sequence[sp.Symbol], residuals: Sequence[sp.Expr]
     ) -> bool:
         """Move the unknowns by the shortest step that takes the residuals to zero; whether there was one to take."""
+        if not residuals:
+            return False
         value = _valuation(state)
         right = mp.matrix([value(residual) for residual in residuals])
         size = max(abs(number) for number in state.values())
