@@ -350,7 +350,7 @@ def _confinement(run: Run, maxima: Path) -> Confinement:
         "GCL_MEM_MULTIPLE": f"{run.limits.memory_mib * MIB / psutil.virtual_memory().total:.6f}",
         # Kinds of objects that are few at first get so large a share of new pages when theirs are full: with GCL's own
         # twentieth it collects garbage more than a hundred times while it writes the program of a thousand bodies.
-        "GCL_GC_ALLOC_MIN": "0.3",
+        "GCL_GC_ALLOC_MIN": "0.1",
     }
     readable = (*surroundings(maxima), LIBRARY, _own_folder(run.file))
     return Confinement(run.directory, environment, readable, run.limits)

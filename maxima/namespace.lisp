@@ -243,9 +243,11 @@
   (let ((made (apply '$concat parts)))
     (if (and (symbolp made) (some #'private-twin-p parts)) (read-name made) made)))
 
-(define-library-version $parse_string (text) (in-namespace ($parse_string text)))
+(define-library-version $parse_string (text) (in-namespace (parsed text)))
 
-(define-library-version $eval_string (text) (meval (in-namespace ($parse_string text))))
+(define-library-version $eval_string (text) (meval (in-namespace (parsed text))))
+
+(defun parsed (text) (mfuncall '$parse_string text)) ; which Maxima loads when it is first called
 
 ;;; ---- for Maxima --------------------------------------------------------------------------
 

@@ -9,6 +9,7 @@ from .motion_program import Operation, Program
 
 SCRIPT = Target("const", ONE.arithmetic)
 NAMES_IN_MATH = {Operation.ABS: "abs: fabs"}  # where C and Math differ
+MISSING_IN_MATH = {Operation.ERF}
 
 SOURCE = """\
 /* {title} */
@@ -17,6 +18,12 @@ SOURCE = """\
 const {name} = (() => {{
   const {{{functions}, pow}} = Math;
   const square = x => x*x, cube = x => x*x*x;
+  const erf = x => {{  // exp(-x^2) times the series of positive terms; 1 to rounding beyond 6
+    if (fabs(x) > 6) return sign(x);
+    let term = x, sum = x;
+    for (let n = 1; fabs(term) > 1e-17*fabs(sum); n++) sum += term *= 2*x*x/(2*n + 1);
+    return 2/sqrt(Math.PI)*exp(-x*x)*sum;
+  }};
   const inputs = {inputs};
   const outputs = {outputs};
 
@@ -59,7 +66,11 @@ def javascript_source(program: Program, name: str = "motion") -> str:
     return SOURCE.format(
         title=comment_text(title_of(program)),
         name=name,
-        functions=", ".join(NAMES_IN_MATH.get(operation, function) for operation, function in FUNCTIONS.items()),
+        functions=", ".join(
+            NAMES_IN_MATH.get(operation, function)
+            for operation, function in FUNCTIONS.items()
+            if operation not in MISSING_IN_MATH
+        ),
         inputs=_listed(program.inputs),
         outputs=_listed(program.outputs),
         count=len(program.outputs),

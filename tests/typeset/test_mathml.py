@@ -15,7 +15,7 @@ CORE = {
 }
 CORE_ATTRIBUTES = {
     *("alttext", "class", "display", "displaystyle", "form", "lspace", "mathvariant", "maxsize", "minsize"),
-    *("rspace", "stretchy", "style", "width"),
+    *("movablelimits", "rspace", "stretchy", "style", "width"),
 }
 NAMESPACE = "{http://www.w3.org/1998/Math/MathML}"
 
