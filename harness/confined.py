@@ -226,10 +226,6 @@ def _watch(process: subprocess.Popen[bytes], limits: Limits, printed: bytearray)
 def resident_memory(pid: int) -> int:
     """Resident memory of a process and all that it started, in bytes.
 
-    Parameters
-    ----------
-    pid : int
-
     Returns
     -------
     int

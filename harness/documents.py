@@ -103,11 +103,6 @@ def ask(
 def read(document: Document, text: str) -> dict[str, Any]:
     """Read a document as Maxima writes it.
 
-    Parameters
-    ----------
-    document : Document
-    text : str
-
     Returns
     -------
     dict

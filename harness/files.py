@@ -35,10 +35,6 @@ def shared(folder: str) -> Path:
 def private_directory() -> Iterator[Path]:
     """A directory for temporary files, gone at the end. While it is in use it is locked.
 
-    Yields
-    ------
-    Path
-
     Raises
     ------
     HolonomError
@@ -192,10 +188,6 @@ def whole_file(path: Path) -> Iterator[BinaryIO]:
     ----------
     path : Path
         As for `write_whole`.
-
-    Yields
-    ------
-    binary file
 
     Raises
     ------

@@ -241,10 +241,6 @@ def free_motion(
         Up to which order the power series of the multipliers are looked at, 2 or more; None for Maxima's
         ``verdict_order``.
 
-    Returns
-    -------
-    FreeMotion
-
     Raises
     ------
     HolonomError

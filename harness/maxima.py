@@ -252,10 +252,6 @@ def _copy(run: Run) -> str:
 def read_maxima_text(file: Path) -> str:
     """Read a Maxima file, with or without a byte order mark, its lines ended in any way.
 
-    Parameters
-    ----------
-    file : Path
-
     Returns
     -------
     str

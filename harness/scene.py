@@ -56,10 +56,6 @@ def load(path: str | Path, scene: str | None = None, limits: Limits | None = Non
     **settings : int, float, Fraction, Decimal or str
         Numbers for what the file leaves open and for parameters; a float counts as the decimal that prints it.
 
-    Returns
-    -------
-    Scene
-
     Raises
     ------
     HolonomError
@@ -80,10 +76,6 @@ def system(text: str, scene: str | None = None, limits: Limits | None = None, **
         What a scene file holds; ``load("holonom.mac")`` may be left out.
     scene, limits, **settings
         As for `load`.
-
-    Returns
-    -------
-    Scene
 
     Raises
     ------
@@ -296,10 +288,6 @@ class Scene:
         until : number or None
             Instant to which the motion is continued by further expansions.
 
-        Returns
-        -------
-        MotionSeries
-
         Raises
         ------
         HolonomError
@@ -477,13 +465,7 @@ class Equations(Sequence["Equation"]):
 
 
 class MotionProgram:
-    """The motion program of a scene, and the forms in which it can be taken elsewhere.
-
-    Parameters
-    ----------
-    scene : Scene
-    request : Request
-    """
+    """The motion program of a scene, and the forms in which it can be taken elsewhere."""
 
     def __init__(self, scene: Scene, request: Request) -> None:
         self._scene, self._request = scene, request
@@ -575,12 +557,7 @@ class MotionProgram:
 
 @dataclass(frozen=True)
 class RightHandSide:
-    """f(t, y) of dy/dt = f(t, y), y the coordinates and then the velocities; arrays of states are columns.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-    """
+    """f(t, y) of dy/dt = f(t, y), y the coordinates and then the velocities; arrays of states are columns."""
 
     problem: "MotionProblem"
 

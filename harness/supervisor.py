@@ -68,10 +68,6 @@ def supervise(command: Callable[[], int]) -> Ending:
     command : callable
         Returns its exit status.
 
-    Returns
-    -------
-    Ending
-
     Raises
     ------
     HolonomError

@@ -49,7 +49,11 @@ def test_a_statement_that_fails_is_found(text, line, failure, detail, write_scen
     ("text", "failure"),
     [
         # GCL collects garbage until the clock runs out where it cannot have the memory it wants.
-        ("hog : []$ for i do hog : cons(1.5*i, hog)$", {Failure.TOO_LARGE, Failure.TOO_LONG}),
+        pytest.param(
+            "hog : []$ for i do hog : cons(1.5*i, hog)$",
+            {Failure.TOO_LARGE, Failure.TOO_LONG},
+            marks=pytest.mark.long,
+        ),
         ('for i do print("so it goes on, and on, and on")$', {Failure.TOO_MUCH_TEXT}),
         ("quit()$", {Failure.ENDED_EARLY}),
         ('system("kill -9 $PPID")$', {Failure.KILLED}),

@@ -100,10 +100,6 @@ def is_forced() -> bool:
 def require_apart(scenes: Iterable[Path], outputs: Iterable[Path]) -> None:
     """Refuse an output that is a scene of the command, or another output, also through links.
 
-    Parameters
-    ----------
-    scenes, outputs : iterable of Path
-
     Raises
     ------
     HolonomError

@@ -39,10 +39,6 @@ def excerpt(root: Path, file: str, name: str) -> Excerpt:
     file : str
     name : str
 
-    Returns
-    -------
-    Excerpt
-
     Raises
     ------
     HolonomError

@@ -57,10 +57,6 @@ def finished(pages: Mapping[str, str], parts: Sequence[Sequence[str]]) -> dict[s
         By the names of their files.
     parts : sequence of sequence of str
         Those names, part by part: an equation is looked for on the page itself, then in its part, then everywhere.
-
-    Returns
-    -------
-    dict of str to str
     """
     found = {name: list(dict.fromkeys(EQUATION.findall(text))) for name, text in pages.items()}
     everywhere = _links(found, found)

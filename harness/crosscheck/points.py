@@ -68,12 +68,7 @@ def random_point(names: Iterable[str], attempt: int, seed: str) -> dict[sp.Symbo
 
 
 class Valuation:
-    """Values of expressions at a point, each subexpression evaluated once.
-
-    Parameters
-    ----------
-    point : mapping of Symbol to Rational
-    """
+    """Values of expressions at a point, each subexpression evaluated once."""
 
     def __init__(self, point: Mapping[sp.Symbol, sp.Rational]) -> None:
         self._values: dict[sp.Expr, mp.mpf] = {}

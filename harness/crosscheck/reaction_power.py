@@ -15,16 +15,7 @@ from .system import MechanicalSystem
 
 
 def reaction_power(system: MechanicalSystem) -> Expr:
-    """Power of all reactions by the rates of the constraints at rest, in the state, the controls and the multipliers.
-
-    Parameters
-    ----------
-    system : MechanicalSystem
-
-    Returns
-    -------
-    Expr
-    """
+    """Power of all reactions by the rates of the constraints at rest, in state, controls and multipliers."""
     return -sp.Add(
         *(
             multiplier * rate_at_rest(system, constraint)

@@ -105,10 +105,6 @@ def described_system(system: System, effects: Collection[str]) -> MechanicalSyst
         The description in the record.
     effects : collection of str
         Names of the effects called for; the others are left out.
-
-    Returns
-    -------
-    MechanicalSystem
     """
     forces = [effect.value for effect in system.forces if effect.effect in effects]
     return MechanicalSystem(

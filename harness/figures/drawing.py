@@ -104,16 +104,7 @@ def film_of(simulation: Simulation, drawing: Drawing) -> Film:
 
 
 def animation(film: Film) -> str:
-    """A film as SVG that moves; it begins again when it is over.
-
-    Parameters
-    ----------
-    film : Film
-
-    Returns
-    -------
-    str
-    """
+    """A film as SVG that moves; it begins again when it is over."""
     stage = _Stage(film, HIGHEST)
     stage.draw_traces()
     stage.draw(stage.group(), slice(None), moving=True)
@@ -123,16 +114,7 @@ def animation(film: Film) -> str:
 
 
 def strip(film: Film) -> str:
-    """A film as SVG that stands still: positions over each other, side by side if it is tall, in a column if flat.
-
-    Parameters
-    ----------
-    film : Film
-
-    Returns
-    -------
-    str
-    """
+    """A film as SVG that stands still: positions over each other, side by side if it is tall, in a column if flat."""
     frames = np.unique(np.linspace(0, len(film.instants) - 1, POSITIONS).round().astype(int))
     width, height = map(np.ptp, _extents(film.shapes, film.numbers))
     arrange = _row if width < TALL * height else _column if height < FLAT * width else _superposition

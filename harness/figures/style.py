@@ -158,12 +158,7 @@ def write_figure(figure: "Figure", path: Path) -> None:
 
 
 class Picture:
-    """A figure that a notebook shows, and that can be written to a file.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-    """
+    """A figure that a notebook shows, and that can be written to a file."""
 
     def __init__(self, figure: "Figure") -> None:
         self.figure = figure
@@ -179,16 +174,7 @@ class Picture:
 
 
 def svg_text(figure: "Figure") -> str:
-    """A figure as the text of an SVG document, its ink the reader's.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-
-    Returns
-    -------
-    str
-    """
+    """A figure as the text of an SVG document, its ink the reader's."""
     buffer = io.StringIO()
     with import_matplotlib().rc_context(WRITING):
         figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": "Holonom"})

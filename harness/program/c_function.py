@@ -74,14 +74,6 @@ class CFunction:
 def compile_c(program: Program) -> CFunction:
     """Compile a program with the system's C compiler and load it.
 
-    Parameters
-    ----------
-    program : Program
-
-    Returns
-    -------
-    CFunction
-
     Raises
     ------
     HolonomError

@@ -210,10 +210,6 @@ def statements(program: Program, target: Target, inputs: Sequence[str], writes: 
         For each input an expression of C; those that the program does not use are not read.
     writes : sequence of str
         For each output the statement that puts ``{value}`` where it belongs.
-
-    Yields
-    ------
-    str
     """
     used = set().union(*(names_in(expression) for _, expression in program.assignments))
     used |= set().union(*map(names_in, program.outputs.values()))

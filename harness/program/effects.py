@@ -129,10 +129,6 @@ def read_costs(text: str) -> Costs:
     text : str
         JSON, as Maxima writes it.
 
-    Returns
-    -------
-    Costs
-
     Raises
     ------
     HolonomError
@@ -148,10 +144,6 @@ def read_costs(text: str) -> Costs:
 
 def measure_costs(costs: Costs) -> MeasuredCosts:
     """Count the operations of a scene's programs and measure their times, at one regular point.
-
-    Parameters
-    ----------
-    costs : Costs
 
     Returns
     -------

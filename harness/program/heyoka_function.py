@@ -81,14 +81,6 @@ class HeyokaFunction:
 def heyoka_function(program: Program) -> HeyokaFunction:
     """Compile a program with heyoka.
 
-    Parameters
-    ----------
-    program : Program
-
-    Returns
-    -------
-    HeyokaFunction
-
     Raises
     ------
     HolonomError

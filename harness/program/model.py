@@ -73,10 +73,6 @@ def scene_model(file: Path, request: Request, parameters: Sequence[str], limits:
     limits : Limits
         What Maxima may take.
 
-    Returns
-    -------
-    Model
-
     Raises
     ------
     HolonomError
@@ -97,10 +93,6 @@ def read_model(text: str) -> Model:
     ----------
     text : str
         JSON, as Maxima writes it.
-
-    Returns
-    -------
-    Model
 
     Raises
     ------

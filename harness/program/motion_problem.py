@@ -236,10 +236,6 @@ def motion_problem(
     open_parameters : sequence of str
         Parameters that are inputs of the programs, whether they have values or not; names of others do no harm.
 
-    Returns
-    -------
-    MotionProblem
-
     Raises
     ------
     HolonomError
@@ -279,10 +275,6 @@ def read_problem(text: str) -> MotionProblem:
     ----------
     text : str
         JSON, as Maxima writes it.
-
-    Returns
-    -------
-    MotionProblem
 
     Raises
     ------

@@ -137,10 +137,6 @@ def read_program(text: str) -> Program:
     text : str
         JSON, as Maxima writes it.
 
-    Returns
-    -------
-    Program
-
     Raises
     ------
     HolonomError
@@ -156,10 +152,6 @@ def program_of(document: Any) -> Program:
     ----------
     document : Any
         What JSON gives for a program.
-
-    Returns
-    -------
-    Program
 
     Raises
     ------
@@ -188,14 +180,6 @@ def count_operations(program: Program) -> int:
     """Count what a program costs, independently of the number it carries.
 
     Every +, -, multiplication, division, power, root and function call counts one: a sum or product of k terms k - 1.
-
-    Parameters
-    ----------
-    program : Program
-
-    Returns
-    -------
-    int
     """
     return sum(operations_in(expression) for _, expression in program.assignments)
 

@@ -46,12 +46,7 @@ OF_SCIPY = {Operation.ERF: "erf"}  # ufuncs of scipy.special, which is loaded wh
 
 
 class NumpyFunction:
-    """A motion program over arrays.
-
-    Parameters
-    ----------
-    program : Program
-    """
+    """A motion program over arrays."""
 
     def __init__(self, program: Program) -> None:
         self.inputs = program.inputs

@@ -61,10 +61,6 @@ def read_precision(text: str) -> Precision:
     text : str
         ``double``, ``extended``, ``quadruple``, or a whole number of decimal digits.
 
-    Returns
-    -------
-    Precision
-
     Raises
     ------
     HolonomError

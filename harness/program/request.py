@@ -45,16 +45,7 @@ class Request:
 
 
 def within_reach(number: str) -> bool:
-    """Whether the parts of a decimal number or quotient are such that a double holds them, told without computing them.
-
-    Parameters
-    ----------
-    number : str
-
-    Returns
-    -------
-    bool
-    """
+    """Whether a double holds the parts of a decimal number or quotient, told without computing them."""
     for part in number.lower().split("/"):
         digits, _, exponent = part.partition("e")
         if len(digits) > LONGEST or len(exponent) > 4 or not abs(int(exponent or 0)) + len(digits) <= LARGEST_EXPONENT:
@@ -69,10 +60,6 @@ def read_settings(texts: Iterable[str]) -> dict[str, str]:
     ----------
     texts : iterable of str
         Each ``NAME=VALUE``, the value an integer, a decimal or a quotient of integers.
-
-    Returns
-    -------
-    dict of str to str
 
     Raises
     ------
@@ -100,10 +87,6 @@ def program_text(file: Path, request: Request, form: Form, limits: Limits) -> st
     form : Form
     limits : Limits
         What Maxima may take.
-
-    Returns
-    -------
-    str
 
     Raises
     ------

@@ -97,10 +97,6 @@ def with_values_in(problem: MotionProblem) -> MotionProblem:
     ----------
     problem : MotionProblem
         With a value for each open parameter.
-
-    Returns
-    -------
-    MotionProblem
     """
     if not problem.parameters:
         return problem
@@ -136,11 +132,6 @@ def drive(problem: MotionProblem, name: str, sign: int, pattern: Pattern) -> Pro
 
 def with_numbers(program: Program, numbers: Mapping[str, Fraction]) -> Program:
     """A program with numbers for some of its inputs; what is multiplied by zero is dropped.
-
-    Parameters
-    ----------
-    program : Program
-    numbers : mapping of str to Fraction
 
     Returns
     -------

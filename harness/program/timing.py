@@ -62,10 +62,6 @@ def shortest_times(batches: Mapping[Key, Batch]) -> dict[Key, float]:
 
     The functions take turns, so that what slows the machine down for a while slows all of them.
 
-    Parameters
-    ----------
-    batches : mapping of Batch
-
     Returns
     -------
     dict of float

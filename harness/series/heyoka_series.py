@@ -41,10 +41,6 @@ def expand_by_heyoka(file: Path, request: SeriesRequest, limits: Limits) -> Moti
     limits : Limits
         What Maxima may take to write the motion program.
 
-    Returns
-    -------
-    MotionSeries
-
     Raises
     ------
     HolonomError
@@ -68,10 +64,6 @@ def expand(problem: MotionProblem, order: int, precision: Precision) -> MotionSe
     order : int
         2 or more.
     precision : Precision
-
-    Returns
-    -------
-    MotionSeries
 
     Raises
     ------
@@ -110,10 +102,6 @@ def continue_motion(problem: MotionProblem, until: Fraction, precision: Precisio
         The last instant.
     precision : Precision
 
-    Returns
-    -------
-    Continuation
-
     Raises
     ------
     HolonomError
@@ -148,10 +136,6 @@ def expanding_integrator(problem: MotionProblem, order: int, precision: Precisio
     effort : int
         ``ONCE`` for one expansion, ``OFTEN`` for many.
 
-    Returns
-    -------
-    heyoka.taylor_adaptive_dbl, _ldbl, _f128 or _real
-
     Raises
     ------
     HolonomError
@@ -177,15 +161,6 @@ def expanding_integrator(problem: MotionProblem, order: int, precision: Precisio
 
 def continuing_integrator(problem: MotionProblem, precision: Precision) -> Any:
     """Set up heyoka's integrator of a motion, its tolerance the precision of the numbers.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-    precision : Precision
-
-    Returns
-    -------
-    heyoka.taylor_adaptive_dbl, _ldbl, _f128 or _real
 
     Raises
     ------

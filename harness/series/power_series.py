@@ -139,10 +139,6 @@ def compute_series(file: Path, request: SeriesRequest, limits: Limits) -> Motion
     limits : Limits
         What Maxima may take.
 
-    Returns
-    -------
-    MotionSeries
-
     Raises
     ------
     HolonomError
@@ -164,10 +160,6 @@ def read_series(text: str) -> MotionSeries:
     ----------
     text : str
         JSON document.
-
-    Returns
-    -------
-    MotionSeries
 
     Raises
     ------
@@ -198,10 +190,6 @@ def values_at(motion: MotionSeries, time: Fraction) -> Values:
     motion : MotionSeries
     time : Fraction
         The instant, inside the radius of convergence.
-
-    Returns
-    -------
-    Values
 
     Raises
     ------

@@ -43,10 +43,6 @@ class _Otherwise(ArithmeticError):
 def ticks(problem: MotionProblem) -> Mapping[str, Tick]:
     """When each sign changes that a function a + b t decides.
 
-    Parameters
-    ----------
-    problem : MotionProblem
-
     Returns
     -------
     mapping of str to Tick

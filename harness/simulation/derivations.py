@@ -78,10 +78,6 @@ def open_names(request: Request, digits: int) -> tuple[str, ...]:
 def stands(problem: MotionProblem) -> bool:
     """Whether the programs of a motion, with its parameters open, solve its equations at the start.
 
-    Parameters
-    ----------
-    problem : MotionProblem
-
     Returns
     -------
     bool

@@ -133,11 +133,6 @@ def hard_cases(
 def dependence(matrices: MotionMatrices, at: Instant) -> str | None:
     """Why no fixed order of pivots can solve the equations of motion at a state, if none can.
 
-    Parameters
-    ----------
-    matrices : MotionMatrices
-    at : Instant
-
     Returns
     -------
     str or None
@@ -151,11 +146,6 @@ def dependence(matrices: MotionMatrices, at: Instant) -> str | None:
 
 def stiffness(matrices: MotionMatrices, at: Instant) -> float:
     """Ratio of the largest to the smallest square of a frequency that small deviations from a motion have.
-
-    Parameters
-    ----------
-    matrices : MotionMatrices
-    at : Instant
 
     Returns
     -------
@@ -200,25 +190,12 @@ def _free(ends: Sequence[Matrices], multipliers: Vector) -> bool:
 
 
 def advice(kind: HardCase) -> str:
-    """The sentence that says what to do about a hard case.
-
-    Parameters
-    ----------
-    kind : HardCase
-
-    Returns
-    -------
-    str
-    """
+    """The sentence that says what to do about a hard case."""
     return ADVICE[kind]
 
 
 def engine_text(legs: "Sequence[Leg]") -> str:
     """Who followed the motion when, in one line.
-
-    Parameters
-    ----------
-    legs : sequence of Leg
 
     Returns
     -------

@@ -56,10 +56,6 @@ def residuals(at: Matrices, state: Vector, accelerations: Vector) -> Mapping[str
 def condition(at: Matrices) -> float:
     """Condition number of G = J A^-1 J^T, each constraint scaled to length one in the mass metric.
 
-    Parameters
-    ----------
-    at : Matrices
-
     Returns
     -------
     float
@@ -144,10 +140,6 @@ class EnergyBalance:
         piece : Piece
         ends : sequence of k numbers
             Where the parts end, in order; the last one with the piece.
-
-        Returns
-        -------
-        list of k numbers
         """
         if self.conservative:
             return [self._precision.number("0")] * len(ends)

@@ -13,10 +13,6 @@ from .result import Report, Simulation
 def simulation_document(simulation: Simulation) -> dict[str, Any]:
     """The report and the samples.
 
-    Parameters
-    ----------
-    simulation : Simulation
-
     Returns
     -------
     dict
@@ -30,10 +26,6 @@ def simulation_document(simulation: Simulation) -> dict[str, Any]:
 
 def report_document(report: Report) -> dict[str, Any]:
     """The report alone.
-
-    Parameters
-    ----------
-    report : Report
 
     Returns
     -------
@@ -58,10 +50,6 @@ def published_list(samples: np.ndarray, digits: int) -> list[float | str]:
     samples : ndarray
     digits : int
         Of those that no double can hold.
-
-    Returns
-    -------
-    list
     """
     return samples.tolist() if samples.dtype == float else [_published(sample, digits) for sample in samples]
 

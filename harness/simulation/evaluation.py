@@ -22,11 +22,6 @@ Evaluation = Callable[[Numbers], Numbers]
 def evaluation(program: Program, precision: Precision) -> Evaluation:
     """Compile a program.
 
-    Parameters
-    ----------
-    program : Program
-    precision : Precision
-
     Returns
     -------
     callable
@@ -56,11 +51,6 @@ def evaluation_once(problem: MotionProblem, program: Program, precision: Precisi
 
 def lane_evaluation(problem: MotionProblem, program: Program) -> Evaluation:
     """Compile a program of a problem, once, to be evaluated at many points in double precision.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-    program : Program
 
     Returns
     -------

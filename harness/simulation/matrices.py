@@ -48,12 +48,7 @@ class Matrices(NamedTuple):
 
 
 class MotionMatrices:
-    """The matrices of a motion as a function of its state.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-    """
+    """The matrices of a motion as a function of its state."""
 
     def __init__(self, problem: MotionProblem) -> None:
         require_analytic(problem)
@@ -70,10 +65,6 @@ class MotionMatrices:
         t : float
         state : ndarray, shape (2n,)
             Coordinates, then velocities.
-
-        Returns
-        -------
-        Matrices
         """
         self._inputs[0] = t
         self._inputs[1 : 1 + len(state)] = state
@@ -81,12 +72,7 @@ class MotionMatrices:
 
 
 class LaneMatrices:
-    """The matrices of many motions of one problem, each with its own values of the open parameters.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-    """
+    """The matrices of many motions of one problem, each with its own values of the open parameters."""
 
     def __init__(self, problem: MotionProblem) -> None:
         require_analytic(problem)
@@ -138,10 +124,6 @@ class _Layout:
 
 def start_of(problem: MotionProblem) -> tuple[float, Vector]:
     """Instant and state at which a motion starts.
-
-    Parameters
-    ----------
-    problem : MotionProblem
 
     Returns
     -------

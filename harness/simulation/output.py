@@ -47,12 +47,6 @@ def require_formats(samples: Path | None, figure: Path | None) -> None:
 def require_memory(problem: MotionProblem, samples: int, memory_mib: int) -> None:
     """Refuse more samples than the memory holds, before the motion is followed.
 
-    Parameters
-    ----------
-    problem : MotionProblem
-    samples : int
-    memory_mib : int
-
     Raises
     ------
     HolonomError
@@ -68,12 +62,6 @@ def require_memory(problem: MotionProblem, samples: int, memory_mib: int) -> Non
 
 def require_disk(problem: MotionProblem, samples: int, path: Path) -> None:
     """Refuse more samples than there is room for where they are to be written, before the motion is followed.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-    samples : int
-    path : Path
 
     Raises
     ------
@@ -164,14 +152,6 @@ def sample_file(path: Path, digits: int) -> Iterator[Callable[[Sampled], None]]:
 
 def sample_format(path: Path) -> Format:
     """What writes samples into a file.
-
-    Parameters
-    ----------
-    path : Path
-
-    Returns
-    -------
-    callable
 
     Raises
     ------

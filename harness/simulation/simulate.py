@@ -41,10 +41,6 @@ def simulate(problem: MotionProblem, request: SimulationRequest, progress: Progr
     progress : callable or None
         Told the fraction that is done, now and then.
 
-    Returns
-    -------
-    Simulation
-
     Raises
     ------
     HolonomError
@@ -68,10 +64,6 @@ def follow(
         Takes a `Sampled`.
     progress : callable or None
         Told the fraction that is done, now and then.
-
-    Returns
-    -------
-    Report
 
     Raises
     ------
@@ -110,10 +102,6 @@ def followable(problem: MotionProblem, request: SimulationRequest) -> MotionProb
     problem : MotionProblem
         With a value for each open parameter.
     request : SimulationRequest
-
-    Returns
-    -------
-    MotionProblem
     """
     open_ = (
         not problem.signs
@@ -133,10 +121,6 @@ def last_instant(problem: MotionProblem, until: Fraction | None, precision: Prec
     until : Fraction or None
         What is asked for; None for the end of the scene's time span.
     precision : Precision
-
-    Returns
-    -------
-    number
 
     Raises
     ------

@@ -47,12 +47,7 @@ class Crossing(NamedTuple):
 
 
 class SignedFunctions(ABC):
-    """Functions along a motion, each with the sign that it has until its first crossing.
-
-    Parameters
-    ----------
-    precision : Precision
-    """
+    """Functions along a motion, each with the sign that it has until its first crossing."""
 
     def __init__(self, precision: Precision) -> None:
         self._precision = precision

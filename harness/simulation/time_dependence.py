@@ -66,10 +66,6 @@ def time_dependence(program: Program, start: float, end: float) -> TimeDependenc
     program : Program
         One of its inputs is ``t``.
     start, end : float
-
-    Returns
-    -------
-    TimeDependence
     """
     expressions = time_expressions(program)
     if not start < end:
@@ -79,10 +75,6 @@ def time_dependence(program: Program, start: float, end: float) -> TimeDependenc
 
 def time_expressions(program: Program) -> Program:
     """What a program computes from the time alone, as far as anything else is computed from it.
-
-    Parameters
-    ----------
-    program : Program
 
     Returns
     -------

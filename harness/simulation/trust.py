@@ -41,10 +41,6 @@ def doubts(missed: Mapping[str, float], tol: float, steps: int) -> Iterator[Doub
         By quantity, relative to its size.
     tol : float
     steps : int
-
-    Yields
-    ------
-    Doubt
     """
     expected = MARGIN * max(tol, FINEST) * max(1, steps)
     for quantity, value in missed.items():
@@ -59,10 +55,6 @@ def energy_scale(at: Matrices, state: Vector) -> float:
     ----------
     at : Matrices
     state : ndarray, shape (2n,)
-
-    Returns
-    -------
-    float
     """
     q, v = np.abs(np.split(state, 2))
     return float(v @ np.abs(at.mass) @ v + np.abs(at.force) @ q)

@@ -182,10 +182,6 @@ def read_axes(
     seed : int or None
         Of the sample; None for zero.
 
-    Returns
-    -------
-    Axes
-
     Raises
     ------
     HolonomError

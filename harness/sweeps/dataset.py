@@ -134,14 +134,6 @@ class SweepFolder:
 def read_document(folder: Path) -> dict[str, Any]:
     """The document of a sweep.
 
-    Parameters
-    ----------
-    folder : Path
-
-    Returns
-    -------
-    dict
-
     Raises
     ------
     HolonomError

@@ -44,10 +44,6 @@ class Steps(NamedTuple):
 def largest(steps: Steps) -> Floats:
     """The largest value on the way, for each lane.
 
-    Parameters
-    ----------
-    steps : Steps
-
     Returns
     -------
     ndarray, shape (lanes,)
@@ -62,10 +58,6 @@ def largest(steps: Steps) -> Floats:
 
 def largest_size(steps: Steps) -> Floats:
     """The largest absolute value on the way, for each lane.
-
-    Parameters
-    ----------
-    steps : Steps
 
     Returns
     -------
@@ -85,10 +77,6 @@ def largest_size(steps: Steps) -> Floats:
 
 def first_zero(steps: Steps) -> Floats:
     """The first instant at which the quantity changes its sign, for each lane; nan where it does not.
-
-    Parameters
-    ----------
-    steps : Steps
 
     Returns
     -------

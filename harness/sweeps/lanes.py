@@ -108,10 +108,6 @@ class LaneEngine:
             Of the open parameters.
         stops : sequence of float
             Instants to stop at, in order; the last is the end.
-
-        Returns
-        -------
-        Followed
         """
         k, lanes = states.shape[1], self._lanes
         found, arrived, steps = np.full((len(stops), self._size, k), np.nan), np.zeros(k, dtype=bool), []

@@ -44,10 +44,6 @@ def along_motion(problem: MotionProblem, known: Known) -> dict[str, Any]:
         Without an obstacle.
     known : mapping of str to heyoka.expression
         The time, the state and the open parameters.
-
-    Returns
-    -------
-    dict of str to heyoka.expression
     """
     inputs = {**known, **zero_multipliers(problem.multipliers, 0.0)}
     solved = {**known, **heyoka_expressions(problem.motion, inputs)}
@@ -62,10 +58,6 @@ def expressions_of(quantities: Sequence[Expression], known: Known) -> list[Any]:
     quantities : sequence of Expression
     known : mapping of str to heyoka.expression
         What they are made of.
-
-    Returns
-    -------
-    list of heyoka.expression
     """
     named = {f"kept[{place}]": quantity for place, quantity in enumerate(quantities)}
     program = Program(

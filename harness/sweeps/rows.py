@@ -85,10 +85,6 @@ class Plan:
 class RowMaker:
     """Makes the rows of a plan; what is compiled for it is compiled once.
 
-    Parameters
-    ----------
-    plan : Plan
-
     Raises
     ------
     HolonomError

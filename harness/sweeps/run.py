@@ -146,10 +146,6 @@ def run_sweep(
     progress : callable or None
         Told how many rows are there, now and then.
 
-    Returns
-    -------
-    Sweep
-
     Raises
     ------
     HolonomError

@@ -76,10 +76,6 @@ class SingleMotions:
         stops : sequence of float
             As for `LaneEngine.follow`.
 
-        Returns
-        -------
-        SingleMotion
-
         Raises
         ------
         HolonomError

@@ -25,6 +25,7 @@ def printed(book, tmp_path_factory):
     return PdfReader(file)
 
 
+@pytest.mark.long
 def test_the_document_is_well_formed_and_its_links_stay_inside(book):
     """It parses, or it would not have been made; every link within it leads to a place."""
     import re

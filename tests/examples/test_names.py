@@ -83,7 +83,7 @@ def documents(text: str, directory: Path, writers: tuple[str, ...] = WRITERS) ->
     return [json.loads(run_batch(file, writer)) for writer in writers]
 
 
-@pytest.mark.parametrize("order", ["before", "after"])
+@pytest.mark.parametrize("order", ["before", pytest.param("after", marks=pytest.mark.long)])
 def test_a_scene_may_define_every_name_of_the_library(order: str, internal_names: list[str], tmp_path: Path):
     taken = "".join(TAKEN.format(name=name) for name in internal_names)
     scene = f"{taken}{HOLONOM}{BALL}" if order == "before" else f"{HOLONOM}{taken}{BALL}"

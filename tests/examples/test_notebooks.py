@@ -19,7 +19,11 @@ def test_there_are_three():
     assert [file.stem for file in NOTEBOOKS] == ["numbers_and_code", "own_system", "paper"]
 
 
-@pytest.mark.parametrize("file", NOTEBOOKS, ids=lambda file: file.stem)
+@pytest.mark.parametrize(
+    "file",
+    [pytest.param(each, marks=[] if each.stem == "paper" else [pytest.mark.long]) for each in NOTEBOOKS],
+    ids=lambda file: file.stem,
+)
 def test_a_notebook_runs_and_shows_what_it_showed(file):
     kept = nbformat.read(file, as_version=4)
     ran = nbformat.read(file, as_version=4)

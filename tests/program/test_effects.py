@@ -27,6 +27,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 SPHERICAL = EXAMPLES / "spherical_pendulum.mac"
 OPTIONAL = ("support_motion", "frame_rotation", "gravity", "drag")
 SUBSETS = tuple(chain.from_iterable(combinations(OPTIONAL, size) for size in range(len(OPTIONAL) + 1)))
+AT_THE_ENDS = (0, 1, len(OPTIONAL))  # sizes of subsets that the short suite asks for
 
 SYSTEM = """
 load("holonom.mac")$
@@ -144,7 +145,11 @@ def refusal_of(file, *options):
     return result.output
 
 
-@pytest.mark.parametrize("called", SUBSETS, ids=lambda called: "+".join(called) or "none")
+@pytest.mark.parametrize(
+    "called",
+    [pytest.param(each, marks=[] if len(each) in AT_THE_ENDS else [pytest.mark.long]) for each in SUBSETS],
+    ids=lambda called: "+".join(called) or "none",
+)
 def test_every_subset_of_effects_is_checked(called, write_scene):
     file = write_scene(spherical_scene(called))
     record = derived_record(file)

@@ -69,7 +69,7 @@ def test_random_programs(written):
     assert_same_numbers(written)
 
 
-@pytest.mark.parametrize("terms", [1000, 5000])
+@pytest.mark.parametrize("terms", [1000, pytest.param(5000, marks=pytest.mark.long)])
 def test_sums_of_thousands_of_terms(terms):
     """The energy of a long chain is one sum."""
     written = program(["a"], [("w", ["Add", *(["Multiply", k, "a"] for k in range(1, terms + 1))])], {"out": "w"})

@@ -16,10 +16,6 @@ def swing(amplitude: mpf, frequency: mpf, t: mpf) -> tuple[mpf, mpf]:
     frequency : mpf
         Of small oscillations, w.
     t : mpf
-
-    Returns
-    -------
-    (mpf, mpf)
     """
     modulus = sin(amplitude / 2)
     half = modulus * ellipfun("sn", ellipk(modulus**2) + frequency * t, m=modulus**2)
@@ -41,10 +37,6 @@ def turning(frequency: mpf, t: mpf) -> tuple[mpf, mpf]:
     frequency : mpf
         w.
     t : mpf
-
-    Returns
-    -------
-    (mpf, mpf)
     """
     rate = sqrt(1 + 4 * frequency**2)
     m = (2 * frequency / rate) ** 2

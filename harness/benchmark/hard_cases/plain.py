@@ -20,11 +20,6 @@ class Stuck(ArithmeticError):
 def plain_motion(motion: MotionProblem, until: float) -> Vector:
     """State to which SciPy's DOP853 carries the plain bordered system, without any cure of drift.
 
-    Parameters
-    ----------
-    motion : MotionProblem
-    until : float
-
     Returns
     -------
     ndarray, shape (2n,)

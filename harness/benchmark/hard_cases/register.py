@@ -33,17 +33,7 @@ REGISTER = (
 
 
 def examine(case: Case, extent: Extent) -> CaseReport:
-    """Examine one case of the register.
-
-    Parameters
-    ----------
-    case : Case
-    extent : Extent
-
-    Returns
-    -------
-    CaseReport
-    """
+    """Examine one case of the register."""
     return CaseReport(case, case.examine(extent))
 
 
@@ -55,10 +45,6 @@ def examine_all(extent: Extent, done: Callable[[], None]) -> list[CaseReport]:
     extent : Extent
     done : callable
         Called after each case.
-
-    Returns
-    -------
-    list of CaseReport
     """
     reports = []
     for case in REGISTER:

@@ -60,10 +60,6 @@ def problem(file: str, scene: str | None = None, solve: Solve = Solve.DIRECT) ->
     scene : str, optional
         Without it, the last one.
     solve : Solve
-
-    Returns
-    -------
-    MotionProblem
     """
     return motion_problem(EXAMPLES / file, Request(scene, solve), Limits())
 
@@ -77,10 +73,6 @@ def simulated(motion: MotionProblem, until: float, **asked: object) -> Arrived:
     until : float
     **asked
         What else a `SimulationRequest` takes.
-
-    Returns
-    -------
-    Arrived
 
     Raises
     ------

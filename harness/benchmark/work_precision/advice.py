@@ -42,16 +42,7 @@ class Price:
 
 
 def cheapest_methods(measurements: Sequence[Measurement]) -> Iterator[Advice]:
-    """The shortest run to the end of the motion that keeps 3, 6, 9, 12, 15, 30 digits.
-
-    Parameters
-    ----------
-    measurements : sequence of Measurement
-
-    Yields
-    ------
-    Advice
-    """
+    """The shortest run to the end of the motion that keeps 3, 6, 9, 12, 15, 30 digits."""
     whole = [m for m in measurements if m.group in WHOLE_MOTION]
     for digits in ASKED_DIGITS:
         enough = [m for m in whole if m.error <= 10.0**-digits]
@@ -62,10 +53,6 @@ def prices(measurements: Sequence[Measurement]) -> Iterator[Price]:
     """By how much each method's time grows with every digit: least squares through log(time) against digits.
 
     Runs whose error no longer falls with the tolerance, at the rounding errors of their numbers, are left out.
-
-    Parameters
-    ----------
-    measurements : sequence of Measurement
 
     Yields
     ------

@@ -60,16 +60,7 @@ def measure(candidates: Iterable[Candidate], reference: Reference, advance: Call
 
 
 def times_in_turns(batches: Mapping[Key, Batch]) -> dict[Key, float]:
-    """Seconds of short runs: the shortest of several passes over all of them.
-
-    Parameters
-    ----------
-    batches : mapping of Batch
-
-    Returns
-    -------
-    dict of float
-    """
+    """Seconds of short runs: the shortest of several passes over all of them."""
     passes = [shortest_times(batches) for _ in range(PASSES)]
     return {key: min(times[key] for times in passes) for key in batches}
 

@@ -47,10 +47,6 @@ def this_machine(packages: tuple[str, ...] = PACKAGES) -> Machine:
     ----------
     packages : tuple of str
         Whose versions matter; those that are not installed are left out.
-
-    Returns
-    -------
-    Machine
     """
     versions = {"Python": platform.python_version()}
     for package in packages:

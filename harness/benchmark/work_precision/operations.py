@@ -19,17 +19,7 @@ LINEAR = frozenset({Operation.ADD, Operation.SUBTRACT, Operation.NEGATE, Operati
 
 
 def expansion_operations(program: Program, order: int) -> int:
-    """Operations of an expansion to an order.
-
-    Parameters
-    ----------
-    program : Program
-    order : int
-
-    Returns
-    -------
-    int
-    """
+    """Operations of an expansion to an order."""
     numbers: set[str] = set()
     linear = products = 0
     for name, expression in program.assignments:

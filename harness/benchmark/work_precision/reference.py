@@ -65,10 +65,6 @@ def find_reference(problem: MotionProblem, instants: Sequence[Fraction], digits:
     digits : int
         Of the most precise method.
 
-    Returns
-    -------
-    Reference
-
     Raises
     ------
     HolonomError

@@ -67,10 +67,6 @@ def compiled_right_hand_side(problem: MotionProblem) -> RightHandSide:
     problem : MotionProblem
         Without an obstacle.
 
-    Returns
-    -------
-    RightHandSide
-
     Raises
     ------
     HolonomError

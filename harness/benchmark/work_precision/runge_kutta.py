@@ -32,10 +32,6 @@ def runge_kutta_ladder(problem: MotionProblem, until: Fraction, tolerances: Sequ
         Without an obstacle.
     until : Fraction
     tolerances : sequence of float
-
-    Yields
-    ------
-    Candidate
     """
     for tol in tolerances:
         yield Candidate(Group.RUNGE_KUTTA, RUNGE_KUTTA, f"tol {tol:g}", until, partial(_prepare, problem, until, tol))

@@ -61,10 +61,6 @@ def expansion_of(problem: MotionProblem, until: Fraction) -> Expansion:
     until : Fraction
         The last instant.
 
-    Returns
-    -------
-    Expansion
-
     Raises
     ------
     HolonomError

@@ -39,10 +39,6 @@ def scipy_solver(method: str, motion: RightHandSide, span: tuple[float, float], 
     tol : float
         Relative and absolute.
 
-    Returns
-    -------
-    ndarray
-
     Raises
     ------
     HolonomError
@@ -65,10 +61,6 @@ def sundials_solver(method: str, motion: RightHandSide, span: tuple[float, float
         ``Adams`` or ``BDF``.
     motion, span, start, tol
         As for `scipy_solver`.
-
-    Returns
-    -------
-    ndarray
 
     Raises
     ------
@@ -101,10 +93,6 @@ def solver_ladder(problem: MotionProblem, until: Fraction, tolerances: Sequence[
         Without an obstacle.
     until : Fraction
     tolerances : sequence of float
-
-    Yields
-    ------
-    Candidate
     """
     for name, solver in SOLVERS.items():
         for tol in tolerances:

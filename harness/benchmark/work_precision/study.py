@@ -76,10 +76,6 @@ def study(
     advance : callable
         Called `plan.steps` times at most.
 
-    Returns
-    -------
-    Study
-
     Raises
     ------
     HolonomError

@@ -40,10 +40,6 @@ def taylor_ladder(
     precision : str
         As `holonom.program.precision.read_precision` takes it.
     tolerances : sequence of float
-
-    Yields
-    ------
-    Candidate
     """
     for tol in tolerances:
         prepare = partial(prepare_taylor, problem, until, precision, tol, Stabilization.PROJECTION)

@@ -19,10 +19,6 @@ if TYPE_CHECKING:
 def motion_progress(title: str) -> Iterator[Callable[[float], None] | None]:
     """Show a progress bar while the block runs, on standard error if that is a terminal.
 
-    Parameters
-    ----------
-    title : str
-
     Yields
     ------
     callable or None
@@ -106,16 +102,7 @@ def _passed(passage: str) -> str:
 
 
 def distrust(doubt: "Doubt") -> str:
-    """The sentence that says why a motion is no result.
-
-    Parameters
-    ----------
-    doubt : Doubt
-
-    Returns
-    -------
-    str
-    """
+    """The sentence that says why a motion is no result."""
     whats = {
         "energy": "the energy",
         "acceleration": "a force that acts within a step",

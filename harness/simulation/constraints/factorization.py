@@ -173,10 +173,6 @@ def weighted_constraints(mass: Matrix, jacobian: Matrix) -> WeightedConstraints:
     jacobian : ndarray, shape (g, n)
         J; its rows may be dependent, and of any scale.
 
-    Returns
-    -------
-    WeightedConstraints
-
     Raises
     ------
     HolonomError
@@ -206,10 +202,6 @@ def factored_constraints(weighted: WeightedConstraints, rank: int) -> FactoredCo
     weighted : WeightedConstraints
     rank : int
         Where it is less than the number of constraints, the smallest singular values are dropped.
-
-    Returns
-    -------
-    FactoredConstraints
     """
     if rank == weighted.directions.shape[1]:
         return _factored_by_reflections(weighted)
@@ -245,10 +237,6 @@ def rank_of(singular_values: Vector, negligible: float = DEPENDENT) -> int:
         Of W, the largest first.
     negligible : float
         Singular values that do not count, relative to the largest.
-
-    Returns
-    -------
-    int
     """
     return int(np.count_nonzero(singular_values > negligible * singular_values.max(initial=0.0)))
 

@@ -94,12 +94,7 @@ def singular_values_at(matrices: MotionMatrices, t: float, state: Vector) -> Vec
 
 
 class Watch:
-    """Watches the constraints of a motion.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-    """
+    """Watches the constraints of a motion."""
 
     def __init__(self, problem: MotionProblem) -> None:
         self._names, self._matrices = problem.multipliers, MotionMatrices(problem)
@@ -119,10 +114,6 @@ class Watch:
         t : float
             After the step.
         state : ndarray, shape (2n,)
-
-        Returns
-        -------
-        bool
         """
         last, self._least = self._least, self.least(t, state)
         return self._least < SMALL and self._least < REACH * (last - self._least)
@@ -143,12 +134,6 @@ class Watch:
 
 def vanishing_instants(problem: MotionProblem, matrices: MotionMatrices, end: float) -> list[float]:
     """Instants before the end of a motion at which the gradient of a constraint may vanish.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-    matrices : MotionMatrices
-    end : float
 
     Returns
     -------
@@ -197,11 +182,6 @@ def no_gradient(t: float, multiplier: str) -> HolonomError:
 
 def zeros_of_controls(problem: MotionProblem, start: float, end: float) -> list[float]:
     """Instants inside a time span at which a control changes its sign.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-    start, end : float
 
     Returns
     -------

@@ -56,10 +56,6 @@ def stabilized_equations(
         ``BAUMGARTE`` or ``GGL``.
     decay : float
         gamma, per unit of time.
-
-    Returns
-    -------
-    list of (expression, expression)
     """
     gamma = import_heyoka().expression(precision.ratio(Fraction(decay)))
     two = import_heyoka().expression(precision.ratio(Fraction(2)))

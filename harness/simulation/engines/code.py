@@ -36,11 +36,6 @@ HARDWARE = ("double", "extended")
 def better_code(code: Code, precision: Precision) -> Code | None:
     """The next better code, if there is one in these numbers.
 
-    Parameters
-    ----------
-    code : Code
-    precision : Precision
-
     Returns
     -------
     Code or None
@@ -61,10 +56,6 @@ def pays(code: Code, operations: int, seconds: float) -> bool:
         Of the motion program.
     seconds : float
         What is left of the run takes, in the code that it has.
-
-    Returns
-    -------
-    bool
     """
     compilation = 0.05 + (1.6e-3 * operations if code is Code.COMPACT else 5.5e-5 * operations**2)
     return SAVED[code] * seconds > compilation

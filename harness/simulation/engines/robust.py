@@ -98,10 +98,6 @@ class RobustEngine:
     def advance(self, until: float) -> None:
         """Follow the motion to an instant.
 
-        Parameters
-        ----------
-        until : float
-
         Raises
         ------
         HolonomError
@@ -112,10 +108,6 @@ class RobustEngine:
 
     def pieces(self, until: float) -> Iterator[Piece]:
         """Follow the motion to an instant, step by step.
-
-        Parameters
-        ----------
-        until : float
 
         Yields
         ------

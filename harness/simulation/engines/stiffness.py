@@ -20,10 +20,6 @@ class StiffnessWatch:
     def stiff(self, solver: DOP853) -> bool:
         """Look at the step that the integrator just took.
 
-        Parameters
-        ----------
-        solver : DOP853
-
         Returns
         -------
         bool
@@ -34,16 +30,7 @@ class StiffnessWatch:
 
 
 def at_boundary(solver: DOP853) -> bool:
-    """Whether the last step was as long as the method's stability allows.
-
-    Parameters
-    ----------
-    solver : DOP853
-
-    Returns
-    -------
-    bool
-    """
+    """Whether the last step was as long as the method's stability allows."""
     step, last = solver.t - solver.t_old, solver.n_stages - 1
     before = solver.y_old + step * (solver.K[:last].T @ solver.A[last, :last])
     states, rates = np.linalg.norm(solver.y - before), np.linalg.norm(solver.f - solver.K[last])

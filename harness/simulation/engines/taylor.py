@@ -143,10 +143,6 @@ def block_within(allowed: float, steps: int, drift: float) -> int:
         Of the block before.
     drift : float
         How far it left them there. What a velocity misses grows with the time, what a position misses with its square.
-
-    Returns
-    -------
-    int
     """
     growth = (allowed / drift) ** 0.5 if drift > 0 else GROWTH
     return max(1, min(int(steps * min(growth, GROWTH)), LONGEST_BLOCK))
@@ -154,11 +150,6 @@ def block_within(allowed: float, steps: int, drift: float) -> int:
 
 def held(tol: float, precision: Precision) -> float:
     """A tolerance that the numbers can hold.
-
-    Parameters
-    ----------
-    tol : float
-    precision : Precision
 
     Returns
     -------

@@ -102,6 +102,7 @@ def test_what_the_table_states_is_the_distance_from_the_closed_form(problems, re
         assert result.operations > 0
 
 
+@pytest.mark.long
 def test_maxima_sums_its_own_series_to_the_truncated_closed_form(done):
     """The rest of the exponential series at t = 1 decides the error of orders 10 and 20, rounded or not."""
     exact = {m.setting: m.error for m in done.measurements if m.method == "series, exact"}
@@ -133,6 +134,7 @@ def test_the_figure_names_every_method_and_the_machine(done, tmp_path):
         assert text in drawn
 
 
+@pytest.mark.long
 def test_precisions_whose_reference_would_take_too_long_are_left_out_with_the_reason():
     plan = replace(
         SHORT, tolerances={"double": (1e-6,), "100": (1e-50,)}, orders=(10,), until=UNTIL, longest_reference=0

@@ -5,13 +5,13 @@ import shutil
 import pytest
 from chromium import chromium, missing_programs
 from observation import keep_screenshot, observe
-from views import PHONE, VIEWS
+from views import VIEWS
 
 from holonom.companion.paper import REPOSITORY
 
 SCREENSHOTS = REPOSITORY / "build" / "screenshots"
-# The narrowest view finds most; a look at some hundred pages takes a minute and a half.
-LOOKS = (PHONE, *(pytest.param(view, marks=pytest.mark.long) for view in VIEWS if view is not PHONE))
+# A look at some hundred pages takes more than a minute.
+LOOKS = [pytest.param(view, marks=pytest.mark.long) for view in VIEWS]
 
 
 @pytest.fixture(scope="session")
