@@ -84,6 +84,11 @@ def test_an_error_is_caught_by_the_file_itself(write_scene):
     assert error.failure is Failure.NOTHING_WRITTEN
 
 
+def test_a_lisp_error_without_a_message_ended_in_an_empty_sentence(write_scene):
+    error = failure_of(write_scene('?error("")$'))
+    assert (error.failure, error.detail) == (Failure.LISP_ERROR, "it does not say which")
+
+
 def test_a_file_without_a_system_is_refused(write_scene):
     assert "system" in str(failure_of(write_scene('load("holonom.mac")$')))
 

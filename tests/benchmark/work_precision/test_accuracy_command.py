@@ -2,9 +2,14 @@
 
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
+from holonom.benchmark.work_precision import study
+from holonom.cli import holonom
+
+PAPER = Path(__file__).parents[3] / "examples" / "paper" / "paper.mac"
 SCENE = """
 load("holonom.mac")$
 bob : holonomic_system(
@@ -32,3 +37,11 @@ def test_a_scene_that_cannot_be_measured_is_refused_in_one_sentence(write_scene,
     assert len(done.stderr.splitlines()) == 1
     assert done.stdout == ""
     assert not written.exists()
+
+
+@pytest.mark.parametrize("option", ["--json", "--plot"])
+def test_an_output_that_cannot_be_written_was_noticed_after_the_measurements(monkeypatch, tmp_path, capsys, option):
+    monkeypatch.setattr(study, "study", lambda *_, **__: pytest.fail("it was measured first"))
+    output = tmp_path / "no" / "such.svg"
+    assert holonom(["accuracy", str(PAPER), option, str(output)], standalone_mode=False) == 2
+    assert "cannot be written" in capsys.readouterr().err
