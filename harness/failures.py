@@ -18,7 +18,7 @@ class Failure(Enum):
     NOT_UTF8 = ("the file is not UTF-8 text: byte {detail}", "save it as UTF-8")
     NOT_MAXIMA = (
         "this does not run as Maxima: {detail}",
-        "put a Maxima that works first in PATH, or free space for temporary files",
+        "put a Maxima that works first in PATH, free space for temporary files, or lift a limit on memory",
     )
     TORN = ("what Maxima left behind is not whole: its {detail}", "free space for temporary files, and run it again")
     KILLED = ("Maxima was ended by {detail}", "see what ends it, perhaps a lack of memory, and run it again")
