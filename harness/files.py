@@ -94,7 +94,12 @@ def _locked_directory() -> tuple[Path, int]:
     while True:
         try:
             path = Path(tempfile.mkdtemp(prefix=PRIVATE)).resolve()
+        except OSError as error:
+            raise HolonomError(Failure.NO_PRIVATE_DIRECTORY, detail=error.strerror or str(error)) from None
+        try:
             lock = os.open(path, os.O_RDONLY)
+        except FileNotFoundError:  # swept before it was opened
+            continue
         except OSError as error:
             raise HolonomError(Failure.NO_PRIVATE_DIRECTORY, detail=error.strerror or str(error)) from None
         fcntl.flock(lock, fcntl.LOCK_EX)

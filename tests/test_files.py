@@ -87,6 +87,20 @@ def test_a_private_directory_goes_whatever_is_in_it():
     assert not directory.exists()
 
 
+def test_a_directory_that_another_run_sweeps_before_it_is_locked_is_made_again(tmp_path, monkeypatch):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    opened, sweeps = os.open, [sweep_private_directories]
+
+    def after_a_sweep(*arguments):
+        if sweeps:
+            sweeps.pop()()
+        return opened(*arguments)
+
+    monkeypatch.setattr("os.open", after_a_sweep)
+    with private_directory() as directory:
+        assert list(tmp_path.iterdir()) == [directory]
+
+
 def test_what_a_killed_run_left_is_swept_and_what_is_in_use_stays(tmp_path, monkeypatch):
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     left, draft, foreign = tmp_path / f"{PRIVATE}abcdefgh", tmp_path / ".output.7.new", tmp_path / f"{PRIVATE}mine"
