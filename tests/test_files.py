@@ -91,10 +91,10 @@ def test_a_directory_that_another_run_sweeps_before_it_is_locked_is_made_again(t
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     opened, sweeps = os.open, [sweep_private_directories]
 
-    def after_a_sweep(*arguments):
+    def after_a_sweep(*arguments, **options):
         if sweeps:
             sweeps.pop()()
-        return opened(*arguments)
+        return opened(*arguments, **options)
 
     monkeypatch.setattr("os.open", after_a_sweep)
     with private_directory() as directory:
