@@ -76,7 +76,11 @@ def test_a_law_under_which_no_state_is_regular_is_neither_right_nor_wrong():
 
 
 def test_a_law_for_one_sign_of_a_parameter_is_tried_for_that_sign_alone():
-    """cos(sqrt|k/m| t) is real for either sign, and a spring's motion for one."""
+    """cos(sqrt|k/m| t) is real for either sign, and a spring's motion for one.
+
+    Of eight random states four are positive throughout; one in sixteen draws has k/m > 0 in the others too.
+    """
     law = {u: u0 * sp.cos(sp.sqrt(sp.Abs(k / m)) * t)}
     assert judge_law(SPRING, {}, LawOfControls(law, (k / m,))).verdict is Verdict.AGREES
-    assert judge_law(SPRING, {}, LawOfControls(law)).verdict is Verdict.DISAGREES
+    drawn = (judge_law(SPRING, {}, LawOfControls(law)).verdict for _ in range(16))
+    assert Verdict.DISAGREES in drawn
