@@ -117,9 +117,7 @@ def _make(image: Path, maxima: str, library: Path, environment: Mapping[str, str
         raise OSError(None, "there is too little space", str(image))
     kept = [image.with_name(name) for name in COMPILED]
     with private_directory() as directory, draft_of(image) as draft:
-        if _is_whole(*kept):
-            for each in kept:
-                shutil.copy(each, directory / f"kept{each.suffix}")
+        _take_along(kept, directory)
         quoted = str(library).replace("\\", "\\\\").replace('"', '\\"')
         asked = f'{PRELOAD.read_text(encoding="utf-8")}\n(save-with-library "{quoted}")\n'
         (directory / "save.lisp").write_text(asked, encoding="utf-8")
@@ -137,13 +135,24 @@ def _make(image: Path, maxima: str, library: Path, environment: Mapping[str, str
         draft.replace(image)
 
 
+def _take_along(kept: Sequence[Path], directory: Path) -> None:
+    """Copy what was compiled before, and take the copies only if they are whole: others may exchange it meanwhile."""
+    copies = [directory / f"kept{each.suffix}" for each in kept]
+    with suppress(FileNotFoundError):
+        for source, target in zip((*kept, _checksum_file(kept)), (*copies, _checksum_file(copies)), strict=True):
+            shutil.copy(source, target)
+    if not _is_whole(*copies):
+        for copy in copies:
+            copy.unlink(missing_ok=True)
+
+
 def _keep(made: Sequence[Path], kept: Sequence[Path]) -> None:
-    """Keep what was compiled; while it is exchanged it has not its checksum, and nobody takes it."""
+    """Keep what was compiled; the checksum is that of the two files together, whoever else exchanges one of them."""
     if all(each.exists() for each in made):
-        _checksum_file(kept).unlink(missing_ok=True)
+        checksum = _checksum(made)
         for source, target in zip(made, kept, strict=True):
             shutil.move(source, target)
-        _checksum_file(kept).write_text(_checksum(kept), encoding="ascii")
+        _checksum_file(kept).write_text(checksum, encoding="ascii")
 
 
 def _remove_older_ones(folder: Path) -> None:
