@@ -1,14 +1,20 @@
 """Motion programs for the tests: documents written by hand, random ones, and a chain of any length."""
 
 import json
+import random
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
+from hypothesis import assume
 from hypothesis import strategies as st
+from reference import IllConditioned, reference
 
 from holonom.program.motion_program import Program, read_program
 
 Tree = Any
+
+POINTS = 11  # one block of eight lanes in C, and three points more
 
 HALF = ["Rational", 1, 2]
 
@@ -139,3 +145,18 @@ def chain(links: int) -> Program:
             let(f"a{axis}{k}", "Add", *terms)
             outputs[f"ddot({axis}{k})"] = f"a{axis}{k}"
     return program(inputs, assignments, outputs)
+
+
+def random_points(written, seed=0):
+    """Columns of an array, one a point, with coordinates of the order of one."""
+    draw = random.Random(seed)
+    return np.array([[draw.uniform(-2, 2) for _ in range(POINTS)] for _ in written.inputs])
+
+
+def assume_well_conditioned(written: Program) -> None:
+    """Have Hypothesis draw another program where rounding errors of one's values have no bound at the random points."""
+    try:
+        for point in random_points(written).T:
+            reference(written, point.tolist())
+    except IllConditioned:
+        assume(False)

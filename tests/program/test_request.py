@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from programs import random_points
 from reference import IllConditioned, reference
-from test_same_numbers import assert_same_numbers, random_points
+from test_same_numbers import assert_same_numbers
 
 from holonom.cli import holonom
 from holonom.confined import Limits
