@@ -61,7 +61,6 @@ class Limits:
         Printed text, in MiB.
     file_mib : int
         Each file written, in MiB.
-    sandbox : Sandbox
     """
 
     seconds: float = 120.0
@@ -100,7 +99,6 @@ class Confinement:
         Its whole environment.
     readable : sequence of Path
         What it may read besides the system's programs, where it is walled in.
-    limits : Limits
     """
 
     directory: Path
@@ -116,7 +114,6 @@ def run_confined(command: Sequence[str], confinement: Confinement, printed: byte
     ----------
     command : sequence of str
         The program, by its path, and its arguments.
-    confinement : Confinement
     printed : bytearray
         Receives what it prints, also when it is ended early.
 

@@ -76,14 +76,10 @@ def ask(
 
     Parameters
     ----------
-    document : Document
-    file : Path
     *arguments : None, int, Fraction, str or sequence of these
         What the writer in Maxima takes behind the name of the file that it writes; a string is a name.
     settings : mapping of str to str
         Numbers in Maxima's notation, for what the file leaves open and for parameters.
-    limits : Limits
-        What Maxima may take.
 
     Returns
     -------

@@ -51,10 +51,6 @@ def private_directory() -> Iterator[Path]:
 class KeptDirectory:
     """A private directory that is there for as long as somebody refers to this object.
 
-    Attributes
-    ----------
-    path : Path
-
     Raises
     ------
     HolonomError
@@ -251,7 +247,6 @@ def require_own_files(directory: Path, names: Iterable[str]) -> None:
 
     Parameters
     ----------
-    directory : Path
     names : iterable of str
         What is to be written, by paths in the directory.
 

@@ -36,7 +36,6 @@ class FirstCoefficient:
 
     Attributes
     ----------
-    multiplier : str
     order : int
         The power of t - t0.
     value : str
@@ -125,12 +124,10 @@ class UniversalControls:
     ----------
     verdict : str
         ``all`` (these laws are all there are), ``some``, ``none`` (there are none) or ``undecided``.
-    laws : tuple of UniversalLaw
     conditions : tuple of ControlCondition
         Shortest first.
     generic : bool
         Parameters were left open, and the answer is that for generic values.
-    reason : str
     """
 
     verdict: str
@@ -160,7 +157,6 @@ class TrajectoryControl:
         The free motion by coordinate, where its closed form is known.
     samples : tuple of tuple of float
         Instants of the scene's time span with the values of the controls, as far as there are such controls.
-    reason : str
     """
 
     kind: str
@@ -229,14 +225,10 @@ def free_motion(
 
     Parameters
     ----------
-    file : Path
-        The scene file.
     scene : str or None
         Name of the scene; None for the last one.
     settings : mapping of str to str
         Numbers for what the file leaves open.
-    limits : Limits
-        What Maxima may take.
     order : int or None
         Up to which order the power series of the multipliers are looked at, 2 or more; None for Maxima's
         ``verdict_order``.

@@ -34,7 +34,6 @@ class Component:
 
     Attributes
     ----------
-    name : str
     version : str or None
         None where it is missing; empty where it does not tell.
     purpose : str

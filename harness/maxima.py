@@ -79,9 +79,6 @@ class Run:
     ----------
     file : Path
         The file that it is about.
-    directory : Path
-    limits : Limits
-    settings : mapping of str to str
     mark : str
         What only this run can know: the names of what it leaves behind end in it, and the outcome holds it.
     """
@@ -112,8 +109,6 @@ def ask_scene(
         project's library.
     writer : str
         The library's function that writes the document, given the name of the file to write.
-    limits : Limits
-        What the two processes may take together.
     settings : mapping of str to str
         Numbers in Maxima's notation, for what the file leaves open and for parameters.
 
@@ -172,8 +167,6 @@ def run_rtest(rtest: Path, limits: Limits = DEFAULT_LIMITS) -> int:
     ----------
     rtest : Path
         The file, ``rtest_*.mac``.
-    limits : Limits
-        What the run may take.
 
     Returns
     -------

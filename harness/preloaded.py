@@ -43,7 +43,6 @@ def preloaded_image(maxima: str, library: Path, environment: frozenset[tuple[str
     ----------
     maxima : str
         The path of Maxima.
-    library : Path
     environment : frozenset of (str, str)
         What of the environment Maxima is started with.
 

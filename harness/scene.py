@@ -171,15 +171,7 @@ def sweep(
 
 
 class Scene:
-    """A system put to work.
-
-    Parameters
-    ----------
-    file : Path
-    name : str or None
-    settings : mapping of str to str
-    limits : Limits
-    """
+    """A system put to work."""
 
     def __init__(self, file: Path, name: str | None, settings: Mapping[str, str], limits: Limits) -> None:
         self.file, self.settings, self.limits = file, dict(settings), limits

@@ -118,7 +118,6 @@ def require_writable(path: Path, kinds: Iterable[str]) -> None:
 
     Parameters
     ----------
-    path : Path
     kinds : iterable of str
         What it may hold; of these only c is a directory.
 
@@ -145,7 +144,6 @@ def require_earlier_output(path: Path, kinds: Iterable[str]) -> None:
 
     Parameters
     ----------
-    path : Path
     kinds : iterable of str
         Of what kinds an output may be, keys of `EARLIER`.
 

@@ -69,7 +69,6 @@ def check_record(record: Record, seed: str | None = None) -> CheckReport:
 
     Parameters
     ----------
-    record : Record
     seed : str or None
         Draws the random points; None for a fresh one.
 

@@ -26,7 +26,6 @@ class IndependentEquations:
 
     Attributes
     ----------
-    system : MechanicalSystem
     supported : bool
         Whether J^T times the constraint accelerations is added where accelerations are solved for: for a mass matrix
         that is singular, and regular together with the constraints.

@@ -37,7 +37,6 @@ class EquationVerdict:
         The derivation that it belongs to: its place in the record, from 0.
     scene : str or None
         Name of the scene the equation belongs to; None for an equation of a derivation.
-    verdict : Verdict
     digits, points : int or None
         Significant digits demanded and random points compared; None where nothing was evaluated.
     detail : str
@@ -65,7 +64,6 @@ class CheckReport(Shown):
 
     Attributes
     ----------
-    verdicts : tuple of EquationVerdict
     seed : str
         Draws the same random points again.
     """

@@ -53,7 +53,6 @@ def judge_law(system: MechanicalSystem, values: Mapping[sp.Symbol, sp.Expr], law
         Of the effects called for.
     values : mapping of Symbol to Expr
         Values of parameters; those left out are drawn at random too.
-    law : LawOfControls
 
     Returns
     -------

@@ -53,7 +53,6 @@ class Comparison:
 
     Attributes
     ----------
-    pairs : tuple of Pair
     given : mapping of Symbol to Expr
         Symbols with a meaning, such as u under a control law; each may use the ones before it.
     solves : tuple of LinearEquations
@@ -82,7 +81,6 @@ def judge(comparison: Comparison, seed: str) -> Judgement:
 
     Parameters
     ----------
-    comparison : Comparison
     seed : str
         Makes the random points; the same points for the same seed.
     """

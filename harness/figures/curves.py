@@ -35,7 +35,6 @@ def draw_curves(panels: Sequence[Panel], xlabel: str) -> str:
 
     Parameters
     ----------
-    panels : sequence of Panel
     xlabel : str
         What is below all of them, with its unit.
 

@@ -47,10 +47,8 @@ class Film:
 
     Attributes
     ----------
-    title : str
     instants : ndarray, shape (k,)
         Equidistant.
-    shapes : tuple of Shape
     numbers : tuple of ndarray, shape (k, numbers of the shape)
         x and y of a shape's places in their order, then, of a circle, the radius.
     """
@@ -89,7 +87,6 @@ def film_of(simulation: Simulation, drawing: Drawing) -> Film:
     ----------
     simulation : Simulation
         At many equidistant instants; its scene observes the trajectory.
-    drawing : Drawing
 
     Returns
     -------

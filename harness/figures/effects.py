@@ -16,7 +16,6 @@ def draw_with_and_without(present: Simulation, absent: Simulation, across: str, 
 
     Parameters
     ----------
-    present, absent : Simulation
     across, along : str
         The coordinates on the two axes.
 

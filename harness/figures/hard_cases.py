@@ -19,7 +19,6 @@ def draw_stability(reports: Sequence[CaseReport], file: Path) -> None:
 
     Parameters
     ----------
-    reports : sequence of CaseReport
     file : Path
         The SVG file.
 

@@ -25,7 +25,6 @@ def draw_motion(simulation: Simulation, file: Path) -> None:
 
     Parameters
     ----------
-    simulation : Simulation
     file : Path
         The SVG or PNG file.
 

@@ -145,7 +145,6 @@ def write_figure(figure: "Figure", path: Path) -> None:
 
     Parameters
     ----------
-    figure : matplotlib.figure.Figure
     path : Path
         The file; what it held is replaced. The same figure gives the same bytes.
 

@@ -24,7 +24,6 @@ def sweep_figure(sweep: "Sweep", quantity: str | None = None) -> "Figure":
 
     Parameters
     ----------
-    sweep : Sweep
     quantity : str or None
         A column; None for the first that is kept.
 

@@ -44,7 +44,6 @@ def draw_study(study: "Study", path: Path) -> None:
 
     Parameters
     ----------
-    study : Study
     path : Path
         The SVG file.
 

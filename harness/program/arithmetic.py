@@ -21,7 +21,6 @@ class Arithmetic(Generic[Value]):
     ----------
     number : callable
         Takes a Fraction.
-    constants : mapping of Constant
     power : callable
         Takes the base's value and a rational exponent.
     operations : mapping of Operation to callable
@@ -59,10 +58,8 @@ def run_program(program: Program, inputs: Mapping[str, Value], arithmetic: Arith
 
     Parameters
     ----------
-    program : Program
     inputs : mapping
         A value for each of the program's inputs.
-    arithmetic : Arithmetic
 
     Returns
     -------

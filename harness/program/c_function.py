@@ -31,7 +31,6 @@ class CFunction:
 
     Parameters
     ----------
-    program : Program
     library : ctypes.CDLL
         Holds ``motion`` and ``motion_batch``.
     """
@@ -87,7 +86,6 @@ def load_c(source: str, *options: str) -> ctypes.CDLL:
 
     Parameters
     ----------
-    source : str
     options : str
         What else the compiler is told: where headers and libraries are.
 
@@ -116,7 +114,6 @@ def compile_shared(sources: Sequence[Path], library: Path, *options: str) -> Non
 
     Parameters
     ----------
-    sources : sequence of Path
     library : Path
         The shared object to make.
     options : str

@@ -210,7 +210,6 @@ def c_library(model: Model, name: str) -> dict[str, str]:
 
     Parameters
     ----------
-    model : Model
     name : str
         The library's, with which every public name begins.
 

@@ -130,7 +130,6 @@ def c_source(program: Program, name: str = "motion") -> str:
 
     Parameters
     ----------
-    program : Program
     name : str
         Name of the function for one point; the one for many has ``_batch`` after it.
 
@@ -169,7 +168,6 @@ def scalar_statements(program: Program, inputs: Sequence[str]) -> Iterator[str]:
 
     Parameters
     ----------
-    program : Program
     inputs : sequence of str
         For each input an expression of C.
 
@@ -203,7 +201,6 @@ def statements(program: Program, target: Target, inputs: Sequence[str], writes: 
 
     Parameters
     ----------
-    program : Program
     target : Target
         `ONE` point, or `MANY` in lanes.
     inputs : sequence of str

@@ -29,7 +29,6 @@ class Drawing:
 
     Attributes
     ----------
-    shapes : tuple of Shape
     program : Program
         Of t, the coordinates and more; ``drawing[i,k]`` is the k-th number of the i-th shape, indices from 1.
     """

@@ -46,7 +46,6 @@ class TermProgram:
 
     Attributes
     ----------
-    equation, name : str
     program : Program or None
         It computes the term for every s, or beta; None where the term is identically zero.
     """
@@ -62,7 +61,6 @@ class EffectProgram:
 
     Attributes
     ----------
-    name : str
     called : bool
         Whether the scene calls for it.
     otherwise : Program or None

@@ -37,7 +37,6 @@ def write_fmu(model: Model, name: str) -> bytes:
 
     Parameters
     ----------
-    model : Model
     name : str
         Its model identifier, and the name of the library in C.
 

@@ -50,7 +50,6 @@ class HeyokaFunction:
 
     Parameters
     ----------
-    program : Program
     compact : bool
         Whether to compile in heyoka's compact mode.
     """
@@ -96,7 +95,6 @@ def heyoka_expressions(
 
     Parameters
     ----------
-    program : Program
     inputs : mapping of str to expression
         What to put for each input: a variable, heyoka's time, a parameter, a control law.
     number : callable

@@ -45,7 +45,6 @@ def javascript_source(program: Program, name: str = "motion") -> str:
 
     Parameters
     ----------
-    program : Program
     name : str
         Name of the constant that holds the names of the inputs and outputs and the function ``evaluate``.
 

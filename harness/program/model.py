@@ -20,7 +20,6 @@ class Model:
 
     Attributes
     ----------
-    system, source, scene, title : str
     coordinates, multipliers, controls, parameters : tuple of str
         Their names: n, g, alpha and those of the parameters that are inputs.
     values : mapping of str to str
@@ -65,13 +64,8 @@ def scene_model(file: Path, request: Request, parameters: Sequence[str], limits:
 
     Parameters
     ----------
-    file : Path
-        The scene file.
-    request : Request
     parameters : sequence of str
         Those that stay open although the scene gives them values.
-    limits : Limits
-        What Maxima may take.
 
     Raises
     ------

@@ -41,7 +41,6 @@ class Sign(NamedTuple):
         The input of the programs that stands for it.
     of : str
         The switching function whose sign it is, as Maxima prints it.
-    by : By
     """
 
     name: str
@@ -69,7 +68,6 @@ class ParametricStart:
     ----------
     program : Program or None
         Of the open parameters: each coordinate and velocity, or what the search for it begins with.
-    origins : mapping of str to Origin
     obstacle : str or None
         Why the start cannot follow the parameters; there is a program where it can.
     """
@@ -90,7 +88,6 @@ class MotionProblem:
     ----------
     system, source : str
         Title of the system, and where it comes from.
-    scene, title : str
     time_span : (str, str) or None
         First and last instant, as decimal digits; None where the scene names none.
     observe : tuple of str
@@ -178,8 +175,6 @@ class MotionProblem:
         ----------
         what : hashable
             Tells apart what is built of the same program.
-        program : Program
-        build : callable
         """
         if not self.parameters:
             return build()
@@ -209,12 +204,7 @@ class MotionProblem:
 
 
 def require_analytic(problem: MotionProblem) -> None:
-    """Refuse a motion whose signs are still open to whoever follows one analytic motion alone.
-
-    Raises
-    ------
-    HolonomError
-    """
+    """Refuse a motion whose signs are still open to whoever follows one analytic motion alone."""
     if problem.signs:
         raise HolonomError(Failure.NOT_ANALYTIC, problem.scene, problem.signs[0].of)
 
@@ -226,11 +216,6 @@ def motion_problem(
 
     Parameters
     ----------
-    file : Path
-        The scene file.
-    request : Request
-    limits : Limits
-        What Maxima may take.
     digits : int
         Significant digits of the initial state.
     open_parameters : sequence of str
@@ -319,7 +304,6 @@ def computing(program: Program, wanted: Collection[str]) -> Program:
 
     Parameters
     ----------
-    program : Program
     wanted : collection of str
         Outputs to keep.
 

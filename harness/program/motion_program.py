@@ -109,15 +109,12 @@ class Program:
     ----------
     scene : str or None
         Name of the scene it was written for; None for a system alone.
-    solve : Solve
     method : str
         Which factorisation the solve uses, for instance ``bordered`` or ``schur``.
     operations : int
         What it costs, as Maxima counted.
-    inputs : tuple of str
     assignments : tuple of (str, Expression)
         In the order in which they can be computed.
-    outputs : mapping of str to Atom
     """
 
     scene: str | None

@@ -65,7 +65,6 @@ def python_source(program: Program, name: str = "motion") -> str:
 
     Parameters
     ----------
-    program : Program
     name : str
         Name of the function.
 

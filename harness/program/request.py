@@ -34,7 +34,6 @@ class Request:
     ----------
     scene : str or None
         Name of the scene; None for the last one, or for the system where there is none.
-    solve : Solve
     settings : mapping of str to str
         Numbers in Maxima's notation, for what the file leaves open and for parameters.
     """
@@ -79,15 +78,6 @@ def read_settings(texts: Iterable[str]) -> dict[str, str]:
 def program_text(file: Path, request: Request, form: Form, limits: Limits) -> str:
     """Write the motion program of a scene file in one of its forms.
 
-    Parameters
-    ----------
-    file : Path
-        The scene file.
-    request : Request
-    form : Form
-    limits : Limits
-        What Maxima may take.
-
     Raises
     ------
     HolonomError
@@ -107,14 +97,6 @@ def program_text(file: Path, request: Request, form: Form, limits: Limits) -> st
 def program_document(file: Path, request: Request, limits: Limits) -> str:
     """The document of a scene file's motion program, as Maxima writes it.
 
-    Parameters
-    ----------
-    file : Path
-        The scene file.
-    request : Request
-    limits : Limits
-        What Maxima may take.
-
     Returns
     -------
     str
@@ -130,14 +112,6 @@ def program_document(file: Path, request: Request, limits: Limits) -> str:
 
 def effects_document(file: Path, request: Request, limits: Limits) -> str:
     """The document of what a scene pays for, as Maxima writes it.
-
-    Parameters
-    ----------
-    file : Path
-        The scene file.
-    request : Request
-    limits : Limits
-        What Maxima may take.
 
     Returns
     -------

@@ -23,7 +23,6 @@ def problem_in(problem: MotionProblem, pattern: Pattern) -> MotionProblem:
 
     Parameters
     ----------
-    problem : MotionProblem
     pattern : mapping of str to int or str
         1, -1 or `HELD` for each sign; one at most is held, of those that `holdable` names.
 
@@ -45,7 +44,6 @@ def program_in(problem: MotionProblem, program: Program, pattern: Pattern) -> Pr
     ----------
     problem, pattern
         As for `problem_in`.
-    program : Program
 
     Returns
     -------
@@ -118,7 +116,6 @@ def drive(problem: MotionProblem, name: str, sign: int, pattern: Pattern) -> Pro
         As for `problem_in`.
     name : str
         One of the signs, that `holdable` is true of.
-    sign : int
 
     Returns
     -------

@@ -25,12 +25,10 @@ class EntryText:
 
     Attributes
     ----------
-    function, name, type, default, text, example : str
     also : tuple of str
         Entries that the example needs beside it.
     system : tuple of str
         Entries of the system that the example needs in the place of those of the same names.
-    refused : tuple of Refusal
     """
 
     function: str
@@ -50,10 +48,8 @@ class FunctionText:
 
     Attributes
     ----------
-    name, summary, call : str
     context : tuple of str
         Entries of a complete example.
-    entries : tuple of EntryText
     """
 
     name: str
@@ -79,10 +75,8 @@ class PartText:
 
     Attributes
     ----------
-    name, call, text, example : str
     context : tuple of str
         The bodies that the example uses, as statements.
-    refused : tuple of Refusal
     """
 
     name: str

@@ -53,7 +53,6 @@ class Topic:
     ----------
     group, slug, title, summary : str
         The slug is unique in the whole reference.
-    parts : tuple of Table or Code
     """
 
     group: str

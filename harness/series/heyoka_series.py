@@ -34,8 +34,6 @@ def expand_by_heyoka(file: Path, request: SeriesRequest, limits: Limits) -> Moti
 
     Parameters
     ----------
-    file : Path
-        The scene file.
     request : SeriesRequest
         With a precision; its digits do not matter.
     limits : Limits
@@ -60,10 +58,8 @@ def expand(problem: MotionProblem, order: int, precision: Precision) -> MotionSe
 
     Parameters
     ----------
-    problem : MotionProblem
     order : int
         2 or more.
-    precision : Precision
 
     Raises
     ------
@@ -97,10 +93,8 @@ def continue_motion(problem: MotionProblem, until: Fraction, precision: Precisio
 
     Parameters
     ----------
-    problem : MotionProblem
     until : Fraction
         The last instant.
-    precision : Precision
 
     Raises
     ------
@@ -129,10 +123,8 @@ def expanding_integrator(problem: MotionProblem, order: int, precision: Precisio
 
     Parameters
     ----------
-    problem : MotionProblem
     order : int
         The coefficients of the multipliers reach it; those of the state go one further.
-    precision : Precision
     effort : int
         ``ONCE`` for one expansion, ``OFTEN`` for many.
 

@@ -73,14 +73,10 @@ class MotionSeries(Shown):
 
     Attributes
     ----------
-    scene, title : str
-    order : int
-    t0 : str
     arithmetic : str
         ``exact``, ``bigfloat(D)``, ``double``, ``extended``, ``quadruple`` or ``heyoka(D)``.
     coordinates, multipliers, constraint_forces : mapping of str to tuple of str
         Coefficients of (t - t0)^0 ... (t - t0)^order, by name.
-    continuation : Continuation or None
     switch : str or None
         A function with whose sign the motion is another than the series; None where there is none.
     """
@@ -131,14 +127,6 @@ class Values:
 def compute_series(file: Path, request: SeriesRequest, limits: Limits) -> MotionSeries:
     """Expand a scene's motion, in Maxima or, where a precision is asked for, with heyoka.
 
-    Parameters
-    ----------
-    file : Path
-        The scene file.
-    request : SeriesRequest
-    limits : Limits
-        What Maxima may take.
-
     Raises
     ------
     HolonomError
@@ -187,7 +175,6 @@ def values_at(motion: MotionSeries, time: Fraction) -> Values:
 
     Parameters
     ----------
-    motion : MotionSeries
     time : Fraction
         The instant, inside the radius of convergence.
 

@@ -53,7 +53,6 @@ class Radius:
     ----------
     estimate : float or None
         None where there is none to state; the remark says why.
-    uncertainty : float or None
     singularities : tuple of complex
         The nearest ones, as t - t0.
     remark : str
@@ -98,8 +97,6 @@ def truncation_error(coefficients: Sequence[mpmath.mpf], radius: Radius, time: f
 
     Parameters
     ----------
-    coefficients : sequence of mpf
-    radius : Radius
     time : float
         t - t0, inside the radius of convergence.
 

@@ -20,7 +20,6 @@ class Tick(NamedTuple):
 
     Attributes
     ----------
-    t : Fraction
     to : int
         The function's sign from then on; before, it is the opposite.
     """

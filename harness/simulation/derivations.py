@@ -16,14 +16,7 @@ from ..program.request import Request
 
 
 class Derivations:
-    """What Maxima has derived from a scene file.
-
-    Parameters
-    ----------
-    file : Path
-    limits : Limits
-        What Maxima may take.
-    """
+    """What Maxima has derived from a scene file."""
 
     def __init__(self, file: Path, limits: Limits) -> None:
         self._file, self._limits = file, limits
@@ -35,7 +28,6 @@ class Derivations:
 
         Parameters
         ----------
-        request : Request
         digits : int
             Significant digits of the initial state.
 

@@ -88,7 +88,6 @@ class Instant(NamedTuple):
 
     Attributes
     ----------
-    t : float
     state : ndarray, shape (2n,)
     """
 
@@ -103,8 +102,6 @@ def hard_cases(
 
     Parameters
     ----------
-    matrices : MotionMatrices
-    start, end : Instant
     multipliers : ndarray, shape (g,)
         At the end.
     steps : int

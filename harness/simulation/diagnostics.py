@@ -76,11 +76,9 @@ class EnergyBalance:
 
     Parameters
     ----------
-    problem : MotionProblem
     multipliers : callable
         Takes instants, shape (k,), and states, shape (2n, k), to multipliers, shape (g, k). It is called only where
         constraints move, and do work.
-    precision : Precision or str
 
     Attributes
     ----------
@@ -137,7 +135,6 @@ class EnergyBalance:
 
         Parameters
         ----------
-        piece : Piece
         ends : sequence of k numbers
             Where the parts end, in order; the last one with the piece.
         """

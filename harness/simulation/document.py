@@ -47,7 +47,6 @@ def published_list(samples: np.ndarray, digits: int) -> list[float | str]:
 
     Parameters
     ----------
-    samples : ndarray
     digits : int
         Of those that no double can hold.
     """

@@ -45,7 +45,6 @@ def first_event(motion: PiecewiseMotion, problem: MotionProblem, precision: Prec
         At its start.
     problem : MotionProblem
         With events.
-    precision : Precision
     end : number
         The last instant.
 
@@ -78,7 +77,6 @@ class Events(SignedFunctions):
     ----------
     problem : MotionProblem
         Without signs.
-    precision : Precision
     solutions : callable
         As an engine's.
     """
@@ -99,13 +97,8 @@ class Events(SignedFunctions):
 
         Parameters
         ----------
-        piece : Piece
         sides : dict of str to int
             The sign that each expression has had since it left zero; what this step shows is added.
-
-        Returns
-        -------
-        Crossing or None
         """
         begun = self._see_sides(piece, sides) if len(sides) < len(self._names) else ()
         self._rows = [(name, -sides[name], sides[name]) for name in self._names if name in sides]

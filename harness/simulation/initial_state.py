@@ -176,7 +176,6 @@ def at_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionP
 
     Parameters
     ----------
-    problem : MotionProblem
     values : mapping of str to Fraction
         One for each open parameter that the motion has no value of.
 

@@ -62,7 +62,6 @@ class MotionMatrices:
 
         Parameters
         ----------
-        t : float
         state : ndarray, shape (2n,)
             Coordinates, then velocities.
         """
@@ -84,7 +83,6 @@ class LaneMatrices:
 
         Parameters
         ----------
-        t : float
         states : ndarray, shape (2n, k)
         values : ndarray, shape (p, k)
             Of the open parameters.

@@ -29,10 +29,6 @@ Format = Callable[[BinaryIO], AbstractContextManager[Write]]
 def require_formats(samples: Path | None, figure: Path | None) -> None:
     """Refuse names of files that cannot be written, before there is anything to write.
 
-    Parameters
-    ----------
-    samples, figure : Path or None
-
     Raises
     ------
     HolonomError
@@ -83,11 +79,6 @@ def _numbers_a_sample(problem: MotionProblem) -> int:
 def write_files(simulation: Simulation, samples: Path | None, figure: Path | None) -> None:
     """Write the samples of a motion, and its figure, as far as they are wanted.
 
-    Parameters
-    ----------
-    simulation : Simulation
-    samples, figure : Path or None
-
     Raises
     ------
     HolonomError
@@ -106,7 +97,6 @@ def write_samples(simulation: Simulation, path: Path) -> None:
 
     Parameters
     ----------
-    simulation : Simulation
     path : Path
         Its suffix names the format: one of `FORMATS`.
 

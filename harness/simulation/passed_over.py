@@ -35,7 +35,6 @@ class StepsHeldAgainstTheEquations:
         At work.
     span : number
         Length of the time span.
-    precision : Precision
 
     Attributes
     ----------

@@ -63,10 +63,8 @@ class Switching(NamedTuple):
 
     Attributes
     ----------
-    t : float
     function : str
         What changes its sign there, as Maxima prints it.
-    passage : Passage
     """
 
     t: float
@@ -81,7 +79,6 @@ class Part:
     ----------
     problem : MotionProblem
         Its start is where the motion first has this pattern.
-    pattern : Pattern
     clock : mapping of str to Tick
         The signs that the time alone decides.
     request, precision, end
@@ -159,16 +156,8 @@ class PiecewiseMotion:
 
     Parameters
     ----------
-    problem : MotionProblem
-    request : SimulationRequest
-    precision : Precision
     end : number
         The last instant.
-
-    Attributes
-    ----------
-    phases : list of Phase
-    switchings : list of Switching
 
     Raises
     ------

@@ -41,10 +41,8 @@ class Recording:
 
     Parameters
     ----------
-    motion : PiecewiseMotion
     instants : iterable of numbers, or None
         In order, before the last; None for the ends of the pieces.
-    zero : number
     hand_on : callable
         Takes each `Stretch`.
 

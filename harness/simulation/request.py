@@ -41,7 +41,6 @@ class SimulationRequest:
     precision : str or int
         ``double``, ``extended``, ``quadruple``, or a number of decimal digits. Only the Taylor engine knows others
         than double.
-    engine : EngineName
     drift : Stabilization
         What the Taylor engine does; the Runge-Kutta engine projects or does nothing, the robust one always projects.
     until : Fraction or None

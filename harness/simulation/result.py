@@ -31,8 +31,6 @@ class Report:
 
     Attributes
     ----------
-    t : number
-    coordinates, velocities : mapping of str to number
     multipliers : mapping of str to number
         Empty where the scene does not observe them.
     residuals : mapping of str to float
@@ -42,16 +40,12 @@ class Report:
         Energy gained beyond what the forces and the controls did as work, see `holonom.simulation.diagnostics`.
     condition : float
         Condition number of G = J A^-1 J^T at the end, each constraint scaled to unit length.
-    steps : int
     legs : tuple of Leg
         Which engine followed the motion from when to when, and why.
     code : str
         How heyoka compiled the Taylor engine in the end (`Code`); empty where it did nothing.
-    precision : str
     digits : int
         Decimal digits that tell its numbers apart.
-    tol : float
-    compile_seconds, run_seconds : float
     correction : (str, str) or None
         The given initial value that was corrected most to fit the constraints, and by how much.
     cases : tuple of HardCase
@@ -131,13 +125,7 @@ class Sampled:
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class Simulation(Sampled, Shown):
-    """A motion followed from its start to its end, with its samples.
-
-    Attributes
-    ----------
-    scene, title : str
-    report : Report
-    """
+    """A motion followed from its start to its end, with its samples."""
 
     scene: str
     title: str

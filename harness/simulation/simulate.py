@@ -36,8 +36,6 @@ def simulate(problem: MotionProblem, request: SimulationRequest, progress: Progr
 
     Parameters
     ----------
-    problem : MotionProblem
-    request : SimulationRequest
     progress : callable or None
         Told the fraction that is done, now and then.
 
@@ -58,8 +56,6 @@ def follow(
 
     Parameters
     ----------
-    problem : MotionProblem
-    request : SimulationRequest
     take : callable
         Takes a `Sampled`.
     progress : callable or None
@@ -101,7 +97,6 @@ def followable(problem: MotionProblem, request: SimulationRequest) -> MotionProb
     ----------
     problem : MotionProblem
         With a value for each open parameter.
-    request : SimulationRequest
     """
     open_ = (
         not problem.signs
@@ -117,10 +112,8 @@ def last_instant(problem: MotionProblem, until: Fraction | None, precision: Prec
 
     Parameters
     ----------
-    problem : MotionProblem
     until : Fraction or None
         What is asked for; None for the end of the scene's time span.
-    precision : Precision
 
     Raises
     ------

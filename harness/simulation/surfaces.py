@@ -34,7 +34,6 @@ class Crossing(NamedTuple):
 
     Attributes
     ----------
-    t : number
     name : str
         The sign that changes.
     to : int
@@ -68,13 +67,8 @@ class SignedFunctions(ABC):
 
         Parameters
         ----------
-        piece : Piece
         left : sequence of str
             Signs whose surfaces the motion has just left at the beginning of the step, where rounding decides.
-
-        Returns
-        -------
-        Crossing or None
         """
         if not self._rows:
             return None
@@ -137,8 +131,6 @@ class Surfaces(SignedFunctions):
     ----------
     problem : MotionProblem
         With signs.
-    pattern : Pattern
-    precision : Precision
     known : collection of str
         Signs whose changes are known without looking for them.
     """

@@ -65,7 +65,6 @@ def time_dependence(program: Program, start: float, end: float) -> TimeDependenc
     ----------
     program : Program
         One of its inputs is ``t``.
-    start, end : float
     """
     expressions = time_expressions(program)
     if not start < end:

@@ -39,8 +39,6 @@ def doubts(missed: Mapping[str, float], tol: float, steps: int) -> Iterator[Doub
     ----------
     missed : mapping of str to float
         By quantity, relative to its size.
-    tol : float
-    steps : int
     """
     expected = MARGIN * max(tol, FINEST) * max(1, steps)
     for quantity, value in missed.items():
@@ -53,7 +51,6 @@ def energy_scale(at: Matrices, state: Vector) -> float:
 
     Parameters
     ----------
-    at : Matrices
     state : ndarray, shape (2n,)
     """
     q, v = np.abs(np.split(state, 2))

@@ -28,10 +28,8 @@ class Result:
 
     Attributes
     ----------
-    method, quantity : str
     digits : float or None
         Decimal digits kept; None where the question is whether, not how much.
-    verdict : Outcome
     """
 
     method: str
@@ -48,7 +46,6 @@ class Sweep:
     ----------
     variable : str
         What makes it harder, as an axis says it.
-    values : tuple of float
     digits : mapping of str to tuple of float
         By method, one number for each value.
     """
@@ -60,13 +57,7 @@ class Sweep:
 
 @dataclass(frozen=True)
 class Findings:
-    """What was found of a case.
-
-    Attributes
-    ----------
-    results : tuple of Result
-    sweep : Sweep or None
-    """
+    """What was found of a case."""
 
     results: tuple[Result, ...]
     sweep: Sweep | None = None
@@ -78,8 +69,6 @@ class Case:
 
     Attributes
     ----------
-    name : str
-    kind : HardCase
     truth : str
         What the methods are measured against.
     examine : callable

@@ -17,8 +17,6 @@ def digits_kept(computed: Iterable[float], truth: Iterable[mpf], scale: float | 
 
     Parameters
     ----------
-    computed : iterable of float
-    truth : iterable of mpf
     scale : number, optional
         What an error is relative to; without it, the largest of the true numbers.
 

@@ -15,7 +15,6 @@ def swing(amplitude: mpf, frequency: mpf, t: mpf) -> tuple[mpf, mpf]:
         The greatest angle from below, less than pi.
     frequency : mpf
         Of small oscillations, w.
-    t : mpf
     """
     modulus = sin(amplitude / 2)
     half = modulus * ellipfun("sn", ellipk(modulus**2) + frequency * t, m=modulus**2)
@@ -36,7 +35,6 @@ def turning(frequency: mpf, t: mpf) -> tuple[mpf, mpf]:
     ----------
     frequency : mpf
         w.
-    t : mpf
     """
     rate = sqrt(1 + 4 * frequency**2)
     m = (2 * frequency / rate) ** 2

@@ -42,7 +42,6 @@ def examine_all(extent: Extent, done: Callable[[], None]) -> list[CaseReport]:
 
     Parameters
     ----------
-    extent : Extent
     done : callable
         Called after each case.
     """

@@ -36,7 +36,6 @@ class Arrived(NamedTuple):
         Of the constraints.
     energy_error : float
         Its size.
-    cases : tuple of HardCase
     """
 
     engine: str
@@ -59,7 +58,6 @@ def problem(file: str, scene: str | None = None, solve: Solve = Solve.DIRECT) ->
         Relative to the examples.
     scene : str, optional
         Without it, the last one.
-    solve : Solve
     """
     return motion_problem(EXAMPLES / file, Request(scene, solve), Limits())
 
@@ -69,8 +67,6 @@ def simulated(motion: MotionProblem, until: float, **asked: object) -> Arrived:
 
     Parameters
     ----------
-    motion : MotionProblem
-    until : float
     **asked
         What else a `SimulationRequest` takes.
 

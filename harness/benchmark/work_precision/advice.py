@@ -28,7 +28,6 @@ class Price:
 
     Attributes
     ----------
-    method : str
     factor : float
         By which the time grows.
     first_digits, last_digits : float

@@ -48,7 +48,6 @@ class Candidate:
 
     Attributes
     ----------
-    group : Group
     method, setting : str
         For instance ``Taylor, double`` and ``tol 1e-12``.
     instant : Fraction
@@ -70,16 +69,12 @@ class Measurement:
 
     Attributes
     ----------
-    group : Group
-    method, setting : str
-    instant : Fraction
     error : float
         As `holonom.benchmark.work_precision.errors.relative_error` defines it.
     seconds : float
         Of the shortest run.
     preparation_seconds : float or None
         Compiling and the like; None where nothing is prepared apart.
-    operations : int
     """
 
     group: Group

@@ -33,7 +33,6 @@ def measure(candidates: Iterable[Candidate], reference: Reference, advance: Call
     ----------
     candidates : iterable of Candidate
         The settings of a method one after the other, from the least to the most demanding.
-    reference : Reference
     advance : callable
         Called after each candidate.
 

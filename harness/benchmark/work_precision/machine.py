@@ -18,10 +18,8 @@ class Machine:
 
     Attributes
     ----------
-    processor : str
     cores : int
         That this process may use.
-    system : str
     versions : mapping of str to str
         Of Python and of the packages that were measured.
     date : str

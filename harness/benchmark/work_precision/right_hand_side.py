@@ -25,7 +25,6 @@ class RightHandSide:
     ----------
     accelerations : callable
         A function of ctypes, of two addresses: t, q, dot q and what else it takes, of which it makes no use; ddot q.
-    coordinates : int
     inputs : int
         How many numbers it takes.
     """

@@ -30,8 +30,6 @@ def runge_kutta_ladder(problem: MotionProblem, until: Fraction, tolerances: Sequ
     ----------
     problem : MotionProblem
         Without an obstacle.
-    until : Fraction
-    tolerances : sequence of float
     """
     for tol in tolerances:
         yield Candidate(Group.RUNGE_KUTTA, RUNGE_KUTTA, f"tol {tol:g}", until, partial(_prepare, problem, until, tol))

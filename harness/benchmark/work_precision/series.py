@@ -44,7 +44,6 @@ class Expansion:
     ----------
     problem : MotionProblem
         Its motion program computes the accelerations alone.
-    instant : Fraction
     """
 
     problem: MotionProblem
@@ -93,16 +92,10 @@ def maxima_series(
 
     Parameters
     ----------
-    file : Path
-        The scene file.
-    request : Request
-    limits : Limits
-    expansion : Expansion
     orders : sequence of int
         Ascending.
     digits : int or str
         Significant digits, or ``exact``.
-    reference : Reference
 
     Yields
     ------

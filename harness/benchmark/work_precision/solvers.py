@@ -32,10 +32,8 @@ def scipy_solver(method: str, motion: RightHandSide, span: tuple[float, float], 
     ----------
     method : str
         ``DOP853``, ``LSODA`` or ``Radau``.
-    motion : RightHandSide
     span : (float, float)
         First and last instant.
-    start : ndarray
     tol : float
         Relative and absolute.
 
@@ -91,8 +89,6 @@ def solver_ladder(problem: MotionProblem, until: Fraction, tolerances: Sequence[
     ----------
     problem : MotionProblem
         Without an obstacle.
-    until : Fraction
-    tolerances : sequence of float
     """
     for name, solver in SOLVERS.items():
         for tol in tolerances:

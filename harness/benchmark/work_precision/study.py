@@ -37,15 +37,8 @@ class Study:
 
     Attributes
     ----------
-    scene, title : str
     until : Fraction
         End of the motion.
-    machine : Machine
-    reference : Reference
-    measurements : tuple of Measurement
-    omissions : tuple of Omission
-    advice : tuple of Advice
-    prices : tuple of Price
     """
 
     scene: str
@@ -66,13 +59,8 @@ def study(
 
     Parameters
     ----------
-    file : Path
-        The scene file.
     request : Request
         Its solve is the one of all comparisons but that of the two solves.
-    limits : Limits
-        What Maxima may take.
-    plan : Plan
     advance : callable
         Called `plan.steps` times at most.
 

@@ -36,10 +36,8 @@ def taylor_ladder(
     ----------
     problem : MotionProblem
         Without an obstacle.
-    until : Fraction
     precision : str
         As `holonom.program.precision.read_precision` takes it.
-    tolerances : sequence of float
     """
     for tol in tolerances:
         prepare = partial(prepare_taylor, problem, until, precision, tol, Stabilization.PROJECTION)

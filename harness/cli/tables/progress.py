@@ -13,7 +13,6 @@ def progress(title: str, steps: int) -> Iterator[Callable[[], None]]:
 
     Parameters
     ----------
-    title : str
     steps : int
         How many there are.
 

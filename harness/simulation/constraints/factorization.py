@@ -71,7 +71,6 @@ class FactoredConstraints:
 
     Attributes
     ----------
-    weighted : WeightedConstraints
     basis : ndarray, shape (n, r)
         Q; r is the rank that counts.
     complement : ndarray, shape (n, n - r)
@@ -199,7 +198,6 @@ def factored_constraints(weighted: WeightedConstraints, rank: int) -> FactoredCo
 
     Parameters
     ----------
-    weighted : WeightedConstraints
     rank : int
         Where it is less than the number of constraints, the smallest singular values are dropped.
     """
@@ -214,7 +212,6 @@ def dependent_constraints(weighted: WeightedConstraints, rank: int) -> tuple[int
 
     Parameters
     ----------
-    weighted : WeightedConstraints
     rank : int
         How many of them are independent.
 

@@ -19,7 +19,6 @@ class ProgramProjection:
     ----------
     problem : MotionProblem
         Without an obstacle.
-    precision : Precision
     """
 
     def __init__(self, problem: MotionProblem, precision: Precision) -> None:
@@ -38,7 +37,6 @@ class ProgramProjection:
 
         Parameters
         ----------
-        instant : number
         state : ndarray, shape (2n,)
 
         Returns
@@ -58,8 +56,6 @@ def nearest_state(problem: MotionProblem, precision: Precision, **options: Any) 
 
     Parameters
     ----------
-    problem : MotionProblem
-    precision : Precision
     **options
         For heyoka's compiler.
 

@@ -21,7 +21,6 @@ class InconsistentConstraints(HolonomError):
 
     Parameters
     ----------
-    t : float
     residual : float
         The smallest residual that was found: the distance from the constraint that is missed most, in the mass
         metric and to first order.
@@ -37,8 +36,6 @@ def project(matrices: MotionMatrices, t: float, state: Vector, rank: int | None 
 
     Parameters
     ----------
-    matrices : MotionMatrices
-    t : float
     state : ndarray, shape (2n,)
         Coordinates, then velocities.
     rank : int or None

@@ -49,8 +49,6 @@ def probed(matrices: MotionMatrices, t: float, state: Vector) -> tuple[int, floa
 
     Parameters
     ----------
-    matrices : MotionMatrices
-    t : float
     state : ndarray, shape (2n,)
         It keeps the constraints.
 
@@ -151,8 +149,6 @@ def require_gradient(problem: MotionProblem, matrices: MotionMatrices, t: float,
 
     Parameters
     ----------
-    problem : MotionProblem
-    matrices : MotionMatrices
     t : float
         An instant at which one may.
     at : Instant

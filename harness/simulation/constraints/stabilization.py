@@ -27,10 +27,8 @@ def equations_of_motion(problem: MotionProblem, program: Program, precision: Pre
 
     Parameters
     ----------
-    problem : MotionProblem
     program : Program
         Gives the accelerations.
-    precision : Precision
 
     Returns
     -------
