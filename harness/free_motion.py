@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 
-from sympy import Expr, Symbol
+from sympy import Add, Expr, Mul, Symbol
 
 from .confined import Limits
 from .crosscheck.system import described_system
@@ -148,7 +148,7 @@ class TrajectoryControl:
         scene's numbers, along its time span), ``series`` (with the scene's numbers, at the initial instant), ``any
         control``, ``none`` (there is none) or ``not determined``.
     law : Law
-        By control; a truncated series where there is an order.
+        By control; where there is an order a truncated series, an unevaluated sum, lowest power first.
     free : tuple of str
         Controls that stay free functions of the time; a closed form may contain them.
     order : int or None
@@ -261,9 +261,9 @@ def free_motion(
         _universal(document),
         TrajectoryControl(
             trajectory["kind"],
-            _law(trajectory["law"]),
+            _law(trajectory["law"]) if trajectory["series"] is None else _truncated_law(trajectory["series"]),
             tuple(trajectory["free"]),
-            trajectory["order"],
+            trajectory["series"] and trajectory["series"]["order"],
             _law(trajectory["motion"]),
             tuple(tuple(map(float, sample)) for sample in trajectory["samples"]),
             trajectory["reason"],
@@ -274,6 +274,17 @@ def free_motion(
             left_open["rank"], tuple(map(_law, left_open["directions"])), tuple(left_open["deciding"])
         ),
     )
+
+
+def _truncated_law(series: dict) -> Law:
+    """Power series of controls as sums in the order of their powers: evaluated, 3/2 + (t - 1) would be t + 1/2."""
+    step = Symbol("t", real=True) - to_sympy(series["instant"])
+
+    def added_up(coefficients: tuple[Expr, ...]) -> Expr:
+        terms = [Mul(c, step**k, evaluate=k != 1 or c == 1) for k, c in enumerate(coefficients) if c != 0]
+        return Add(*terms, evaluate=False) if len(terms) > 1 else Add(*terms)
+
+    return {name: added_up(_expressions(trees)) for name, trees in series["coefficients"].items()}
 
 
 def _universal(document: dict) -> UniversalControls:

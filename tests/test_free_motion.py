@@ -10,6 +10,7 @@ import pytest
 import sympy
 from sympy import Function, Symbol, cos, exp, symbols
 
+from holonom.cli.tables.free_motion import power_series
 from holonom.confined import Limits
 from holonom.failures import HolonomError
 from holonom.free_motion import FirstCoefficient, Free, free_motion
@@ -260,3 +261,19 @@ def test_a_system_without_constraints_ended_in_an_internal_error(write_scene):
     pushed : holonomic_scene(system, control_law = [u = t], initial_state = [x = 1, dot(x) = 0], time_span = [0, 1])$"""
     found = free_motion(write_scene(text), None, {}, Limits())
     assert (found.motion.verdict, found.universal.verdict) == ("free", "all")
+
+
+def test_a_truncated_series_was_printed_highest_power_first_and_added_up(write_scene):
+    # y'' = -x^3/3, x'' = -x^2 y from x = 1, y = 3/2 at t = 1, so that u = y/x; printed as "t - ... + 1/2"
+    text = """load("holonom.mac")$
+    system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+      potential_energy = x^3*y/3, constraints = [y - u*x])$
+    s : holonomic_scene(system, control_law = [u = 1/2 + t], time_span = [1, 1 + 1/1000],
+      initial_state = [x = 1, y = 3/2, dot(x) = 0, dot(y) = 1])$"""
+    law = free_motion(write_scene(text), None, {}, Limits()).trajectory.law["u"]
+    x = 1 - sympy.Rational(3, 4) * (t - 1) ** 2
+    y = sympy.Rational(3, 2) + (t - 1) - (t - 1) ** 2 / 6
+    assert [sympy.diff(law - y / x, t, k).subs(t, 1) for k in range(3)] == [0, 0, 0]
+    written = power_series(law)
+    assert written.startswith("3/2 + (t - 1) + 23*(t - 1)^2/24 ")
+    assert written.index("^2") < written.index("^3") < written.index("^8")

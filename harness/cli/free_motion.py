@@ -52,6 +52,7 @@ def free(
 
 
 def _free_motion_document(found: "FreeMotion") -> dict[str, Any]:
+    from .tables.free_motion import power_series
     from .tables.text import formula
 
     def law_text(law: Mapping[str, Any]) -> dict[str, str]:
@@ -89,7 +90,9 @@ def _free_motion_document(found: "FreeMotion") -> dict[str, Any]:
         "trajectory": {
             "kind": trajectory.kind,
             "law": law_text(trajectory.law) or None if trajectory.order is None else None,
-            "series": None if trajectory.order is None else law_text(trajectory.law) | {"order": trajectory.order},
+            "series": None
+            if trajectory.order is None
+            else {u: power_series(value) for u, value in trajectory.law.items()} | {"order": trajectory.order},
             "free": trajectory.free,
             "samples": trajectory.samples or None,
             "reason": trajectory.reason,

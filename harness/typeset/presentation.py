@@ -41,8 +41,8 @@ def presented(expression: Expr) -> Tree:
 
 def _power_of_time(term: Expr) -> tuple[bool, Expr]:
     """Numbers come first, and power series go on as the time does."""
-    power = term.as_coeff_exponent(TIME)[1]
-    return not term.is_Number, power if power.is_Number else S.Zero
+    powers = (power for base, power in term.as_powers_dict().items() if (base - TIME).is_number and power.is_Number)
+    return not term.is_Number, next(powers, S.Zero)
 
 
 def _positive_first(terms: list[Expr]) -> list[Expr]:

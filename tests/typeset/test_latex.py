@@ -105,6 +105,7 @@ def test_names_are_letters_with_dots_and_indices(name, written):
         ((x + y) / u, r"\frac{x + y}{u}"),
         (t**2 * (x + y) / 2, r"\frac{t^{2}}{2} \, (x + y)"),
         (q1 + dx * t - t**3, r"q_{1} + \dot{x} t - t^{3}"),
+        (q1 - x * (t - 1) ** 3 + y * (t - 1) ** 2, "q_{1} + y (t - 1)^{2} - x (t - 1)^{3}"),
         (u * exp(t), "u e^{t}"),
         (exp(-t / 2), r"e^{- \frac{t}{2}}"),
         (sin(x) ** 2 * y, r"y \sin^{2} x"),

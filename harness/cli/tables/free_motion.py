@@ -10,6 +10,8 @@ from .series import short_number
 from .text import formula
 
 if TYPE_CHECKING:
+    from sympy import Expr
+
     from ...free_motion import FreeMotion, Law, MotionVerdict, OpenAccelerations, UniversalControls, UniversalLaw
 
 
@@ -104,8 +106,14 @@ def _sample(sample: Iterable[float], law: "Law") -> str:
     return "  ".join(f"{name} = {value:<12.6g}" for name, value in zip(("t", *law), sample, strict=True)).rstrip()
 
 
+def power_series(value: "Expr") -> str:
+    """A truncated series, its terms in the order that they have."""
+    terms = (f"({formula(term)})" if term.is_Add else formula(term) for term in value.args)
+    return " + ".join(terms).replace("+ -", "- ") if value.is_Add else formula(value)
+
+
 def _series(law: "Law", order: int) -> str:
-    return ", ".join(f"{control} begins with {formula(value)}, to order {order}" for control, value in law.items())
+    return ", ".join(f"{control} begins with {power_series(value)}, to order {order}" for control, value in law.items())
 
 
 def _law(law: "Law") -> str:
