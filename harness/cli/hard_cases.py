@@ -44,12 +44,12 @@ def stability(short: bool, plot_file: Path | None, json_file: Path | None) -> in
 
 
 def _report_document(report: "CaseReport") -> dict[str, Any]:
-    sweep = report.findings.sweep
+    sweep = report.sweep
     return {
         "case": report.case.name,
         "kind": report.case.kind,
         "truth": report.case.truth,
-        "results": [asdict(result) for result in report.findings.results],
+        "results": [asdict(result) for result in report.results],
         "sweep": sweep and asdict(sweep),
         "advice": report.advice,
         "fails": report.fails,

@@ -28,7 +28,7 @@ def draw_stability(reports: Sequence[CaseReport], file: Path) -> None:
         Matplotlib is not installed; the file cannot be written.
     """
     rows = [row for report in reports for row in _rows(report)]
-    sweeps = [report.findings.sweep for report in reports if report.findings.sweep is not None]
+    sweeps = [report.sweep for report in reports if report.sweep is not None]
     heights = [HEIGHT_OF_ROW * len(rows), *(HEIGHT_OF_SWEEP for _ in sweeps)]
     with figure_style():
         figure = new_figure(WIDTH, sum(heights) + MARGINS)
@@ -41,7 +41,7 @@ def draw_stability(reports: Sequence[CaseReport], file: Path) -> None:
 
 def _rows(report: CaseReport) -> list[Result | str]:
     """The name of a case, then what has digits to show."""
-    return [report.case.name, *(result for result in report.findings.results if result.digits is not None)]
+    return [report.case.name, *(result for result in report.results if result.digits is not None)]
 
 
 def _draw_digits(axes: "Axes", rows: Sequence[Result | str]) -> None:

@@ -1,10 +1,19 @@
-"""A hard case: what makes it hard, the truth, and what each method keeps of it."""
+"""A hard case: what makes it hard, the truth, and how many decimal digits of it each method keeps."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
+import mpmath
+from mpmath import mp, mpf
+
 from ...simulation.diagnosis import HardCase, advice
+
+MOST = 16.0  # digits of a double
+TRUTH_DIGITS = 40  # that a truth is computed with
+
+certified = mp.workdps(TRUTH_DIGITS)
+"""Decorates what computes a truth; as a context, what its constants are made in."""
 
 
 class Extent(StrEnum):
@@ -24,13 +33,7 @@ class Outcome(StrEnum):
 
 @dataclass(frozen=True)
 class Result:
-    """What one method keeps of the truth.
-
-    Attributes
-    ----------
-    digits : float or None
-        Decimal digits kept; None where the question is whether, not how much.
-    """
+    """What one method keeps of the truth; no digits where the question is whether, not how much."""
 
     method: str
     quantity: str
@@ -55,25 +58,12 @@ class Sweep:
     digits: Mapping[str, tuple[float, ...]]
 
 
-@dataclass(frozen=True)
-class Findings:
-    """What was found of a case."""
-
-    results: tuple[Result, ...]
-    sweep: Sweep | None = None
+Findings = Iterator[Result | Sweep]
 
 
 @dataclass(frozen=True)
 class Case:
-    """A hard case of the register.
-
-    Attributes
-    ----------
-    truth : str
-        What the methods are measured against.
-    examine : callable
-        Measures them.
-    """
+    """A hard case of the register: its truth in words, and what measures the methods against it."""
 
     name: str
     kind: HardCase
@@ -86,7 +76,8 @@ class CaseReport:
     """A case with what was found."""
 
     case: Case
-    findings: Findings
+    results: tuple[Result, ...]
+    sweep: Sweep | None
 
     @property
     def advice(self) -> str:
@@ -96,12 +87,14 @@ class CaseReport:
     @property
     def fails(self) -> bool:
         """Whether a method of ours does not hold what it should."""
-        return any(result.verdict is Outcome.FAILS for result in self.findings.results)
+        return any(result.verdict is Outcome.FAILS for result in self.results)
 
 
-def found(*results: Result) -> Findings:
-    """Findings without a sweep."""
-    return Findings(results)
+def examined(case: Case, extent: Extent) -> CaseReport:
+    """A case with what is found of it."""
+    found = list(case.examine(extent))
+    sweep = next((each for each in found if isinstance(each, Sweep)), None)
+    return CaseReport(case, tuple(each for each in found if isinstance(each, Result)), sweep)
 
 
 def ours(method: str, quantity: str, digits: float, needed: float) -> Result:
@@ -117,3 +110,29 @@ def theirs(method: str, quantity: str, digits: float, needed: float) -> Result:
 def required(method: str, quantity: str, holds: bool) -> Result:
     """Something that Holonom does or does not do."""
     return Result(method, quantity, None, Outcome.HOLDS if holds else Outcome.FAILS)
+
+
+def digits_kept(computed: Iterable[float], truth: Iterable[mpf], scale: float | mpf | None = None) -> float:
+    """Decimal digits that numbers keep of the truth, the worst of them counting.
+
+    Parameters
+    ----------
+    scale : number, optional
+        What an error is relative to; without it, the largest of the true numbers.
+
+    Returns
+    -------
+    float
+        From 0, also where a number is infinite or none, to 16.
+    """
+    pairs = [(mpf(float(value)), exact) for value, exact in zip(computed, truth, strict=True)]
+    if not all(mpmath.isfinite(value) for value, _ in pairs):
+        return 0.0
+    return digits_of_error(max(abs(value - exact) for value, exact in pairs), scale or max(abs(x) for _, x in pairs))
+
+
+def digits_of_error(error: float | mpf, scale: float | mpf) -> float:
+    """Decimal digits that an error leaves of a number of that scale, from 0 to 16."""
+    if not mpmath.isfinite(error):
+        return 0.0
+    return float(min(MOST, max(0.0, -mpmath.log10(error / scale)))) if error else MOST

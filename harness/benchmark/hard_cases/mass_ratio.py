@@ -10,12 +10,10 @@ import mpmath
 import numpy as np
 from mpmath import mp, mpf, sqrt
 
-from ...simulation.diagnosis import HardCase
 from ...simulation.matrices import Vector
-from .case import Case, Extent, Findings, found, ours, theirs
-from .digits import digits_kept
-from .scenes import problem, simulated
-from .solves import DIRECT, ORTHOGONAL, PIVOTED, TEXTBOOK, SolveAt, every_solve
+from .case import Extent, Findings, digits_kept, ours
+from .runs import problem, simulated
+from .solves import SolveAt, every_solve, solves_kept
 
 FILE = "hard/heavy_bob.mac"
 DIGITS = 60  # of the truth
@@ -29,22 +27,16 @@ DIRECTIONS, BENDS, RATES = (
 )  # of the upper rod, of the lower against it; rad, rad/s
 
 
-def examine(extent: Extent) -> Findings:
-    """Digits of the accelerations by each solve, against sixty-digit ones."""
-    digits = {name: worst(solve) for name, solve in every_solve(FILE).items()}
+def mass_ratio(extent: Extent) -> Findings:
+    """Digits of the accelerations by each solve, against sixty-digit ones, and of the places."""
+    digits = {name: _worst(solve) for name, solve in every_solve(FILE).items()}
+    yield from solves_kept("accelerations", digits, NEEDED)
     motion = simulated(problem(FILE), UNTIL)
-    return found(
-        theirs(TEXTBOOK, "accelerations", digits[TEXTBOOK], NEEDED),
-        theirs(DIRECT, "accelerations", digits[DIRECT], NEEDED),
-        ours(ORTHOGONAL, "accelerations", digits[ORTHOGONAL], NEEDED),
-        ours(PIVOTED, "accelerations", digits[PIVOTED], NEEDED),
-        ours(
-            motion.engine, f"places at t = {UNTIL}", digits_kept(motion.coordinates, falling(mpf(UNTIL))), NEEDED_PLACES
-        ),
-    )
+    places = digits_kept(motion.coordinates, falling(mpf(UNTIL)))
+    yield ours(motion.engine, f"places at t = {UNTIL}", places, NEEDED_PLACES)
 
 
-def worst(solve: SolveAt) -> float:
+def _worst(solve: SolveAt) -> float:
     """Fewest digits that a solve keeps of the accelerations, over states of the chain."""
     states = [hanging(*at) for at in product(DIRECTIONS, BENDS)]
     return min(digits_kept(solve(0.0, state).accelerations, certified_accelerations(state)) for state in states)
@@ -77,11 +69,3 @@ def certified_accelerations(state: Vector) -> list[mpf]:
         squares = [vx1**2 + vy1**2, (vx2 - vx1) ** 2 + (vy2 - vy1) ** 2]
         sides = [0, -LIGHT * GRAVITY, 0, -HEAVY * GRAVITY, -squares[0], -squares[1]]
         return list(mpmath.lu_solve(bordered, mpmath.matrix(sides)))[:4]
-
-
-CASE = Case(
-    name="mass ratio of 1e12",
-    kind=HardCase.MASS_RATIO,
-    truth="two masses on two rods, by hand with 60 digits; the heavy one in free fall",
-    examine=examine,
-)

@@ -1,13 +1,16 @@
-"""The paper's example under the control (15), u = u0 exp(t), in closed form: its motion is free.
+"""The paper's example under the control (15), u = u0 exp(t): its motion is free, and known in closed form.
 
 The sum s = q1 + q2 obeys s'' + 2 s' + s = 0, so that s = (a + b t) exp(-t); q1'' = -s and q3 = u s.
 """
 
+import numpy as np
 from mpmath import exp, mpf
 
-from .digits import certified
+from .case import Extent, Findings, certified, digits_of_error, ours
+from .runs import places_kept, plain_motion, problem, simulated
+from .solves import TEXTBOOK, SolveAt, every_solve, solves_kept
 
-FILE, SCENE = "paper/paper.mac", "free_motion_scene"
+SCENE = "paper/paper.mac", "free_motion_scene"
 with certified:
     U0, Q1, Q2, V1, V2 = mpf(3) / 10, mpf(1), mpf(2), mpf(1) / 2, -mpf(1) / 3  # as in the scene
 A, B = Q1 + Q2, Q1 + Q2 + V1 + V2
@@ -36,3 +39,39 @@ def forces(t: mpf) -> list[mpf]:
 def constraint_force(multiplier: float, t: mpf) -> mpf:
     """Largest component of the force lambda (-u, -u, 1)."""
     return abs(mpf(float(multiplier))) * max(1, U0 * exp(t))
+
+
+def free_motion(extent: Extent) -> Findings:
+    """Digits to which the multiplier, forces less what the control asks, vanishes: by each solve, and at the end."""
+    last, needed = 10, 13.0  # the scene's time span; the constraint force below 1e-13 of the others
+    digits = {
+        name: min(_vanishing(solve, mpf(t)) for t in range(last + 1)) for name, solve in every_solve(*SCENE).items()
+    }
+    yield from solves_kept("zero multiplier", digits, needed, compared=(TEXTBOOK,))
+    motion = simulated(problem(*SCENE), last)
+    yield ours(motion.engine, f"zero multiplier at t = {last}", _zero(motion.multipliers[0], last), needed)
+
+
+def _vanishing(solve: SolveAt, t: mpf) -> float:
+    """Digits to which the constraint force vanishes among the forces, at an instant."""
+    state = np.array([float(x) for x in (*coordinates(t), *velocities(t))])
+    multiplier = solve(float(t), state).multipliers[0]
+    return digits_of_error(constraint_force(multiplier, t), max(map(abs, forces(t))))
+
+
+def _zero(multiplier: float, t: float) -> float:
+    """Digits to which the constraint force vanishes among the forces of the start."""
+    return digits_of_error(constraint_force(multiplier, mpf(t)), max(map(abs, forces(mpf(0)))))
+
+
+def overflowing_control(extent: Extent) -> Findings:
+    """Digits of the coordinates, and of the zero multiplier, before u^2 = (0.3 exp(t))^2 overflows and behind it.
+
+    That is before t = 357. The multiplier is a quotient by 1 + 2 u^2: it should stay zero rather than become infinity
+    by infinity.
+    """
+    needed = 11.0
+    for t in (355, 360):
+        motion, plain = simulated(problem(*SCENE), t), plain_motion(problem(*SCENE), t)
+        yield from places_kept(f"coordinates at t = {t}", plain, motion, coordinates(mpf(t)), needed)
+        yield ours(motion.engine, f"zero multiplier at t = {t}", _zero(motion.multipliers[0], t), needed)

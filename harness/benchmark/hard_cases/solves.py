@@ -3,7 +3,7 @@
 A a - J^T lambda = h,   J a = -c.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +13,8 @@ from ...program.motion_program import Solve
 from ...program.numpy_function import NumpyFunction
 from ...simulation.constraints.factorization import factored_constraints, rank_of, weighted_constraints
 from ...simulation.matrices import Matrices, MotionMatrices, Vector
-from .scenes import problem
+from .case import Result, ours, theirs
+from .runs import problem
 
 TEXTBOOK, DIRECT, ORTHOGONAL, PIVOTED = "textbook formula", "direct", "orthogonal", "LAPACK, pivoted"
 
@@ -50,6 +51,14 @@ def every_solve(file: str, scene: str | None = None) -> Mapping[str, SolveAt]:
         ORTHOGONAL: programmed(problem(file, scene, Solve.ORTHOGONAL)),
         PIVOTED: lambda t, state: pivoted(matrices(t, state)),
     }
+
+
+def solves_kept(
+    quantity: str, digits: Mapping[str, float], needed: float, compared: tuple[str, ...] = (TEXTBOOK, DIRECT)
+) -> Iterator[Result]:
+    """What each solve keeps; those that are there for comparison may lose it."""
+    for name, kept in digits.items():
+        yield (theirs if name in compared else ours)(name, quantity, kept, needed)
 
 
 def textbook(matrices: Matrices) -> Solved:

@@ -8,9 +8,8 @@ from mpmath import mpf
 
 from ...failures import HolonomError
 from ...simulation.diagnosis import HardCase, advice
-from .case import Case, Extent, Findings, Result, found, ours, required
-from .digits import digits_kept
-from .scenes import problem, simulated
+from .case import Extent, Findings, Result, digits_kept, ours, required
+from .runs import problem, simulated
 
 FILE, SCENES, UNTIL = "hard/vanishing_length.mac", ("straight_scene", "whirling_scene"), 2
 VANISHES = mpf(1)  # the instant at which the length is zero
@@ -19,9 +18,10 @@ INSTANT = re.compile(r"t = (\d+\.?\d*)")
 ENGINE = "taylor"
 
 
-def examine(extent: Extent) -> Findings:
+def vanishing_length(extent: Extent) -> Findings:
     """Whether the runs stop, and when, where and why they say that they do."""
-    return found(*(result for scene in SCENES for result in results_of(scene)))
+    for scene in SCENES:
+        yield from results_of(scene)
 
 
 def results_of(scene: str) -> Iterator[Result]:
@@ -40,11 +40,3 @@ def refusal(scene: str) -> str:
     except HolonomError as error:
         return str(error)
     return ""
-
-
-CASE = Case(
-    name="controlled length through zero",
-    kind=HardCase.VANISHING_LENGTH,
-    truth="the length 1 - t is zero at t = 1",
-    examine=examine,
-)

@@ -21,7 +21,7 @@ def show_stability(console: Console, reports: Sequence["CaseReport"]) -> None:
     for report in reports:
         table.add_section()
         name = report.case.name
-        for result in report.findings.results:
+        for result in report.results:
             digits = "" if result.digits is None else f"{result.digits:.1f}"
             table.add_row(name, result.method, result.quantity, digits, styled(result.verdict))
             name = ""

@@ -3,8 +3,8 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from ...benchmark.hard_cases.case import CaseReport, Extent
-from ...benchmark.hard_cases.register import REGISTER, examine
+from ...benchmark.hard_cases.case import CaseReport, Extent, examined
+from ...benchmark.hard_cases.register import REGISTER
 from ...figures.hard_cases import draw_stability
 from ..chapter import Chapter, Page, Run
 from ..runs import drawn
@@ -19,7 +19,7 @@ def chapter(root: Path) -> Chapter:
             {
                 "reports": reports,
                 "best": best_gain(reports),
-                "sweeps": [each for each in reports if each.findings.sweep],
+                "sweeps": [each for each in reports if each.sweep],
             },
             figures={"hard-cases": drawn(lambda file: draw_stability(reports, file))},
         )
@@ -29,14 +29,14 @@ def chapter(root: Path) -> Chapter:
         title="Hard cases",
         aim="Where a plain method loses its digits, what keeps them, and what to do.",
         template="hard_cases.html",
-        runs={case.name: Run(examine, (case, Extent.SHORT)) for case in REGISTER},
+        runs={case.name: Run(examined, (case, Extent.SHORT)) for case in REGISTER},
         page=page,
     )
 
 
 def best_gain(reports: Sequence[CaseReport]) -> CaseReport:
     """The case in which the best method keeps most digits more than the worst."""
-    return max(reports, key=lambda report: _spread([r.digits for r in report.findings.results if r.digits is not None]))
+    return max(reports, key=lambda report: _spread([r.digits for r in report.results if r.digits is not None]))
 
 
 def _spread(digits: Sequence[float]) -> float:

@@ -2,9 +2,9 @@
 
 import pytest
 
-from holonom.benchmark.hard_cases.case import CaseReport, Extent, Outcome
-from holonom.benchmark.hard_cases.plain import PLAIN
-from holonom.benchmark.hard_cases.register import REGISTER, examine
+from holonom.benchmark.hard_cases.case import CaseReport, Extent, Outcome, examined
+from holonom.benchmark.hard_cases.register import REGISTER
+from holonom.benchmark.hard_cases.runs import PLAIN
 from holonom.benchmark.hard_cases.solves import DIRECT, ORTHOGONAL, PIVOTED, TEXTBOOK
 from holonom.simulation.diagnosis import HardCase
 
@@ -19,13 +19,13 @@ LOSING = {
 
 @pytest.fixture(scope="module", params=REGISTER, ids=lambda case: case.name)
 def report(request) -> CaseReport:
-    return examine(request.param, Extent.SHORT)
+    return examined(request.param, Extent.SHORT)
 
 
 def test_ours_hold_and_the_plain_ways_lose_where_the_case_is_hard_for_them(report):
-    failing = [result for result in report.findings.results if result.verdict is Outcome.FAILS]
+    failing = [result for result in report.results if result.verdict is Outcome.FAILS]
     assert not failing
-    losing = {result.method for result in report.findings.results if result.verdict is Outcome.LOSES}
+    losing = {result.method for result in report.results if result.verdict is Outcome.LOSES}
     assert losing >= LOSING.get(report.case.name, set())
 
 
@@ -37,7 +37,7 @@ def test_register_meets_every_kind_of_hard_case():
 def test_parallel_constraints_cost_the_orthogonal_solve_half_of_the_digits():
     """Digits are lost like log10(1/angle), not like twice that, down to where nothing of G is left."""
     case = next(case for case in REGISTER if case.name == "parallel constraints")
-    sweep = examine(case, Extent.SHORT).findings.sweep
+    sweep = examined(case, Extent.SHORT).sweep
     by_angle = {method: dict(zip(sweep.values, row, strict=True)) for method, row in sweep.digits.items()}
     for method in (ORTHOGONAL, PIVOTED):
         lost = by_angle[method][1e-2] - by_angle[method][1e-6]

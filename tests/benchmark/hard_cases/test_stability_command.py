@@ -7,14 +7,14 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from holonom.benchmark.hard_cases import register
-from holonom.benchmark.hard_cases.case import Case, Findings, Sweep, found, ours, required, theirs
+from holonom.benchmark.hard_cases.case import Case, Extent, Sweep, examined, ours, required, theirs
 from holonom.cli import holonom
 from holonom.documents import schema
 from holonom.simulation.diagnosis import HardCase, advice
 
 
-def shown(name: str, *results, sweep=None) -> Case:
-    return Case(name, HardCase.STIFF, "a truth told by hand", lambda extent: Findings(results, sweep))
+def shown(name: str, *found) -> Case:
+    return Case(name, HardCase.STIFF, "a truth told by hand", lambda extent: iter(found))
 
 
 HELD = shown(
@@ -22,7 +22,7 @@ HELD = shown(
     theirs("plain", "place", 1.25, 6.0),
     ours("ours", "place", 9.0, 6.0),
     required("ours", "reported", True),
-    sweep=Sweep("angle", (0.1, 0.01), {"ours": (9.0, 8.0), "plain": (9.0, 7.0)}),
+    Sweep("angle", (0.1, 0.01), {"ours": (9.0, 8.0), "plain": (9.0, 7.0)}),
 )
 FAILED = shown("failed", ours("ours", "place", 5.0, 6.0))
 
@@ -78,5 +78,8 @@ def test_advice_is_one_sentence_for_each_kind(kind):
     assert ". " not in sentence
 
 
-def test_findings_without_a_sweep_are_results_alone():
-    assert found(ours("ours", "place", 9.0, 6.0)).sweep is None
+def test_results_and_sweep_of_a_case_are_told_apart():
+    assert examined(FAILED, Extent.SHORT).sweep is None
+    report = examined(HELD, Extent.SHORT)
+    assert len(report.results) == 3
+    assert report.sweep.variable == "angle"

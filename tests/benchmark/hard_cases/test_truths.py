@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from mpmath import cos, exp, mp, mpf, odefun, pi, sin, sqrt
 
-from holonom.benchmark.hard_cases import elliptic, mass_ratio, paper_motion, spatial_mechanism, stiff_spring
-from holonom.benchmark.hard_cases.digits import MOST, certified, digits_kept, digits_of_error
-from holonom.benchmark.hard_cases.scenes import problem
+from holonom.benchmark.hard_cases import dependent_constraints, mass_ratio, paper_motion, pendulums, stiff_springs
+from holonom.benchmark.hard_cases.case import MOST, certified, digits_kept, digits_of_error
+from holonom.benchmark.hard_cases.runs import problem
 from holonom.simulation.matrices import MotionMatrices
 
 STEP = mpf("1e-10")
@@ -18,14 +18,14 @@ FREQUENCY = sqrt(mpf("9.81"))
 def test_pendulum_in_elliptic_functions_is_the_pendulum_integrated():
     integrated = odefun(lambda t, y: [y[1], -(FREQUENCY**2) * sin(y[0])], 0, [pi / 3, 0], tol=AGREEMENT)
     for t in (mpf(1) / 4, mpf(1)):
-        x, depth = elliptic.swing(pi / 3, FREQUENCY, t)
+        x, depth = pendulums.swing(pi / 3, FREQUENCY, t)
         assert abs(x - sin(integrated(t)[0])) < AGREEMENT
         assert abs(depth - cos(integrated(t)[0])) < AGREEMENT
 
 
 @certified
 def test_period_brings_the_pendulum_back():
-    x, depth = elliptic.swing(pi / 3, FREQUENCY, elliptic.period(pi / 3, FREQUENCY))
+    x, depth = pendulums.swing(pi / 3, FREQUENCY, pendulums.period(pi / 3, FREQUENCY))
     assert abs(x - sin(pi / 3)) < AGREEMENT
     assert abs(depth - cos(pi / 3)) < AGREEMENT
 
@@ -33,18 +33,18 @@ def test_period_brings_the_pendulum_back():
 @certified
 def test_turning_angle_is_the_one_integrated():
     integrated = odefun(lambda t, y: [y[1], FREQUENCY**2 * sin(y[0])], 0, [0, 1], tol=AGREEMENT)
-    x, y = elliptic.turning(FREQUENCY, mpf(1))
+    x, y = pendulums.turning(FREQUENCY, mpf(1))
     assert abs(x - sin(integrated(1)[0])) < AGREEMENT
     assert abs(y - cos(integrated(1)[0])) < AGREEMENT
-    assert abs(elliptic.turning(FREQUENCY, elliptic.revolution(FREQUENCY))[0]) < AGREEMENT
+    assert abs(pendulums.turning(FREQUENCY, pendulums.revolution(FREQUENCY))[0]) < AGREEMENT
 
 
 def test_turning_angle_is_that_of_the_published_four_bar_linkage():
     """One revolution and the place at t = 10 of the IFToMM benchmark's linkage with N = 1."""
     with mp.workdps(30):
         frequency = sqrt(mpf("9.81") * 2 / (mpf(2) / 3 + 1))
-        assert abs(elliptic.revolution(frequency) - mpf("1.923711817338965851745947")) < mpf("1e-23")
-        x, y = elliptic.turning(frequency, mpf(10))
+        assert abs(pendulums.revolution(frequency) - mpf("1.923711817338965851745947")) < mpf("1e-23")
+        x, y = pendulums.turning(frequency, mpf(10))
         assert abs(x - mpf("0.47838505776097055901")) < mpf("1e-19")
         assert abs(y - mpf("0.87815017879120930116")) < mpf("1e-19")
 
@@ -71,33 +71,34 @@ def test_paper_motion_is_free(t):
 
 @certified
 def test_stiff_spring_obeys_its_equations_of_motion():
-    (x1, x2, x3), _, (a1, a2, a3) = derivatives(stiff_spring.coordinates, mpf(1) / 7)
-    pull = stiff_spring.STIFF * (x3 - x2 - stiff_spring.REST)
-    assert abs(a1 + a2 + stiff_spring.SOFT * x1 - pull) < mpf("1e-9") * abs(pull)
+    (x1, x2, x3), _, (a1, a2, a3) = derivatives(stiff_springs.coordinates, mpf(1) / 7)
+    pull = stiff_springs.STIFF * (x3 - x2 - stiff_springs.REST)
+    assert abs(a1 + a2 + stiff_springs.SOFT * x1 - pull) < mpf("1e-9") * abs(pull)
     assert abs(a3 + pull) < mpf("1e-9") * abs(pull)
     assert abs(pull) > 1
 
 
 def test_sarrus_linkage_is_its_reduced_equation_integrated():
     with mp.workdps(25):
-        g = spatial_mechanism.GRAVITY
+        g = dependent_constraints.GRAVITY
 
         def rates(t, y):
             c, s = cos(y[0]), sin(y[0])
             return [y[1], (6 * c * s * y[1] ** 2 - 4 * g * c) / (1 + 6 * c**2)]
 
-        integrated = odefun(rates, 0, [spatial_mechanism.START, 0], tol=AGREEMENT)
+        integrated = odefun(rates, 0, [dependent_constraints.START, 0], tol=AGREEMENT)
         assert (
-            abs(spatial_mechanism.fallen(spatial_mechanism.UNTIL) - integrated(spatial_mechanism.UNTIL)[0]) < AGREEMENT
+            abs(dependent_constraints.fallen(dependent_constraints.UNTIL) - integrated(dependent_constraints.UNTIL)[0])
+            < AGREEMENT
         )
 
 
 def test_sarrus_linkage_keeps_the_constraints_of_its_scene_with_forces_along_their_gradients():
     phi = mpf(7) / 10
-    motion = problem(spatial_mechanism.FILE)
-    places = np.array(spatial_mechanism.coordinates(phi), dtype=float)
+    motion = problem(dependent_constraints.SARRUS)
+    places = np.array(dependent_constraints.coordinates(phi), dtype=float)
     at = MotionMatrices(motion)(0.0, np.concatenate([places, np.zeros_like(places)]))
-    forces = np.array(spatial_mechanism.constraint_forces(phi), dtype=float)
+    forces = np.array(dependent_constraints.constraint_forces(phi), dtype=float)
     unmet = forces - at.jacobian.T @ np.linalg.pinv(at.jacobian.T, 1e-8) @ forces
     assert np.max(np.abs(at.residual)) < 1e-14
     assert np.max(np.abs(unmet)) < 1e-12 * np.max(np.abs(forces))

@@ -1,0 +1,97 @@
+"""Constraints that depend on each other, or nearly: a swing whose rods become parallel, and Sarrus' linkage.
+
+However near the hinges of the swing are, the bob moves on the circle that both rods leave to it, as a pendulum does.
+
+Sarrus' linkage is a closed spatial mechanism with a constraint more than it needs. Its one freedom is the angle phi of
+the legs with the ground: T = m l^2 (1 + 6 cos(phi)^2) phi'^2, V = 8 m g l sin(phi), with m = l = 1.
+"""
+
+import numpy as np
+from mpmath import asin, cos, findroot, mpf, quad, sin, sqrt
+
+from ...simulation.diagnosis import HardCase
+from ...simulation.matrices import MotionMatrices, Vector
+from .case import Extent, Findings, Sweep, certified, digits_kept, ours, required
+from .runs import places_kept, plain_motion, problem, simulated
+from .solves import SolveAt, every_solve, solves_kept
+
+ANGLES = tuple(10.0**-k for k in range(1, 12))  # between the rods, of length 1: the hinges are as far apart
+JUDGED = 1e-7
+
+SIDEWAYS, SLANTING = np.array([2, 1, -2]) / 3, np.array([2, -2, 1]) / 3  # span the plane of the circle
+WEIGHT = np.array([0, 0, -9.81])
+PLACES, RATE = (0.3, 1.1, 2.9), 0.7  # on the circle, in radians, and per second
+
+
+def parallel_constraints(extent: Extent) -> Findings:
+    """Digits of the accelerations by each solve, against the pendulum's."""
+    solves = every_solve("hard/swing.mac")
+    digits = {name: tuple(_worst(solve, angle) for angle in ANGLES) for name, solve in solves.items()}
+    judged = {name: row[ANGLES.index(JUDGED)] for name, row in digits.items()}
+    yield from solves_kept(f"accelerations at the angle {JUDGED:g}", judged, needed=8.0)
+    yield Sweep("angle between the constraints", ANGLES, digits)
+
+
+def _worst(solve: SolveAt, angle: float) -> float:
+    """Fewest digits that a solve keeps of the accelerations, over places on the circle."""
+    digits = []
+    for place in PLACES:
+        outward = SIDEWAYS * np.cos(place) + SLANTING * np.sin(place)
+        along = SLANTING * np.cos(place) - SIDEWAYS * np.sin(place)
+        state = np.concatenate([outward, RATE * along])
+        pendulum = (WEIGHT @ along) * along - RATE**2 * outward  # gravity along the circle, and towards its centre
+        digits.append(digits_kept(solve(angle, state).accelerations, pendulum))
+    return min(digits)
+
+
+SARRUS = "hard/sarrus_linkage.mac"
+DEPENDENT = 1e-8  # singular values of J that count as none
+
+with certified:
+    UNTIL, GRAVITY, START = mpf(3) / 10, mpf("9.81"), asin(mpf(4) / 5)
+
+
+def sarrus_linkage(extent: Extent) -> Findings:
+    """Digits of the motion, of the unique constraint forces, and of the multipliers of smallest norm."""
+    phi, needed = fallen(UNTIL), 12.0
+    places, reactions = coordinates(phi), constraint_forces(phi)
+    motion, plain = simulated(problem(SARRUS), float(UNTIL)), plain_motion(problem(SARRUS), float(UNTIL))
+    multipliers = least_multipliers(motion.state, reactions)
+    yield from places_kept("coordinates", plain, motion, places, needed)
+    yield ours(motion.engine, "constraint forces", digits_kept(motion.constraint_forces, reactions), needed)
+    yield ours(motion.engine, "least multipliers", digits_kept(motion.multipliers, multipliers), needed)
+    yield required(motion.engine, "redundancy reported", HardCase.REDUNDANT in motion.cases)
+
+
+@certified
+def fallen(t: mpf) -> mpf:
+    """Angle of the legs, released at rest: energy's conservation gives the time as a quadrature over the angle."""
+
+    def time_to(phi: mpf) -> mpf:
+        return quad(lambda x: sqrt((1 + 6 * cos(x) ** 2) / (8 * GRAVITY * (sin(START) - sin(x)))), [phi, START])
+
+    return findroot(lambda phi: time_to(phi) - t, (START / 2, START * mpf(3) / 4))
+
+
+@certified
+def coordinates(phi: mpf) -> list[mpf]:
+    """Coordinates of the elbows and of the table's corners."""
+    c, s = cos(phi), sin(phi)
+    return [-c, -1, s, 1, c, s, 0, -1, 2 * s, 1, 0, 2 * s, 0, 0, 2 * s]
+
+
+@certified
+def constraint_forces(phi: mpf) -> list[mpf]:
+    """Mass times acceleration without gravity, of every point."""
+    c, s = cos(phi), sin(phi)
+    square = 8 * GRAVITY * (sin(START) - s) / (1 + 6 * c**2)
+    second = (6 * c * s * square - 4 * GRAVITY * c) / (1 + 6 * c**2)
+    across, up = -s * second - c * square, c * second - s * square
+    elbows, corner = [-across, 0, up + GRAVITY, 0, across, up + GRAVITY], [0, 0, 2 * up + GRAVITY]
+    return elbows + 3 * corner
+
+
+def least_multipliers(state: Vector, forces: list[mpf]) -> Vector:
+    """The multipliers of smallest norm among those that give the forces: the pseudo-inverse of J^T."""
+    jacobian = MotionMatrices(problem(SARRUS))(float(UNTIL), state).jacobian
+    return np.linalg.pinv(jacobian.T, DEPENDENT) @ np.array(forces, dtype=float)
