@@ -35,9 +35,8 @@ def accuracy(
     limits: Limits,
 ) -> int:
     """Measure what accuracy costs in time for the motion of a SCENE, and give plain advice."""
-    from ..benchmark.work_precision.document import study_document
     from ..benchmark.work_precision.plan import Plan
-    from ..benchmark.work_precision.study import study
+    from ..benchmark.work_precision.study import study, study_document
     from ..program.request import Request, read_settings
     from .tables.progress import progress
     from .tables.text import make_console

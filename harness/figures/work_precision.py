@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..benchmark.work_precision.candidates import WHOLE_MOTION, Group, Measurement
+from ..benchmark.work_precision.measurement import WHOLE_MOTION, Group, Measurement
 from .style import MARKERS, PALETTE, figure_style, new_figure, write_figure
 
 if TYPE_CHECKING:

@@ -22,9 +22,8 @@ from simulation_motions import MOTIONS, Motion
 from simulation_peers import HEYOKA, PEERS, Prepared, Run, State
 from simulation_report import write_report
 
-from holonom.benchmark.work_precision.compilation import without_caches
-from holonom.benchmark.work_precision.contest import times_in_turns
-from holonom.benchmark.work_precision.errors import numbers_of, relative_error
+from holonom.benchmark.work_precision.contest import times_in_turns, without_caches
+from holonom.benchmark.work_precision.measurement import numbers_of, relative_error
 from holonom.benchmark.work_precision.reference import Reference, find_reference
 from holonom.confined import Limits
 from holonom.failures import HolonomError

@@ -14,9 +14,9 @@ import mpmath
 from simulation_motions import Motion, paper_in_mpmath
 from simulation_peers import DOP853, HEYOKA, OLDER_SCIPY, SOLVE_IVP, SUNDIALS, start_of
 
-from holonom.benchmark.work_precision.errors import State, relative_error
+from holonom.benchmark.work_precision.engines import prepare_taylor
+from holonom.benchmark.work_precision.measurement import State, relative_error
 from holonom.benchmark.work_precision.reference import find_reference
-from holonom.benchmark.work_precision.taylor import prepare_taylor
 from holonom.confined import Limits
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request

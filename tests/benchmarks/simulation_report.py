@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from simulation_bars import ENGINES, Bar, faster_engine
 
-from holonom.benchmark.work_precision.machine import PACKAGES, this_machine
+from holonom.benchmark.machine import PACKAGES, this_machine
 from holonom.figures.style import MARKERS, PALETTE, figure_style, new_figure, write_figure
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .candidates import WHOLE_MOTION, Measurement
+from .measurement import WHOLE_MOTION, Measurement
 
 ASKED_DIGITS = (3, 6, 9, 12, 15, 30)
 FEWEST = 3  # points that a slope is drawn through

@@ -1,22 +1,45 @@
 """Candidates measured side by side: each is run for its error, then all take turns for their times.
 
-A first run pays for much that the next one finds in place; it counts only where it is too long to be repeated.
+A first run pays for much that the next one finds in place; it counts only where it is too long to be repeated. What
+heyoka compiles is compiled as it would be the first time.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ...failures import HolonomError
+from ...program.heyoka_function import import_heyoka
 from ...program.timing import Batch, python_batch, shortest_times
-from .candidates import Candidate, Measurement, Omission, Prepared
-from .errors import relative_error
+from .measurement import Candidate, Measurement, Omission, Prepared, relative_error
 
 if TYPE_CHECKING:
     from .reference import Reference
+
+
+@contextmanager
+def without_caches() -> Iterator[None]:
+    """Let heyoka compile anew inside the block what its caches, in memory and on disk, hold already.
+
+    Raises
+    ------
+    HolonomError
+        heyoka is not installed.
+    """
+    state = import_heyoka().llvm_state
+    limit, enabled = state.get_memcache_limit(), state.get_diskcache_enabled()
+    state.set_memcache_limit(0)
+    state.set_diskcache_enabled(False)
+    try:
+        yield
+    finally:
+        state.set_memcache_limit(limit)
+        state.set_diskcache_enabled(enabled)
+
 
 PATIENCE = 2.0  # seconds of a run after which a method is asked for no more
 REPEATED = 0.02  # seconds of a run up to which it is repeated: what disturbs a longer one matters less

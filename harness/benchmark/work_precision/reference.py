@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 from ...program.precision import read_precision
 from ...simulation.engines.taylor import TaylorEngine
 from ...simulation.request import Stabilization
-from .errors import State, relative_error
-from .taylor import order_of_step, state_of
+from .engines import order_of_step, state_of
+from .measurement import State, relative_error
 
 if TYPE_CHECKING:
     from ...program.motion_problem import MotionProblem

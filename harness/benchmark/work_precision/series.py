@@ -21,10 +21,8 @@ from ...program.precision import read_precision
 from ...program.request import Request
 from ...series.heyoka_series import expand, expanding_integrator
 from ...series.power_series import number, numbers
-from .candidates import Candidate, Group, Measurement, Prepared
-from .errors import WORKING_DIGITS, State, relative_error
-from .operations import expansion_operations
-from .right_hand_side import acceleration_program
+from .measurement import WORKING_DIGITS, Candidate, Group, Measurement, Prepared, State, relative_error
+from .operations import acceleration_program, expansion_operations
 
 if TYPE_CHECKING:
     from ...confined import Limits
@@ -55,8 +53,6 @@ def expansion_of(problem: MotionProblem, until: Fraction) -> Expansion:
 
     Parameters
     ----------
-    problem : MotionProblem
-        Without an obstacle.
     until : Fraction
         The last instant.
 

@@ -1,7 +1,8 @@
-"""Integrators that others have written: SciPy's, and SUNDIALS through scikit-sundae."""
+"""Integrators that others have written, on a compiled motion: SciPy's, and SUNDIALS through scikit-sundae."""
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
@@ -10,22 +11,70 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...failures import Failure, HolonomError, missing_package
-from .candidates import Candidate, Group, Prepared
-from .errors import State, numbers_of
-from .right_hand_side import RightHandSide, acceleration_program, compiled_right_hand_side
+from ...program.c_function import compile_c
+from .measurement import Candidate, Group, Prepared, doubles
+from .operations import acceleration_program
 
 if TYPE_CHECKING:
     from fractions import Fraction
 
     from ...program.motion_problem import MotionProblem
 
+
+class CompiledRates:
+    """The rates of the state (q, dot q), from a compiled function of t and the state.
+
+    Parameters
+    ----------
+    accelerations : callable
+        A function of ctypes, of two addresses: t, q, dot q and what else it takes, of which it makes no use; ddot q.
+    inputs : int
+        How many numbers it takes.
+    """
+
+    def __init__(self, accelerations: Callable[[int, int], None], coordinates: int, inputs: int) -> None:
+        self.evaluations = 0
+        self.coordinates = coordinates
+        self._accelerations = accelerations
+        self._given, self._found = np.zeros(inputs), np.empty(coordinates)
+        self._state = self._given[1 : 2 * coordinates + 1]
+        self._addresses = ctypes.c_void_p(self._given.ctypes.data), ctypes.c_void_p(self._found.ctypes.data)
+
+    def __call__(self, t: float, state: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Rates in a new array, as SciPy asks for them."""
+        rates = np.empty(2 * self.coordinates)
+        self.fill(t, state, rates)
+        return rates
+
+    def fill(self, t: float, state: NDArray[np.float64], rates: NDArray[np.float64]) -> None:
+        """Rates in an array that is given, as SUNDIALS asks for them."""
+        self.evaluations += 1
+        self._given[0] = t
+        self._state[:] = state
+        self._accelerations(*self._addresses)
+        rates[: self.coordinates] = self._state[self.coordinates :]
+        rates[self.coordinates :] = self._found
+
+
+def compiled_rates(problem: MotionProblem) -> CompiledRates:
+    """The motion program of a problem, compiled by the system's C compiler.
+
+    Raises
+    ------
+    HolonomError
+        As `holonom.program.c_function.compile_c`.
+    """
+    program = acceleration_program(problem)
+    return CompiledRates(compile_c(program).one, len(problem.coordinates), len(program.inputs))
+
+
 MOST_STEPS = 10_000_000  # of SUNDIALS, whose own limit of 500 is meant for one output after the other
 
 Floats = NDArray[np.float64]
-Solver = Callable[[RightHandSide, tuple[float, float], Floats, float], Floats]
+Solver = Callable[[CompiledRates, tuple[float, float], Floats, float], Floats]
 
 
-def scipy_solver(method: str, motion: RightHandSide, span: tuple[float, float], start: Floats, tol: float) -> Floats:
+def scipy_solver(method: str, motion: CompiledRates, span: tuple[float, float], start: Floats, tol: float) -> Floats:
     """The state at the end, by one of the methods of `scipy.integrate.solve_ivp`.
 
     Parameters
@@ -50,7 +99,7 @@ def scipy_solver(method: str, motion: RightHandSide, span: tuple[float, float], 
     return solution.y[:, -1]
 
 
-def sundials_solver(method: str, motion: RightHandSide, span: tuple[float, float], start: Floats, tol: float) -> Floats:
+def sundials_solver(method: str, motion: CompiledRates, span: tuple[float, float], start: Floats, tol: float) -> Floats:
     """The state at the end, by CVODE of SUNDIALS.
 
     Parameters
@@ -83,13 +132,7 @@ SOLVERS: Mapping[str, Solver] = {
 
 
 def solver_ladder(problem: MotionProblem, until: Fraction, tolerances: Sequence[float]) -> Iterator[Candidate]:
-    """Each solver on the compiled motion program, tolerance by tolerance.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-        Without an obstacle.
-    """
+    """Each solver on the compiled motion program, tolerance by tolerance."""
     for name, solver in SOLVERS.items():
         for tol in tolerances:
             prepare = partial(_prepare, problem, until, solver, tol)
@@ -97,7 +140,7 @@ def solver_ladder(problem: MotionProblem, until: Fraction, tolerances: Sequence[
 
 
 def _prepare(problem: MotionProblem, until: Fraction, solver: Solver, tol: float) -> Prepared:
-    motion, operations = compiled_right_hand_side(problem), acceleration_program(problem).operations
+    motion, operations = compiled_rates(problem), acceleration_program(problem).operations
     span = float(problem.start["t"]), float(until)
     start = np.array([float(problem.start[name]) for name in problem.state])
 
@@ -105,7 +148,4 @@ def _prepare(problem: MotionProblem, until: Fraction, solver: Solver, tol: float
         motion.evaluations = 0
         return solver(motion, span, start, tol)
 
-    def numbers(values: Floats) -> State:
-        return numbers_of(map(repr, map(float, values)))
-
-    return Prepared(run, numbers, lambda: motion.evaluations * operations)
+    return Prepared(run, doubles, lambda: motion.evaluations * operations)

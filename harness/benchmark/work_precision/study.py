@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 from ...confined import Limits
+from ...documents import Publication, published
 from ...failures import Failure, HolonomError
 from ...program.motion_problem import MotionProblem, motion_problem, require_analytic
 from ...program.motion_program import Solve
@@ -16,17 +18,23 @@ from ...program.request import Request
 from ...simulation.engines.taylor import TaylorEngine
 from ...simulation.request import Stabilization
 from ...simulation.simulate import last_instant
+from ..machine import Machine, this_machine
 from .advice import Advice, Price, cheapest_methods, prices
-from .candidates import Candidate, Measurement, Omission
-from .compilation import without_caches
-from .contest import measure
-from .machine import Machine, this_machine
+from .contest import measure, without_caches
+from .engines import (
+    drift_cures,
+    operations_of_a_step,
+    runge_kutta_ladder,
+    solve_name,
+    taylor_ladder,
+    taylor_name,
+    the_two_solves,
+)
+from .measurement import Candidate, Measurement, Omission
 from .plan import Plan
 from .reference import MORE_DIGITS, Reference, find_reference
-from .runge_kutta import runge_kutta_ladder
 from .series import EXACT, Expansion, double_series, expansion_of, maxima_series, series_name
 from .solvers import solver_ladder
-from .taylor import drift_cures, operations_of_a_step, solve_name, taylor_ladder, taylor_name, the_two_solves
 
 SECONDS_OF_MANY_DIGITS = 5e-8  # of an operation on numbers of 50 to 130 digits, measured on the pendulum and Andrews
 
@@ -172,3 +180,32 @@ def _candidates(
     yield from solver_ladder(problem, until, plan.solver_tolerances)
     yield from drift_cures(problem, until, plan.compared_tolerance)
     yield from the_two_solves(problems, until, plan.compared_tolerance)
+
+
+def study_document(done: Study) -> dict[str, Any]:
+    """What `holonom accuracy --json` writes; `schemas/accuracy.json` describes it."""
+    reference = done.reference
+    content = {
+        "scene": done.scene,
+        "title": done.title,
+        "until": str(done.until),
+        "machine": asdict(done.machine),
+        "reference": {
+            "digits": reference.digits,
+            "order": reference.order,
+            "confirming_digits": reference.confirming_digits,
+            "confirming_order": reference.confirming_order,
+            "difference": reference.difference,
+        },
+        "measurements": [asdict(m) | {"instant": str(m.instant)} for m in done.measurements],
+        "omissions": [asdict(omission) for omission in done.omissions],
+        "advice": [_published_advice(advice) for advice in done.advice],
+        "prices": [asdict(price) for price in done.prices],
+    }
+    return published(Publication.ACCURACY, content)
+
+
+def _published_advice(advice: Advice) -> dict[str, Any]:
+    m = advice.cheapest
+    found = None if m is None else {"method": m.method, "setting": m.setting, "seconds": m.seconds, "error": m.error}
+    return {"digits": advice.digits, "cheapest": found}

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 from rich.table import Table
 
-from ...benchmark.work_precision.candidates import Group
+from ...benchmark.work_precision.measurement import Group
 
 if TYPE_CHECKING:
     from ...benchmark.work_precision.advice import Advice, Price

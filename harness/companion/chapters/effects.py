@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ...benchmark.work_precision.machine import this_machine
+from ...benchmark.machine import this_machine
 from ...confined import Limits
 from ...figures.effects import draw_with_and_without
 from ...program.effects import MeasuredCosts, measure_costs, read_costs

@@ -6,7 +6,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from ...benchmark.work_precision.candidates import WHOLE_MOTION, Group
+from ...benchmark.work_precision.measurement import WHOLE_MOTION, Group
 from ...benchmark.work_precision.plan import Plan
 from ...benchmark.work_precision.study import Study, study
 from ...confined import Limits

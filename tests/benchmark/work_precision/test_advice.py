@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 
 from holonom.benchmark.work_precision.advice import ASKED_DIGITS, cheapest_methods, prices
-from holonom.benchmark.work_precision.candidates import Group, Measurement
+from holonom.benchmark.work_precision.measurement import Group, Measurement
 
 
 def measurement(method, digits, seconds, group=Group.SOLVER):

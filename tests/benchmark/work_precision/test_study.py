@@ -9,17 +9,20 @@ import jsonschema
 import mpmath
 import pytest
 
-from holonom.benchmark.work_precision.candidates import Group, Measurement
 from holonom.benchmark.work_precision.contest import measure
-from holonom.benchmark.work_precision.document import study_document
-from holonom.benchmark.work_precision.errors import WORKING_DIGITS, relative_error
+from holonom.benchmark.work_precision.engines import (
+    RUNGE_KUTTA,
+    drift_cures,
+    runge_kutta_ladder,
+    taylor_ladder,
+    the_two_solves,
+)
+from holonom.benchmark.work_precision.measurement import WORKING_DIGITS, Group, Measurement, relative_error
 from holonom.benchmark.work_precision.plan import Plan
 from holonom.benchmark.work_precision.reference import find_reference
-from holonom.benchmark.work_precision.runge_kutta import RUNGE_KUTTA, runge_kutta_ladder
 from holonom.benchmark.work_precision.series import double_series, expansion_of
 from holonom.benchmark.work_precision.solvers import SOLVERS, solver_ladder
-from holonom.benchmark.work_precision.study import study
-from holonom.benchmark.work_precision.taylor import drift_cures, taylor_ladder, the_two_solves
+from holonom.benchmark.work_precision.study import study, study_document
 from holonom.confined import Limits
 from holonom.documents import schema
 from holonom.figures.work_precision import draw_study

@@ -1,6 +1,6 @@
 """Truth: differences of numbers that are written down."""
 
-from holonom.benchmark.work_precision.errors import numbers_of, relative_error
+from holonom.benchmark.work_precision.measurement import numbers_of, relative_error
 
 
 def test_the_error_is_relative_to_the_largest_coordinate_and_the_largest_velocity():

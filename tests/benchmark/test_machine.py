@@ -7,7 +7,7 @@ from datetime import date
 import heyoka
 import numpy
 
-from holonom.benchmark.work_precision.machine import this_machine
+from holonom.benchmark.machine import this_machine
 
 
 def test_the_machine_names_its_processor_cores_versions_and_the_day():

@@ -1,12 +1,53 @@
-"""Who is measured: a method at one setting, what it takes to prepare it, and how it is run."""
+"""What is measured: a method at one setting, how it is prepared and run, and how far it ends from the true state."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 from typing import Any
 
-from .errors import State
+import mpmath
+
+State = Sequence[mpmath.mpf]
+
+WORKING_DIGITS = 300  # more than any state has
+
+
+def relative_error(found: State, true: State) -> float:
+    """Larger of the relative errors of coordinates and of velocities, each in the maximum norm.
+
+    Parameters
+    ----------
+    found, true : sequence of mpf
+        Coordinates, then as many velocities.
+
+    Returns
+    -------
+    float
+        Where all true values of one kind are zero, their error is absolute.
+    """
+    middle = len(true) // 2
+    with mpmath.workdps(WORKING_DIGITS):
+        deviations = [a - b for a, b in zip(found, true, strict=True)]
+        return max(
+            float(_largest(deviations[half]) / (_largest(true[half]) or 1))
+            for half in (slice(None, middle), slice(middle, None))
+        )
+
+
+def numbers_of(texts: Iterable[str]) -> State:
+    """Decimal digits as numbers, not a digit lost."""
+    with mpmath.workdps(WORKING_DIGITS):
+        return [mpmath.mpf(text) for text in texts]
+
+
+def doubles(values: Iterable[float]) -> State:
+    """A state in double precision, digit by digit."""
+    return numbers_of(map(repr, map(float, values)))
+
+
+def _largest(values: State) -> mpmath.mpf:
+    return max(map(abs, values))
 
 
 class Group(StrEnum):

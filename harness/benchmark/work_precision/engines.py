@@ -1,9 +1,9 @@
-"""The Taylor engine at work for a measurement: every run starts anew, compiled once."""
+"""Our engines at work for a measurement: every run starts anew, compiled once. Their problems have no obstacle."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -12,16 +12,16 @@ import numpy as np
 from ...program.motion_problem import MotionProblem
 from ...program.motion_program import Solve
 from ...program.precision import Precision, read_precision
+from ...simulation.engines.runge_kutta import RungeKuttaEngine
 from ...simulation.engines.taylor import TaylorEngine
 from ...simulation.request import Stabilization
-from .candidates import Candidate, Group, Prepared
-from .errors import State, numbers_of
-from .operations import expansion_operations
-from .right_hand_side import acceleration_program
+from .measurement import Candidate, Group, Prepared, State, doubles, numbers_of
+from .operations import acceleration_program, expansion_operations
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from fractions import Fraction
+
+    from ...simulation.engines.engine import Engine
 
 LARGEST_UNROLLED = 130  # operations of a motion program whose fastest code compiles in about a second
 HARDWARE = ("double", "extended")  # numbers for which the way of compiling matters
@@ -74,20 +74,25 @@ def prepare_taylor(
     """Compile the Taylor engine for one precision and tolerance."""
     numbers = read_precision(precision)
     motion = TaylorEngine(problem, tol, numbers, drift, compact=_compact(problem, precision))
-    begin, start, last = motion.time, np.array(motion.state), numbers.ratio(until)
-    runs = 0
+    run = Repeated(motion, numbers.ratio(until), lambda: motion.steps)
+    return Prepared(run, partial(state_of, numbers), lambda: run.work * operations_of_a_step(problem, motion.tol))
 
-    def run() -> Any:
-        nonlocal runs
-        runs += 1
-        motion.restart(begin, start)
-        motion.advance(last)
-        return motion.state
 
-    def operations() -> int:
-        return motion.steps // runs * operations_of_a_step(problem, motion.tol)
+class Repeated:
+    """A motion followed to an instant, again and again from its start; `work` is the steps or evaluations it took."""
 
-    return Prepared(run, partial(state_of, numbers), operations)
+    def __init__(self, motion: Engine, last: Any, counted: Callable[[], int]) -> None:
+        self._motion, self._last, self._counted = motion, last, counted
+        self._begin, self._start = motion.time, np.array(motion.state)
+        self.work = 0
+
+    def __call__(self) -> Any:
+        """Follow the motion once; return the state at its end."""
+        before = self._counted()
+        self._motion.restart(self._begin, self._start)
+        self._motion.advance(self._last)
+        self.work = self._counted() - before
+        return self._motion.state
 
 
 def operations_of_a_step(problem: MotionProblem, tol: float) -> int:
@@ -108,3 +113,25 @@ def state_of(numbers: Precision, values: Any) -> State:
 def _compact(problem: MotionProblem, precision: str) -> bool | None:
     """Whether compact code is compiled, once and for all; the engine's own choice beyond hardware numbers."""
     return problem.motion.operations > LARGEST_UNROLLED if precision in HARDWARE else None
+
+
+RUNGE_KUTTA = "Runge-Kutta engine"
+
+
+def runge_kutta_ladder(problem: MotionProblem, until: Fraction, tolerances: Sequence[float]) -> Iterator[Candidate]:
+    """The Runge-Kutta engine, tolerance by tolerance.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        Without an obstacle.
+    """
+    for tol in tolerances:
+        prepare = partial(_prepare_runge_kutta, problem, until, tol)
+        yield Candidate(Group.RUNGE_KUTTA, RUNGE_KUTTA, f"tol {tol:g}", until, prepare)
+
+
+def _prepare_runge_kutta(problem: MotionProblem, until: Fraction, tol: float) -> Prepared:
+    motion, operations = RungeKuttaEngine(problem, tol), acceleration_program(problem).operations
+    run = Repeated(motion, float(until), lambda: motion.evaluations)
+    return Prepared(run, doubles, lambda: run.work * operations)
