@@ -93,6 +93,8 @@ def main() -> None:
     """Run the command line and leave with its exit status."""
     # As `holonom.threads` says; NumPy reads this when it is first imported.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    os.environ.pop("MPLBACKEND", None)  # figures go to files; Matplotlib fails to load where this is nonsense
+    _open_what_is_closed()
     try:
         ending = supervise(run)
     except HolonomError as error:
@@ -125,6 +127,16 @@ def run() -> int:
         return PIPE_CLOSED
     except OSError as error:
         return _machine_refuses(error)
+
+
+def _open_what_is_closed() -> None:
+    """Have the null device stand in for a standard stream that is closed: the next file would take its number."""
+    while (descriptor := os.open(os.devnull, os.O_RDWR)) <= 2:
+        pass
+    os.close(descriptor)
+    sys.stdin = sys.stdin or os.fdopen(0, "r")
+    sys.stdout = sys.stdout or os.fdopen(1, "w")
+    sys.stderr = sys.stderr or os.fdopen(2, "w")
 
 
 def _write_what_can_be_written() -> None:

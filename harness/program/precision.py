@@ -16,6 +16,7 @@ from .heyoka_function import import_heyoka
 GUARD_DIGITS = 10  # given and computed with beyond the digits asked for
 MOST_DIGITS = 5000  # what heyoka compiles in about a second; twice as many take four times as long
 EXPONENTS_OF_REAL = 2**61  # of MPFR's numbers
+LEAST_BITS = 64  # what heyoka makes of an integer, whatever it computes with
 
 
 @dataclass(frozen=True)
@@ -93,7 +94,7 @@ def _quadruple() -> Precision:
 
 def _of_digits(digits: int) -> Precision:
     heyoka = import_heyoka()
-    bits = _bits(digits + GUARD_DIGITS)
+    bits = max(LEAST_BITS, _bits(digits + GUARD_DIGITS))
     sys.set_int_max_str_digits(max(sys.get_int_max_str_digits(), 2 * (digits + GUARD_DIGITS)))
 
     def number(text: str) -> Any:

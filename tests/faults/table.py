@@ -58,6 +58,16 @@ def holding(name: str, content: str | bytes) -> Callable[[Path], object]:
     return lambda here: (here / name).write_bytes(data)
 
 
+def executable(name: str, script: str) -> Callable[[Path], object]:
+    """Put a program into the directory."""
+
+    def prepare(here: Path) -> None:
+        (here / name).write_text(script, encoding="utf-8")
+        (here / name).chmod(0o755)
+
+    return prepare
+
+
 def maxima(script: str, mode: int = 0o755) -> Callable[[Path], object]:
     """Put another program in Maxima's place."""
 
@@ -301,6 +311,7 @@ ENVIRONMENTS = [
     Fault("standard output full", "derive scene.mac", "No space left", MACHINE_AT_FAULT, shell='"$@" > /dev/full'),
     Fault("a full device", "derive scene.mac --json /dev/full", "No space left", MACHINE_AT_FAULT),
     Fault("no standard output", "derive scene.mac --json out.json", "", 0, shell='"$@" >&-', long=True),
+    Fault("no standard error", DERIVE, "", 0, shell='"$@" 2>&-', long=True),
     Fault("nobody who reads", "derive scene.mac", "", 141, shell='"$@" | true; exit ${PIPESTATUS[0]}'),
     Fault("no home", DERIVE, "", 0, environment={"HOME": ""}, long=True),
     Fault("a home that is not there", DERIVE, "", 0, environment={"HOME": "/nowhere"}, long=True),
@@ -332,7 +343,8 @@ ENVIRONMENTS = [
         "a compiler that hangs",
         "effects scene.mac --time-limit 6",
         "ran out of them while compiling C",
-        environment={"CC": "sleep 1000; "},
+        prepare=executable("hangs", "#!/bin/sh\nexec sleep 1000\n"),
+        environment={"CC": "{here}/hangs"},
         long=True,
     ),
     Fault(
