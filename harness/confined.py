@@ -17,10 +17,12 @@ from dataclasses import dataclass
 from enum import Enum
 from functools import cache
 from pathlib import Path
-
-import psutil
+from typing import TYPE_CHECKING
 
 from .failures import Failure
+
+if TYPE_CHECKING:
+    import psutil
 
 MIB = 1024 * 1024
 BLOCK = 512  # bytes in which a shell counts the size of files
@@ -231,15 +233,36 @@ def resident_memory(pid: int) -> int:
     return sum(map(_own_memory, _tree(pid)))
 
 
-def _tree(pid: int) -> list[psutil.Process]:
+def _tree(pid: int) -> "list[psutil.Process]":
+    import psutil  # while the process starts
+
     try:
         process = psutil.Process(pid)
-        return [process, *process.children(recursive=True)]
+        if not _kernel_lists_children():
+            return [process, *process.children(recursive=True)]
     except psutil.NoSuchProcess:
         return []
+    return [process, *(each for child in _children(pid) for each in _tree(child))]
 
 
-def _own_memory(process: psutil.Process) -> int:
+@cache
+def _kernel_lists_children() -> bool:
+    """Whether Linux says what a process has started: to look through all processes takes ten times as long."""
+    return Path(f"/proc/self/task/{os.getpid()}/children").exists()
+
+
+def _children(pid: int) -> list[int]:
+    """The processes that a process has started, by any of its threads."""
+    found = []
+    with suppress(OSError):  # it has ended
+        for thread in Path(f"/proc/{pid}/task").iterdir():
+            found += map(int, (thread / "children").read_text(encoding="ascii").split())
+    return found
+
+
+def _own_memory(process: "psutil.Process") -> int:
+    import psutil
+
     try:
         return process.memory_info().rss
     except psutil.NoSuchProcess:
@@ -248,6 +271,8 @@ def _own_memory(process: psutil.Process) -> int:
 
 def _end(process: subprocess.Popen[bytes]) -> None:
     """End a process, all that it started, and its group."""
+    import psutil
+
     for each in _tree(process.pid):
         with suppress(psutil.NoSuchProcess):
             each.kill()

@@ -22,8 +22,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import psutil
-
 from .confined import MIB, Confinement, LimitExceeded, Limits, Sandbox, run_confined, surroundings
 from .failures import Failure, HolonomError
 from .files import near_file, private_directory, shared
@@ -336,13 +334,17 @@ def _confinement(run: Run, maxima: Path) -> Confinement:
         "LC_ALL": "C",
         # GCL collects garbage in earnest from about a fifth of this share of the machine's memory on (measured), well
         # under the limit: what garbage there is depends on the limit then, and not on the machine.
-        "GCL_MEM_MULTIPLE": f"{run.limits.memory_mib * MIB / psutil.virtual_memory().total:.6f}",
+        "GCL_MEM_MULTIPLE": f"{run.limits.memory_mib * MIB / _memory_of_the_machine():.6f}",
         # Kinds of objects that are few at first get so large a share of new pages when theirs are full: with GCL's own
         # twentieth it collects garbage more than a hundred times while it writes the program of a thousand bodies.
         "GCL_GC_ALLOC_MIN": "0.1",
     }
     readable = (*surroundings(maxima), LIBRARY, _own_folder(run.file))
     return Confinement(run.directory, environment, readable, run.limits)
+
+
+def _memory_of_the_machine() -> int:
+    return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
 
 
 def _own_folder(file: Path) -> Path:

@@ -8,6 +8,8 @@
 (defun save-with-library (library)
   "Load the library, compile its functions, and save this Maxima in a file called image, in the working directory."
   (mfuncall '$load (concatenate 'string library "/holonom.mac"))
+  (mfuncall '$load "stringproc")        ; which Maxima looks for and interprets when its first function is called
+  (setf (symbol-function 'cl-info::load-primary-index) #'(lambda () nil)) ; it is in the image, too
   (ignore-errors (load-compiled (library-functions library)))
   (setq *maxima-started* nil *asked-for* nil)
   #+gcl (si::save-system "image")

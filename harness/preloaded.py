@@ -4,6 +4,8 @@ In it the library's Lisp functions are compiled (`preload.lisp`).
 An image is made when it is first wanted, by Maxima itself, and bears the name of all that it depends on: the program,
 the library's text, this file. It is used only where it belongs to the user, is out of others' reach, and has the
 checksum that it was made with; where there is none, or none can be made, a run loads the library, and finds the same.
+The checksum of so large a file takes as long as Maxima does: it is taken when the machine was started since, or the
+file is another, or was written to.
 Only GCL, on which Debian's Maxima runs, makes them here.
 """
 
@@ -16,6 +18,7 @@ from contextlib import suppress
 from functools import cache
 from hashlib import file_digest, sha256
 from pathlib import Path
+from secrets import token_hex
 from shutil import disk_usage
 
 from .confined import MIB, Confinement, LimitExceeded, Limits, Sandbox, run_confined
@@ -31,6 +34,7 @@ IN_USE = 3600.0  # seconds after its last use in which an image is not removed
 DAY = 86400.0  # seconds
 FREE_SPACE = 1024 * MIB  # on a fuller disk none is made
 MAKING = Limits(seconds=40.0, sandbox=Sandbox.TRUSTED)  # the library alone is run
+BOOT = Path("/proc/sys/kernel/random/boot_id")  # Linux names there each start of the machine
 PRELOAD = Path(__file__).with_name("preload.lisp")
 COMPILED = ("functions.lisp", "functions.o")  # the library's Lisp functions, and what they were compiled to
 
@@ -54,11 +58,11 @@ def preloaded_image(maxima: str, library: Path, environment: frozenset[tuple[str
     with suppress(OSError, RuntimeError, LimitExceeded):  # RuntimeError: there is no home directory
         folder = _own_folder()
         image = folder / f"{_name(maxima, library, environment)}.image"
-        if not _is_whole(image) or _is_to_be_tried_again(image):
+        if not (_is_as_seen(image) or _is_whole(image)) or _is_to_be_tried_again(image):
             _make(image, maxima, library, dict(environment))
             _remove_older_ones(folder)
         if image.stat().st_size:
-            os.utime(image)
+            _note(image)
             return image
     return None
 
@@ -90,6 +94,30 @@ def _is_whole(*files: Path) -> bool:
         return _checksum(files) == _checksum_file(files).read_text(encoding="ascii")
     except (OSError, UnicodeDecodeError):
         return False
+
+
+def _is_as_seen(image: Path) -> bool:
+    """Whether it is the file, in the state, whose checksum was last found right, and since the machine was started."""
+    try:
+        return _sight_file(image).read_text(encoding="ascii") == _sight(image)
+    except (OSError, UnicodeDecodeError):
+        return False
+
+
+def _note(image: Path) -> None:
+    """Keep that an image is whole, and when it was last used."""
+    _sight_file(image).write_text(_sight(image), encoding="ascii")
+
+
+def _sight(image: Path) -> str:
+    """What changes whenever a file does; nobody can set the time of its last change."""
+    found = image.stat()
+    boot = BOOT.read_text(encoding="ascii") if BOOT.exists() else token_hex()
+    return f"{boot}{found.st_ino} {found.st_size} {found.st_mtime_ns} {found.st_ctime_ns}"
+
+
+def _sight_file(image: Path) -> Path:
+    return image.with_suffix(".seen")
 
 
 def _is_to_be_tried_again(image: Path) -> bool:
@@ -155,8 +183,16 @@ def _keep(made: Sequence[Path], kept: Sequence[Path]) -> None:
 
 
 def _remove_older_ones(folder: Path) -> None:
-    last_used = {image: image.stat().st_mtime for image in folder.glob("*.image")}
+    last_used = {image: _last_used(image) for image in folder.glob("*.image")}
     for image in sorted(last_used, key=last_used.__getitem__, reverse=True)[KEPT:]:
         if last_used[image] < time.time() - IN_USE:
             image.unlink(missing_ok=True)
             _checksum_file([image]).unlink(missing_ok=True)
+            _sight_file(image).unlink(missing_ok=True)
+
+
+def _last_used(image: Path) -> float:
+    try:
+        return _sight_file(image).stat().st_mtime
+    except FileNotFoundError:
+        return image.stat().st_mtime

@@ -1,5 +1,6 @@
 """The image of Maxima with the library: it changes no result, and is trusted only while it is what was made."""
 
+import os
 import shutil
 from pathlib import Path
 
@@ -54,6 +55,34 @@ def test_an_image_that_is_torn_or_has_a_flipped_bit_is_made_anew(made, harm):
     made.write_bytes(harm(data))
     assert image() == made
     assert preloaded._is_whole(made)
+
+
+def test_the_checksum_is_taken_again_after_a_change_or_a_start_of_the_machine_alone(made, tmp_path, monkeypatch):
+    taken = []
+    checksum = preloaded._checksum
+    monkeypatch.setattr(preloaded, "_checksum", lambda files: taken.append(files) or checksum(files))
+    assert image() == made
+    assert taken == []
+    made.chmod(0o700)
+    assert image() == made
+    assert len(taken) == 1
+    monkeypatch.setattr(preloaded, "BOOT", tmp_path / "boot")
+    (tmp_path / "boot").write_text("another")
+    assert [image(), image()] == [made, made]
+    assert len(taken) == 2
+
+
+def test_a_flipped_bit_is_found_even_where_the_time_of_writing_was_set_back(made):
+    before = made.stat()
+    made.chmod(0o700)
+    with made.open("r+b") as file:
+        file.seek(99)
+        byte = file.read(1)[0]
+        file.seek(99)
+        file.write(bytes([byte ^ 1]))
+    os.utime(made, ns=(before.st_atime_ns, before.st_mtime_ns))
+    assert not preloaded._is_as_seen(made)
+    assert not preloaded._is_whole(made)
 
 
 def test_a_folder_that_others_may_write_to_is_not_used(made):

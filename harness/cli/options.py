@@ -11,7 +11,6 @@ import click
 
 from ..confined import Limits, Sandbox, bubblewrap
 from ..failures import Failure, HolonomError
-from ..program.request import within_reach
 from ..supervisor import limit_time
 from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile
 
@@ -113,6 +112,8 @@ def _sandbox(trust: bool, sandbox: bool) -> Sandbox:
 
 def read_instant(ctx: click.Context, parameter: click.Parameter, text: str | None) -> Fraction | None:
     """Read an instant: an integer, a decimal or a quotient of integers."""
+    from ..program.request import within_reach
+
     if text is None:
         return None
     try:
