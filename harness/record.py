@@ -234,14 +234,6 @@ def derived_record(
     return read_record(ask(Document.RECORD, file, closed_form_size, settings=settings, limits=limits))
 
 
-def why_left_out(left_out: LeftOut) -> str:
-    """The sentence that says why equations were not made, and how to get them."""
-    return (
-        f"closed forms of {left_out.size} terms are expected, more than closed_form_size = {left_out.limit}; "
-        f"--closed-form-size {left_out.size} makes them, if time and memory suffice"
-    )
-
-
 def read_record(text: str) -> Record:
     """Read a derivation record.
 

@@ -163,6 +163,12 @@ def test_a_scene_may_stand_on_standard_input(particle_scene):
     assert json.loads(done.stdout) == json.loads(holonom("derive", particle_scene, "--json", "-").stdout)
 
 
+def test_check_told_a_temporary_file_for_what_stands_on_standard_input(particle_scene):
+    text = particle_scene.read_text()
+    assert json.loads(holonom("check", "-", "--json", "-", input=text).stdout)["scene"] == "-"
+    assert holonom("check", "-", input=text).stdout.startswith("-\n")
+
+
 def test_what_is_wrong_on_standard_input_is_told_of_standard_input():
     done = holonom("derive", "-", input="a : 1$\nb : $\n")
     assert done.returncode == 2
@@ -227,6 +233,7 @@ def test_check_and_derive_were_silent_about_equations_that_are_not_made():
     assert (report["left_out"], report["disagreements"]) == (9, 0)
     left_out = {found["number"] for found in report["equations"] if found["verdict"] == "left out"}
     assert left_out == {"4", "5", "8", "9", "10", "11", "13", "18"}
+    assert all("more than closed_form_size" in each["detail"] for each in report["equations"] if not each["id"])
     assert "--closed-form-size 3288 makes them" in holonom("derive", chain).stdout
     made = holonom("derive", chain, "--set", "N=2", "--closed-form-size", "1")
     assert "(4), (5), (8), (9), (10), (11) not made" in made.stdout

@@ -6,26 +6,11 @@ internal error, 130 when interrupted, 141 where nobody reads what is written.
 Modules are imported inside the commands: ``holonom --help`` waits for no SymPy.
 """
 
-from . import (
-    companion,
-    derivation,
-    free_motion,
-    installation,
-    programs,
-    series,
-    simulation,
-    sweep,
-)
-from . import (
-    hard_cases as stability,
-)
-from . import (
-    work_precision as accuracy,
-)
+from . import benchmark, companion, derivation, free_motion, installation, programs, series, simulation, sweep
 from .group import holonom, main, run
 
 __all__ = [
-    "accuracy",
+    "benchmark",
     "companion",
     "derivation",
     "free_motion",
@@ -36,6 +21,5 @@ __all__ = [
     "run",
     "series",
     "simulation",
-    "stability",
     "sweep",
 ]

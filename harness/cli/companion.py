@@ -30,18 +30,17 @@ EXTRAS = ("jinja2", "latex2mathml", "matplotlib", "heyoka", "ziamath", "pypdf")
 @takes_settings
 @runs_scenes
 def companion(
-    scenes: Sequence[Path], directory: Path, pdf: Path | None, settings: Sequence[str], limits: Limits
+    scenes: Sequence[Path], directory: Path, pdf: Path | None, settings: dict[str, str], limits: Limits
 ) -> int:
     """Make the textbook companion of the paper, or of the SCENEs given, as pages for a browser."""
     require_extras()
     from ..companion.book import make_book
     from ..companion.own_scenes import book_of_scenes
     from ..companion.paper import book_of_the_paper
-    from ..program.request import read_settings
     from .tables.progress import progress
     from .tables.text import make_console
 
-    given = tuple(read_settings(settings).items())
+    given = tuple(settings.items())
     if given and not scenes:
         raise click.UsageError("--set needs a SCENE")
     book = book_of_scenes(scenes, given, limits) if scenes else book_of_the_paper()

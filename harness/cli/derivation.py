@@ -10,8 +10,8 @@ import click
 from ..confined import Limits
 from ..supervisor import doing
 from .group import holonom
-from .options import DISAGREEMENT, json_text, publish, runs_scenes, takes_settings, writes_json
-from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile
+from .options import DISAGREEMENT, present, publish, runs_scenes, takes_settings, writes_json
+from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile, as_given
 
 if TYPE_CHECKING:
     from ..crosscheck import CheckReport
@@ -34,7 +34,7 @@ limits_closed_forms = click.option(
 @runs_scenes
 def derive(
     scene: Path,
-    settings: Sequence[str],
+    settings: dict[str, str],
     closed_form_size: int | None,
     json_file: Path | None,
     tex_file: Path | None,
@@ -42,12 +42,11 @@ def derive(
 ) -> int:
     """Derive the equations of a SCENE, under the paper's numbers."""
     from ..documents import Document, ask
-    from ..program.request import read_settings
     from ..record import read_record
     from .tables.derivation import show_record
     from .tables.text import make_console
 
-    text = ask(Document.RECORD, scene, closed_form_size, settings=read_settings(settings), limits=limits)
+    text = ask(Document.RECORD, scene, closed_form_size, settings=settings, limits=limits)
     record = read_record(text)
     _publish_document(record, tex_file)
     publish(text, json_file)
@@ -65,7 +64,7 @@ def derive(
 @runs_scenes
 def check(
     scenes: Sequence[Path],
-    settings: Sequence[str],
+    settings: dict[str, str],
     closed_form_size: int | None,
     json_file: Path | None,
     seed: str | None,
@@ -74,21 +73,15 @@ def check(
     """Derive each SCENE and compare every equation with an independent SymPy evaluation."""
     from ..crosscheck import check_record
     from ..crosscheck.points import fresh_seed
-    from ..program.request import read_settings
     from ..record import derived_record
-    from .tables.derivation import show_report
-    from .tables.text import make_console
+    from .tables.derivation import show_reports
 
-    given, seed = read_settings(settings), seed or fresh_seed()
-    records = [(str(scene), derived_record(scene, given, limits, closed_form_size)) for scene in scenes]
+    seed = seed or fresh_seed()
+    records = [(as_given(scene), derived_record(scene, settings, limits, closed_form_size)) for scene in scenes]
     with doing("checking with SymPy"):
         reports = [(scene, check_record(record, seed)) for scene, record in records]
     documents = [_report_document(scene, report) for scene, report in reports]
-    publish(json_text(documents[0] if len(documents) == 1 else documents), json_file)
-    if json_file != STANDARD_OUTPUT:
-        console = make_console()
-        for scene, report in reports:
-            show_report(console, scene, report)
+    present(documents[0] if len(documents) == 1 else documents, json_file, show_reports, reports)
     return DISAGREEMENT if any(report.disagreements for _, report in reports) else 0
 
 
@@ -99,16 +92,13 @@ def errata(json_file: Path | None, svg_file: Path | None) -> int:
     """Compare every equation that the paper prints with the derived one."""
     from ..documents import Document, published
     from ..errata import errata as compare
-    from .tables.errata import draw_errata, show_errata
-    from .tables.text import make_console
+    from .tables.derivation import draw_errata, show_errata
 
     equations = compare()
     content = {"equations": [asdict(equation) for equation in equations]}
-    publish(json_text(published(Document.ERRATA, content)), json_file)
+    present(published(Document.ERRATA, content), json_file, show_errata, equations)
     if svg_file is not None:
         publish(draw_errata(equations), svg_file)
-    if json_file != STANDARD_OUTPUT:
-        show_errata(make_console(), equations)
     return 0
 
 
@@ -122,6 +112,7 @@ def _publish_document(record: "Record", tex_file: Path | None) -> None:
 def _report_document(scene: str, report: "CheckReport") -> dict[str, Any]:
     from ..crosscheck import Verdict
     from ..documents import Publication, published
+    from .tables.derivation import why_left_out
 
     content = {
         "scene": scene,
@@ -135,7 +126,7 @@ def _report_document(scene: str, report: "CheckReport") -> dict[str, Any]:
                 "verdict": found.verdict,
                 "digits": found.digits,
                 "points": found.points,
-                "detail": found.detail,
+                "detail": why_left_out(found.left_out) if found.left_out else found.detail,
             }
             for found in report.verdicts
         ],

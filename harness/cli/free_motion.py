@@ -1,6 +1,6 @@
 """The command about free motion: free."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,10 +9,11 @@ import click
 
 from ..confined import Limits
 from .group import holonom
-from .options import DISAGREEMENT, STANDARD_OUTPUT, asks_one_scene, json_text, publish, runs_scenes, writes_json
+from .options import DISAGREEMENT, asks_one_scene, present, runs_scenes, writes_json
 
 if TYPE_CHECKING:
     from ..free_motion import FreeMotion
+    from ..program.request import Request
 
 
 @holonom.command()
@@ -27,9 +28,8 @@ if TYPE_CHECKING:
 @runs_scenes
 def free(
     scene_file: Path,
-    scene: str | None,
+    request: "Request",
     order: int | None,
-    settings: Sequence[str],
     json_file: Path | None,
     limits: Limits,
 ) -> int:
@@ -39,14 +39,10 @@ def free(
     """
     from ..crosscheck import Verdict
     from ..free_motion import free_motion
-    from ..program.request import read_settings
     from .tables.free_motion import show_free_motion
-    from .tables.text import make_console
 
-    found = free_motion(scene_file, scene, read_settings(settings), limits, order)
-    publish(json_text(_free_motion_document(found)), json_file)
-    if json_file != STANDARD_OUTPUT:
-        show_free_motion(make_console(), found)
+    found = free_motion(scene_file, request.scene, request.settings, limits, order)
+    present(_free_motion_document(found), json_file, show_free_motion, found)
     contradicted = any(law.check.verdict is Verdict.DISAGREES for law in found.universal.laws)
     return DISAGREEMENT if contradicted else 0
 

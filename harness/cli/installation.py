@@ -2,9 +2,17 @@
 
 from dataclasses import asdict
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from .group import holonom
-from .options import STANDARD_OUTPUT, json_text, publish, writes_json
+from .options import present, writes_json
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rich.console import Console
+
+    from ..installation import Component
 
 MISSING = 1
 
@@ -15,14 +23,32 @@ def doctor(json_file: Path | None) -> int:
     """Say what is installed, what is missing, and the command that installs it."""
     from ..documents import Publication, published
     from ..installation import components
-    from .tables.installation import show_components
-    from .tables.text import make_console
 
     found = list(components())
-    publish(json_text(published(Publication.DOCTOR, {"components": [asdict(each) for each in found]})), json_file)
-    if json_file != STANDARD_OUTPUT:
-        show_components(make_console(), found)
+    document = published(Publication.DOCTOR, {"components": [asdict(each) for each in found]})
+    present(document, json_file, show_components, found)
     return MISSING if any(each.needed and each.version is None for each in found) else 0
+
+
+def show_components(console: "Console", components: "Iterable[Component]") -> None:
+    """Print what is installed and what is missing, and the commands that install it."""
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table("", "version", "for")
+    remedies = []
+    for component in components:
+        if component.version is None:
+            remedies.append(component.remedy)
+            version = Text("missing", style="bold red" if component.needed else "yellow")
+        else:
+            version = Text(component.version or "found", style="green")
+        table.add_row(component.name, version, component.purpose)
+    console.print(table)
+    for remedy in dict.fromkeys(remedies):
+        console.print(f"to install what is missing: {remedy}", soft_wrap=True, markup=False)
+    if not remedies:
+        console.print("Nothing is missing.")
 
 
 @holonom.command("maxima-path")

@@ -38,8 +38,19 @@ def writes_json(command: Callable[..., int]) -> Callable[..., int]:
 def takes_settings(command: Callable[..., int]) -> Callable[..., int]:
     """Give a command the option --set."""
     return click.option(
-        "--set", "settings", metavar="NAME=VALUE", multiple=True, help="A number that the file leaves open."
+        "--set",
+        "settings",
+        metavar="NAME=VALUE",
+        multiple=True,
+        callback=_read_settings,
+        help="A number that the file leaves open.",
     )(command)
+
+
+def _read_settings(ctx: click.Context, parameter: click.Parameter, texts: tuple[str, ...]) -> dict[str, str]:
+    from ..program.request import read_settings
+
+    return read_settings(texts)
 
 
 def chooses_solve(command: Callable[..., int]) -> Callable[..., int]:
@@ -54,10 +65,18 @@ def chooses_solve(command: Callable[..., int]) -> Callable[..., int]:
 
 
 def asks_one_scene(command: Callable[..., int]) -> Callable[..., int]:
-    """Give a command a scene file, the name of a scene in it, and numbers for what the file leaves open."""
-    command = takes_settings(command)
-    command = click.option("--scene", metavar="NAME", help="The scene in the file; without it, the last one.")(command)
-    return click.argument("scene_file", metavar="SCENE", type=SceneFile())(command)
+    """Give a command a scene file, and as its `request` a scene in it, numbers for what is open, and the solve."""
+
+    @functools.wraps(command)
+    def asked(*, scene: str | None, settings: dict[str, str], solve: str = "direct", **options: Any) -> int:
+        from ..program.motion_program import Solve
+        from ..program.request import Request
+
+        return command(request=Request(scene, Solve(solve), settings), **options)
+
+    asked = takes_settings(asked)
+    asked = click.option("--scene", metavar="NAME", help="The scene in the file; without it, the last one.")(asked)
+    return click.argument("scene_file", metavar="SCENE", type=SceneFile())(asked)
 
 
 def runs_scenes(command: Callable[..., int]) -> Callable[..., int]:
@@ -132,6 +151,15 @@ def read_instant(ctx: click.Context, parameter: click.Parameter, text: str | Non
 def json_text(document: Any) -> str:
     """A document as `--json` writes it."""
     return json.dumps(document, ensure_ascii=False, indent=1) + "\n"
+
+
+def present(document: Any, json_file: Path | None, show: Callable[..., None], *shown: Any) -> None:
+    """Put a document where --json asks for it, and show a result on the console unless the document is there."""
+    publish(json_text(document), json_file)
+    if json_file != STANDARD_OUTPUT:
+        from .tables.text import make_console
+
+        show(make_console(), *shown)
 
 
 def publish(text: str, file: Path | None) -> None:

@@ -54,6 +54,12 @@ class SceneFile(click.Path):
         return file
 
 
+def as_given(scene: Path) -> str:
+    """How the command line names a scene file: ``-`` where it stands on standard input."""
+    stands_in = scene == click.get_current_context().meta.get(STANDARD_INPUT)
+    return str(STANDARD_OUTPUT if stands_in else scene)
+
+
 class OutputFile(click.Path):
     """The name of a file that a command writes.
 

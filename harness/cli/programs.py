@@ -1,16 +1,19 @@
 """The commands about motion programs: program, effects."""
 
-from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from ..confined import Limits
 from ..failures import Failure, HolonomError
 from .group import holonom
-from .options import asks_one_scene, chooses_solve, json_text, publish, runs_scenes, writes_json
+from .options import asks_one_scene, chooses_solve, present, publish, runs_scenes, writes_json
 from .outputs import STANDARD_OUTPUT, OutputFile, is_forced
+
+if TYPE_CHECKING:
+    from ..program.request import Request
 
 
 @holonom.command()
@@ -42,9 +45,7 @@ from .outputs import STANDARD_OUTPUT, OutputFile, is_forced
 @runs_scenes
 def program(
     scene_file: Path,
-    scene: str | None,
-    settings: Sequence[str],
-    solve: str,
+    request: "Request",
     form: str,
     name: str | None,
     parameters: tuple[str, ...],
@@ -58,10 +59,8 @@ def program(
     same for FMI 3 model exchange. Controls, and parameters without a value or named by --parameters, are inputs of
     both.
     """
-    from ..program.motion_program import Solve
-    from ..program.request import Form, Request, program_text, read_settings
+    from ..program.request import Form, program_text
 
-    request = Request(scene, Solve(solve), read_settings(settings))
     if form not in ("c", "fmu"):
         if name or parameters:
             raise click.UsageError("--name and --parameters go with --to c or --to fmu")
@@ -96,23 +95,16 @@ def program(
 @runs_scenes
 def effects(
     scene_file: Path,
-    scene: str | None,
-    settings: Sequence[str],
-    solve: str,
+    request: "Request",
     json_file: Path | None,
     limits: Limits,
 ) -> int:
     """Show which terms and effects a SCENE has and what each costs, in operations and in measured time."""
     from ..documents import Publication, published
     from ..program.effects import measure_costs, read_costs
-    from ..program.motion_program import Solve
-    from ..program.request import Request, effects_document, read_settings
-    from .tables.costs import show_costs
-    from .tables.text import make_console
+    from ..program.request import effects_document
+    from .tables.measurements import show_costs
 
-    request = Request(scene, Solve(solve), read_settings(settings))
     costs = measure_costs(read_costs(effects_document(scene_file, request, limits)))
-    publish(json_text(published(Publication.COSTS, asdict(costs))), json_file)
-    if json_file != STANDARD_OUTPUT:
-        show_costs(make_console(), costs)
+    present(published(Publication.COSTS, asdict(costs)), json_file, show_costs, costs)
     return 0

@@ -1,22 +1,17 @@
 """The command about initial motion: series."""
 
-from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from ..confined import Limits
 from .group import holonom
-from .options import (
-    STANDARD_OUTPUT,
-    asks_one_scene,
-    json_text,
-    publish,
-    read_instant,
-    runs_scenes,
-    writes_json,
-)
+from .options import asks_one_scene, present, read_instant, runs_scenes, writes_json
+
+if TYPE_CHECKING:
+    from ..program.request import Request
 
 
 @holonom.command()
@@ -35,19 +30,17 @@ from .options import (
 @runs_scenes
 def series(
     scene_file: Path,
-    scene: str | None,
+    request: "Request",
     order: int,
     exact: bool,
     digits: int | None,
     precision: str | None,
     at: Fraction | None,
     until: Fraction | None,
-    settings: Sequence[str],
     json_file: Path | None,
     limits: Limits,
 ) -> int:
     """Expand the initial motion of a SCENE in power series, and say how far they hold."""
-    from ..program.request import read_settings
     from ..series.power_series import (
         AUTOMATIC,
         EXACT,
@@ -56,16 +49,13 @@ def series(
         series_document,
         values_at,
     )
-    from .tables.series import show_series
-    from .tables.text import make_console
+    from .tables.motion import show_series
 
     if sum([exact, digits is not None, precision is not None]) > 1:
         raise click.UsageError("--exact, --digits and --precision exclude one another")
     wanted = EXACT if exact else digits or AUTOMATIC
-    request = SeriesRequest(order, scene, wanted, until, read_settings(settings), precision)
-    motion = compute_series(scene_file, request, limits)
+    asked = SeriesRequest(order, request.scene, wanted, until, request.settings, precision)
+    motion = compute_series(scene_file, asked, limits)
     values = None if at is None else values_at(motion, at)
-    publish(json_text(series_document(motion, values)), json_file)
-    if json_file != STANDARD_OUTPUT:
-        show_series(make_console(), motion, values)
+    present(series_document(motion, values), json_file, show_series, motion, values)
     return 0

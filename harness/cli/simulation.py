@@ -1,11 +1,12 @@
 """The command about motion in numbers: simulate."""
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from fractions import Fraction
 from pathlib import Path
 from threading import Thread
+from typing import TYPE_CHECKING
 
 import click
 
@@ -22,6 +23,9 @@ from .options import (
     writes_json,
 )
 from .outputs import STANDARD_OUTPUT, OutputFile
+
+if TYPE_CHECKING:
+    from ..program.request import Request
 
 SAMPLES_OF_A_PLOT = 1001
 FAILED = 1  # exit status of a result that is none
@@ -71,12 +75,11 @@ FAILED = 1  # exit status of a result that is none
 @runs_scenes
 def simulate(
     scene_file: Path,
-    scene: str | None,
+    request: "Request",
     tol: float | None,
     precision: str,
     engine: str,
     drift: str,
-    solve: str,
     compact: bool | None,
     until: Fraction | None,
     max_step: float | None,
@@ -85,7 +88,6 @@ def simulate(
     json_file: Path | None,
     output: Path | None,
     plot_file: Path | None,
-    settings: Sequence[str],
     limits: Limits,
 ) -> int:
     """Follow the motion of a SCENE in numbers, and say how well it was followed.
@@ -95,11 +97,9 @@ def simulate(
     proportion to the tolerance.
     """
     from ..program.motion_problem import motion_problem, problem_document, read_problem
-    from ..program.motion_program import Solve
-    from ..program.request import Request, read_settings
     from ..simulation.derivations import open_names, stands
 
-    request, digits = Request(scene, Solve(solve), read_settings(settings)), _digits_of(precision)
+    digits = _digits_of(precision)
     with _imported_meanwhile():
         document = problem_document(scene_file, request, limits, digits, open_names(request, digits))
     problem = read_problem(document)
@@ -110,7 +110,8 @@ def simulate(
     from ..simulation.request import FINAL_STATE_ALONE, EngineName, SimulationRequest, Stabilization
     from ..simulation.simulate import follow
     from ..simulation.simulate import simulate as follow_and_keep
-    from .tables.simulation import distrust, motion_progress, show_report
+    from .tables.motion import distrust, show_report
+    from .tables.progress import motion_progress
 
     require_formats(output, plot_file)
     if final and output is None and plot_file is None:

@@ -3,13 +3,17 @@
 from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from ..confined import Limits
 from .group import holonom
-from .options import asks_one_scene, chooses_solve, json_text, publish, read_instant, runs_scenes, writes_json
-from .outputs import STANDARD_OUTPUT, OutputFile
+from .options import asks_one_scene, chooses_solve, present, read_instant, runs_scenes, writes_json
+from .outputs import OutputFile
+
+if TYPE_CHECKING:
+    from ..program.request import Request
 
 FAILED = 1  # exit status of a sweep none of whose rows came about
 
@@ -65,8 +69,7 @@ FAILED = 1  # exit status of a sweep none of whose rows came about
 @runs_scenes
 def sweep(
     scene_file: Path,
-    scene: str | None,
-    settings: Sequence[str],
+    request: "Request",
     grids: Sequence[str],
     lists: Sequence[str],
     samples: Sequence[str],
@@ -77,7 +80,6 @@ def sweep(
     tol: float,
     until: Fraction | None,
     drift: str,
-    solve: str,
     chunk: int,
     workers: int | None,
     scheduler: str | None,
@@ -91,14 +93,13 @@ def sweep(
     The rows go into a folder of Parquet files, each with its parameters, what is kept, its residual and its status.
     The same command again computes only what is missing there. The exit status is 1 where no row came about.
     """
-    from ..program.motion_program import Solve
-    from ..program.request import Request, read_settings
     from ..simulation.output import require_formats
     from ..simulation.request import Stabilization
     from ..sweeps.axes import read_axes
     from ..sweeps.kept import read_kept
     from ..sweeps.run import SweepRequest, run_sweep
-    from .tables.sweep import show_sweep, sweep_progress
+    from .tables.motion import show_sweep
+    from .tables.progress import sweep_progress
 
     axes, kept = read_axes(grids, lists, samples, size, seed), read_kept(keep)
     if plot_file is not None:
@@ -106,16 +107,11 @@ def sweep(
 
         require_formats(None, plot_file)
         require_plottable(axes)
-    request = Request(scene, Solve(solve), read_settings(settings))
     wanted = SweepRequest(axes, kept, tol, until, Stabilization(drift), chunk, workers, scheduler, resume)
     with sweep_progress(axes.rows) as progress:
         found = run_sweep(scene_file, request, wanted, output, limits, progress)
     if plot_file is not None:
         found.plot().save(plot_file)
     statuses = found.statuses
-    publish(json_text({**found.document, "statuses": statuses}), json_file)
-    if json_file != STANDARD_OUTPUT:
-        from .tables.text import make_console
-
-        show_sweep(make_console(), found, statuses)
+    present({**found.document, "statuses": statuses}, json_file, show_sweep, found, statuses)
     return 0 if statuses.get("ok") else FAILED

@@ -7,7 +7,7 @@ from dataclasses import replace
 from math import factorial
 from typing import NamedTuple, TypeVar
 
-from ..record import Derivation, Equation, LeftOut, Record, Relation, why_left_out
+from ..record import Derivation, Equation, LeftOut, Record, Relation
 from . import derivation, initial_motion
 from .claims import NotComparable
 from .derivation import DerivationClaims
@@ -143,8 +143,8 @@ def _refused(place: Place, equation: Equation, reason: str) -> EquationVerdict:
 def _left_out(place: Place, left_out: LeftOut | None) -> Iterator[EquationVerdict]:
     if left_out is not None:
         for number in left_out.numbers:
-            what, why = ("", number, "(not made)"), why_left_out(left_out)
-            yield EquationVerdict(*what, *place, Verdict.LEFT_OUT, None, None, why, held=False)
+            what = ("", number, "(not made)")
+            yield EquationVerdict(*what, *place, Verdict.LEFT_OUT, None, None, "", held=False, left_out=left_out)
 
 
 def _missing(place: Place, expected: Mapping[str, str], present: Iterable[Equation]) -> Iterator[EquationVerdict]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
+from ..record import LeftOut
 from ..shown import Show, Shown
 
 
@@ -40,10 +41,11 @@ class EquationVerdict:
     digits, points : int or None
         Significant digits demanded and random points compared; None where nothing was evaluated.
     detail : str
-        For a disagreement the relation, the difference and the point; for what is undecided or was left out the
-        reason; empty otherwise.
+        For a disagreement the relation, the difference and the point; for what is undecided the reason; else empty.
     held : bool
         Whether the record holds the equation.
+    left_out : LeftOut or None
+        Why the equation was not made.
     """
 
     id: str
@@ -56,6 +58,7 @@ class EquationVerdict:
     points: int | None
     detail: str
     held: bool = True
+    left_out: LeftOut | None = None
 
 
 @dataclass(frozen=True, repr=False)

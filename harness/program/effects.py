@@ -114,7 +114,7 @@ class MeasuredCosts(Shown):
     effects: tuple[EffectCost, ...]
 
     def _table(self) -> Show:
-        from ..cli.tables.costs import show_costs
+        from ..cli.tables.measurements import show_costs
 
         return show_costs
 

@@ -105,7 +105,7 @@ class MotionSeries(Shown):
             return estimate_radius([numbers(series) for _, series in self.all_series()])
 
     def _table(self) -> Show:
-        from ..cli.tables.series import show_series
+        from ..cli.tables.motion import show_series
 
         return show_series
 

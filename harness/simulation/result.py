@@ -145,7 +145,7 @@ class Simulation(Sampled, Shown):
         return columns[name]
 
     def _table(self) -> Show:
-        from ..cli.tables.simulation import show_simulation
+        from ..cli.tables.motion import show_simulation
 
         return show_simulation
 

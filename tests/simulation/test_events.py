@@ -7,7 +7,7 @@ import pytest
 from rich.console import Console
 
 import holonom
-from holonom.cli.tables.simulation import show_simulation
+from holonom.cli.tables.motion import show_simulation
 from holonom.failures import HolonomError
 from holonom.simulation.document import report_document
 from holonom.simulation.events import Ending

@@ -1,17 +1,21 @@
-"""A derivation, equation by equation, and the verdicts on it."""
+"""A derivation, equation by equation, the verdicts on it, and the paper as printed beside it."""
 
+import io
+import re
 from collections.abc import Iterable, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.table import Table
+from rich.terminal_theme import DIMMED_MONOKAI
 from rich.text import Text
 
 from .text import counted, formula, styled
 
 if TYPE_CHECKING:
     from ...crosscheck import CheckReport
+    from ...errata import PrintedEquation
     from ...record import Equation, LeftOut, Record
 
 
@@ -30,10 +34,11 @@ def show_record(console: Console, record: "Record") -> None:
         _show_left_out(console, scene.left_out)
 
 
-def show_report(console: Console, scene: str, report: "CheckReport") -> None:
-    """Print the verdicts on one scene file."""
-    console.print(scene, style="italic", soft_wrap=True, markup=False)
-    show_verdicts(console, report)
+def show_reports(console: Console, reports: Iterable[tuple[str, "CheckReport"]]) -> None:
+    """Print the verdicts on each scene file."""
+    for scene, report in reports:
+        console.print(scene, style="italic", soft_wrap=True, markup=False)
+        show_verdicts(console, report)
 
 
 def show_verdicts(console: Console, report: "CheckReport") -> None:
@@ -49,10 +54,10 @@ def show_verdicts(console: Console, report: "CheckReport") -> None:
     for found in report.verdicts:
         if found.verdict in ("disagrees", "undecided"):
             console.print(f"({found.number}) {found.name}: {found.detail}", soft_wrap=True, markup=False)
-    left_out = {found.detail: found for found in report.verdicts if found.verdict == "left out"}
-    for reason in left_out:
-        numbers = [f"({found.number})" for found in report.verdicts if found.detail == reason]
-        console.print(f"{', '.join(dict.fromkeys(numbers))} left out: {reason}.", soft_wrap=True, markup=False)
+    for left_out in dict.fromkeys(found.left_out for found in report.verdicts if found.left_out):
+        numbers = dict.fromkeys(f"({found.number})" for found in report.verdicts if found.left_out == left_out)
+        said = f"{', '.join(numbers)} left out: {why_left_out(left_out)}."
+        console.print(said, soft_wrap=True, markup=False)
     console.print(f"{_sum(report)}; random points drawn by --seed {report.seed}", soft_wrap=True, markup=False)
 
 
@@ -80,10 +85,16 @@ def _show_equations(console: Console, equations: Iterable["Equation"]) -> None:
 
 def _show_left_out(console: Console, left_out: "LeftOut | None") -> None:
     if left_out is not None:
-        from ...record import why_left_out
-
         numbers = ", ".join(f"({number})" for number in left_out.numbers)
         console.print(f"{numbers} not made: {why_left_out(left_out)}.", style="yellow", soft_wrap=True)
+
+
+def why_left_out(left_out: "LeftOut") -> str:
+    """The sentence that says why equations were not made, and how to get them."""
+    return (
+        f"closed forms of {left_out.size} terms are expected, more than closed_form_size = {left_out.limit}; "
+        f"--closed-form-size {left_out.size} makes them, if time and memory suffice"
+    )
 
 
 def _number(count: int | None) -> str:
@@ -92,3 +103,42 @@ def _number(count: int | None) -> str:
 
 def _listed(effects: Sequence[str]) -> str:
     return ", ".join(effects)
+
+
+PICTURE_WIDTH = 62  # columns of the table of misprints
+FONT_FROM_NETWORK = re.compile(r"@font-face \{.*?\}", re.DOTALL)
+
+
+def show_errata(console: Console, equations: Sequence["PrintedEquation"]) -> None:
+    """Print each equation of the paper, whether it is right, and what is wrong with it where it is not."""
+    console.print(_errata_table(equations))
+    for equation in equations:
+        _show_misprint(console, equation)
+    misprints = sum(not equation.agrees for equation in equations)
+    console.print(f"{len(equations)} equations, {counted(misprints, 'misprint')} in our copy of the paper")
+
+
+def draw_errata(equations: Sequence["PrintedEquation"]) -> str:
+    """Return the table of the comparison with print as an SVG picture that needs no network."""
+    console = Console(record=True, width=PICTURE_WIDTH, file=io.StringIO(), force_terminal=True)
+    console.print(_errata_table(equations))
+    picture = console.export_svg(title="holonom errata", theme=DIMMED_MONOKAI, unique_id="errata")
+    return FONT_FROM_NETWORK.sub("", picture)
+
+
+def _errata_table(equations: Sequence["PrintedEquation"]) -> Table:
+    table = Table("no.", "equation", "as printed", title="The paper as our copy prints it", title_justify="left")
+    for equation in equations:
+        table.add_row(equation.number, equation.name, styled("agrees" if equation.agrees else "differs"))
+    return table
+
+
+def _show_misprint(console: Console, equation: "PrintedEquation") -> None:
+    said = {"difference": equation.difference, "corrected": equation.corrected, "remark": equation.remark}
+    if equation.agrees and not equation.remark:
+        return
+    number = f"({equation.number}) " if equation.number else ""
+    console.print(Text(f"{number}{equation.name}", style="cyan"))
+    for what, text in said.items():
+        if text:
+            console.print(f"    {what}: {text}", soft_wrap=True, markup=False)

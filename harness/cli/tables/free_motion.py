@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 from rich.text import Text
 
-from .series import short_number
+from .motion import short_number
 from .text import formula
 
 if TYPE_CHECKING:

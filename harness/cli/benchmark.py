@@ -1,17 +1,52 @@
-"""The command about hard cases: stability."""
+"""The commands that measure: accuracy, stability."""
 
 from dataclasses import asdict
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..confined import Limits
 from .group import holonom
-from .options import json_text, publish, writes_json
-from .outputs import STANDARD_OUTPUT, OutputFile
+from .options import asks_one_scene, present, read_instant, runs_scenes, writes_json
+from .outputs import OutputFile
 
 if TYPE_CHECKING:
     from ..benchmark.hard_cases.case import CaseReport
+    from ..program.request import Request
+
+
+@holonom.command()
+@asks_one_scene
+@click.option("--until", metavar="T", callback=read_instant, help="The last instant, in place of the scene's.")
+@click.option("--plot", "plot_file", metavar="FILE", type=OutputFile("svg", "png"), help="Also draw a figure, SVG.")
+@writes_json
+@runs_scenes
+def accuracy(
+    scene_file: Path,
+    request: "Request",
+    until: Fraction | None,
+    plot_file: Path | None,
+    json_file: Path | None,
+    limits: Limits,
+) -> int:
+    """Measure what accuracy costs in time for the motion of a SCENE, and give plain advice."""
+    from ..benchmark.work_precision.plan import Plan
+    from ..benchmark.work_precision.study import study, study_document
+    from .tables.measurements import show_study
+    from .tables.progress import progress
+
+    plan = Plan(until=until)
+    with progress("methods", plan.steps) as advance:
+        done = study(scene_file, request, limits, plan, advance)
+    present(study_document(done), json_file, show_study, done)
+    if plot_file is not None:
+        from ..figures.work_precision import draw_study
+
+        draw_study(done, plot_file)
+    return 0
+
 
 FAILED = 1
 
@@ -25,21 +60,18 @@ def stability(short: bool, plot_file: Path | None, json_file: Path | None) -> in
     from ..benchmark.hard_cases.case import Extent
     from ..benchmark.hard_cases.register import REGISTER, examine_all
     from ..documents import Publication, published
-    from .tables.hard_cases import show_stability
+    from .tables.measurements import show_stability
     from .tables.progress import progress
-    from .tables.text import make_console
 
     extent = Extent.SHORT if short else Extent.FULL
     with progress("Hard cases", len(REGISTER)) as done:
         reports = examine_all(extent, done)
     content = {"cases": [_report_document(report) for report in reports]}
-    publish(json_text(published(Publication.HARD_CASES, content)), json_file)
+    present(published(Publication.HARD_CASES, content), json_file, show_stability, reports)
     if plot_file is not None:
         from ..figures.hard_cases import draw_stability
 
         draw_stability(reports, plot_file)
-    if json_file != STANDARD_OUTPUT:
-        show_stability(make_console(), reports)
     return FAILED if any(report.fails for report in reports) else 0
 
 

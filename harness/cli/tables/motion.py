@@ -1,9 +1,68 @@
-"""A simulation on the console: the end of the motion, and how well it was followed to there."""
+"""A motion on the console: its power series, where a simulation ends and how well it was followed, a sweep of many."""
 
-import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
+
+import mpmath
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from ...series.power_series import Continuation, MotionSeries, Values
+    from ...sweeps.run import Sweep
+
+
+SHOWN_DIGITS = 12  # of numbers that would be longer than the next
+SHOWN_TEXT = 24  # characters of an exact number
+
+
+def show_series(console: "Console", motion: "MotionSeries", values: "Values | None" = None) -> None:
+    """Print the power series of a motion, how far they hold, and values asked for."""
+    from rich.table import Table
+
+    table = Table("order", title=f"{motion.scene}: {motion.title}, about t = {motion.t0}", title_justify="left")
+    columns = dict(motion.all_series())
+    for name in columns:
+        table.add_column(name)
+    for n, row in enumerate(zip(*columns.values(), strict=True)):
+        table.add_row(str(n), *map(short_number, row))
+    console.print(table)
+    radius = motion.radius
+    size = "" if radius.estimate is None else f"{radius.estimate:.8g}, known to {radius.uncertainty:.1g}; "
+    console.print(f"{motion.arithmetic} arithmetic; radius of convergence: {size}{radius.remark}", soft_wrap=True)
+    if motion.switch is not None:
+        console.print(f"This is the motion as long as {motion.switch} keeps its sign.", soft_wrap=True, markup=False)
+    for z in radius.singularities:
+        console.print(f"    singularity at t - t0 = {z.real:.8g} {z.imag:+.8g} i")
+    if values is not None:
+        console.print(f"at t = {values.time}, leaving out terms of the size {values.truncation_error:.1g}:")
+        for name, value in values.values.items():
+            console.print(f"    {name} = {_rounded(value)}")
+    if motion.continuation is not None:
+        _show_continuation(console, motion.continuation)
+
+
+def _show_continuation(console: "Console", continuation: "Continuation") -> None:
+    from rich.table import Table
+
+    names = [*continuation.coordinates, *continuation.velocities]
+    table = Table("t", *names, title="Continued by further expansions", title_justify="left")
+    rows = [continuation.instants, *continuation.coordinates.values(), *continuation.velocities.values()]
+    for row in zip(*rows, strict=True):
+        table.add_row(*(_rounded(mpmath.mpf(text)) for text in row))
+    console.print(table)
+
+
+def short_number(text: str) -> str:
+    """A number in ``p/q`` or decimal notation: as it is where it is exact and short, else rounded."""
+    from ...series.power_series import number
+
+    return text if len(text) <= SHOWN_TEXT and "." not in text else _rounded(number(text))
+
+
+def _rounded(value: mpmath.mpf) -> str:
+    return mpmath.nstr(value, SHOWN_DIGITS)
+
 
 LISTED = 3  # instants that are told one by one
 
@@ -13,26 +72,6 @@ if TYPE_CHECKING:
     from ...simulation.piecewise import Switching
     from ...simulation.result import Report, Simulation
     from ...simulation.trust import Doubt
-
-
-@contextmanager
-def motion_progress(title: str) -> Iterator[Callable[[float], None] | None]:
-    """Show a progress bar while the block runs, on standard error if that is a terminal.
-
-    Yields
-    ------
-    callable or None
-        Takes the fraction that is done; None in a pipe, where nothing is shown.
-    """
-    if not sys.stderr.isatty():
-        yield None
-        return
-    from rich.console import Console
-    from rich.progress import Progress
-
-    with Progress(console=Console(stderr=True), transient=True) as shown:
-        task = shown.add_task(title, total=1.0)
-        yield lambda fraction: shown.update(task, completed=fraction)
 
 
 def show_simulation(console: "Console", simulation: "Simulation") -> None:
@@ -112,3 +151,19 @@ def distrust(doubt: "Doubt") -> str:
         f"holonom: this is no result: {what} is missed by {doubt.missed:.1e} of its size, where the tolerance lets "
         f"expect {doubt.expected:.1e} at most; take a smaller --max-step, another --engine or more --precision."
     )
+
+
+def show_sweep(console: "Console", sweep: "Sweep", statuses: Mapping[str, int]) -> None:
+    """Print where the rows are, and how many came about how."""
+    from rich.table import Table
+
+    document = sweep.document
+    names = ", ".join(axis["asked"] for axis in document["parameters"])
+    console.print(f"{document['scene']['name']}: {document['rows']} motions, {names}", soft_wrap=True, markup=False)
+    table = Table()
+    table.add_column("status")
+    table.add_column("rows", justify="right")
+    for status, rows in statuses.items():
+        table.add_row(status, str(rows))
+    console.print(table)
+    console.print(f"kept in {sweep.path}: {', '.join(document['columns'])}", soft_wrap=True, markup=False)

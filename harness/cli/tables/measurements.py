@@ -1,0 +1,132 @@
+"""What computing costs and keeps: terms and effects, accuracy, hard cases."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from ...benchmark.work_precision.measurement import Group
+from .text import counted, styled
+
+if TYPE_CHECKING:
+    from ...benchmark.hard_cases.case import CaseReport
+    from ...benchmark.work_precision.advice import Advice, Price
+    from ...benchmark.work_precision.study import Study
+    from ...program.effects import MeasuredCosts
+
+
+NANOSECONDS = 1e9  # in a second
+
+
+def show_costs(console: Console, costs: "MeasuredCosts") -> None:
+    """Print the terms of (3) and (7) and the effects of a scene, with what each costs."""
+    unit = f"ns in {costs.measured_in}"
+    terms = Table("eq.", "term", "status", "operations", unit, title=costs.scene, title_justify="left")
+    for term in costs.terms:
+        cost = (str(term.operations), _nanoseconds(term.seconds)) if term.status == "present" else ("", "")
+        terms.add_row(term.equation, Text(term.term), styled(term.status), *cost)
+    effects = Table("effect", "status", "operations", unit)
+    for effect in costs.effects:
+        operations = _indispensable(effect.status) if effect.operations is None else f"{effect.operations:+d}"
+        effects.add_row(effect.name, styled(effect.status), operations, _added_nanoseconds(effect.seconds))
+    for table in (terms, effects):
+        table.columns[-1].justify = table.columns[-2].justify = "right"
+        console.print(table)
+    console.print(
+        "(10) is made of the terms of (3) and (7), the reactions apart: what is absent there is absent in it."
+    )
+    console.print(f"The whole program: {costs.operations} operations, {_nanoseconds(costs.seconds_per_evaluation)} ns.")
+    console.print(
+        "A time is that of one call among many, the call itself included; what an effect adds is a difference."
+    )
+
+
+def _nanoseconds(seconds: float) -> str:
+    return f"{seconds * NANOSECONDS:.1f}"
+
+
+def _added_nanoseconds(seconds: float | None) -> str:
+    return "" if seconds is None else f"{round(seconds * NANOSECONDS, 1) + 0.0:+.1f}"  # no minus sign before a zero
+
+
+def _indispensable(status: str) -> str:
+    return "indispensable" if status == "present" else "unsolvable"
+
+
+TITLES = {
+    Group.SERIES: "One series, added up at t = {instant}",
+    Group.TAYLOR: "The Taylor engine, to t = {instant}",
+    Group.RUNGE_KUTTA: "The Runge-Kutta engine, to t = {instant}",
+    Group.SOLVER: "Others on the same motion program, to t = {instant}",
+    Group.DRIFT: "Cures of drift at equal tolerance, to t = {instant}",
+    Group.SOLVE: "The two solves at equal tolerance, to t = {instant}",
+}
+
+
+def show_study(console: Console, study: "Study") -> None:
+    """Print every measurement, what was left out and why, and the advice that follows."""
+    console.print(f"{study.scene}: {study.title}", soft_wrap=True)
+    for group, title in TITLES.items():
+        rows = [m for m in study.measurements if m.group is group]
+        if not rows:
+            continue
+        table = Table(title=title.format(instant=float(rows[0].instant)), title_justify="left")
+        for name in ("method", "setting"):
+            table.add_column(name)
+        for name in ("relative error", "seconds", "seconds to prepare", "operations"):
+            table.add_column(name, justify="right")
+        for m in rows:
+            prepared = "" if m.preparation_seconds is None else f"{m.preparation_seconds:.2g}"
+            table.add_row(m.method, m.setting, f"{m.error:.1e}", f"{m.seconds:.2e}", prepared, f"{m.operations}")
+        console.print(table)
+    for omission in study.omissions:
+        console.print(f"left out: {omission.method}, {omission.setting}: {omission.reason}", soft_wrap=True)
+    for advice in study.advice:
+        console.print(_sentence(advice), soft_wrap=True)
+    for price in study.prices:
+        console.print(_price(price), soft_wrap=True)
+    reference = study.reference
+    console.print(
+        f"Errors are against a run with {reference.digits} digits and order {reference.order}; one with "
+        f"{reference.confirming_digits} digits and order {reference.confirming_order} differs by "
+        f"{reference.difference:.1g}.",
+        soft_wrap=True,
+    )
+    console.print(f"Seconds are those of one run, once it is prepared. Measured on {study.machine}.", soft_wrap=True)
+
+
+def _sentence(advice: "Advice") -> str:
+    m = advice.cheapest
+    if m is None:
+        return f"For {advice.digits} digits: none of these methods gets there."
+    return f"For {advice.digits} digits: {m.method}, {m.setting}, {m.seconds:.2g} s (error {m.error:.1g})."
+
+
+def _price(price: "Price") -> str:
+    return (
+        f"One more digit takes {100 * (price.factor - 1):.0f} % more time with {price.method}, "
+        f"between {price.first_digits:.0f} and {price.last_digits:.0f} digits."
+    )
+
+
+def show_stability(console: Console, reports: Sequence["CaseReport"]) -> None:
+    """Print what each method keeps of each hard case, with the advice."""
+    table = Table("case", "method", "quantity", "digits", "verdict")
+    table.title, table.title_justify = "Digits kept in hard cases", "left"
+    table.columns[3].justify = "right"
+    for report in reports:
+        table.add_section()
+        name = report.case.name
+        for result in report.results:
+            digits = "" if result.digits is None else f"{result.digits:.1f}"
+            table.add_row(name, result.method, result.quantity, digits, styled(result.verdict))
+            name = ""
+    console.print(table)
+    for report in reports:
+        console.print(Text(report.case.name, style="cyan"))
+        console.print(f"    truth: {report.case.truth}", soft_wrap=True, markup=False)
+        console.print(f"    {report.advice}", soft_wrap=True, markup=False)
+    failed = sum(report.fails for report in reports)
+    console.print(f"{counted(len(reports), 'hard case')}, {counted(failed, 'failure')}")
