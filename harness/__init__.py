@@ -12,16 +12,18 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .confined import Limits
+    from .equations import Equations
     from .failures import HolonomError
-    from .scene import Equations, MotionProgram, Scene, load, sweep, system
+    from .program.forms import MotionProgram
+    from .scene import Scene, load, sweep, system
 
 PUBLIC = {
     "load": ".scene",
     "system": ".scene",
     "sweep": ".scene",
     "Scene": ".scene",
-    "Equations": ".scene",
-    "MotionProgram": ".scene",
+    "Equations": ".equations",
+    "MotionProgram": ".program.forms",
     "Limits": ".confined",
     "HolonomError": ".failures",
 }

@@ -4,33 +4,32 @@ What is asked for is computed when it is asked for, once; a scene does not chang
 """
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from decimal import Decimal
 from enum import StrEnum
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar, overload
+from typing import TYPE_CHECKING, TypeVar
 
 from .confined import Limits
 from .documents import Document, ask, read
+from .equations import Equations
 from .failures import Failure, HolonomError, naming_the_extra
-from .files import KeptDirectory, near_file, write_files, write_whole
-from .program.motion_program import Program, Solve, read_program
-from .program.request import Request, program_document, read_settings
+from .files import KeptDirectory, near_file
+from .program.forms import MotionProgram
+from .program.motion_program import Solve
+from .program.request import Request, read_settings
 from .simulation.derivations import Derivations
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
     from .crosscheck import CheckReport
     from .free_motion import FreeMotion
-    from .program.c_function import CFunction
     from .program.effects import MeasuredCosts
     from .program.motion_problem import MotionProblem
-    from .program.numpy_function import NumpyFunction
-    from .record import Equation, Record, System
+    from .program.right_hand_side import RightHandSide
+    from .record import Record, System
     from .series.power_series import MotionSeries
     from .simulation.result import Simulation
     from .sweeps.run import Sweep
@@ -200,7 +199,7 @@ class Scene:
         return self.record.system
 
     @cached_property
-    def equations(self) -> "Equations":
+    def equations(self) -> Equations:
         """The equations of the system with the scene's effects, (2) to (11), then those of its initial motion.
 
         Of a scene that prescribes reactions, those of the system as it is described.
@@ -252,10 +251,9 @@ class Scene:
     @naming_the_extra()
     def effects(self) -> "MeasuredCosts":
         """Which terms and effects there are, and what each costs in operations and in measured time."""
-        from .program.effects import measure_costs, read_costs
-        from .program.request import effects_document
+        from .program.effects import scene_costs
 
-        return measure_costs(read_costs(effects_document(self.file, self._request("direct"), self.limits)))
+        return scene_costs(self.file, self._request("direct"), self.limits)
 
     # ---- the motion ----
 
@@ -354,6 +352,7 @@ class Scene:
         request = SimulationRequest(tol, str(precision), follower, cure, last, samples, max_step=max_step)
         return simulate(problem, request)
 
+    @naming_the_extra()
     def rhs(self, solve: str = "direct") -> "RightHandSide":
         """The equations of motion as f(t, y) for any integrator, y the coordinates and then the velocities.
 
@@ -366,13 +365,14 @@ class Scene:
             analytic everywhere.
         """
         from .program.motion_problem import DOUBLE_DIGITS
+        from .program.right_hand_side import RightHandSide
         from .program.sign_pattern import with_values_in
 
         return RightHandSide(with_values_in(self._problem(solve, DOUBLE_DIGITS)))
 
-    def program(self, solve: str = "direct") -> "MotionProgram":
+    def program(self, solve: str = "direct") -> MotionProgram:
         """The motion program: accelerations and multipliers of (t, q, dot q, u, dot u, ddot u)."""
-        return MotionProgram(self, self._request(solve))
+        return MotionProgram(self.file, self._request(solve), self.limits)
 
     def __repr__(self) -> str:
         scene = f", scene={self._name!r}" if self._name else ""
@@ -390,208 +390,6 @@ class Scene:
 
     def _problem(self, solve: str, digits: int) -> "MotionProblem":
         return self._derived.motion(self._request(solve), digits)
-
-
-class Equations(Sequence["Equation"]):
-    """Equations in the paper's order; a notebook shows them as typeset mathematics.
-
-    ``equations[0]`` is the first; ``equations["8"]`` are those with the paper's number (8), and
-    ``equations["multipliers"]`` the one with that id.
-    """
-
-    def __init__(self, equations: Iterable["Equation"]) -> None:
-        self._equations = tuple(equations)
-
-    def __len__(self) -> int:
-        return len(self._equations)
-
-    @overload
-    def __getitem__(self, key: int) -> "Equation": ...
-    @overload
-    def __getitem__(self, key: str | slice) -> "Equations": ...
-    def __getitem__(self, key: int | str | slice) -> "Equation | Equations":
-        if isinstance(key, int):
-            return self._equations[key]
-        if isinstance(key, slice):
-            return Equations(self._equations[key])
-        found = [equation for equation in self._equations if key in (equation.id, equation.number)]
-        if not found:
-            raise KeyError(f"no equation has the number or id {key!r}; there are {', '.join(self.titles())}")
-        return Equations(found)
-
-    def titles(self) -> Iterator[str]:
-        """Number, id and name of each."""
-        return (f"({equation.number}) {equation.id}: {equation.name}" for equation in self._equations)
-
-    def solved_for(self, name: str) -> Any:
-        """The right side of the relation whose left side is the quantity of that name, in SymPy.
-
-        Raises
-        ------
-        KeyError
-            There is none.
-        """
-        from .typeset.notebook import in_letters
-
-        for equation in self._equations:
-            for relation in equation.relations:
-                if str(relation.left) == name:
-                    return in_letters(relation.right)
-        raise KeyError(name)
-
-    def __repr__(self) -> str:
-        return "\n".join(self.titles())
-
-    def _repr_html_(self) -> str | None:
-        from .typeset.notebook import equations_html
-
-        try:
-            return equations_html(self._equations)
-        except HolonomError:  # without latex2mathml the notebook takes the LaTeX
-            return None
-
-    def _repr_latex_(self) -> str:
-        from .typeset.notebook import equations_latex
-
-        return equations_latex(self._equations)
-
-
-class MotionProgram:
-    """The motion program of a scene, and the forms in which it can be taken elsewhere."""
-
-    def __init__(self, scene: Scene, request: Request) -> None:
-        self._scene, self._request = scene, request
-
-    @cached_property
-    def document(self) -> str:
-        """The program as one JSON document."""
-        return program_document(self._scene.file, self._request, self._scene.limits)
-
-    @cached_property
-    def program(self) -> Program:
-        """The program as objects."""
-        return read_program(self.document)
-
-    @property
-    def inputs(self) -> tuple[str, ...]:
-        """Names of what it takes."""
-        return self.program.inputs
-
-    @property
-    def outputs(self) -> tuple[str, ...]:
-        """Names of what it computes."""
-        return tuple(self.program.outputs)
-
-    @property
-    def operations(self) -> int:
-        """What one evaluation costs."""
-        return self.program.operations
-
-    @naming_the_extra()
-    def compile(self) -> "CFunction":
-        """A function of an array (inputs,) or (inputs, points), compiled by the system's C compiler."""
-        from .program.c_function import compile_c
-
-        return compile_c(self.program)
-
-    @naming_the_extra()
-    def lambdify(self) -> "NumpyFunction":
-        """The same function by NumPy alone."""
-        from .program.numpy_function import NumpyFunction
-
-        return NumpyFunction(self.program)
-
-    def to_python(self) -> str:
-        """A Python module that needs the standard library alone."""
-        from .program.python_source import python_source
-
-        return python_source(self.program)
-
-    def to_javascript(self) -> str:
-        """A script for a page or for Node that needs nothing but Math."""
-        from .program.javascript_source import javascript_source
-
-        return javascript_source(self.program)
-
-    def to_c(self, directory: str | Path, name: str | None = None, parameters: Sequence[str] = ()) -> None:
-        """Write a library in C11, as ``holonom program --to c`` does.
-
-        Parameters
-        ----------
-        directory : str or Path
-            It is made where it is missing.
-        name : str or None
-            What every public name begins with; None for the file's name.
-        parameters : sequence of str
-            Those that stay open although the scene gives them values.
-        """
-        from .program.c_library import c_library, default_name
-
-        write_files(Path(directory), c_library(self._model(parameters), name or default_name(self._scene.file)))
-
-    def to_fmu(self, file: str | Path, name: str | None = None, parameters: Sequence[str] = ()) -> None:
-        """Write an FMI 3.0 unit for model exchange; otherwise like `to_c`."""
-        from .program.c_library import default_name
-        from .program.fmu import write_fmu
-
-        write_whole(Path(file), write_fmu(self._model(parameters), name or default_name(self._scene.file)))
-
-    def __repr__(self) -> str:
-        return (
-            f"<MotionProgram of {len(self.inputs)} inputs, {len(self.outputs)} outputs, {self.operations} operations>"
-        )
-
-    def _model(self, parameters: Sequence[str]) -> Any:
-        from .program.model import scene_model
-
-        return scene_model(self._scene.file, self._request, parameters, self._scene.limits)
-
-
-@dataclass(frozen=True)
-class RightHandSide:
-    """f(t, y) of dy/dt = f(t, y), y the coordinates and then the velocities; arrays of states are columns."""
-
-    problem: "MotionProblem"
-
-    def __post_init__(self) -> None:
-        from .program.motion_problem import require_analytic
-
-        if self.problem.motion is None:
-            raise HolonomError(Failure.NO_PIVOTS, detail=self.problem.obstacle)
-        require_analytic(self.problem)
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """What the components of y are."""
-        return self.problem.state
-
-    @property
-    def t0(self) -> float:
-        """The initial instant."""
-        return float(self.problem.start["t"])
-
-    @property
-    def y0(self) -> "NDArray":
-        """The initial state."""
-        import numpy as np
-
-        return np.array([float(self.problem.start[name]) for name in self.names])
-
-    @cached_property
-    def _accelerations(self) -> "NumpyFunction":
-        from .program.motion_problem import computing
-        from .program.numpy_function import NumpyFunction
-
-        program = computing(self.problem.motion, [f"ddot({name})" for name in self.problem.coordinates])
-        return NumpyFunction(replace(program, inputs=("t", *self.names)))
-
-    def __call__(self, t: float, y: "ArrayLike") -> "NDArray":
-        """The velocities and accelerations."""
-        import numpy as np
-
-        state = np.asarray(y, dtype=float)
-        instants = np.broadcast_to(np.asarray(t, dtype=float), state.shape[1:])
-        return np.concatenate([state[len(state) // 2 :], self._accelerations([instants, *state])])
 
 
 def _instant(until: Number | None) -> Fraction | None:

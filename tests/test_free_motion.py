@@ -14,9 +14,9 @@ from holonom.cli.tables.free_motion import power_series
 from holonom.confined import Limits
 from holonom.failures import HolonomError
 from holonom.free_motion import FirstCoefficient, Free, free_motion
-from holonom.program.motion_program import read_program
+from holonom.program.forms import MotionProgram
 from holonom.program.numpy_function import NumpyFunction
-from holonom.program.request import Request, program_document
+from holonom.program.request import Request
 from holonom.record import derived_record
 from holonom.series.power_series import SeriesRequest, compute_series, number
 
@@ -115,7 +115,7 @@ def test_untensed_string_follows_the_parabola():
 def test_motion_under_prescribed_reactions_is_a_motion_program():
     # polar coordinates: angular momentum per mass changes by the torque of gravity, and the energy by the winch's work
     example = EXAMPLES / "prescribed_tension.mac"
-    program = read_program(program_document(example, Request("growing_scene"), Limits()))
+    program = MotionProgram(example, Request("growing_scene"), Limits()).program
     time, r, phi, u, vr, vphi, vu = state = [0.7, 1.3, 0.4, 1.3, -0.2, 0.9, -0.2]
     assert program.inputs == ("t", "r", "phi", "u", "dot(r)", "dot(phi)", "dot(u)")
     found = dict(zip(program.outputs, NumpyFunction(program)(state), strict=True))

@@ -59,32 +59,25 @@ def program(
     same for FMI 3 model exchange. Controls, and parameters without a value or named by --parameters, are inputs of
     both.
     """
-    from ..program.request import Form, program_text
+    from ..program.forms import MotionProgram
 
-    if form not in ("c", "fmu"):
+    taken = MotionProgram(scene_file, request, limits)
+    texts = {"json": lambda: taken.document, "python": taken.to_python, "javascript": taken.to_javascript}
+    if form in texts:
         if name or parameters:
             raise click.UsageError("--name and --parameters go with --to c or --to fmu")
-        publish(program_text(scene_file, request, Form(form), limits), output)
-        return 0
-    from ..program.c_library import c_library, default_name
-    from ..program.model import scene_model
-
-    if output == STANDARD_OUTPUT:
+        publish(texts[form](), output)
+    elif output == STANDARD_OUTPUT:
         raise HolonomError(Failure.NOT_A_FILE)
-    name = name or default_name(scene_file)
-    model = scene_model(scene_file, request, parameters, limits)
-    if form == "c":
+    elif form == "c":
         from ..files import require_own_files, write_files
 
-        files = c_library(model, name)
+        files = taken.c_files(name, parameters)
         if not is_forced():
             require_own_files(output, files)
         write_files(output, files)
     else:
-        from ..files import write_whole
-        from ..program.fmu import write_fmu
-
-        write_whole(output, write_fmu(model, name))
+        taken.to_fmu(output, name, parameters)
     return 0
 
 
@@ -101,10 +94,9 @@ def effects(
 ) -> int:
     """Show which terms and effects a SCENE has and what each costs, in operations and in measured time."""
     from ..documents import Publication, published
-    from ..program.effects import measure_costs, read_costs
-    from ..program.request import effects_document
+    from ..program.effects import scene_costs
     from .tables.measurements import show_costs
 
-    costs = measure_costs(read_costs(effects_document(scene_file, request, limits)))
+    costs = scene_costs(scene_file, request, limits)
     present(published(Publication.COSTS, asdict(costs)), json_file, show_costs, costs)
     return 0

@@ -10,15 +10,18 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import count
+from pathlib import Path
 
 import numpy as np
 
-from ..documents import Document, read
+from ..confined import Limits
+from ..documents import Document, ask, read
 from ..failures import Failure, HolonomError
 from ..shown import Show, Shown
 from .c_function import compile_c
 from .motion_program import Program, program_of
 from .numpy_function import NumpyFunction
+from .request import Request
 from .timing import Batch, Timer, python_batch, shortest_times
 
 GOLDEN = 0.6180339887498949  # its multiples are spread evenly over the fractions and satisfy no short relation
@@ -117,6 +120,12 @@ class MeasuredCosts(Shown):
         from ..cli.tables.measurements import show_costs
 
         return show_costs
+
+
+def scene_costs(file: Path, request: Request, limits: Limits) -> MeasuredCosts:
+    """What a scene pays for, its programs asked of Maxima; raises as `holonom.documents.ask` and `measure_costs`."""
+    asked = (Document.EFFECTS, file, request.scene, request.solve)
+    return measure_costs(read_costs(ask(*asked, settings=request.settings, limits=limits)))
 
 
 def read_costs(text: str) -> Costs:

@@ -248,7 +248,7 @@ def _kind(field: Any) -> str:
 def python_topics() -> Iterator[Topic]:
     """A page for each public name."""
     import holonom
-    from holonom.scene import RightHandSide
+    from holonom.program.right_hand_side import RightHandSide
     from holonom.simulation.result import Simulation
 
     public = {name: getattr(holonom, name) for name in holonom.__all__}

@@ -17,8 +17,9 @@ from charged import charged
 from holonom.confined import Limits
 from holonom.mathjson import from_sympy
 from holonom.maxima import run_batch
+from holonom.program.forms import MotionProgram
 from holonom.program.motion_program import Program, count_operations, read_program
-from holonom.program.request import Request, program_document
+from holonom.program.request import Request
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "chain.mac"
 
@@ -134,7 +135,7 @@ def maxima_linsolve(links: int, seconds: float) -> Program:
 def holonom(links: int, seconds: float) -> Program:
     """Holonom: the motion program of the example."""
     request = Request(settings={"N": str(links)})
-    return read_program(program_document(EXAMPLE, request, Limits(seconds=seconds)))
+    return MotionProgram(EXAMPLE, request, Limits(seconds=seconds)).program
 
 
 PEERS: dict[str, Callable[[int, float], Program]] = {

@@ -17,10 +17,10 @@ from holonom.crosscheck.independent import IndependentEquations
 from holonom.crosscheck.points import Valuation, random_point
 from holonom.crosscheck.system import described_system
 from holonom.failures import HolonomError
-from holonom.program.effects import Measure, Status, measure_costs, read_costs
-from holonom.program.motion_program import read_program
+from holonom.program.effects import Measure, Status, read_costs, scene_costs
+from holonom.program.forms import MotionProgram
 from holonom.program.numpy_function import NumpyFunction
-from holonom.program.request import Request, effects_document, program_document
+from holonom.program.request import Request
 from holonom.record import derived_record
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -161,7 +161,7 @@ def test_every_subset_of_effects_is_checked(called, write_scene):
 
 def assert_solves_independent_equations(file, record):
     """The motion program's numbers are the solution of the bordered system that SymPy writes down."""
-    program = read_program(program_document(file, Request(), Limits()))
+    program = MotionProgram(file, Request(), Limits()).program
     (scene,) = record.scenes
     known = IndependentEquations(described_system(record.system, scene.effects))
     point = random_point(program.inputs, 0, "effects")
@@ -183,12 +183,12 @@ def test_leaving_an_effect_out_is_as_if_it_were_not_written(name, left_out, writ
     kept = [effect for effect in effects_of(name) if effect != left_out]
     whole = system_text(name, effects_of(name))
     chosen = write_scene(whole + scene_text(name, listed(kept), whole))
-    assert_same_assignments(program_document(chosen, Request(), Limits()), name, kept, write_scene)
+    assert_same_assignments(MotionProgram(chosen, Request(), Limits()).document, name, kept, write_scene)
 
 
 def assert_same_assignments(chosen, name, kept, write_scene):
     part = system_text(name, kept)
-    written = program_document(write_scene(part + scene_text(name, "all", part)), Request(), Limits())
+    written = MotionProgram(write_scene(part + scene_text(name, "all", part)), Request(), Limits()).document
     chosen, written = json.loads(chosen), json.loads(written)
     uncalled = set(chosen["inputs"]) - set(written["inputs"])  # of a control that only the effects left out contain
     assert uncalled <= {"u", "dot(u)", "ddot(u)"}
@@ -203,7 +203,7 @@ def test_a_scene_that_calls_for_less_pays_less():
 
 def test_costs_are_those_of_the_programs():
     costs = costs_of(SPHERICAL, "--scene", "foucault_scene")
-    program = json.loads(program_document(SPHERICAL, Request(scene="foucault_scene"), Limits()))
+    program = json.loads(MotionProgram(SPHERICAL, Request(scene="foucault_scene"), Limits()).document)
     assert costs["scene"] == "foucault_scene"
     assert costs["operations"] == program["operations"]
     terms = {(term["equation"], term["term"]): term for term in costs["terms"]}
@@ -237,7 +237,7 @@ def test_a_file_without_scenes_has_all_its_effects(write_scene):
 
 def test_without_a_compiler_numpy_is_measured(monkeypatch):
     monkeypatch.setenv("CC", "no-such-compiler")
-    costs = measure_costs(read_costs(effects_document(SPHERICAL, Request(scene="swinging_scene"), Limits())))
+    costs = scene_costs(SPHERICAL, Request(scene="swinging_scene"), Limits())
     assert costs.measured_in is Measure.NUMPY
     assert costs.seconds_per_evaluation > 0
 
@@ -245,7 +245,7 @@ def test_without_a_compiler_numpy_is_measured(monkeypatch):
 def test_a_constant_control_has_no_rates(write_scene):
     scene = scene_text("coupled masses", "all", system_text("coupled masses", effects_of("coupled masses")))
     still = write_scene(system_text("coupled masses", effects_of("coupled masses")) + scene.replace("1 + t", "2"))
-    program = read_program(program_document(still, Request(), Limits()))
+    program = MotionProgram(still, Request(), Limits()).program
     assert "u" in program.inputs
     assert not {"dot(u)", "ddot(u)"} & set(program.inputs)
 

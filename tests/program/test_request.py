@@ -12,8 +12,9 @@ from test_same_numbers import assert_same_numbers
 from holonom.cli import holonom
 from holonom.confined import Limits
 from holonom.failures import HolonomError
+from holonom.program.forms import MotionProgram
 from holonom.program.motion_program import Program, Solve, count_operations, read_program
-from holonom.program.request import Request, program_document, read_settings
+from holonom.program.request import Request, read_settings
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SCENES = {
@@ -28,7 +29,7 @@ SCENES = {
 
 
 def motion_program(file: str, **request) -> Program:
-    return read_program(program_document(EXAMPLES / file, Request(**request), Limits()))
+    return MotionProgram(EXAMPLES / file, Request(**request), Limits()).program
 
 
 @pytest.fixture(scope="module", params=[(name, solve) for name in SCENES for solve in Solve], ids=" ".join)

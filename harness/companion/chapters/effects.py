@@ -9,8 +9,8 @@ import numpy as np
 from ...benchmark.machine import this_machine
 from ...confined import Limits
 from ...figures.effects import draw_with_and_without
-from ...program.effects import MeasuredCosts, measure_costs, read_costs
-from ...program.request import Request, effects_document
+from ...program.effects import MeasuredCosts, scene_costs
+from ...program.request import Request
 from ...record import Record
 from ...simulation.result import Simulation
 from ..chapter import Chapter, Page, Run
@@ -67,7 +67,7 @@ def chapter(root: Path) -> Chapter:
 
 def costs(file: Path, scene: str) -> MeasuredCosts:
     """What a scene pays for, as `holonom effects` says it."""
-    return measure_costs(read_costs(effects_document(file, Request(scene), Limits())))
+    return scene_costs(file, Request(scene), Limits())
 
 
 def titles(record: Record) -> dict[str, str]:

@@ -1,0 +1,73 @@
+"""Equations of a scene, by their place, the paper's number or their id."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any, overload
+
+from .failures import HolonomError
+
+if TYPE_CHECKING:
+    from .record import Equation
+
+
+class Equations(Sequence["Equation"]):
+    """Equations in the paper's order; a notebook shows them as typeset mathematics.
+
+    ``equations[0]`` is the first; ``equations["8"]`` are those with the paper's number (8), and
+    ``equations["multipliers"]`` the one with that id.
+    """
+
+    def __init__(self, equations: Iterable["Equation"]) -> None:
+        self._equations = tuple(equations)
+
+    def __len__(self) -> int:
+        return len(self._equations)
+
+    @overload
+    def __getitem__(self, key: int) -> "Equation": ...
+    @overload
+    def __getitem__(self, key: str | slice) -> "Equations": ...
+    def __getitem__(self, key: int | str | slice) -> "Equation | Equations":
+        if isinstance(key, int):
+            return self._equations[key]
+        if isinstance(key, slice):
+            return Equations(self._equations[key])
+        found = [equation for equation in self._equations if key in (equation.id, equation.number)]
+        if not found:
+            raise KeyError(f"no equation has the number or id {key!r}; there are {', '.join(self.titles())}")
+        return Equations(found)
+
+    def titles(self) -> Iterator[str]:
+        """Number, id and name of each."""
+        return (f"({equation.number}) {equation.id}: {equation.name}" for equation in self._equations)
+
+    def solved_for(self, name: str) -> Any:
+        """The right side of the relation whose left side is the quantity of that name, in SymPy.
+
+        Raises
+        ------
+        KeyError
+            There is none.
+        """
+        from .typeset.notebook import in_letters
+
+        for equation in self._equations:
+            for relation in equation.relations:
+                if str(relation.left) == name:
+                    return in_letters(relation.right)
+        raise KeyError(name)
+
+    def __repr__(self) -> str:
+        return "\n".join(self.titles())
+
+    def _repr_html_(self) -> str | None:
+        from .typeset.notebook import equations_html
+
+        try:
+            return equations_html(self._equations)
+        except HolonomError:  # without latex2mathml the notebook takes the LaTeX
+            return None
+
+    def _repr_latex_(self) -> str:
+        from .typeset.notebook import equations_latex
+
+        return equations_latex(self._equations)

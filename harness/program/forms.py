@@ -1,0 +1,114 @@
+"""The motion program of a scene, asked of Maxima, and the forms it can be taken away in."""
+
+from collections.abc import Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..confined import Limits
+from ..documents import Document, ask
+from ..failures import naming_the_extra
+from ..files import write_files, write_whole
+from .motion_program import Program, read_program
+from .request import Request
+
+if TYPE_CHECKING:
+    from .c_function import CFunction
+    from .model import Model
+    from .numpy_function import NumpyFunction
+
+
+class MotionProgram:
+    """The motion program of a scene, and the forms in which it can be taken elsewhere."""
+
+    def __init__(self, file: Path, request: Request, limits: Limits) -> None:
+        self._file, self._request, self._limits = file, request, limits
+
+    @cached_property
+    def document(self) -> str:
+        """The program as one JSON document."""
+        asked = self._request
+        return ask(Document.PROGRAM, self._file, asked.scene, asked.solve, settings=asked.settings, limits=self._limits)
+
+    @cached_property
+    def program(self) -> Program:
+        """The program as objects."""
+        return read_program(self.document)
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of what it takes."""
+        return self.program.inputs
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of what it computes."""
+        return tuple(self.program.outputs)
+
+    @property
+    def operations(self) -> int:
+        """What one evaluation costs."""
+        return self.program.operations
+
+    @naming_the_extra()
+    def compile(self) -> "CFunction":
+        """A function of an array (inputs,) or (inputs, points), compiled by the system's C compiler."""
+        from .c_function import compile_c
+
+        return compile_c(self.program)
+
+    @naming_the_extra()
+    def lambdify(self) -> "NumpyFunction":
+        """The same function by NumPy alone."""
+        from .numpy_function import NumpyFunction
+
+        return NumpyFunction(self.program)
+
+    def to_python(self) -> str:
+        """A Python module that needs the standard library alone."""
+        from .python_source import python_source
+
+        return python_source(self.program)
+
+    def to_javascript(self) -> str:
+        """A script for a page or for Node that needs nothing but Math."""
+        from .javascript_source import javascript_source
+
+        return javascript_source(self.program)
+
+    def to_c(self, directory: str | Path, name: str | None = None, parameters: Sequence[str] = ()) -> None:
+        """Write a library in C11, as ``holonom program --to c`` does.
+
+        Parameters
+        ----------
+        directory : str or Path
+            It is made where it is missing.
+        name : str or None
+            What every public name begins with; None for the file's name.
+        parameters : sequence of str
+            Those that stay open although the scene gives them values.
+        """
+        write_files(Path(directory), self.c_files(name, parameters))
+
+    def c_files(self, name: str | None = None, parameters: Sequence[str] = ()) -> dict[str, str]:
+        """The text of each file that `to_c` writes, by its name."""
+        from .c_library import c_library, default_name
+
+        return c_library(self._model(parameters), name or default_name(self._file))
+
+    def to_fmu(self, file: str | Path, name: str | None = None, parameters: Sequence[str] = ()) -> None:
+        """Write an FMI 3.0 unit for model exchange; otherwise like `to_c`."""
+        from .c_library import default_name
+        from .fmu import write_fmu
+
+        write_whole(Path(file), write_fmu(self._model(parameters), name or default_name(self._file)))
+
+    def __repr__(self) -> str:
+        return (
+            f"<MotionProgram of {len(self.inputs)} inputs, {len(self.outputs)} outputs, {self.operations} operations>"
+        )
+
+    def _model(self, parameters: Sequence[str]) -> "Model":
+        from .model import scene_model
+
+        return scene_model(self._file, self._request, parameters, self._limits)

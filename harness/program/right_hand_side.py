@@ -1,0 +1,49 @@
+"""The equations of motion as f(t, y), for anyone's integrator."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..failures import Failure, HolonomError
+from .motion_problem import MotionProblem, computing, require_analytic
+from .numpy_function import NumpyFunction
+
+
+@dataclass(frozen=True)
+class RightHandSide:
+    """f(t, y) of dy/dt = f(t, y), y the coordinates and then the velocities; arrays of states are columns."""
+
+    problem: MotionProblem
+
+    def __post_init__(self) -> None:
+        if self.problem.motion is None:
+            raise HolonomError(Failure.NO_PIVOTS, detail=self.problem.obstacle)
+        require_analytic(self.problem)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What the components of y are."""
+        return self.problem.state
+
+    @property
+    def t0(self) -> float:
+        """The initial instant."""
+        return float(self.problem.start["t"])
+
+    @property
+    def y0(self) -> NDArray[np.float64]:
+        """The initial state."""
+        return np.array([float(self.problem.start[name]) for name in self.names])
+
+    @cached_property
+    def _accelerations(self) -> NumpyFunction:
+        program = computing(self.problem.motion, [f"ddot({name})" for name in self.problem.coordinates])
+        return NumpyFunction(replace(program, inputs=("t", *self.names)))
+
+    def __call__(self, t: float, y: ArrayLike) -> NDArray[np.float64]:
+        """The velocities and accelerations."""
+        state = np.asarray(y, dtype=float)
+        instants = np.broadcast_to(np.asarray(t, dtype=float), state.shape[1:])
+        return np.concatenate([state[len(state) // 2 :], self._accelerations([instants, *state])])
