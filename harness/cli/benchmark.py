@@ -42,7 +42,7 @@ def accuracy(
         done = study(scene_file, request, limits, plan, advance)
     present(study_document(done), json_file, show_study, done)
     if plot_file is not None:
-        from ..figures.work_precision import draw_study
+        from ..figures.benchmark import draw_study
 
         draw_study(done, plot_file)
     return 0
@@ -69,7 +69,7 @@ def stability(short: bool, plot_file: Path | None, json_file: Path | None) -> in
     content = {"cases": [_report_document(report) for report in reports]}
     present(published(Publication.HARD_CASES, content), json_file, show_stability, reports)
     if plot_file is not None:
-        from ..figures.hard_cases import draw_stability
+        from ..figures.benchmark import draw_stability
 
         draw_stability(reports, plot_file)
     return FAILED if any(report.fails for report in reports) else 0

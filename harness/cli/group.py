@@ -91,7 +91,7 @@ def _print_versions(ctx: click.Context, parameter: click.Parameter, wanted: bool
 
 def main() -> None:
     """Run the command line and leave with its exit status."""
-    # As `holonom.threads` says; NumPy reads this when it is first imported.
+    # As `holonom.simulation.evaluation.one_blas_thread` says; NumPy reads this when it is first imported.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     os.environ.pop("MPLBACKEND", None)  # figures go to files; Matplotlib fails to load where this is nonsense
     _open_what_is_closed()

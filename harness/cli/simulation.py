@@ -105,8 +105,16 @@ def simulate(
     problem = read_problem(document)
     if not stands(problem):
         problem = motion_problem(scene_file, request, limits, digits)
-    from ..simulation.document import report_document, simulation_document
-    from ..simulation.output import require_disk, require_formats, require_memory, sample_file, streams, write_files
+    from ..simulation.output import (
+        report_document,
+        require_disk,
+        require_formats,
+        require_memory,
+        sample_file,
+        simulation_document,
+        streams,
+        write_files,
+    )
     from ..simulation.request import FINAL_STATE_ALONE, EngineName, SimulationRequest, Stabilization
     from ..simulation.simulate import follow
     from ..simulation.simulate import simulate as follow_and_keep

@@ -1,11 +1,14 @@
-"""Curves over the time in panels below each other, the legend of each above it."""
+"""Curves over the time in panels below each other, the legend of each above it; drift under each cure among them."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
 from numpy.typing import NDArray
 
+from ..simulation.request import Stabilization
+from ..simulation.result import Simulation
 from .style import LINES, PALETTE, figure_style, legend_above, new_figure, svg_text
 
 WIDTH, HEIGHT_OF_PANEL = 6.0, 2.6  # inches
@@ -59,3 +62,23 @@ def draw_curves(panels: Sequence[Panel], xlabel: str) -> str:
             legend_above(axes)
         drawn[-1].set_xlabel(xlabel)
         return svg_text(figure)
+
+
+def draw_drift(motions: Mapping[Stabilization, Simulation]) -> str:
+    """Draw the residuals of the constraints and the error of the energy of one motion under each cure of drift, as SVG.
+
+    What is zero is not drawn: the axes are logarithmic.
+    """
+    errors = {
+        "distance from the constraints\n(dimensionless)": lambda motion: motion.residuals["position"],
+        "energy out of balance\n(units of the scene)": lambda motion: motion.energy["energy_error"],
+    }
+    panels = [
+        Panel(what, {str(cure): (each.instants, _nonzero(of(each))) for cure, each in motions.items()}, "log")
+        for what, of in errors.items()
+    ]
+    return draw_curves(panels, "t (units of the scene)")
+
+
+def _nonzero(errors: NDArray) -> NDArray:
+    return np.where(errors == 0, np.nan, abs(errors))

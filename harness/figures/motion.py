@@ -1,4 +1,4 @@
-"""A motion as a figure: coordinates, and multipliers where the scene observes them, over the time."""
+"""A motion as a figure: over the time, and from above with an effect and without it."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..simulation.result import Simulation
-from .style import LINES, PALETTE, figure_style, lettered, new_figure, write_figure
+from .style import BLUE, LINES, PALETTE, VERMILION, figure_style, lettered, new_figure, svg_text, write_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
 
 WIDTH, HEIGHT_OF_PANEL = 9.0, 3.2  # inches
 UNLIKE = 30.0  # how many times larger a curve is that leaves another one flat
@@ -87,3 +88,41 @@ def _draw(axes: "Axes", instants: NDArray[np.float64], curves: Mapping[str, NDAr
         axes.plot(instants, samples.astype(float), linestyle=line, color=colour, label=lettered(name))
     if len(curves) <= LEGIBLE:
         axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+
+
+HEIGHT_OF_WAYS = 4.8  # inches
+
+
+def draw_with_and_without(present: Simulation, absent: Simulation, across: str, along: str) -> str:
+    """Draw the way of a body in the plane of two coordinates, with an effect and without it.
+
+    Parameters
+    ----------
+    across, along : str
+        The coordinates on the two axes.
+
+    Returns
+    -------
+    str
+        SVG.
+    """
+    reach = 1.05 * max(abs(motion.coordinates[name]).max() for motion in (present, absent) for name in (across, along))
+    with figure_style():
+        figure = new_figure(WIDTH, HEIGHT_OF_WAYS)
+        panels = figure.subplots(1, 2, sharex=True, sharey=True)
+        panels[0].set(xlim=(-reach, reach), ylim=(-reach, reach))
+        for panel, motion, colour in zip(panels, (absent, present), (BLUE, VERMILION), strict=True):
+            _draw_way(panel, motion, across, along, colour)
+            panel.set_xlabel(f"{across} (units of the scene)")
+        panels[0].set_ylabel(f"{along} (units of the scene)")
+        return svg_text(figure)
+
+
+def _draw_way(axes: "Axes", motion: Simulation, across: str, along: str, colour: str) -> None:
+    x, y = motion.coordinates[across], motion.coordinates[along]
+    axes.plot(x, y, color=colour, linewidth=1)
+    axes.plot(x[:1], y[:1], "o", color=colour, label="start")
+    axes.plot(x[-1:], y[-1:], "s", color=colour, label=f"t = {motion.instants[-1]:g}")
+    axes.set_title(motion.title, fontsize="small")
+    axes.set_aspect("equal")
+    axes.legend(loc="upper right")

@@ -19,8 +19,8 @@ from ..program.motion_program import names_in
 from ..program.precision import Precision, read_precision
 from .constraints.factorization import weighted_constraints
 from .evaluation import Numbers, evaluation_once, zeros
-from .faint import may_hide
 from .matrices import Matrices, Vector
+from .trust import may_hide
 
 if TYPE_CHECKING:
     from .engines.engine import Piece

@@ -5,6 +5,7 @@ take longer than it ever gains at the few states where these are wanted.
 """
 
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from typing import Any
 
 import numpy as np
@@ -99,3 +100,14 @@ def wake_compiler() -> None:
     """Compile next to nothing: heyoka's first compilation takes 0.1 s longer than any other, best while one waits."""
     heyoka = import_heyoka()
     heyoka.cfunc([heyoka.expression("x")], vars=[heyoka.expression("x")], opt_level=0)
+
+
+def one_blas_thread() -> AbstractContextManager[object]:
+    """Keep BLAS to one thread inside the block.
+
+    Matrices here have some dozens of rows. On a busy machine BLAS takes twenty times as long for them with its threads
+    as without, as measured.
+    """
+    from threadpoolctl import threadpool_limits
+
+    return threadpool_limits(1, "blas")

@@ -1,4 +1,4 @@
-"""A motion as files: its samples as CSV, NumPy's NPZ or Parquet, and its figure. Each whole, or not at all.
+"""A motion as files and as documents: samples as CSV, NumPy's NPZ or Parquet, its figure, its JSON. Each whole, or not.
 
 Numbers that no double can hold are written as decimal text.
 """
@@ -8,17 +8,18 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from pathlib import Path
 from types import ModuleType
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..confined import MIB
+from ..documents import Publication, published
 from ..failures import Failure, HolonomError, missing_package
 from ..files import whole_file
 from ..program.motion_problem import MotionProblem
-from .document import published_list
-from .result import Sampled, Simulation
+from .diagnosis import engine_text, remarks
+from .result import Report, Sampled, Simulation
 
 BYTES_OF_NUMBER = 250  # while samples are collected and written as text: measured for 300000 of six numbers each
 Columns = Mapping[str, NDArray[np.float64] | NDArray[np.str_]]
@@ -214,3 +215,68 @@ FIGURES = (".svg", ".png")
 FORMATS: Mapping[str, Format] = {".csv": _csv, ".npz": _npz, ".parquet": _parquet}
 BYTES_ON_DISK = {".csv": 20, ".parquet": 9}
 """What a number takes in the formats that are written as samples come: measured for a swing in double precision."""
+
+
+def simulation_document(simulation: Simulation) -> dict[str, Any]:
+    """The report and the samples.
+
+    Returns
+    -------
+    dict
+        As `report_document`, with the samples by name under ``samples``.
+    """
+    digits = simulation.report.digits
+    columns = {name: published_list(samples, digits) for name, samples in simulation.columns()}
+    named = {"scene": simulation.scene, "title": simulation.title}
+    return report_document(simulation.report) | named | {"samples": columns}
+
+
+def report_document(report: Report) -> dict[str, Any]:
+    """The report alone.
+
+    Returns
+    -------
+    dict
+        Its attributes; ``trusted``; and beside the legs and the cases the sentences that people
+        read, ``engine`` and ``remarks``.
+    """
+    said = {"engine": engine_text(report.legs), "remarks": tuple(remarks(report.legs, report.cases))}
+    lists = {name: tuple(each._asdict() for each in getattr(report, name)) for name in ("legs", "switchings", "doubts")}
+    correction = report.correction and dict(zip(("name", "size"), report.correction, strict=True))
+    ending = None if report.ending is None else report.ending._asdict()
+    attributes = vars(report) | lists | said
+    attributes |= {"trusted": report.trusted, "correction": correction, "ending": ending}
+    return published(Publication.SIMULATION, {k: _published(value, report.digits) for k, value in attributes.items()})
+
+
+def published_list(samples: np.ndarray, digits: int) -> list[float | str]:
+    """Samples for another program to read.
+
+    Parameters
+    ----------
+    digits : int
+        Of those that no double can hold.
+    """
+    return samples.tolist() if samples.dtype == float else [_published(sample, digits) for sample in samples]
+
+
+def _published(value: Any, digits: int) -> Any:
+    match value:
+        case str() | int() | None:
+            return value
+        case Mapping():
+            return {name: _published(each, digits) for name, each in value.items()}
+        case tuple():
+            return [_published(each, digits) for each in value]
+        case float():
+            return float(value)
+        case _:
+            return _text(value, digits)
+
+
+def _text(number: Any, digits: int) -> str:
+    """Decimal digits of a number that no double can hold."""
+    import mpmath
+
+    with mpmath.workdps(digits + 5):
+        return mpmath.nstr(mpmath.mpf(str(number)), digits, strip_zeros=False)

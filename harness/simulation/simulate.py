@@ -12,20 +12,18 @@ from ..program.motion_problem import MotionProblem
 from ..program.precision import Precision, read_precision
 from ..program.sign_pattern import with_values_in
 from ..supervisor import doing
-from ..threads import one_blas_thread
 from .diagnosis import HardCase, Instant, hard_cases
 from .diagnostics import condition, residuals
 from .engines.engine import Piece, Solutions
-from .evaluation import Numbers, as_floats
+from .evaluation import Numbers, as_floats, one_blas_thread
 from .events import Ending, first_event
-from .faint import may_hide
 from .matrices import Matrices, Vector
 from .passed_over import StepsHeldAgainstTheEquations
 from .piecewise import PiecewiseMotion
 from .recording import Recording, Stretch
 from .request import FINAL_STATE_ALONE, EngineName, SimulationRequest, Stabilization
 from .result import Report, Sampled, Samples, Simulation, joined
-from .trust import doubts, energy_scale
+from .trust import doubts, energy_scale, may_hide
 
 Progress = Callable[[float], None]
 TakeSamples = Callable[[Sampled], None]

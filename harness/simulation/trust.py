@@ -1,15 +1,21 @@
-"""Whether a result may be called one: what it misses beside what its tolerance lets expect.
+"""Whether a result may be called one: what it misses beside what its tolerance lets expect, and what may hide from it.
 
 A method whose steps each err by its tolerance errs, over so many steps, by no more than their product times some power
 of ten, relative to the size of what is computed. A constraint or an energy that is missed by more was not followed: a
 feature was stepped over, digits were lost, or the tolerance was not held.
+
+Functions of the state may be faint nearly everywhere, and strong in a narrow place. An exponential is so small away
+from there, or so near to its limit, that rounding swallows it, and a high power is no better. What they do shows
+neither at a few states, however chosen, nor at the beginning of a step.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
+from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
 
+from ..program.motion_program import Call, Expression, Operation, Program, names_in
 from .matrices import Matrices, Vector
 
 MARGIN = 1e4
@@ -55,3 +61,40 @@ def energy_scale(at: Matrices, state: Vector) -> float:
     """
     q, v = np.abs(np.split(state, 2))
     return float(v @ np.abs(at.mass) @ v + np.abs(at.force) @ q)
+
+
+FAINT = frozenset({Operation.EXP, Operation.SINH, Operation.COSH, Operation.TANH, Operation.ERF})
+HIGH = 16  # exponents from which a power is as faint as an exponential
+
+
+def may_hide(program: Program, parameters: Collection[str] = ()) -> bool:
+    """Whether a program contains such a function of the state.
+
+    Parameters
+    ----------
+    program : Program
+        One of its inputs is ``t``; the others are the state, and parameters.
+    parameters : collection of str
+        Which inputs are.
+    """
+    moving = set(program.inputs) - {"t", *parameters}
+    for name, expression in program.assignments:
+        if any(_is_faint(call) and names_in(call) & moving for call in _calls(expression)):
+            return True
+        if names_in(expression) & moving:
+            moving.add(name)
+    return False
+
+
+def _calls(expression: Expression) -> Iterator[Call]:
+    if isinstance(expression, Call):
+        yield expression
+        for argument in expression.arguments:
+            yield from _calls(argument)
+
+
+def _is_faint(call: Call) -> bool:
+    if call.operation is not Operation.POWER:
+        return call.operation in FAINT
+    exponent = call.arguments[1]
+    return not isinstance(exponent, Fraction) or abs(exponent) >= HIGH

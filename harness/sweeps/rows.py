@@ -20,11 +20,10 @@ from ..program.motion_program import Expression
 from ..program.sign_pattern import problem_in
 from ..simulation.diagnostics import scaled_residual
 from ..simulation.evaluation import in_full_vectors
-from ..simulation.faint import may_hide
 from ..simulation.initial_state import InitialStates, started
 from ..simulation.matrices import LaneMatrices
 from ..simulation.request import SimulationRequest, Stabilization
-from ..simulation.trust import FINEST, MARGIN
+from ..simulation.trust import FINEST, MARGIN, may_hide
 from .axes import Axes
 from .extremes import Steps, first_zero, largest, largest_size
 from .kept import ALONG, Kept, Kind

@@ -12,7 +12,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from ..failures import Failure, HolonomError
-from ..threads import one_blas_thread
+from ..simulation.evaluation import one_blas_thread
 from .dataset import Chunk, part_of
 from .rows import Plan, RowMaker
 

@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 import pytest
 
 from holonom.companion.chapters.work_precision import SWING, drifting
-from holonom.figures.drift import draw_drift
+from holonom.figures.curves import draw_drift
 from holonom.simulation.request import Stabilization
 
 PENDULUM = Path(__file__).parents[2] / "examples" / "pendulum.mac"

@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from holonom.figures import radius
+from holonom.figures import convergence
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -14,9 +14,9 @@ SVG = "{http://www.w3.org/2000/svg}"
 def figure(tmp_path_factory):
     path = tmp_path_factory.mktemp("figures") / "radius.svg"
     with pytest.MonkeyPatch.context() as few:
-        few.setattr(radius, "CONTROLS", [Fraction(-1), Fraction(0), Fraction(3, 10)])
-        few.setattr(radius, "ORDERS", (30, 40))
-        radius.draw_radius(path)
+        few.setattr(convergence, "CONTROLS", [Fraction(-1), Fraction(0), Fraction(3, 10)])
+        few.setattr(convergence, "ORDERS_OF_RADII", (30, 40))
+        convergence.draw_radius(path)
     return ElementTree.parse(path)
 
 

@@ -9,8 +9,8 @@ from rich.console import Console
 import holonom
 from holonom.cli.tables.motion import show_simulation
 from holonom.failures import HolonomError
-from holonom.simulation.document import report_document
 from holonom.simulation.events import Ending
+from holonom.simulation.output import report_document
 
 THROWN = """
 system : holonomic_system(coordinates = [x, y], parameters = [g], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,

@@ -116,7 +116,7 @@ def test_the_programs_and_the_series_hold_the_controls():
 
 
 def test_the_document_has_the_controls(tmp_path):
-    from holonom.simulation.document import simulation_document
+    from holonom.simulation.output import simulation_document
 
     document = simulation_document(holonom.system(ROD).simulate(samples=3))
     assert set(json.loads(json.dumps(document))["controls"]) == {"F"}

@@ -9,8 +9,7 @@ from fractions import Fraction
 import pytest
 
 from holonom.program.motion_program import Call, Name, Operation, Program, Solve
-from holonom.simulation.faint import may_hide
-from holonom.simulation.trust import doubts
+from holonom.simulation.trust import doubts, may_hide
 
 KEPT = {"position": 1e-16, "velocity": 1e-15, "energy": 1e-13}
 

@@ -3,8 +3,7 @@
 import pytest
 
 from holonom.mathjson import Tree
-from holonom.typeset.latex import latex_marked, latex_tree
-from holonom.typeset.marks import marked
+from holonom.typeset.latex import latex_marked, latex_tree, marked
 
 Q_S, U_RHO = ["Subscript", "q", "s"], ["Subscript", "u", "rho"]
 

@@ -83,7 +83,7 @@ def show_report(console: "Console", scene: str, title: str, report: "Report") ->
     """Print the end of a scene's motion, and the report."""
     from rich.table import Table
 
-    from ...simulation.document import report_document
+    from ...simulation.output import report_document
 
     document = report_document(report)
     console.print(f"{scene}: {title}, at t = {document['t']}", soft_wrap=True, markup=False)

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...benchmark.machine import this_machine
 from ...confined import Limits
-from ...figures.effects import draw_with_and_without
+from ...figures.motion import draw_with_and_without
 from ...program.effects import MeasuredCosts, scene_costs
 from ...program.request import Request
 from ...record import Record

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from ...benchmark.hard_cases.case import CaseReport, Extent, examined
 from ...benchmark.hard_cases.register import REGISTER
-from ...figures.hard_cases import draw_stability
+from ...figures.benchmark import draw_stability
 from ..chapter import Chapter, Page, Run
 from ..runs import drawn
 

@@ -9,8 +9,7 @@ import mpmath
 import sympy
 from sympy import Expr, Symbol
 
-from ...figures.partial_sums import draw_partial_sums
-from ...figures.radius import draw_radius
+from ...figures.convergence import draw_partial_sums, draw_radius
 from ...series.power_series import MotionSeries, number, numbers
 from ...simulation.result import Simulation
 from ..cards import named_equations, scene_named

@@ -10,8 +10,8 @@ from ...benchmark.work_precision.measurement import WHOLE_MOTION, Group
 from ...benchmark.work_precision.plan import Plan
 from ...benchmark.work_precision.study import Study, study
 from ...confined import Limits
-from ...figures.drift import draw_drift
-from ...figures.work_precision import draw_study
+from ...figures.benchmark import draw_study
+from ...figures.curves import draw_drift
 from ...program.motion_problem import motion_problem
 from ...program.request import Request
 from ...simulation.request import SimulationRequest, Stabilization

@@ -25,7 +25,7 @@ from holonom.benchmark.work_precision.solvers import SOLVERS, solver_ladder
 from holonom.benchmark.work_precision.study import study, study_document
 from holonom.confined import Limits
 from holonom.documents import schema
-from holonom.figures.work_precision import draw_study
+from holonom.figures.benchmark import draw_study
 from holonom.program.motion_problem import motion_problem
 from holonom.program.motion_program import Solve
 from holonom.program.request import Request

@@ -1,7 +1,11 @@
-"""The control governs convergence: the paper's example, its radius of convergence against the initial control u0.
+"""How far the series of a motion holds: its partial sums, and the radius of convergence that the control governs.
 
-Under u = u0 + t the motion is singular where 1 + 2 u^2 = 0, at t = -u0 ± i/sqrt(2): the series converges up to
-sqrt(u0^2 + 1/2). Under u = u0 exp(t) it is entire. The points are estimated from the coefficients alone.
+Partial sums follow the motion up to the radius of convergence, and leave it there. No order helps beyond; the more
+terms, the more sharply they leave.
+
+Of the paper's example, under u = u0 + t the motion is singular where 1 + 2 u^2 = 0, at t = -u0 ± i/sqrt(2): the series
+converges up to sqrt(u0^2 + 1/2). Under u = u0 exp(t) it is entire. The
+points are estimated from the coefficients alone.
 """
 
 import math
@@ -14,20 +18,82 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..confined import Limits
 from ..files import shared
 from ..series.power_series import SeriesRequest, compute_series
 from ..series.radius import ENTIRE, Radius
-from .style import BLUE, GREEN, INK, VERMILION, figure_style, new_figure, write_figure
+from .style import (
+    BLUE,
+    GREEN,
+    INK,
+    LINES,
+    PALETTE,
+    VERMILION,
+    figure_style,
+    legend_above,
+    new_figure,
+    svg_text,
+    write_figure,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+
+ORDERS = (2, 5, 10, 20, 40)
+HEADROOM = 0.6  # of the motion's extent, above and below it
+SMALLEST = 1e-16  # error that is still drawn
+
+
+def draw_partial_sums(name: str, coefficients: Sequence[float], radius: Radius, times: NDArray, motion: NDArray) -> str:
+    """Draw the partial sums of a series over the motion that it is of, and their errors.
+
+    Parameters
+    ----------
+    name : str
+        The coordinate.
+    coefficients : sequence of float
+        Of (t - t0)^0, (t - t0)^1, ...: more than the highest of the orders drawn.
+    radius : Radius
+        Finite.
+    times, motion : ndarray, shape (k,)
+        t - t0, and the coordinate there, from an integration that does not know the series.
+
+    Returns
+    -------
+    str
+        SVG.
+    """
+    with figure_style():
+        figure = new_figure(8, 6)
+        curves, errors = figure.subplots(2, 1, sharex=True)
+        curves.plot(times, motion, color=INK, linewidth=3, alpha=0.5, label="motion")
+        for order, colour, line in zip(ORDERS, PALETTE, (*LINES, "-"), strict=False):
+            sums = np.polynomial.polynomial.polyval(times, coefficients[: order + 1])
+            curves.plot(times, sums, color=colour, linestyle=line, label=f"order {order}")
+            errors.semilogy(times, np.maximum(abs(sums - motion), SMALLEST), color=colour, linestyle=line)
+        _finish(curves, errors, name, motion, radius)
+        return svg_text(figure)
+
+
+def _finish(curves: "Axes", errors: "Axes", name: str, motion: NDArray, radius: Radius) -> None:
+    extent = HEADROOM * np.ptp(motion)
+    curves.set_ylim(motion.min() - extent, motion.max() + extent)
+    curves.set_ylabel(f"{name} (dimensionless)")
+    errors.set_ylabel("error (dimensionless)")
+    errors.set_xlabel("t (dimensionless)")
+    for axes in (curves, errors):
+        axes.axvline(radius.estimate, color=INK, linestyle=":", linewidth=1)
+    curves.text(radius.estimate, curves.get_ylim()[1], " radius", va="top")
+    legend_above(curves)
+
+
 PAPER = shared("examples") / "paper" / "paper.mac"
 LINEAR, EXPONENTIAL = "initial_motion_scene", "free_motion_scene"  # u = u0 + t, u = u0 exp(t)
 CONTROLS = [Fraction(k, 4) for k in range(-8, 9)]
-ORDERS = (26, 160)  # few, so that the uncertainty shows; and many
+ORDERS_OF_RADII = (26, 160)  # few, so that the uncertainty shows; and many
 ORDER_OF_ENTIRE = 60
 HIGHEST = 2.5  # radius in the drawing
 AT_ONCE = 2  # runs of Maxima
@@ -49,7 +115,7 @@ def draw_radius(file: Path) -> None:
     with figure_style():
         figure = new_figure(10, 5)
         radii, plane = figure.subplots(1, 2)
-        coarse, fine = (_radii(LINEAR, order) for order in ORDERS)
+        coarse, fine = (_radii(LINEAR, order) for order in ORDERS_OF_RADII)
         _draw_radii(radii, coarse, fine, _radii(EXPONENTIAL, ORDER_OF_ENTIRE))
         _draw_singularities(plane, fine)
         write_figure(figure, file)
@@ -69,7 +135,10 @@ def _radius(scene: str, order: int, u0: Fraction) -> Radius:
 def _draw_radii(axes: "Axes", coarse: Sequence[Radius], fine: Sequence[Radius], entire: Sequence[Radius]) -> None:
     u0 = np.linspace(float(CONTROLS[0]), float(CONTROLS[-1]), 201)
     axes.plot(u0, np.sqrt(u0**2 + 0.5), color=INK, linewidth=1, label="√(u₀² + 1/2)")
-    for radii, order, colour, marker in ((coarse, ORDERS[0], VERMILION, "s"), (fine, ORDERS[1], BLUE, "o")):
+    for radii, order, colour, marker in (
+        (coarse, ORDERS_OF_RADII[0], VERMILION, "s"),
+        (fine, ORDERS_OF_RADII[1], BLUE, "o"),
+    ):
         told = [(float(u), r.estimate, r.uncertainty) for u, r in zip(CONTROLS, radii, strict=True) if r.estimate]
         axes.errorbar(*zip(*told, strict=True), fmt=marker, color=colour, label=f"u = u₀ + t, {order} orders")
     infinite = [float(u) for u, radius in zip(CONTROLS, entire, strict=True) if radius == ENTIRE]
@@ -84,7 +153,7 @@ def _draw_singularities(axes: "Axes", radii: Sequence[Radius]) -> None:
     true = [complex(-float(u), sign * math.sqrt(0.5)) for u, _ in drawn for sign in (-1, 1)]
     axes.plot(*_parts(true), "o", color=INK, fillstyle="none", markersize=10, label="1 + 2 (u₀ + t)² = 0")
     found = [z for _, radius in drawn for z in radius.singularities]
-    axes.plot(*_parts(found), "x", color=BLUE, label=f"from {ORDERS[1]} orders")
+    axes.plot(*_parts(found), "x", color=BLUE, label=f"from {ORDERS_OF_RADII[1]} orders")
     for u0, _ in drawn:
         axes.annotate(f"u₀ = {float(u0):g}", (-float(u0), 0.88), ha="center", rotation=40, fontsize="small")
     axes.plot(0, 0, "+", color=INK)

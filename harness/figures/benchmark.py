@@ -1,0 +1,149 @@
+"""Measurements as figures: what accuracy costs, and the digits that each method keeps in hard cases."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..benchmark.hard_cases.case import CaseReport, Outcome, Result, Sweep
+from ..benchmark.work_precision.measurement import WHOLE_MOTION, Group, Measurement
+from .style import BLUE, LINES, MARKERS, PALETTE, VERMILION, figure_style, legend_above, new_figure, write_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from ..benchmark.work_precision.study import Study
+
+
+STUDY = 11.0, 16.0  # inches
+FEW_DIGITS = 20  # as far as numbers of the hardware reach, and a little beyond
+SECONDS, OPERATIONS = "time / s", "operations"
+
+
+@dataclass(frozen=True)
+class Panel:
+    """What one panel shows."""
+
+    title: str
+    shows: Callable[[Measurement], bool]
+    quantity: str
+
+
+PANELS = (
+    Panel("Methods, to t = {until:g}", lambda m: _in_contest(m) and digits_of(m) <= FEW_DIGITS, SECONDS),
+    Panel("The same by operations", lambda m: _in_contest(m) and digits_of(m) <= FEW_DIGITS, OPERATIONS),
+    Panel("Many digits, to t = {until:g}", lambda m: m.group is Group.TAYLOR, SECONDS),
+    Panel("The same by operations", lambda m: m.group is Group.TAYLOR, OPERATIONS),
+    Panel("One series, to t = {instant:g}, order by order", lambda m: m.group is Group.SERIES, SECONDS),
+    Panel("Cures of drift and the two solves", lambda m: m.group in {Group.DRIFT, Group.SOLVE}, SECONDS),
+)
+TITLE = "What accuracy costs: {scene}"
+
+
+def draw_study(study: "Study", path: Path) -> None:
+    """Draw a study in six panels.
+
+    Parameters
+    ----------
+    path : Path
+        The SVG file.
+
+    Raises
+    ------
+    HolonomError
+        The file cannot be written; Matplotlib is not installed.
+    """
+    with figure_style():
+        figure = new_figure(*STUDY)
+        for axes, panel in zip(figure.subplots(3, 2).flat, PANELS, strict=True):
+            _draw_panel(axes, [m for m in study.measurements if panel.shows(m)], panel.quantity)
+            axes.set_title(panel.title.format(until=float(study.until), instant=_instant_of_series(study)))
+        figure.suptitle(TITLE.format(scene=study.scene), x=0.01, ha="left")
+        figure.supxlabel(str(study.machine), x=0.01, ha="left", fontsize="small")
+    write_figure(figure, path)
+
+
+def digits_of(measurement: Measurement) -> float:
+    """Decimal digits that a run kept."""
+    return -math.log10(measurement.error)
+
+
+def _draw_panel(axes: "Axes", measurements: Sequence[Measurement], quantity: str) -> None:
+    for index, method in enumerate(dict.fromkeys(m.method for m in measurements)):
+        rows = [m for m in measurements if m.method == method]
+        work = [m.seconds if quantity == SECONDS else m.operations for m in rows]
+        # The second time around the palette, colours meet other markers.
+        marker = MARKERS[(index + index // len(PALETTE)) % len(MARKERS)]
+        line = "--" if rows[0].group is Group.SOLVER else "-"
+        colour = PALETTE[index % len(PALETTE)]
+        axes.semilogy([digits_of(m) for m in rows], work, color=colour, marker=marker, linestyle=line, label=method)
+    axes.set(xlabel="digits kept", ylabel=quantity)
+    if measurements:
+        axes.legend(fontsize="small", loc="upper left", bbox_to_anchor=(0.0, -0.2), ncols=2)
+
+
+def _in_contest(measurement: Measurement) -> bool:
+    return measurement.group in WHOLE_MOTION
+
+
+def _instant_of_series(study: "Study") -> float:
+    return float(next((m.instant for m in study.measurements if m.group is Group.SERIES), study.until))
+
+
+WIDTH, HEIGHT_OF_ROW, HEIGHT_OF_SWEEP, MARGINS = 8.0, 0.2, 3.2, 1.4  # inches
+MOST_DIGITS = 16.5
+
+
+def draw_stability(reports: Sequence[CaseReport], file: Path) -> None:
+    """Draw the digits that every method keeps of every case.
+
+    Parameters
+    ----------
+    file : Path
+        The SVG file.
+
+    Raises
+    ------
+    HolonomError
+        Matplotlib is not installed; the file cannot be written.
+    """
+    rows = [row for report in reports for row in _rows(report)]
+    sweeps = [report.sweep for report in reports if report.sweep is not None]
+    heights = [HEIGHT_OF_ROW * len(rows), *(HEIGHT_OF_SWEEP for _ in sweeps)]
+    with figure_style():
+        figure = new_figure(WIDTH, sum(heights) + MARGINS)
+        panels = figure.subplots(len(heights), 1, height_ratios=heights, squeeze=False)[:, 0]
+        _draw_digits(panels[0], rows)
+        for panel, sweep in zip(panels[1:], sweeps, strict=True):
+            _draw_sweep(panel, sweep)
+        write_figure(figure, file)
+
+
+def _rows(report: CaseReport) -> list[Result | str]:
+    """The name of a case, then what has digits to show."""
+    return [report.case.name, *(result for result in report.results if result.digits is not None)]
+
+
+def _draw_digits(axes: "Axes", rows: Sequence[Result | str]) -> None:
+    shown = {place: row for place, row in enumerate(rows) if isinstance(row, Result)}
+    for verdicts, colour, marker in (({Outcome.HOLDS}, BLUE, "o"), ({Outcome.LOSES, Outcome.FAILS}, VERMILION, "X")):
+        digits = {place: result.digits for place, result in shown.items() if result.verdict in verdicts}
+        axes.hlines(list(digits), 0, list(digits.values()), color=colour, alpha=0.4, linewidth=3)
+        axes.plot(list(digits.values()), list(digits), marker, color=colour, clip_on=False)
+    labels = [f"{row.method}: {row.quantity}" if isinstance(row, Result) else row for row in rows]
+    axes.set_yticks(range(len(rows)), labels, fontsize="small")
+    for place, label in enumerate(axes.get_yticklabels()):
+        label.set_fontweight("normal" if place in shown else "bold")
+    axes.tick_params(axis="y", length=0)
+    axes.grid(False, axis="y")
+    axes.set(xlim=(0, MOST_DIGITS), xticks=range(0, 17, 2), ylim=(len(rows) - 0.5, -0.5))
+    axes.set_xlabel("decimal digits kept: a dot has those asked for, a cross has not")
+
+
+def _draw_sweep(axes: "Axes", sweep: Sweep) -> None:
+    for (method, digits), colour, marker, line in zip(sweep.digits.items(), PALETTE, MARKERS, LINES, strict=False):
+        axes.semilogx(sweep.values, digits, marker=marker, linestyle=line, color=colour, label=method)
+    axes.invert_xaxis()
+    axes.set(xlabel=sweep.variable, ylabel="digits of the accelerations", ylim=(0, MOST_DIGITS))
+    legend_above(axes)
