@@ -135,6 +135,8 @@ class InitialStates:
         places = unknown + group.half * self._n
         arrived = np.zeros(states.shape[1], dtype=bool)
         for _ in range(ITERATIONS):
+            if not len(active):
+                break
             at = self._matrices(self._instant, states[:, active], values[:, active])
             residual = (at.residual_rate if group.half else at.residual)[rows]
             jacobian = at.jacobian[np.ix_(rows, unknown)]
@@ -145,8 +147,6 @@ class InitialStates:
             share = np.max(np.abs(change), axis=0) / np.maximum(1.0, np.max(np.abs(here), axis=0))
             arrived[active] = share <= SETTLED
             active = active[np.isfinite(share) & (share > ROUNDING)]
-            if not len(active):
-                break
         return arrived
 
 

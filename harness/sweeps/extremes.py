@@ -1,18 +1,22 @@
 """Largest values and zeros of what is followed along motions, from its polynomials step by step.
 
 A Taylor step ends well inside the circle of convergence, so the polynomial of a step falls off like a geometric series:
-its coefficients bound it, few steps can hold the largest value, and a few samples tell the shape of it in one.
+its coefficients bound it and its slope, few steps can hold the largest value, and a few samples tell the shape of it in
+one. Polynomials are evaluated by functions that heyoka compiles, many at a time.
 
 Every operation is done element by element: what comes out for a motion does not hang on the others beside it.
 """
 
-from typing import NamedTuple
+from collections.abc import Callable
+from functools import cache
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .polynomials import peak_of, root_of, sizes_of, values_at
+
 SAMPLES = 17  # of a step
-NEWTON = 4  # steps of Newton's method, which from such samples reach rounding
 MARGIN = 1e-9  # of the sizes of the coefficients: rounding of the bound, generously
 
 Floats = NDArray[np.float64]
@@ -23,7 +27,7 @@ class Steps(NamedTuple):
 
     Attributes
     ----------
-    coefficients : ndarray, shape (steps, powers, lanes)
+    coefficients : ndarray, shape (powers, steps, lanes)
         In powers of x.
     middle, length : ndarray, shape (steps, lanes)
         The time is middle + x length.
@@ -40,6 +44,10 @@ class Steps(NamedTuple):
         """The quantity with the opposite sign."""
         return self._replace(coefficients=-self.coefficients)
 
+    def of(self, lanes: Any) -> "Steps":
+        """Some of the lanes."""
+        return Steps(self.coefficients[:, :, lanes], self.middle[:, lanes], self.length[:, lanes], self.least)
+
 
 def largest(steps: Steps) -> Floats:
     """The largest value on the way, for each lane.
@@ -48,12 +56,7 @@ def largest(steps: Steps) -> Floats:
     -------
     ndarray, shape (lanes,)
     """
-    coefficients = np.moveaxis(steps.coefficients, 1, 0)
-    found = np.maximum(_value(coefficients, steps.least), _value(coefficients, 1.0)).max(axis=0)
-    step, lane = np.nonzero(coefficients[0] + _reach(coefficients) >= found)
-    chosen = coefficients[:, step, lane]
-    np.maximum.at(found, lane, _peak(chosen, steps.least))
-    return found
+    return _largest(steps, np.positive)
 
 
 def largest_size(steps: Steps) -> Floats:
@@ -63,16 +66,7 @@ def largest_size(steps: Steps) -> Floats:
     -------
     ndarray, shape (lanes,)
     """
-    coefficients = np.moveaxis(steps.coefficients, 1, 0)
-    ends = [np.abs(_value(coefficients, place)).max(axis=0) for place in (steps.least, 1.0)]
-    found = np.maximum(*ends)
-    step, lane = np.nonzero(np.abs(coefficients[0]) + _reach(coefficients) >= found)
-    chosen = coefficients[:, step, lane]
-    values = _value(chosen[:, None], np.linspace(steps.least, 1.0, SAMPLES)[:, None])
-    best = np.argmax(np.abs(values), axis=0)
-    sign = np.where(np.take_along_axis(values, best[None], axis=0)[0] < 0, -1.0, 1.0)
-    np.maximum.at(found, lane, _refined(chosen * sign, values * sign, best, steps.least))
-    return found
+    return _largest(steps, np.abs)
 
 
 def first_zero(steps: Steps) -> Floats:
@@ -82,70 +76,57 @@ def first_zero(steps: Steps) -> Floats:
     -------
     ndarray, shape (lanes,)
     """
-    coefficients = np.moveaxis(steps.coefficients, 1, 0)
-    first, last = np.sign(coefficients[0]), np.sign(coefficients[0])
+    polynomials, places = steps.coefficients, _places(steps.least)
+    reach, _ = _bounds(polynomials)
+    first, last = np.sign(polynomials[0]), np.sign(polynomials[0])
     change = np.full(first.shape, -1)
-    step, lane = np.nonzero(np.abs(coefficients[0]) <= _reach(coefficients))
-    places = np.linspace(steps.least, 1.0, SAMPLES)
-    signs = np.sign(_value(coefficients[:, step, lane][:, None], places[:, None]))
+    step, lane = np.nonzero(np.abs(polynomials[0]) <= reach)
+    signs = np.sign(_values(polynomials[:, step, lane], places))
     first[step, lane], last[step, lane], change[step, lane] = _changes(signs)
-    sign, found = first[0].copy(), np.full(first.shape[1], np.nan)
-    for now in range(len(first)):
-        open_, before = np.isnan(found), steps.middle[now] + steps.least * steps.length[now]
-        between = open_ & (sign * first[now] < 0)
-        found[between] = before[between]
-        inside = np.flatnonzero(open_ & ~between & (change[now] >= 0))
-        if len(inside):
-            root = _root(coefficients[:, now, inside], places[change[now, inside]], places[change[now, inside] + 1])
-            found[inside] = steps.middle[now, inside] + root * steps.length[now, inside]
-        sign = np.where(last[now] != 0, last[now], np.where(sign != 0, sign, first[now]))
+    between = _sign_before(first, last) * first < 0
+    crossed = between | (change >= 0)
+    lanes, found = np.flatnonzero(crossed.any(axis=0)), np.full(first.shape[1], np.nan)
+    where = np.argmax(crossed, axis=0)[lanes], lanes
+    ends = np.array(places)[[change[where], change[where] + 1]]
+    (root,) = root_of(len(polynomials))(np.concatenate([polynomials[:, *where], ends]))
+    found[lanes] = steps.middle[where] + np.where(between[where], steps.least, root) * steps.length[where]
     return found
 
 
-def _value(coefficients: Floats, x: Floats | float) -> Floats:
-    """The polynomial, its powers on the first axis."""
-    value = np.empty(np.broadcast_shapes(coefficients[0].shape, np.shape(x)))
-    value[...] = coefficients[-1]
-    for coefficient in coefficients[-2::-1]:
-        value *= x
-        value += coefficient
-    return value
-
-
-def _reach(coefficients: Floats) -> Floats:
-    """How far from its constant a polynomial can be for |x| <= 1."""
-    sizes = np.abs(coefficients)
-    reach = sizes[-1]
-    for size in sizes[-2:0:-1]:
-        reach = reach + size
-    return reach + MARGIN * (reach + sizes[0])
-
-
-def _derivative(coefficients: Floats) -> Floats:
-    powers = np.arange(1, len(coefficients)).reshape(-1, *[1] * (coefficients.ndim - 1))
-    return coefficients[1:] * powers
-
-
-def _peak(coefficients: Floats, least: float) -> Floats:
-    """The largest value of polynomials, shape (powers, m)."""
-    places = np.linspace(least, 1.0, SAMPLES)
-    values = _value(coefficients[:, None], places[:, None])
-    return _refined(coefficients, values, np.argmax(values, axis=0), least)
-
-
-def _refined(coefficients: Floats, values: Floats, best: NDArray[np.intp], least: float) -> Floats:
-    """The largest value, by Newton's method, near the best of samples, shape (samples, m)."""
-    places = np.linspace(least, 1.0, SAMPLES)
-    found, x = np.take_along_axis(values, best[None], axis=0)[0], places[best]
-    low, high = places[np.maximum(best - 1, 0)], places[np.minimum(best + 1, SAMPLES - 1)]
-    slope = _derivative(coefficients)
-    bend = _derivative(slope)
-    for _ in range(NEWTON):
-        with np.errstate(all="ignore"):
-            moved = x - _value(slope, x) / _value(bend, x)
-        x = np.where(np.isfinite(moved), np.clip(moved, low, high), x)
-        found = np.maximum(found, _value(coefficients, x))
+def _largest(steps: Steps, size: Callable[[Floats], Floats]) -> Floats:
+    """The largest size of a value: at the ends of the steps, or inside of those that can hold one that is larger."""
+    polynomials, places = steps.coefficients, _places(steps.least)
+    found = size(_values(polynomials, (steps.least, 1.0))).max(axis=(0, 1))
+    reach, turns = _bounds(polynomials)
+    step, lane = np.nonzero(turns & (size(polynomials[0]) + reach >= found))
+    chosen = polynomials[:, step, lane]
+    values = _values(chosen, places)
+    best = np.argmax(size(values), axis=0)
+    at_best = np.take_along_axis(values, best[None], axis=0)[0]
+    sign = np.where(size(at_best) == at_best, 1.0, -1.0)
+    near = np.array(places)[[best, np.maximum(best - 1, 0), np.minimum(best + 1, SAMPLES - 1)]]
+    (peak,) = peak_of(len(polynomials))(np.concatenate([chosen * sign, near]))
+    np.maximum.at(found, lane, peak)
     return found
+
+
+@cache
+def _places(least: float) -> tuple[float, ...]:
+    return tuple(np.linspace(least, 1.0, SAMPLES).tolist())
+
+
+def _values(polynomials: Floats, places: tuple[float, ...]) -> Floats:
+    """Values of polynomials, shape (powers, ...), at some places: shape (places, ...)."""
+    powers, *shape = polynomials.shape
+    return values_at(powers, places)(polynomials.reshape(powers, -1)).reshape(len(places), *shape)
+
+
+def _bounds(polynomials: Floats) -> tuple[Floats, NDArray[np.bool_]]:
+    """How far from its constant a polynomial can be for |x| <= 1, and whether its slope can vanish there."""
+    powers, *shape = polynomials.shape
+    reach, bend = sizes_of(powers)(polynomials.reshape(powers, -1)).reshape(2, *shape)
+    sizes = np.abs(polynomials[:2])
+    return reach + MARGIN * (reach + sizes[0]), sizes[1] <= bend + MARGIN * (bend + sizes[1])
 
 
 def _changes(signs: Floats) -> tuple[Floats, Floats, NDArray[np.int64]]:
@@ -157,14 +138,8 @@ def _changes(signs: Floats) -> tuple[Floats, Floats, NDArray[np.int64]]:
     return first, last, change
 
 
-def _root(coefficients: Floats, low: Floats, high: Floats) -> Floats:
-    """The zero between two places of opposite sign, or one of them zero: Newton's method, halving where it leaves."""
-    slope, x = _derivative(coefficients), (low + high) / 2
-    left = np.sign(_value(coefficients, high))
-    for _ in range(3 * NEWTON):
-        value = _value(coefficients, x)
-        low, high = np.where(value * left < 0, x, low), np.where(value * left >= 0, x, high)
-        with np.errstate(all="ignore"):
-            moved = x - value / _value(slope, x)
-        x = np.where((moved >= low) & (moved <= high), moved, (low + high) / 2)
-    return x
+def _sign_before(first: Floats, last: Floats) -> Floats:
+    """The last sign before each step that is not zero; in the first step its own, shape (steps, lanes)."""
+    latest = np.maximum.accumulate(np.where(last != 0, np.arange(len(last))[:, None], -1), axis=0)
+    after = np.where(latest >= 0, np.take_along_axis(last, np.maximum(latest, 0), axis=0), first[0])
+    return np.concatenate([first[:1], after[:-1]])

@@ -11,7 +11,7 @@ After a block of steps the states are projected onto the constraints. A lane who
 the constraints too far inside a block, or that takes too many steps, is left to `holonom.sweeps.single`.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,14 +27,17 @@ from ..simulation.evaluation import in_full_vectors
 from .extremes import Steps
 from .quantities import along_motion, expressions_of
 
-LANES = 32  # of a batch: as fast as 8, and a quarter of the calls
+LANES = 16  # of a batch: what is followed fits into the caches nearest to the processor, and calls are few
+LANES_LOOKED_AT = 64  # where Python is called after each step
 BLOCK = 512  # steps between projections
 MOST_BLOCKS = 64
+ROOM = 64  # steps for which there is room at first
 STRAYED = 1e-8  # relative distance from the constraints after a block that projection alone does not cure
 SMALL = 2.0**-200  # in which what is looked at along the motion is integrated: a power of two loses no digit
 COMPACT_FROM = 300  # operations; heyoka's other mode compiles in their square, and runs a third faster
 
 Floats = NDArray[np.float64]
+Look = Callable[[list[Steps]], Floats]
 
 
 class Followed(NamedTuple):
@@ -46,13 +49,13 @@ class Followed(NamedTuple):
         At each instant asked for; the last is the end.
     arrived : ndarray of bool, shape (k,)
         Where the states mean something.
-    steps : list of (slice, list of Steps)
-        For each batch, which motions it holds, and each quantity along them.
+    seen : ndarray, shape (numbers, k)
+        What was made of the quantities along the motions.
     """
 
     states: Floats
     arrived: NDArray[np.bool_]
-    steps: list[tuple[slice, list[Steps]]]
+    seen: Floats
 
 
 class LaneEngine:
@@ -68,16 +71,25 @@ class LaneEngine:
         Whether the states are kept on the constraints.
     along : sequence of Expression
         Quantities to look at along the motion.
-    lanes : int
-        Of a batch; 2 or more.
+    look : callable
+        Makes numbers of these, given step by step: shape (numbers, lanes).
+    lanes : int or None
+        Of a batch, 2 or more; None for as many as are followed fastest.
     """
 
     def __init__(
-        self, problem: MotionProblem, tol: float, projects: bool, along: Sequence[Expression], lanes: int = LANES
+        self,
+        problem: MotionProblem,
+        tol: float,
+        projects: bool,
+        along: Sequence[Expression],
+        look: Look,
+        lanes: int | None = None,
     ) -> None:
         heyoka = import_heyoka()
-        self._start, self._n, self._lanes = float(problem.start["t"]), len(problem.coordinates), lanes
-        self._along, self._size = len(along), len(problem.state)
+        self._start = float(problem.start["t"])
+        lanes = self._lanes = lanes or (LANES_LOOKED_AT if along else LANES)
+        self._along, self._look, self._size = len(along), look, len(problem.state)
         outcome = heyoka.taylor_outcome
         self._unharmed = {outcome.time_limit, outcome.step_limit, outcome.success}
         program = computing(problem.motion, {f"ddot({name})" for name in problem.coordinates})
@@ -94,6 +106,9 @@ class LaneEngine:
             pars=np.zeros((len(problem.parameters), lanes)),
             compact_mode=problem.motion.operations >= COMPACT_FROM,
         )
+        self._state, self._pars, self._time = self._integrator.state, self._integrator.pars, self._integrator.time
+        self._moving = self._state[: self._size]
+        self._looking = _Along(self._integrator, self._size) if along else None
         self._nearest = None
         if projects and problem.multipliers:
             self._nearest = in_full_vectors(nearest_state(problem, read_precision("double")))
@@ -110,14 +125,15 @@ class LaneEngine:
             Instants to stop at, in order; the last is the end.
         """
         k, lanes = states.shape[1], self._lanes
-        found, arrived, steps = np.full((len(stops), self._size, k), np.nan), np.zeros(k, dtype=bool), []
+        found, arrived, seen = np.empty((len(stops), self._size, k)), np.empty(k, dtype=bool), []
+        starts = np.concatenate([states, np.zeros((self._along, k))])
         for first in range(0, k, lanes):
             here = slice(first, min(first + lanes, k))
-            reached, well, along = self._batch(states[:, here], values[:, here], stops)
-            found[:, :, here], arrived[here] = reached, well
+            found[:, :, here], arrived[here], steps = self._batch(starts[:, here], values[:, here], stops)
             if self._along:
-                steps.append((here, along))
-        return Followed(self._on_constraints(found, values, stops, arrived), arrived, steps)
+                seen.append(self._look(steps))
+        found = self._on_constraints(found, values, stops, arrived)
+        return Followed(found, arrived, np.concatenate(seen, axis=1) if seen else np.empty((0, k)))
 
     def _on_constraints(
         self, states: Floats, values: Floats, stops: Sequence[float], arrived: NDArray[np.bool_]
@@ -135,64 +151,67 @@ class LaneEngine:
         return found[:-1], ~(found[-1] <= STRAYED**2)
 
     def _batch(
-        self, states: Floats, values: Floats, stops: Sequence[float]
+        self, starts: Floats, pars: Floats, stops: Sequence[float]
     ) -> tuple[Floats, NDArray[np.bool_], list[Steps]]:
         """A batch, and again without lanes that fail: shapes (stops, 2n, m), (m,)."""
-        count = states.shape[1]
-        chosen, well = np.arange(self._lanes), np.ones(count, dtype=bool)
+        count = starts.shape[1]
+        if count == self._lanes:
+            failing, reached, well, steps = self._run(starts, pars, stops)
+            if failing is None:
+                return reached, well, steps
+        chosen, followed = np.arange(self._lanes), np.ones(count, dtype=bool)
         chosen[count:] = 0
         while True:
-            failing, reached, sound, steps = self._run(states[:, chosen], values[:, chosen], stops)
-            failed = np.unique(chosen[failing]) if failing.any() else ()
-            if not len(failed):
-                return reached[:, :, :count], well & sound[:count], [_first(part, count) for part in steps]
-            well[failed] = False
-            if not well.any():
-                return np.full((len(stops), *states.shape), np.nan), well, self._nothing(count)
-            chosen[np.isin(chosen, failed)] = np.flatnonzero(well)[0]
+            failing, reached, well, steps = self._run(starts[:, chosen], pars[:, chosen], stops)
+            if failing is None:
+                return reached[:, :, :count], followed & well[:count], [part.of(slice(count)) for part in steps]
+            failed = np.unique(chosen[failing])
+            followed[failed] = False
+            if not followed.any():
+                return np.full((len(stops), self._size, count), np.nan), followed, self._nothing(count)
+            chosen[np.isin(chosen, failed)] = np.flatnonzero(followed)[0]
 
     def _run(
-        self, states: Floats, values: Floats, stops: Sequence[float]
-    ) -> tuple[NDArray[np.bool_], Floats, NDArray[np.bool_], list[Steps]]:
-        """Full lanes through all stops: which fail, their states, which are sound, what was looked at."""
-        integrator, along = self._integrator, _Along(self._size) if self._along else None
+        self, starts: Floats, pars: Floats, stops: Sequence[float]
+    ) -> tuple[NDArray[np.bool_] | None, Floats, NDArray[np.bool_], list[Steps]]:
+        """Full lanes through all stops: which fail, if any, their states, which went well, what was looked at."""
+        integrator, along, options = self._integrator, self._looking, {}
+        if along is not None:
+            along.clear()
+            options = {"callback": along, "write_tc": True}
         integrator.set_time(self._start)
-        integrator.state[: self._size] = states
-        integrator.state[self._size :] = 0.0
-        integrator.pars[:] = values[: len(integrator.pars)]
-        options = {"callback": along, "write_tc": True} if along else {}
-        reached, sound = np.empty((len(stops), self._size, self._lanes)), np.ones(self._lanes, dtype=bool)
-        longest = np.zeros(self._lanes)
+        self._state[...], self._pars[...] = starts, pars
+        reached, well = np.empty((len(stops), self._size, self._lanes)), np.ones(self._lanes, dtype=bool)
+        longest = [0.0] * self._lanes
         for place, stop in enumerate(stops):
             for _ in range(MOST_BLOCKS):
                 integrator.propagate_until(stop, max_steps=BLOCK, **options)
-                ends, ended = integrator.propagate_res, integrator.time == stop
-                if not ended.all():
-                    failing = np.array([end[0] not in self._unharmed for end in ends])
-                    if failing.any():
-                        return failing, reached, sound, []
-                _, shortest, taken, _ = zip(*ends, strict=True)
-                longest = np.maximum(longest, np.array(taken))
-                sound &= np.array(shortest) * SHRUNK >= longest
-                if ended.all():
+                ends, ended = integrator.propagate_res, self._time == stop
+                arrived = ended.all()
+                if not arrived and (failing := np.array([end[0] not in self._unharmed for end in ends])).any():
+                    return failing, reached, well, []
+                for lane, (_, shortest, taken, _) in enumerate(ends):
+                    if taken > longest[lane]:
+                        longest[lane] = taken
+                    if not shortest * SHRUNK >= longest[lane]:
+                        well[lane] = False
+                if arrived:
                     break
-                self._keep(~ended, values, sound)
-            sound &= ended
-            reached[place] = integrator.state[: self._size]
-            if not ended.all():
-                return ~ended, reached, sound, []
-        return np.zeros(self._lanes, dtype=bool), reached, sound, along.steps() if along else []
+                self._keep(~ended, well)
+            else:
+                return ~ended, reached, well, []
+            reached[place] = self._moving
+        return None, reached, well, along.steps() if along is not None else []
 
-    def _keep(self, lanes: NDArray[np.bool_], values: Floats, sound: NDArray[np.bool_]) -> None:
+    def _keep(self, lanes: NDArray[np.bool_], well: NDArray[np.bool_]) -> None:
         """Project the lanes whose block has ended before their motion."""
         if self._nearest is not None:
-            state = self._integrator.state[: self._size]
-            projected, strayed = self._projected(self._integrator.time[None, :], state, values)
-            state[:, lanes] = projected[:, lanes]
-            sound &= ~(lanes & strayed)
+            projected, strayed = self._projected(self._time[None, :], self._moving, self._pars)
+            self._moving[:, lanes] = projected[:, lanes]
+            well &= ~(lanes & strayed)
 
     def _nothing(self, count: int) -> list[Steps]:
-        empty = np.full((1, 1, count), np.nan)
+        empty = np.full((2, 1, count), np.nan)
         return [Steps(empty, empty[0], empty[0], 0.0) for _ in range(self._along)]
 
 
@@ -201,41 +220,35 @@ class _Along:
 
     Parameters
     ----------
+    integrator : heyoka.taylor_adaptive_batch
     first : int
         Place in the state of the first of them.
     """
 
-    def __init__(self, first: int) -> None:
-        self._first = first
-        self._series: list[Floats] = []
-        self._lengths: list[Floats] = []
-        self._ends: list[Floats] = []
+    def __init__(self, integrator: Any, first: int) -> None:
+        last = integrator.tc[first:], integrator.last_h, integrator.time  # views of what the last step leaves
+        self._last, self._kept = last, [np.empty((ROOM, *each.shape)) for each in last]
+        self._powers = np.arange(1, len(last[0][0]))[:, None, None] / SMALL
+        self._taken = 0
+
+    def clear(self) -> None:
+        """Forget the steps."""
+        self._taken = 0
 
     def __call__(self, integrator: Any) -> bool:
         """Take what the last step leaves."""
-        self._series.append(integrator.tc[self._first :].copy())
-        self._lengths.append(integrator.last_h.copy())
-        self._ends.append(integrator.time.copy())
+        taken = self._taken
+        if taken == len(self._kept[0]):
+            self._kept = [np.concatenate([each, np.empty_like(each)]) for each in self._kept]
+        series, length, time = self._kept
+        series[taken], length[taken], time[taken] = self._last
+        self._taken = taken + 1
         return True
 
     def steps(self) -> list[Steps]:
         """Each quantity along the lanes."""
-        length = np.array(self._lengths)
-        begin, series = np.array(self._ends) - length, np.moveaxis(np.array(self._series), 2, 0)[1:]
-        coefficients = np.empty_like(series)
-        power = np.ones_like(length)
-        for order, rate in enumerate(series):  # the integral's coefficients, differentiated
-            coefficients[order] = rate * ((order + 1) / SMALL) * power[:, None]
-            power = power * length
-        return [
-            Steps(np.moveaxis(coefficients[:, :, k], 0, 1), begin, length, 0.0) for k in range(coefficients.shape[2])
-        ]
-
-
-def _first(steps: Steps, count: int) -> Steps:
-    """The first lanes of a batch."""
-    return steps._replace(
-        coefficients=steps.coefficients[:, :, :count],
-        middle=steps.middle[:, :count],
-        length=steps.length[:, :count],
-    )
+        series, length, time = (each[: self._taken] for each in self._kept)
+        rates = np.moveaxis(series[:, :, 1:], 0, 2)  # of the integrals: quantities, powers, steps, lanes
+        scales = np.concatenate([np.ones((1, *length.shape)), np.repeat(length[None], rates.shape[1] - 1, axis=0)])
+        coefficients = rates * (self._powers * np.multiply.accumulate(scales))
+        return [Steps(each, time - length, length, 0.0) for each in np.ascontiguousarray(coefficients)]

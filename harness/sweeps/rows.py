@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, reduce
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,7 +27,7 @@ from ..simulation.trust import FINEST, MARGIN, may_hide
 from .axes import Axes
 from .extremes import Steps, first_zero, largest, largest_size
 from .kept import ALONG, Kept, Kind
-from .lanes import LANES, LaneEngine
+from .lanes import LaneEngine
 from .quantities import along_motion, constraint_forces, expressions_of, other_forces, require_known
 from .series import lane_radii
 from .single import SingleMotions, end_of
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 TOLERANCE = 1e-12  # of a step
 FEW = 10  # steps
-GROUP = 1024  # rows that are held in memory at a time, whatever the chunk
+GROUP = 10_000  # rows that are held in memory at a time, whatever the chunk
 
 Floats = NDArray[np.float64]
 
@@ -68,8 +68,8 @@ class Plan:
         The last instant; None for the end of the scene's time span.
     drift : Stabilization
         ``PROJECTION`` or ``NONE``.
-    lanes : int
-        That are followed at once.
+    lanes : int or None
+        That are followed at once; None for as many as are followed fastest.
     """
 
     problem: MotionProblem
@@ -78,7 +78,7 @@ class Plan:
     tol: float = TOLERANCE
     until: Fraction | None = None
     drift: Stabilization = Stabilization.PROJECTION
-    lanes: int = LANES
+    lanes: int | None = None
 
 
 class RowMaker:
@@ -184,9 +184,7 @@ class RowMaker:
         points = {stop: self._at(stop, at[stop], values) for stop in self._asked}
         rows.residual[done] = residual[well]
         self._keep(rows, done, at[self._end][:, well], {stop: numbers[:, well] for stop, numbers in points.items()})
-        for here, steps in found.steps:
-            lanes = well[here]
-            self._keep_along(rows, there[here][lanes], [_chosen(part, lanes) for part in steps])
+        self._keep_along(rows, done, found.seen[:, well])
         return there[~well]
 
     def _by_itself(self, rows: "_Rows", row: int, state: Floats) -> None:
@@ -203,7 +201,7 @@ class RowMaker:
         rows.residual[row] = self._residuals(end, rows.values[:, here], start=False)[0]
         points = {stop: found.points[place][:, None] for place, stop in enumerate(self._asked)}
         self._keep(rows, here, end, points)
-        self._keep_along(rows, here, found.steps)
+        self._keep_along(rows, here, self._seen(found.steps))
         if not max(rows.residual[row], found.missed if self._hides else 0.0) <= self._allowed:
             rows.mark(here, Status.DOUBTFUL, "what it misses is out of proportion to the tolerance")
 
@@ -220,19 +218,23 @@ class RowMaker:
                 rows.kept[kept.text][there] = points[self._instant(kept)][place]
                 place += 1
 
-    def _keep_along(self, rows: "_Rows", there: NDArray, steps: Sequence[Steps]) -> None:
-        """What is kept of quantities along the motion."""
-        if not len(there):
-            return
-        for kept, along in zip(self._looks, steps, strict=False):
-            rows.kept[kept.text][there] = self._made(kept.kind, along)
-        if not any(kept.kind is Kind.FREE for kept in self.plan.kept):
-            return
-        sizes = [largest_size(along) for along in steps[len(self._looks) :]]
-        reactions, others = sizes[: len(self._free[0])], sizes[len(self._free[0]) :]
-        forces = np.max(others, axis=0, initial=0.0)
-        free = np.max(reactions, axis=0, initial=0.0) <= MARGIN * self.plan.tol * np.where(forces > 0, forces, 1.0)
-        rows.kept[Kind.FREE][there] = free
+    def _keep_along(self, rows: "_Rows", there: NDArray, seen: Floats) -> None:
+        """What is kept of quantities along the motion, shape (numbers, k)."""
+        free = (Kind.FREE,) if any(self._free) else ()
+        for name, numbers in zip((*(kept.text for kept in self._looks), *free), seen, strict=True):
+            rows.kept[name][there] = numbers
+
+    def _seen(self, steps: list[Steps]) -> Floats:
+        """The numbers made of quantities along motions, shape (numbers, lanes): the last says whether they are free."""
+        looks, fields = steps[: len(self._looks)], steps[len(self._looks) :]
+        made = [self._made(kept.kind, along) for kept, along in zip(self._looks, looks, strict=True)]
+        if fields:
+            sizes = [largest_size(along) for along in fields]
+            reactions, others = sizes[: len(self._free[0])], sizes[len(self._free[0]) :]
+            forces = np.max(others, axis=0, initial=0.0)
+            least = MARGIN * self.plan.tol * np.where(forces > 0, forces, 1.0)
+            made.append((np.max(reactions, axis=0, initial=0.0) <= least).astype(float))
+        return np.array(made)
 
     def _made(self, kind: Kind, along: Steps) -> Floats:
         match kind:
@@ -275,7 +277,7 @@ class RowMaker:
     @cached_property
     def _engine(self) -> LaneEngine:
         projects = self.plan.drift is Stabilization.PROJECTION
-        return LaneEngine(self._problem, self.plan.tol, projects, self._along, self.plan.lanes)
+        return LaneEngine(self._problem, self.plan.tol, projects, self._along, self._seen, self.plan.lanes)
 
     @cached_property
     def _evaluate(self) -> "NDArray":
@@ -314,19 +316,8 @@ class _Rows:
         self.statuses[rows], self.remarks[rows] = list(Status).index(status), remark
 
 
-def _chosen(steps: Steps, lanes: NDArray[np.bool_]) -> Steps:
-    """Some of the lanes."""
-    if lanes.all():
-        return steps
-    return Steps(steps.coefficients[:, :, lanes], steps.middle[:, lanes], steps.length[:, lanes], steps.least)
-
-
 def _mean(along: Steps) -> Floats:
     """The integral of the polynomials, by the time that they take."""
-    total, time = np.zeros(along.length.shape[1]), np.zeros(along.length.shape[1])
-    for coefficients, length in zip(along.coefficients, along.length, strict=True):
-        integral = np.zeros_like(total)
-        for power, coefficient in enumerate(coefficients, start=1):
-            integral = integral + coefficient * ((1.0 - along.least**power) / power)
-        total, time = total + integral * length, time + length * (1.0 - along.least)
-    return total / time
+    powers = range(1, len(along.coefficients) + 1)
+    integral = sum((c * ((1.0 - along.least**k) / k) for k, c in zip(powers, along.coefficients, strict=True)))
+    return reduce(np.add, integral * along.length) / reduce(np.add, along.length * (1.0 - along.least))

@@ -93,7 +93,7 @@ class SingleMotions:
             states.append(motion.state.copy())
             values = self._values(motion, problem, np.array([stop]), motion.state.copy()[:, None])
             points.append(values[self._along :, 0])
-        return SingleMotion(np.array(states), np.array(points), _steps(taken, self._along), held.missed)
+        return SingleMotion(np.array(states), np.array(points), _steps(taken), held.missed)
 
     def _polynomials(self, motion: PiecewiseMotion, problem: MotionProblem, piece: Piece) -> list[tuple]:
         """The quantities on the parts of a step: middle, half length, coefficients."""
@@ -141,8 +141,9 @@ def end_of(problem: MotionProblem, until: Fraction | None) -> float:
     return float(last_instant(problem, until, read_precision("double")))
 
 
-def _steps(taken: list[tuple], quantities: int) -> list[Steps]:
+def _steps(taken: list[tuple]) -> list[Steps]:
     if not taken:
         return []
     middle, half = (np.array([part[k] for part in taken])[:, None] for k in (0, 1))
-    return [Steps(np.array([part[2][k] for part in taken])[:, :, None], middle, half, -1.0) for k in range(quantities)]
+    coefficients = np.moveaxis(np.array([part[2] for part in taken]), 0, 2)  # quantities, powers, steps
+    return [Steps(each[:, :, None], middle, half, -1.0) for each in coefficients]
