@@ -14,11 +14,13 @@ by Python's recursion limit. (`json.loads` itself gives up at about a thousand l
 """
 
 import re
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from operator import neg, sub, truediv
 from typing import Any
 
+import mpmath
 import sympy
 from sympy import Expr, Float, Indexed, IndexedBase, Integer, Rational, S, Symbol
 
@@ -29,6 +31,7 @@ Tree = int | str | dict | list
 JSON_INTEGERS = 2**53  # integers below it are JSON numbers that every reader reads exactly
 DOUBLE_DIGITS = 17  # decimal digits that tell any two doubles apart
 DOUBLE_BITS = 53
+SPARE_DIGITS = 11  # of a number longer than Python reads, beyond those that mpmath keeps
 SHOWN = 60  # characters of a refused fragment that its refusal shows
 
 INTEGER = re.compile(r"-?\d{1,4300}")  # Python's own limit on decimal digits
@@ -262,3 +265,25 @@ def _digits(value: Float) -> str:
 def _refusal(part: object) -> HolonomError:
     shown = str(part)
     return HolonomError(Failure.NOT_AN_EXPRESSION, detail=shown if len(shown) <= SHOWN else f"{shown[:SHOWN]}...")
+
+
+# ---- numbers as text ----
+
+
+def number(text: str) -> mpmath.mpf:
+    """The value of p/q or of decimal digits, rounded to the digits that mpmath works with."""
+    numerator, _, denominator = text.partition("/")
+    return _decimal(numerator) / _decimal(denominator or "1")
+
+
+def numbers(texts: Iterable[str]) -> list[mpmath.mpf]:
+    """The values of several."""
+    return [number(text) for text in texts]
+
+
+def _decimal(text: str) -> mpmath.mpf:
+    """Of an integer longer than Python reads, the first digits, which are more than mpmath keeps."""
+    kept = mpmath.mp.dps + SPARE_DIGITS
+    if len(text) <= sys.int_info.default_max_str_digits or not text.lstrip("-").isdigit():
+        return mpmath.mpf(text)
+    return mpmath.mpf(text[:kept]) * mpmath.mpf(10) ** (len(text) - kept)

@@ -14,11 +14,12 @@ from holonom.cli.tables.free_motion import power_series
 from holonom.confined import Limits
 from holonom.failures import HolonomError
 from holonom.free_motion import FirstCoefficient, Free, free_motion
+from holonom.mathjson import number
 from holonom.program.forms import MotionProgram
 from holonom.program.numpy_function import NumpyFunction
 from holonom.program.request import Request
 from holonom.record import derived_record
-from holonom.series.power_series import SeriesRequest, compute_series, number
+from holonom.series.power_series import SeriesRequest, compute_series
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 t = Symbol("t", real=True)

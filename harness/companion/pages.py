@@ -10,8 +10,8 @@ from xml.etree import ElementTree
 import jinja2
 from markupsafe import Markup, escape
 
+from ..mathjson import number
 from ..reference.topics import Topic
-from ..series.power_series import number
 from ..simulation.diagnosis import engine_text, remarks
 from . import mathematics
 from .chapter import Chapter

@@ -5,7 +5,6 @@ as many digits, where something is computed from them.
 """
 
 import math
-import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -18,6 +17,7 @@ import mpmath
 from ..confined import Limits
 from ..documents import Document, Publication, ask, published, read
 from ..failures import Failure, HolonomError
+from ..mathjson import number, numbers
 from ..shown import Show, Shown
 from .radius import Radius, estimate_radius, truncation_error
 
@@ -231,25 +231,6 @@ def series_document(motion: MotionSeries, values: Values | None = None) -> dict[
     if motion.continuation is not None:
         content["continuation"] = vars(motion.continuation)
     return published(Publication.SERIES, content)
-
-
-def number(text: str) -> mpmath.mpf:
-    """The value of p/q or of decimal digits, rounded to the digits that mpmath works with."""
-    numerator, _, denominator = text.partition("/")
-    return _decimal(numerator) / _decimal(denominator or "1")
-
-
-def numbers(texts: NumberTexts) -> list[mpmath.mpf]:
-    """The values of several."""
-    return [number(text) for text in texts]
-
-
-def _decimal(text: str) -> mpmath.mpf:
-    """Of an integer longer than Python reads, the first digits, which are more than mpmath keeps."""
-    kept = mpmath.mp.dps + MORE_DIGITS + 1
-    if len(text) <= sys.int_info.default_max_str_digits or not text.lstrip("-").isdigit():
-        return mpmath.mpf(text)
-    return mpmath.mpf(text[:kept]) * mpmath.mpf(10) ** (len(text) - kept)
 
 
 def _series(group: Mapping[str, Any]) -> dict[str, NumberTexts]:

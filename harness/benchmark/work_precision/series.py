@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING, Any
 import mpmath
 
 from ...documents import Document, ask, read
+from ...mathjson import number, numbers
 from ...program.motion_problem import MotionProblem
 from ...program.precision import read_precision
 from ...program.request import Request
 from ...series.heyoka_series import expand, expanding_integrator
-from ...series.power_series import number, numbers
 from .measurement import WORKING_DIGITS, Candidate, Group, Measurement, Prepared, State, relative_error
 from .operations import acceleration_program, expansion_operations
 

@@ -11,8 +11,9 @@ from sympy import Expr, Symbol
 
 from ...figures.curves import Panel, draw_curves
 from ...figures.style import lettered
+from ...mathjson import number, numbers
 from ...record import Equation, Scene
-from ...series.power_series import MotionSeries, NumberTexts, number, numbers
+from ...series.power_series import MotionSeries, NumberTexts
 from ..cards import derivation_cards, files_of, named_equations, scene_cards, scene_named
 from ..chapter import Chapter, Page
 from ..examples import BOB, BOB_SCENE, INITIAL_SCENE, PAPER

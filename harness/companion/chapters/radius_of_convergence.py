@@ -10,7 +10,8 @@ import sympy
 from sympy import Expr, Symbol
 
 from ...figures.convergence import draw_partial_sums, draw_radius
-from ...series.power_series import MotionSeries, number, numbers
+from ...mathjson import number, numbers
+from ...series.power_series import MotionSeries
 from ...simulation.result import Simulation
 from ..cards import named_equations, scene_named
 from ..chapter import Chapter, Page
