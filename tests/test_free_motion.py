@@ -176,6 +176,12 @@ def test_first_coefficient_is_what_the_series_of_the_multiplier_begins_with():
     assert motion.first == FirstCoefficient("lambda1", 0, series.multipliers["lambda1"][0])
 
 
+def test_linkage_of_redundant_hinges_that_carries_its_weight_was_left_undecided():
+    motion = asked("hard/sarrus_linkage").motion
+    assert motion.verdict is Free.NOT_FREE
+    assert "left out were constraints that follow from the others: 14" in motion.evidence
+
+
 @pytest.mark.parametrize("order", [2, 12])
 def test_late_force_is_undecided_before_its_order_and_not_free_from_it_on(write_scene, order):
     """ "motion is free for this state" was said after eight rates; the multiplier starts with 132 t^10."""

@@ -29,6 +29,12 @@
 
 (defvar *impatience* 40 "Corrections after which each must be smaller than the one before.")
 
+(defvar *smallest-coordinate* (expt 10 -70))
+
+(defvar *least-gain* 1000 "By how much a correction in floating point must lessen the residuals.")
+
+(defvar *most-refinements* 20)
+
 (defstruct sample-point
   (symbols (make-hash-table))              ; symbol -> rational
   (known (make-hash-table)))               ; node number -> rational
@@ -223,7 +229,7 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
       (if (every #'zerop (residuals-at point constraints))
           (converted-point point #'identity)
           (let ((close (point-near-manifold point constraints jacobian coordinates)))
-            (if close (newton-iteration close constraints jacobian coordinates)))))))
+            (if close (refined-point close constraints jacobian coordinates)))))))
 
 (defun residuals-at (point constraints)
   (mapcar #'(lambda (f) (value-at (expression-term f) point)) (cdr constraints)))
@@ -236,6 +242,38 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
                           (newton-iteration (converted-point point #'float-of) constraints
                                             jacobian coordinates)))))
     (if (car found) (converted-point (car found) #'rational))))
+
+(defun refined-point (close constraints jacobian coordinates)
+  "To all digits: corrections in floating point add several each; Newton's method where they do not."
+  (let ((refined (corrected-in-floats close constraints jacobian coordinates)))
+    (if refined
+        (corrected-point refined (make-hash-table) (cdr coordinates))
+        (newton-iteration close constraints jacobian coordinates))))
+
+(defun corrected-in-floats (point constraints jacobian coordinates)
+  (let ((*small-coordinate* *smallest-coordinate*) (before nil)) ; what lands too soon cannot be corrected
+    (dotimes (attempt *most-refinements* nil)
+      (let* ((residuals (residuals-at point constraints))
+             (size (reduce #'max (mapcar #'abs residuals) :initial-value 0))
+             (corrections (if (or (null before) (< (* *least-gain* size) before))
+                              (corrections-in-floats residuals size jacobian point))))
+        (cond ((zerop size) (return point))
+              ((null corrections) (return nil))
+              (t (setq before size
+                       point (corrected-point point corrections (cdr coordinates)))))))))
+
+(defun corrections-in-floats (residuals size jacobian point)
+  "Newton's corrections of residuals that are at most so large; nil where floating point has none, or none is needed."
+  (let* ((*floating* t)
+         (*zero-share* *zero-share-of-floats*)
+         (found (if (plusp size)
+                    (errset (catch 'irregular-point
+                              (newton-corrections (mapcar #'(lambda (r) (float-of (/ r size))) residuals)
+                                                  jacobian (converted-point point #'float-of)))))))
+    (if (car found)
+        (let ((corrections (make-hash-table)))
+          (maphash #'(lambda (column value) (setf (gethash column corrections) (* size (rational value)))) (car found))
+          corrections))))
 
 (defun float-of (number) (float number 1d0))
 
