@@ -1,5 +1,6 @@
 """What several tests need: a place to write a scene, and a record small enough to read."""
 
+import os
 import shutil
 from collections import Counter
 from collections.abc import Callable
@@ -9,6 +10,10 @@ import pytest
 from particle import PARTICLE
 
 from holonom.documents import Document, ask
+
+# As the command line has it, and every process that the tests start: with threads of its own in each of the tests'
+# processes, BLAS takes ten times as long. NumPy reads this when it is first imported, which is later.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 ScenesWriter = Callable[[str], Path]
 COMPANION = Path(__file__).with_name("companion")
