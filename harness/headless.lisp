@@ -44,6 +44,17 @@
   (flet ((spelt (item) (if (stringp item) (maybe-invert-string-case item) item)))
     (error 'unreadable-statement :text (apply #'format nil control (mapcar #'spelt arguments)))))
 
+;; A scene that was copied away from beside the library, or is read by another installation, means this library.
+(let ((load-file (symbol-function '$load)))
+  (defun $load (file)
+    (funcall load-file (if (library-not-there-p file) "holonom.mac" file))))
+
+(defun library-not-there-p (file)
+  (and (stringp file)
+       (let ((start (search "/maxima/holonom.mac" file :from-end t)))
+         (and start (= (+ start (length "/maxima/holonom.mac")) (length file))))
+       (not (probe-file file))))
+
 ;;; The run
 
 (defun run-file (copy call job)

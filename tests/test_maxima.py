@@ -4,6 +4,7 @@ import subprocess
 from dataclasses import replace
 
 import pytest
+from particle import PARTICLE
 
 from holonom.confined import Limits
 from holonom.documents import Document, ask
@@ -17,6 +18,12 @@ def failure_of(file, limits=LONG) -> HolonomError:
     with pytest.raises(HolonomError) as raised:
         ask(Document.RECORD, file, limits=limits)
     return raised.value
+
+
+def test_a_scene_that_was_copied_away_from_beside_the_library_was_refused(write_scene):
+    beside = 'load(sconcat(pathname_directory(load_pathname), "../maxima/holonom.mac"))$'
+    file = write_scene(PARTICLE.replace('load("holonom.mac")$', beside))
+    assert "record" in ask(Document.RECORD, file)
 
 
 @pytest.mark.parametrize(
