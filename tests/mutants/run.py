@@ -58,7 +58,8 @@ class Mutation:
     @property
     def applies(self) -> bool:
         """Whether the text to be replaced stands in the file, once."""
-        return (ROOT / self.file).read_text(encoding="utf-8").count(self.before) == 1
+        file = ROOT / self.file
+        return file.is_file() and file.read_text(encoding="utf-8").count(self.before) == 1
 
     @property
     def key(self) -> str:
