@@ -11,7 +11,7 @@ HARD    := $(shell find examples/hard -name '*.mac')
 
 .DEFAULT_GOAL := paper
 .DELETE_ON_ERROR:
-.PHONY: paper companion book check check-long mutants bench setup install pictures clean help have-programs
+.PHONY: paper companion book catalog check check-long mutants bench setup install pictures clean help have-programs
 
 paper: $(RECORDS) build/check.json build/errata.json companion ## Derive and check every scene, compare the paper as printed (the default)
 	@echo "The derivations are in build/examples/, the verdicts in build/check.json, the misprints in build/errata.json, the textbook companion in build/companion/index.html."
@@ -31,6 +31,9 @@ book: build/book.pdf ## Print the textbook companion, with Chromium: build/book.
 
 build/book.pdf: $(PRINTED) $(SCENES) $(HARD) $(SOURCES) | setup
 	$(BIN)/holonom companion -o build/companion --pdf $@
+
+catalog: setup ## Collect the messages to be translated: harness/locale/, and say which have no translation yet
+	$(BIN)/python -m holonom.catalog
 
 build/holonom.1: $(SOURCES) | setup
 	@mkdir -p $(@D)

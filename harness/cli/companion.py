@@ -8,11 +8,12 @@ import click
 
 from ..confined import Limits
 from ..failures import missing_package
+from ..language import ENGLISH, LANGUAGES
 from .group import holonom
 from .options import runs_scenes, takes_settings
 from .outputs import OutputFile, SceneFile
 
-EXTRAS = ("jinja2", "latex2mathml", "matplotlib", "heyoka", "ziamath", "pypdf")
+EXTRAS = ("jinja2", "babel", "latex2mathml", "matplotlib", "heyoka", "ziamath", "pypdf")
 
 
 @holonom.command()
@@ -27,10 +28,22 @@ EXTRAS = ("jinja2", "latex2mathml", "matplotlib", "heyoka", "ziamath", "pypdf")
     help="Where the pages are put; begin to read with index.html.",
 )
 @click.option("--pdf", type=OutputFile("pdf"), help="A file that all pages are printed to as one book, by Chromium.")
+@click.option(
+    "--language",
+    "languages",
+    multiple=True,
+    type=click.Choice(list(LANGUAGES)),
+    help="Of the pages, en without it; of several, all but the first are put into directories of their names.",
+)
 @takes_settings
 @runs_scenes
 def companion(
-    scenes: Sequence[Path], directory: Path, pdf: Path | None, settings: dict[str, str], limits: Limits
+    scenes: Sequence[Path],
+    directory: Path,
+    pdf: Path | None,
+    languages: Sequence[str],
+    settings: dict[str, str],
+    limits: Limits,
 ) -> int:
     """Make the textbook companion of the paper, or of the SCENEs given, as pages for a browser."""
     require_extras()
@@ -45,7 +58,7 @@ def companion(
         raise click.UsageError("--set needs a SCENE")
     book = book_of_scenes(scenes, given, limits) if scenes else book_of_the_paper()
     with progress(f"Making {directory}", len(book.runs)) as done:
-        make_book(book, directory, pdf, done)
+        make_book(book, directory, pdf, tuple(dict.fromkeys(languages)) or (ENGLISH,), done)
     done_line = f"The companion is in {directory}: open {directory / 'index.html'} in a browser."
     make_console().print(done_line, soft_wrap=True, markup=False)
     return 0

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..confined import Limits
+from ..language import ENGLISH, LANGUAGES, speaking
 from ..supervisor import doing
 from .group import holonom
 from .options import DISAGREEMENT, present, publish, runs_scenes, takes_settings, writes_json
@@ -88,7 +89,14 @@ def check(
 @holonom.command()
 @writes_json
 @click.option("--svg", "svg_file", metavar="FILE", type=OutputFile("svg"), help="Also draw the table.")
-def errata(json_file: Path | None, svg_file: Path | None) -> int:
+@click.option(
+    "--language",
+    type=click.Choice(list(LANGUAGES)),
+    default=ENGLISH,
+    show_default=True,
+    help="Of the table, not of JSON.",
+)
+def errata(json_file: Path | None, svg_file: Path | None, language: str) -> int:
     """Compare every equation that the paper prints with the derived one."""
     from ..documents import Document, published
     from ..errata import errata as compare
@@ -96,9 +104,10 @@ def errata(json_file: Path | None, svg_file: Path | None) -> int:
 
     equations = compare()
     content = {"equations": [asdict(equation) for equation in equations]}
-    present(published(Document.ERRATA, content), json_file, show_errata, equations)
-    if svg_file is not None:
-        publish(draw_errata(equations), svg_file)
+    with speaking(language):
+        present(published(Document.ERRATA, content), json_file, show_errata, equations)
+        if svg_file is not None:
+            publish(draw_errata(equations), svg_file)
     return 0
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from ..crosscheck import EquationVerdict, Verdict
 from ..crosscheck.lagranges_method import OPINION
 from ..errata import PrintedEquation
+from ..language import translatable
 from ..record import Equation, Scene
 from .excerpts import Excerpt
 from .runs import Derived
@@ -202,13 +203,17 @@ def _derivation_instances(derived: Derived) -> list[Instance]:
     parts = sorted(enumerate(record.derivations), key=lambda part: len(part[1].effects), reverse=True)
     return [
         Instance(
-            record.system.title if len(parts) == 1 else f"{record.system.title}, with {', '.join(derivation.effects)}",
+            record.system.title if len(parts) == 1 else _with_effects(record.system.title, derivation.effects),
             equation,
             tuple(found for found in report if found.derivation == place and _speaks_of(found, equation)),
         )
         for place, derivation in parts
         for equation in derivation.equations
     ]
+
+
+def _with_effects(title: str, effects: Iterable[str]) -> str:
+    return translatable("%(system)s, with %(effects)s", system=translatable(title), effects=", ".join(effects))
 
 
 def _scene_instances(derived: Derived, name: str) -> list[Instance]:

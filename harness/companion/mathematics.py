@@ -9,6 +9,7 @@ from markupsafe import Markup, escape
 from sympy import Expr, IndexedBase, Symbol, sympify
 
 from ..errata import PrintedEquation
+from ..language import translatable, translated
 from ..mathjson import Tree, from_sympy
 from ..record import Equation, Relation, System
 from ..typeset.equations import latex_equation
@@ -18,10 +19,12 @@ from ..typeset.mathml import inline_mathml, mathml
 WIDTH, NARROW = 62, 30  # digits that fit in a card on a desk and on a phone
 TALL = 14  # lines of a formula that is folded, for it would fill a screen
 NOTHING = {
-    "6": "There are none: the mass matrix does not depend on the coordinates.",
-    "19": "No formula: the constraints are not linear in what the scene leaves out, or it leaves nothing out.",
+    "6": translatable("There are none: the mass matrix does not depend on the coordinates."),
+    "19": translatable(
+        "No formula: the constraints are not linear in what the scene leaves out, or it leaves nothing out."
+    ),
 }
-UNCONSTRAINED = "There are no constraints, and so no multipliers: every motion is free."
+UNCONSTRAINED = translatable("There are no constraints, and so no multipliers: every motion is free.")
 LINE_BREAK = r"\\"
 FORMULA_IN_PROSE = re.compile(r"\$([^$]+)\$")
 
@@ -102,7 +105,7 @@ def typeset(equation: Equation) -> Typeset:
 
 def nothing_to_show(equation: Equation) -> str:
     """What an equation without relations says."""
-    return NOTHING.get(equation.number, UNCONSTRAINED)
+    return translated(NOTHING.get(equation.number, UNCONSTRAINED))
 
 
 def as_printed(printed: PrintedEquation) -> Markup:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ..confined import Limits
+from ..language import translatable
 from .book import Book
 from .cards import Card, derivation_cards, files_of, missing, scene_cards
 from .chapter import Chapter, Page, Run
@@ -34,7 +35,7 @@ def book_of_scenes(files: Sequence[Path], settings: Settings, limits: Limits) ->
     """
     prefixes = [""] if len(files) == 1 else [_prefix(file, place) for place, file in enumerate(files, 1)]
     return Book(
-        title="A companion to systems of your own",
+        title=translatable("A companion to systems of your own"),
         subtitle=", ".join(file.name for file in files),
         foreword="own_foreword.html",
         command=f"holonom companion {' '.join(map(str, files))}",
@@ -70,8 +71,8 @@ def system(prefix: str, file: Path, study: Run) -> Chapter:
 
     return Chapter(
         slug=f"{prefix}the-system",
-        title="The system",
-        aim="What the file describes.",
+        title=translatable("The system"),
+        aim=translatable("What the file describes."),
         template="own_system.html",
         runs={"study": study},
         page=page,
@@ -95,8 +96,8 @@ def equations(prefix: str, file: Path, study: Run) -> Chapter:
 
     return Chapter(
         slug=f"{prefix}equations-of-motion",
-        title="Equations of motion",
-        aim="Equations (2) to (9) and (11), each with its verdict.",
+        title=translatable("Equations of motion"),
+        aim=translatable("Equations (2) to (9) and (11), each with its verdict."),
         template="own_equations.html",
         runs={"study": study},
         page=page,
@@ -118,8 +119,8 @@ def free_motion(prefix: str, file: Path, study: Run) -> Chapter:
 
     return Chapter(
         slug=f"{prefix}free-motion",
-        title="Free motion",
-        aim="Whether the constraints push, and what it takes that they do not.",
+        title=translatable("Free motion"),
+        aim=translatable("Whether the constraints push, and what it takes that they do not."),
         template="own_free_motion.html",
         runs={"study": study},
         page=page,
@@ -144,8 +145,8 @@ def initial_motion(prefix: str, file: Path, study: Run) -> Chapter:
 
     return Chapter(
         slug=f"{prefix}initial-motion",
-        title="Initial motion",
-        aim="Initial state, initial accelerations, and the power series of the motion.",
+        title=translatable("Initial motion"),
+        aim=translatable("Initial state, initial accelerations, and the power series of the motion."),
         template="own_initial_motion.html",
         runs={"study": study},
         page=page,
@@ -167,8 +168,8 @@ def motion(prefix: str, file: Path, study: Run) -> Chapter:
 
     return Chapter(
         slug=f"{prefix}motion",
-        title="The motion",
-        aim="How the system moves, and what its constraints have to do.",
+        title=translatable("The motion"),
+        aim=translatable("How the system moves, and what its constraints have to do."),
         template="own_motion.html",
         runs={"study": study, "motions": motions(*study.arguments)},
         page=page,

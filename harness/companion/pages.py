@@ -1,16 +1,21 @@
 """Pages from templates: XHTML that a browser reads as HTML, and that parses as XML."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
 import jinja2
 from markupsafe import Markup, escape
+from sympy import Expr
 
+from ..free_motion import UniversalLaw
+from ..language import ENGLISH, LANGUAGES, gettext, ngettext, spoken, translated
 from ..mathjson import number
+from ..record import Scene
 from ..reference.topics import Topic
 from ..simulation.diagnosis import engine_text, remarks
 from . import mathematics
@@ -25,6 +30,7 @@ NAMED_BY_MAXIMA = re.compile(r"(no control can make )(.+)( vanish)")
 CODE_IN_TEXT = re.compile(r"`([^`]+)`")
 NEGLIGIBLE = 1e-9  # of a complex number: a part of it that is rounding alone
 STYLE = TEMPLATES / "companion.css"
+WHITESPACE = {"trim_blocks": True, "lstrip_blocks": True, "keep_trailing_newline": True}
 
 
 @dataclass(frozen=True)
@@ -53,6 +59,26 @@ class Part:
 
 
 @dataclass(frozen=True)
+class Twin:
+    """The same book in another language: page by page the same names of files, in another directory.
+
+    Attributes
+    ----------
+    language : str
+    directory : str
+        From this book's own, with a slash at its end.
+    """
+
+    language: str
+    directory: str
+
+    @property
+    def name(self) -> str:
+        """What the language calls itself."""
+        return LANGUAGES[self.language]
+
+
+@dataclass(frozen=True)
 class Contents:
     """What every page knows about the book.
 
@@ -68,6 +94,10 @@ class Contents:
     parts : tuple of Part
     sessions : frozenset of str
         Slugs of the chapters that have a session of Maxima.
+    language : str
+        That it is written in.
+    twins : tuple of Twin
+        The same book in other languages.
     """
 
     title: str
@@ -77,6 +107,8 @@ class Contents:
     maxima: str
     parts: tuple[Part, ...]
     sessions: frozenset[str] = frozenset()
+    language: str = ENGLISH
+    twins: tuple["Twin", ...] = ()
 
     @property
     def entries(self) -> list[Entry]:
@@ -86,7 +118,7 @@ class Contents:
 
 def index_page(book: Contents, terms: Sequence[Place]) -> str:
     """The first page: foreword, contents, and where each word is defined."""
-    return _rendered("index.html", book=book, terms=terms)
+    return _rendered("index.html", "index.html", book=book, terms=terms)
 
 
 def chapter_page(book: Contents, chapter: Chapter, content: Mapping[str, Any]) -> str:
@@ -116,12 +148,12 @@ def chapter_page(book: Contents, chapter: Chapter, content: Mapping[str, Any]) -
     place = next(place for place, entry in enumerate(entries) if entry.slug == chapter.slug)
     about = {
         "slug": chapter.slug,
-        "title": chapter.title,
+        "title": entries[place].title,
         "label": _spelled_label(entries[place].label),
         "previous": entries[place - 1] if place else None,
         "next": entries[place + 1] if place + 1 < len(entries) else None,
     }
-    return _rendered(chapter.template, book=book, chapter=about, **content)
+    return _rendered(chapter.template, f"{chapter.slug}.html", book=book, chapter=about, **content)
 
 
 def printed_page(
@@ -139,17 +171,17 @@ def printed_page(
         The sheet that each place is on, as far as it is known.
     """
     terms = terms_in({f"{entry.slug}.html": text for entry, text in chapters})
-    return _rendered("print.html", book=book, front=front, chapters=chapters, sheets=sheets, terms=terms)
+    return _rendered("print.html", "print.html", book=book, front=front, chapters=chapters, sheets=sheets, terms=terms)
 
 
 def source_page(book: Contents, file: str, text: str) -> str:
     """A Maxima file with numbered lines."""
-    return _rendered("source.html", book=book, file=file, lines=text.splitlines())
+    return _rendered("source.html", source_name(file), book=book, file=file, lines=text.splitlines())
 
 
 def topic_page(book: Contents, topic: Topic) -> str:
     """A page of the reference."""
-    return _rendered("topic.html", book=book, topic=topic)
+    return _rendered("topic.html", topic_name(topic), book=book, topic=topic)
 
 
 def source_name(file: str) -> str:
@@ -157,26 +189,32 @@ def source_name(file: str) -> str:
     return f"source/{file.replace('/', '-')}.html"
 
 
+def topic_name(topic: Topic) -> str:
+    """Name of the page of a topic of the reference."""
+    return f"reference/{topic.slug}.html"
+
+
 def source_link(excerpt: Excerpt) -> str:
     """Link to the first line of an excerpt."""
     return f"{source_name(excerpt.file)}#L{excerpt.first_line}"
 
 
-def _rendered(template: str, **content: Any) -> str:
-    page = _environment().get_template(template).render(**content)
+def _rendered(template: str, file_name: str, /, **content: Any) -> str:
+    page = _environment(spoken()).get_template(template).render(file_name=file_name, **content)
     ElementTree.fromstring(page)
     return page
 
 
-def _environment() -> jinja2.Environment:
+@cache
+def _environment(language: str) -> jinja2.Environment:  # templates are compiled, and their words made, once a language
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
+        extensions=["jinja2.ext.i18n"],
+        **WHITESPACE,
     )
+    environment.install_gettext_callables(gettext, ngettext)
     environment.filters |= {
         "prose": mathematics.prose,
         "typeset": mathematics.typeset,
@@ -188,11 +226,19 @@ def _environment() -> jinja2.Environment:
         "source_page_link": source_name,
         "difference": mathematics.difference,
         "sentence": _sentence,
-        "points": _points,
         "rounded": _rounded,
         "power_of_ten": _power_of_ten,
         "with_code": _with_code,
         "counted": _counted,
+        "translated": translated,
+        "continued": _continued,
+        "equalities": _equalities,
+        "each_equality": _each_equality,
+        "numbers_of": _numbers_of,
+        "symbols": _symbols,
+        "emphasized": _emphasized,
+        "both": _both,
+        "law_text": _law_text,
         "signed": _signed,
         "engine_text": engine_text,
         "remarks": remarks,
@@ -215,8 +261,50 @@ def _sentence(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
-def _points(count: int) -> str:
-    return "one point" if count == 1 else f"{count} random points"
+def _continued(text: str) -> str:
+    return text[:1].lower() + text[1:]
+
+
+def _listed(items: Iterable[Markup]) -> Markup:
+    return Markup(gettext(", ")).join(items)
+
+
+def _both(items: Iterable[Markup]) -> Markup:
+    """Two things, or more of them, joined by the word for and."""
+    return Markup(gettext(" and ")).join(items)
+
+
+def _each_equality(values: Mapping[str, Expr]) -> list[Markup]:
+    return [mathematics.equality(name, value) for name, value in values.items()]
+
+
+def _equalities(values: Mapping[str, Expr]) -> Markup:
+    return _listed(_each_equality(values))
+
+
+def _numbers_of(scene: Scene) -> dict[str, Expr]:
+    """Parameters and initial state of a scene."""
+    return {**scene.parameter_values, **scene.initial_state}
+
+
+def _symbols(names: Iterable[str]) -> Markup:
+    return _listed(map(mathematics.symbol, names))
+
+
+def _emphasized(names: Iterable[str]) -> Markup:
+    return _listed(Markup("<em>{}</em>").format(name) for name in names)
+
+
+def _law_text(law: UniversalLaw) -> Markup:
+    """A control law: what the controls are, which of them are free, and what has to be positive for it."""
+    text = _equalities(law.controls)
+    for name in law.free:
+        message = Markup(gettext("%(law)s, %(control)s any function of the time"))
+        text = message % {"law": text, "control": mathematics.symbol(name)}
+    if law.positive:
+        conditions = _both(mathematics.expression(each) + " " + mathematics.tex("> 0") for each in law.positive)
+        text = Markup(gettext("%(law)s, where %(conditions)s")) % {"law": text, "conditions": conditions}
+    return text
 
 
 def _rounded(value: float, digits: int = 6) -> str:
@@ -225,17 +313,18 @@ def _rounded(value: float, digits: int = 6) -> str:
 
 def _signed(value: float) -> str:
     """A rounded number with its sign; nothing has a sign only where it is nothing."""
-    return f"{value:+.0f}" if round(value) else "under 1"
+    return f"{value:+.0f}" if round(value) else gettext("under 1")
 
 
-def _counted(count: int, one: str, several: str = "") -> str:
-    return f"{count or 'no'} {one if count == 1 else several or one + 's'}"
+def _counted(message: str, count: int, none: str) -> str:
+    """The message with the count in it, or that there are none."""
+    return message % {"count": count} if count else none
 
 
 def _complex_numbers(values: Sequence[complex]) -> Markup:
     """Complex numbers, of each conjugate pair both at once."""
     upper = [value for value in values if value.imag >= 0 or value.conjugate() not in values]
-    return Markup(", ").join(mathematics.tex(_complex_number(value, value.conjugate() in values)) for value in upper)
+    return _listed(mathematics.tex(_complex_number(value, value.conjugate() in values)) for value in upper)
 
 
 def _complex_number(value: complex, paired: bool) -> str:
@@ -270,4 +359,6 @@ def _with_code(text: str) -> Markup:
 
 
 def _spelled_label(label: str) -> str:
-    return f"Chapter {label}" if label.isdecimal() else f"Appendix {label}"
+    if label.isdecimal():
+        return gettext("Chapter %(label)s", label=label)
+    return gettext("Appendix %(label)s", label=label)

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from ..files import shared
+from ..language import translatable
 from .book import APPENDICES, Book
 from .chapters import (
     effects,
@@ -32,8 +33,8 @@ from .sessions import sessions
 REPOSITORY = shared("maxima").parent
 
 CHAPTERS = {
-    "The paper": (the_system, equations_of_motion, free_motion, initial_motion, worked_example),
-    "What the paper left open": (
+    translatable("The paper"): (the_system, equations_of_motion, free_motion, initial_motion, worked_example),
+    translatable("What the paper left open"): (
         universal_controls,
         trajectory_control,
         prescribed_reactions,
@@ -57,9 +58,11 @@ def book_of_the_paper(root: Path = REPOSITORY) -> Book:
     """
     parts = tuple((title, tuple(each.chapter(root) for each in chapters)) for title, chapters in CHAPTERS.items())
     return Book(
-        title="Free motion and initial motion",
-        subtitle="A textbook companion to Chen, Guo & Mei, “Free motion and initial motion of controllable holonomic "
-        "system with redundant coordinates” (2019)",
+        title=translatable("Free motion and initial motion"),
+        subtitle=translatable(
+            "A textbook companion to Chen, Guo & Mei, “Free motion and initial motion of controllable holonomic system "
+            "with redundant coordinates” (2019)"
+        ),
         foreword="foreword.html",
         command="make companion",
         root=root,

@@ -112,11 +112,6 @@ def simulation(
     return Run(_simulate, (file, scene, until, samples, settings))
 
 
-def figure(draw: Callable[[Path], None]) -> Run:
-    """A figure that makes its own runs and writes itself to a file: the text of its SVG document."""
-    return Run(drawn, (draw,))
-
-
 def study(file: Path, settings: Settings, limits: Limits) -> Run:
     """All that is asked of somebody's own scene file: a `FileAnswers`."""
     return Run(_study, (file, settings, limits))

@@ -3,27 +3,65 @@
 import re
 import tomllib
 from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
 
+from ..language import gettext, translated
 from .chapter import Chapter
 from .pages import TEMPLATES
 
 DATA = TEMPLATES / "sessions.toml"
 LOADING = re.compile(r"^load\(.*\)\$$", re.MULTILINE)
 PRINTING = re.compile(r"^(print_derivation\(.*\)\$|if holonom_print then\n(.+\n)*?.*\)\)\$)$", re.MULTILINE)
-HEAD = "/* {title}: a session of Maxima, after `make install`, for instance by  maxima -b {slug}.mac */\n\n"
 
 
-def sessions(root: Path, chapters: Iterable[Chapter]) -> dict[str, str]:
-    """The text of the sessions, by the slugs of those chapters that have one; the library is loaded by its name."""
+@dataclass(frozen=True)
+class Session:
+    """What is asked of Maxima about an example.
+
+    Attributes
+    ----------
+    slug, title : str
+        Of the chapter.
+    example : str
+        The text of the example's file, the library loaded by its name.
+    comment : str
+        What the questions are about.
+    questions : str
+        Lines of Maxima.
+    """
+
+    slug: str
+    title: str
+    example: str
+    comment: str
+    questions: str
+
+
+def sessions(root: Path, chapters: Iterable[Chapter]) -> dict[str, Session]:
+    """The sessions, by the slugs of those chapters that have one."""
     known = tomllib.loads(DATA.read_text(encoding="utf-8"))
     return {
-        chapter.slug: HEAD.format(title=chapter.title, slug=chapter.slug)
-        + _example(root / known[chapter.slug]["file"])
-        + known[chapter.slug]["text"]
+        chapter.slug: Session(
+            chapter.slug,
+            chapter.title,
+            _example(root / known[chapter.slug]["file"]),
+            known[chapter.slug]["comment"],
+            known[chapter.slug]["text"],
+        )
         for chapter in chapters
         if chapter.slug in known
     }
+
+
+def session_text(session: Session) -> str:
+    """A session as a Maxima file, its comments in the language spoken."""
+    head = gettext(
+        "%(title)s: a session of Maxima, after `make install`, for instance by  maxima -b %(slug)s.mac",
+        title=translated(session.title),
+        slug=session.slug,
+    )
+    return f"/* {head} */\n\n{session.example}/* {translated(session.comment)} */\n{session.questions}"
 
 
 def _example(file: Path) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
+from ..language import translatable
 from ..record import LeftOut
 from ..shown import Show, Shown
 
@@ -12,17 +13,17 @@ from ..shown import Show, Shown
 class Verdict(StrEnum):
     """What can be said of an equation once it has been compared with the independent evaluation."""
 
-    PROVED = "proved"
+    PROVED = translatable("proved")
     """The difference is identically zero."""
-    AGREES = "agrees"
+    AGREES = translatable("agrees")
     """The difference vanishes, to the digits stated, at the random points stated."""
-    DISAGREES = "disagrees"
+    DISAGREES = translatable("disagrees")
     """The difference does not vanish, or the equation is not there."""
-    UNDECIDED = "undecided"
+    UNDECIDED = translatable("undecided")
     """Too few random points were found at which both sides have values."""
-    NOTHING = "nothing to check"
+    NOTHING = translatable("nothing to check")
     """The equation states nothing of this system."""
-    LEFT_OUT = "left out"
+    LEFT_OUT = translatable("left out")
     """The equation was not made, for a reason that the record states."""
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from ..benchmark.hard_cases.case import CaseReport, Outcome, Result, Sweep
 from ..benchmark.work_precision.measurement import WHOLE_MOTION, Group, Measurement
+from ..language import gettext, translatable, translated
 from .style import BLUE, LINES, MARKERS, PALETTE, VERMILION, figure_style, legend_above, new_figure, write_figure
 
 if TYPE_CHECKING:
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 
 STUDY = 11.0, 16.0  # inches
 FEW_DIGITS = 20  # as far as numbers of the hardware reach, and a little beyond
-SECONDS, OPERATIONS = "time / s", "operations"
+SECONDS, OPERATIONS = translatable("time / s"), translatable("operations")
 
 
 @dataclass(frozen=True)
@@ -31,14 +32,13 @@ class Panel:
 
 
 PANELS = (
-    Panel("Methods, to t = {until:g}", lambda m: _in_contest(m) and digits_of(m) <= FEW_DIGITS, SECONDS),
-    Panel("The same by operations", lambda m: _in_contest(m) and digits_of(m) <= FEW_DIGITS, OPERATIONS),
-    Panel("Many digits, to t = {until:g}", lambda m: m.group is Group.TAYLOR, SECONDS),
-    Panel("The same by operations", lambda m: m.group is Group.TAYLOR, OPERATIONS),
-    Panel("One series, to t = {instant:g}, order by order", lambda m: m.group is Group.SERIES, SECONDS),
-    Panel("Cures of drift and the two solves", lambda m: m.group in {Group.DRIFT, Group.SOLVE}, SECONDS),
+    Panel(translatable("Methods, to t = %(until)g"), lambda m: _in_contest(m) and digits_of(m) <= FEW_DIGITS, SECONDS),
+    Panel(translatable("The same by operations"), lambda m: _in_contest(m) and digits_of(m) <= FEW_DIGITS, OPERATIONS),
+    Panel(translatable("Many digits, to t = %(until)g"), lambda m: m.group is Group.TAYLOR, SECONDS),
+    Panel(translatable("The same by operations"), lambda m: m.group is Group.TAYLOR, OPERATIONS),
+    Panel(translatable("One series, to t = %(instant)g, order by order"), lambda m: m.group is Group.SERIES, SECONDS),
+    Panel(translatable("Cures of drift and the two solves"), lambda m: m.group in {Group.DRIFT, Group.SOLVE}, SECONDS),
 )
-TITLE = "What accuracy costs: {scene}"
 
 
 def draw_study(study: "Study", path: Path) -> None:
@@ -58,8 +58,8 @@ def draw_study(study: "Study", path: Path) -> None:
         figure = new_figure(*STUDY)
         for axes, panel in zip(figure.subplots(3, 2).flat, PANELS, strict=True):
             _draw_panel(axes, [m for m in study.measurements if panel.shows(m)], panel.quantity)
-            axes.set_title(panel.title.format(until=float(study.until), instant=_instant_of_series(study)))
-        figure.suptitle(TITLE.format(scene=study.scene), x=0.01, ha="left")
+            axes.set_title(gettext(panel.title, until=float(study.until), instant=_instant_of_series(study)))
+        figure.suptitle(gettext("What accuracy costs: %(scene)s", scene=study.scene), x=0.01, ha="left")
         figure.supxlabel(str(study.machine), x=0.01, ha="left", fontsize="small")
     write_figure(figure, path)
 
@@ -77,8 +77,10 @@ def _draw_panel(axes: "Axes", measurements: Sequence[Measurement], quantity: str
         marker = MARKERS[(index + index // len(PALETTE)) % len(MARKERS)]
         line = "--" if rows[0].group is Group.SOLVER else "-"
         colour = PALETTE[index % len(PALETTE)]
-        axes.semilogy([digits_of(m) for m in rows], work, color=colour, marker=marker, linestyle=line, label=method)
-    axes.set(xlabel="digits kept", ylabel=quantity)
+        axes.semilogy(
+            [digits_of(m) for m in rows], work, color=colour, marker=marker, linestyle=line, label=translated(method)
+        )
+    axes.set(xlabel=gettext("digits kept"), ylabel=translated(quantity))
     if measurements:
         axes.legend(fontsize="small", loc="upper left", bbox_to_anchor=(0.0, -0.2), ncols=2)
 
@@ -131,19 +133,22 @@ def _draw_digits(axes: "Axes", rows: Sequence[Result | str]) -> None:
         digits = {place: result.digits for place, result in shown.items() if result.verdict in verdicts}
         axes.hlines(list(digits), 0, list(digits.values()), color=colour, alpha=0.4, linewidth=3)
         axes.plot(list(digits.values()), list(digits), marker, color=colour, clip_on=False)
-    labels = [f"{row.method}: {row.quantity}" if isinstance(row, Result) else row for row in rows]
+    labels = [
+        f"{translated(row.method)}: {translated(row.quantity)}" if isinstance(row, Result) else translated(row)
+        for row in rows
+    ]
     axes.set_yticks(range(len(rows)), labels, fontsize="small")
     for place, label in enumerate(axes.get_yticklabels()):
         label.set_fontweight("normal" if place in shown else "bold")
     axes.tick_params(axis="y", length=0)
     axes.grid(False, axis="y")
     axes.set(xlim=(0, MOST_DIGITS), xticks=range(0, 17, 2), ylim=(len(rows) - 0.5, -0.5))
-    axes.set_xlabel("decimal digits kept: a dot has those asked for, a cross has not")
+    axes.set_xlabel(gettext("decimal digits kept: a dot has those asked for, a cross has not"))
 
 
 def _draw_sweep(axes: "Axes", sweep: Sweep) -> None:
     for (method, digits), colour, marker, line in zip(sweep.digits.items(), PALETTE, MARKERS, LINES, strict=False):
-        axes.semilogx(sweep.values, digits, marker=marker, linestyle=line, color=colour, label=method)
+        axes.semilogx(sweep.values, digits, marker=marker, linestyle=line, color=colour, label=translated(method))
     axes.invert_xaxis()
-    axes.set(xlabel=sweep.variable, ylabel="digits of the accelerations", ylim=(0, MOST_DIGITS))
+    axes.set(xlabel=translated(sweep.variable), ylabel=gettext("digits of the accelerations"), ylim=(0, MOST_DIGITS))
     legend_above(axes)

@@ -15,13 +15,14 @@ from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..confined import Limits
 from ..files import shared
+from ..language import gettext
 from ..series.power_series import SeriesRequest, compute_series
 from ..series.radius import ENTIRE, Radius
 from .style import (
@@ -69,10 +70,10 @@ def draw_partial_sums(name: str, coefficients: Sequence[float], radius: Radius, 
     with figure_style():
         figure = new_figure(8, 6)
         curves, errors = figure.subplots(2, 1, sharex=True)
-        curves.plot(times, motion, color=INK, linewidth=3, alpha=0.5, label="motion")
+        curves.plot(times, motion, color=INK, linewidth=3, alpha=0.5, label=gettext("motion"))
         for order, colour, line in zip(ORDERS, PALETTE, (*LINES, "-"), strict=False):
             sums = np.polynomial.polynomial.polyval(times, coefficients[: order + 1])
-            curves.plot(times, sums, color=colour, linestyle=line, label=f"order {order}")
+            curves.plot(times, sums, color=colour, linestyle=line, label=gettext("order %(order)s", order=order))
             errors.semilogy(times, np.maximum(abs(sums - motion), SMALLEST), color=colour, linestyle=line)
         _finish(curves, errors, name, motion, radius)
         return svg_text(figure)
@@ -81,12 +82,12 @@ def draw_partial_sums(name: str, coefficients: Sequence[float], radius: Radius, 
 def _finish(curves: "Axes", errors: "Axes", name: str, motion: NDArray, radius: Radius) -> None:
     extent = HEADROOM * np.ptp(motion)
     curves.set_ylim(motion.min() - extent, motion.max() + extent)
-    curves.set_ylabel(f"{name} (dimensionless)")
-    errors.set_ylabel("error (dimensionless)")
-    errors.set_xlabel("t (dimensionless)")
+    curves.set_ylabel(gettext("%(quantity)s (dimensionless)", quantity=name))
+    errors.set_ylabel(gettext("error (dimensionless)"))
+    errors.set_xlabel(gettext("t (dimensionless)"))
     for axes in (curves, errors):
         axes.axvline(radius.estimate, color=INK, linestyle=":", linewidth=1)
-    curves.text(radius.estimate, curves.get_ylim()[1], " radius", va="top")
+    curves.text(radius.estimate, curves.get_ylim()[1], " " + gettext("radius"), va="top")
     legend_above(curves)
 
 
@@ -99,25 +100,45 @@ HIGHEST = 2.5  # radius in the drawing
 AT_ONCE = 2  # runs of Maxima
 
 
-def draw_radius(file: Path) -> None:
+class RadiiFound(NamedTuple):
+    """Radii, one for each of the controls: under u0 + t from few orders and from many, and under u0 exp(t)."""
+
+    coarse: list[Radius]
+    fine: list[Radius]
+    entire: list[Radius]
+
+
+def find_radii() -> RadiiFound:
+    """Estimate the radii that `draw_radius` draws.
+
+    Raises
+    ------
+    HolonomError
+        As `holonom.series.power_series.compute_series`.
+    """
+    coarse, fine = (_radii(LINEAR, order) for order in ORDERS_OF_RADII)
+    return RadiiFound(coarse, fine, _radii(EXPONENTIAL, ORDER_OF_ENTIRE))
+
+
+def draw_radius(found: RadiiFound, file: Path) -> None:
     """Draw the radius of convergence and the nearest singularities against u0.
 
     Parameters
     ----------
+    found : RadiiFound
     file : Path
         The SVG file to write.
 
     Raises
     ------
     HolonomError
-        As `holonom.series.power_series.compute_series`; Matplotlib is not installed; the file cannot be written.
+        Matplotlib is not installed; the file cannot be written.
     """
     with figure_style():
         figure = new_figure(10, 5)
         radii, plane = figure.subplots(1, 2)
-        coarse, fine = (_radii(LINEAR, order) for order in ORDERS_OF_RADII)
-        _draw_radii(radii, coarse, fine, _radii(EXPONENTIAL, ORDER_OF_ENTIRE))
-        _draw_singularities(plane, fine)
+        _draw_radii(radii, *found)
+        _draw_singularities(plane, found.fine)
         write_figure(figure, file)
 
 
@@ -140,11 +161,18 @@ def _draw_radii(axes: "Axes", coarse: Sequence[Radius], fine: Sequence[Radius], 
         (fine, ORDERS_OF_RADII[1], BLUE, "o"),
     ):
         told = [(float(u), r.estimate, r.uncertainty) for u, r in zip(CONTROLS, radii, strict=True) if r.estimate]
-        axes.errorbar(*zip(*told, strict=True), fmt=marker, color=colour, label=f"u = u₀ + t, {order} orders")
+        axes.errorbar(
+            *zip(*told, strict=True),
+            fmt=marker,
+            color=colour,
+            label=gettext("u = u₀ + t, %(order)s orders", order=order),
+        )
     infinite = [float(u) for u, radius in zip(CONTROLS, entire, strict=True) if radius == ENTIRE]
-    axes.plot(infinite, [HIGHEST] * len(infinite), "^", color=GREEN, clip_on=False, label="u = u₀ exp(t): entire")
-    axes.set(xlabel="initial control u₀", ylabel="radius of convergence", ylim=(0, HIGHEST))
-    axes.set_title("How far the series of the motion holds", pad=12)
+    axes.plot(
+        infinite, [HIGHEST] * len(infinite), "^", color=GREEN, clip_on=False, label=gettext("u = u₀ exp(t): entire")
+    )
+    axes.set(xlabel=gettext("initial control u₀"), ylabel=gettext("radius of convergence"), ylim=(0, HIGHEST))
+    axes.set_title(gettext("How far the series of the motion holds"), pad=12)
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)
 
 
@@ -153,13 +181,13 @@ def _draw_singularities(axes: "Axes", radii: Sequence[Radius]) -> None:
     true = [complex(-float(u), sign * math.sqrt(0.5)) for u, _ in drawn for sign in (-1, 1)]
     axes.plot(*_parts(true), "o", color=INK, fillstyle="none", markersize=10, label="1 + 2 (u₀ + t)² = 0")
     found = [z for _, radius in drawn for z in radius.singularities]
-    axes.plot(*_parts(found), "x", color=BLUE, label=f"from {ORDERS_OF_RADII[1]} orders")
+    axes.plot(*_parts(found), "x", color=BLUE, label=gettext("from %(order)s orders", order=ORDERS_OF_RADII[1]))
     for u0, _ in drawn:
         axes.annotate(f"u₀ = {float(u0):g}", (-float(u0), 0.88), ha="center", rotation=40, fontsize="small")
     axes.plot(0, 0, "+", color=INK)
     axes.annotate("t = 0", (0.07, 0.05))
     axes.set(xlabel="Re t", ylabel="Im t", xlim=(-2.4, 2.4), ylim=(-1.5, 1.5))
-    axes.set_title("What stops it: singularities in the complex time plane", pad=12)
+    axes.set_title(gettext("What stops it: singularities in the complex time plane"), pad=12)
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)
 
 
@@ -168,4 +196,4 @@ def _parts(points: Sequence[complex]) -> tuple[list[float], list[float]]:
 
 
 if __name__ == "__main__":
-    draw_radius(Path(sys.argv[1]))
+    draw_radius(find_radii(), Path(sys.argv[1]))

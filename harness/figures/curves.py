@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ..language import gettext
 from ..simulation.request import Stabilization
 from ..simulation.result import Simulation
 from .style import LINES, PALETTE, figure_style, legend_above, new_figure, svg_text
@@ -70,14 +71,14 @@ def draw_drift(motions: Mapping[Stabilization, Simulation]) -> str:
     What is zero is not drawn: the axes are logarithmic.
     """
     errors = {
-        "distance from the constraints\n(dimensionless)": lambda motion: motion.residuals["position"],
-        "energy out of balance\n(units of the scene)": lambda motion: motion.energy["energy_error"],
+        gettext("distance from the constraints\n(dimensionless)"): lambda motion: motion.residuals["position"],
+        gettext("energy out of balance\n(units of the scene)"): lambda motion: motion.energy["energy_error"],
     }
     panels = [
         Panel(what, {str(cure): (each.instants, _nonzero(of(each))) for cure, each in motions.items()}, "log")
         for what, of in errors.items()
     ]
-    return draw_curves(panels, "t (units of the scene)")
+    return draw_curves(panels, gettext("t (units of the scene)"))
 
 
 def _nonzero(errors: NDArray) -> NDArray:

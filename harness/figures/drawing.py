@@ -16,6 +16,7 @@ from xml.etree.ElementTree import Element, SubElement
 import numpy as np
 from numpy.typing import NDArray
 
+from ..language import gettext
 from ..program.drawing import Drawing, Shape
 from ..simulation.result import Simulation
 from .style import BLUE, INK_RULE, VERMILION
@@ -217,7 +218,7 @@ class _Stage:
         bar = self.group()
         way = [start, level - 4, start, level + 4, start, level, end, level, end, level - 4, end, level + 4]
         SubElement(bar, "polyline", {"points": _places(way)})
-        _write(bar, start, level + 22, f"length {length:g}", "start")
+        _write(bar, start, level + 22, gettext("length %(length)g", length=length), "start")
 
     def _draw_clock(self, start: float, end: float, level: float, frames: Sequence[int] | NDArray[np.int_]) -> None:
         clock = self.group()

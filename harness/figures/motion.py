@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ..language import gettext, translated
 from ..simulation.result import Simulation
 from .style import BLUE, LINES, PALETTE, VERMILION, figure_style, lettered, new_figure, svg_text, write_figure
 
@@ -47,11 +48,11 @@ def motion_figure(simulation: Simulation) -> "Figure":
         Matplotlib is not installed.
     """
     groups = {
-        "coordinates": simulation.coordinates,
-        "velocities": simulation.velocities,
-        "multipliers": simulation.multipliers,
-        "constraint forces": simulation.constraint_forces,
-        "controls": simulation.controls,
+        gettext("coordinates"): simulation.coordinates,
+        gettext("velocities"): simulation.velocities,
+        gettext("multipliers"): simulation.multipliers,
+        gettext("constraint forces"): simulation.constraint_forces,
+        gettext("controls"): simulation.controls,
     }
     drawn = [(title, part) for title, curves in groups.items() for part in of_like_size(curves)]
     with figure_style():
@@ -59,9 +60,9 @@ def motion_figure(simulation: Simulation) -> "Figure":
         panels = figure.subplots(len(drawn), 1, sharex=True, squeeze=False)[:, 0]
         for panel, (title, curves) in zip(panels, drawn, strict=True):
             _draw(panel, simulation.instants.astype(float), curves)
-            panel.set_ylabel(f"{title}\n(units of the scene)")
-        panels[0].set_title(simulation.title)
-        panels[-1].set_xlabel("t (units of the scene)")
+            panel.set_ylabel(gettext("%(quantity)s\n(units of the scene)", quantity=title))
+        panels[0].set_title(translated(simulation.title))
+        panels[-1].set_xlabel(gettext("t (units of the scene)"))
     return figure
 
 
@@ -113,16 +114,16 @@ def draw_with_and_without(present: Simulation, absent: Simulation, across: str, 
         panels[0].set(xlim=(-reach, reach), ylim=(-reach, reach))
         for panel, motion, colour in zip(panels, (absent, present), (BLUE, VERMILION), strict=True):
             _draw_way(panel, motion, across, along, colour)
-            panel.set_xlabel(f"{across} (units of the scene)")
-        panels[0].set_ylabel(f"{along} (units of the scene)")
+            panel.set_xlabel(gettext("%(quantity)s (units of the scene)", quantity=across))
+        panels[0].set_ylabel(gettext("%(quantity)s (units of the scene)", quantity=along))
         return svg_text(figure)
 
 
 def _draw_way(axes: "Axes", motion: Simulation, across: str, along: str, colour: str) -> None:
     x, y = motion.coordinates[across], motion.coordinates[along]
     axes.plot(x, y, color=colour, linewidth=1)
-    axes.plot(x[:1], y[:1], "o", color=colour, label="start")
+    axes.plot(x[:1], y[:1], "o", color=colour, label=gettext("start"))
     axes.plot(x[-1:], y[-1:], "s", color=colour, label=f"t = {motion.instants[-1]:g}")
-    axes.set_title(motion.title, fontsize="small")
+    axes.set_title(translated(motion.title), fontsize="small")
     axes.set_aspect("equal")
     axes.legend(loc="upper right")

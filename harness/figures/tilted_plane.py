@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ..language import gettext
 from .style import BLUE, GREEN, INK, VERMILION, figure_style, new_figure, svg_text
 
 if TYPE_CHECKING:
@@ -51,15 +52,15 @@ def draw_tilted_plane(particle: Sequence[float], tilt: float) -> str:
         _fill(axes, [*corners, corners[1] + level, corners[0] + level], INK, 0.06)
         _fill(axes, [*corners, corners[1] + up, corners[0] + up], BLUE, 0.18)
         axes.plot(*_seen(np.array(corners)).T, color=INK, linewidth=3.5)
-        _label(axes, corners[0] + np.array([0.0, 0.1, 0.2]), "hinge: q₁ + q₂ = 0", INK, "left")
+        _label(axes, corners[0] + np.array([0.0, 0.1, 0.2]), gettext("hinge: q₁ + q₂ = 0"), INK, "left")
         arc = [corners[0] + np.array([level[0], level[1], part * up[2]]) for part in np.linspace(0, 1, 9)]
         axes.plot(*_seen(np.array(arc)[:-1]).T, color=VERMILION, linewidth=1.6)
         _arrow(axes, arc[-2], arc[-1] - arc[-2], VERMILION, 1.6)
-        _label(axes, arc[4] + np.array([0.0, 0.12, 0.0]), "the knob u(t)\ntilts the plane", VERMILION, "left")
+        _label(axes, arc[4] + np.array([0.0, 0.12, 0.0]), gettext("the knob u(t)\ntilts the plane"), VERMILION, "left")
         _arrow(axes, q, ARROW * normal, GREEN, 2.2)
-        _label(axes, q + 1.12 * ARROW * normal, "reaction λ ∂f/∂q", GREEN, "left")
+        _label(axes, q + 1.12 * ARROW * normal, gettext("reaction λ ∂f/∂q"), GREEN, "left")
         axes.plot(*_seen(q), "o", color=VERMILION, markersize=9)
-        _label(axes, q + np.array([0.0, 0.25, -0.1]), "particle", INK, "left")
+        _label(axes, q + np.array([0.0, 0.25, -0.1]), gettext("particle"), INK, "left")
         axes.set_aspect("equal")
         axes.margins(0.08)
         axes.set_xlim(right=axes.get_xlim()[1] + ROOM)

@@ -17,6 +17,7 @@ import numpy as np
 from ..confined import Limits
 from ..documents import Document, ask, read
 from ..failures import Failure, HolonomError
+from ..language import translatable
 from ..shown import Show, Shown
 from .c_function import compile_c
 from .motion_program import Program, program_of
@@ -31,9 +32,9 @@ ATTEMPTS = 50  # points tried in search of one where the program's values are fi
 class Status(StrEnum):
     """Whether a scene has a term or an effect, and if not, why."""
 
-    PRESENT = "present"
-    ABSENT_BY_CHOICE = "absent by choice"
-    ABSENT_BY_STRUCTURE = "absent by structure"
+    PRESENT = translatable("present")
+    ABSENT_BY_CHOICE = translatable("absent by choice")
+    ABSENT_BY_STRUCTURE = translatable("absent by structure")
 
 
 class Measure(StrEnum):

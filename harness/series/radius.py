@@ -28,6 +28,8 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
+from ..language import translatable
+
 LAGS = (1, 2, 4)  # singularities that a recurrence knows
 FEWEST = 12  # coefficients below which a series tells nothing about its end
 MOST_CORRECTIONS = 5
@@ -65,10 +67,12 @@ class Radius:
     remark: str
 
 
-POLYNOMIAL = Radius(None, None, (), "infinite: the motion is a polynomial of the time")
-ENTIRE = Radius(None, None, (), "infinite: the motion is entire, as far as its coefficients show")
-UNDECIDED = Radius(None, None, (), "unknown: these orders do not tell how far the series holds")
-TOO_FEW = Radius(None, None, (), f"unknown: it takes {FEWEST} coefficients that are not zero")
+POLYNOMIAL = Radius(None, None, (), translatable("infinite: the motion is a polynomial of the time"))
+ENTIRE = Radius(None, None, (), translatable("infinite: the motion is entire, as far as its coefficients show"))
+UNDECIDED = Radius(None, None, (), translatable("unknown: these orders do not tell how far the series holds"))
+TOO_FEW = Radius(
+    None, None, (), translatable("unknown: it takes %(count)s coefficients that are not zero", count=FEWEST)
+)
 
 
 def estimate_radius(series: Iterable[Sequence[mpmath.mpf]]) -> Radius:
@@ -202,8 +206,12 @@ def _compared_fits(balanced: NDArray[np.float64], lags: int) -> list[tuple[float
 
 
 def _radius(estimate: float, spread: float, singularities: Sequence[complex]) -> Radius:
-    kind = "a complex pair" if any(abs(z.imag) > spread * abs(z) for z in singularities) else "a real instant"
-    return Radius(estimate, estimate * spread, tuple(singularities), f"the nearest singularity is {kind}")
+    paired = any(abs(z.imag) > spread * abs(z) for z in singularities)
+    pair, real = (
+        translatable("the nearest singularity is a complex pair"),
+        translatable("the nearest singularity is a real instant"),
+    )
+    return Radius(estimate, estimate * spread, tuple(singularities), pair if paired else real)
 
 
 def _recurrence_roots(
@@ -234,7 +242,7 @@ def _root_test(balanced: NDArray[np.float64], stride: int, scale: float) -> Radi
     slope, slope_with_power = (_slopes(logarithms, *columns)[0] for columns in ((n,), (n, np.log(n))))
     error = max(ROOT_TEST_ERROR / n[-1], SAFETY * abs(slope - slope_with_power)) / stride
     estimate = math.exp(-slope / stride) * scale
-    remark = "by the root test: the orders do not tell the nearest singularities apart"
+    remark = translatable("by the root test: the orders do not tell the nearest singularities apart")
     return Radius(estimate, estimate * math.expm1(error), (), remark)
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ..language import gettext, translatable, translated
 from .constraints.factorization import factored_constraints, rank_of, weighted_constraints
 from .diagnostics import condition
 from .matrices import Matrices, MotionMatrices, Vector
@@ -32,51 +33,51 @@ LISTED = 3  # legs of the robust engine that are told one by one
 class HardCase(StrEnum):
     """A kind of motion on which a plain method loses its digits."""
 
-    NEARLY_DEPENDENT = "nearly dependent constraints"
-    REDUNDANT = "redundant constraints"
-    SINGULAR_PASSAGE = "passage through a singular configuration"
-    STIFF = "stiffness"
-    OVERFLOW = "overflow"
-    MASS_RATIO = "large mass ratio"
-    LONG_RUN = "long run"
-    FREE_CANCELLATION = "cancellation along a free motion"
-    VANISHING_LENGTH = "vanishing length"
+    NEARLY_DEPENDENT = translatable("nearly dependent constraints")
+    REDUNDANT = translatable("redundant constraints")
+    SINGULAR_PASSAGE = translatable("passage through a singular configuration")
+    STIFF = translatable("stiffness")
+    OVERFLOW = translatable("overflow")
+    MASS_RATIO = translatable("large mass ratio")
+    LONG_RUN = translatable("long run")
+    FREE_CANCELLATION = translatable("cancellation along a free motion")
+    VANISHING_LENGTH = translatable("vanishing length")
 
 
 ADVICE = {
-    HardCase.NEARLY_DEPENDENT: (
+    HardCase.NEARLY_DEPENDENT: translatable(
         "The constraints are nearly dependent: take the orthogonal solve, which keeps the accelerations, "
         "and trust the constraint forces rather than single multipliers."
     ),
-    HardCase.REDUNDANT: (
+    HardCase.REDUNDANT: translatable(
         "The constraints are redundant: leave the robust engine to work; the motion and the constraint forces are "
         "unique, while the multipliers are the ones of smallest norm, so remove constraints to give them a meaning."
     ),
-    HardCase.SINGULAR_PASSAGE: (
+    HardCase.SINGULAR_PASSAGE: translatable(
         "The motion passes a singular configuration: keep the default engine, which hands over to the robust one, "
         "and look at the energy error, which tells whether it left on the right branch."
     ),
-    HardCase.STIFF: (
+    HardCase.STIFF: translatable(
         "The motion is stiff: keep the Taylor engine where its fast oscillation matters, and where it does not, "
         "replace the stiff part by a constraint."
     ),
-    HardCase.OVERFLOW: (
+    HardCase.OVERFLOW: translatable(
         "Numbers come near the end of the range of double precision: divide the constraint by what grows in it, "
         "or choose units in which the control stays moderate."
     ),
-    HardCase.MASS_RATIO: (
+    HardCase.MASS_RATIO: translatable(
         "The masses differ by many orders of magnitude: take the orthogonal solve, and quadruple precision where a "
         "light body hangs in line between heavy ones; or leave the light mass out."
     ),
-    HardCase.LONG_RUN: (
+    HardCase.LONG_RUN: translatable(
         "The run is long: keep the projection and the default tolerance, and expect to lose up to one and a half "
         "digits of the phase for every tenfold time, or take quadruple precision."
     ),
-    HardCase.FREE_CANCELLATION: (
+    HardCase.FREE_CANCELLATION: translatable(
         "The motion is free: every multiplier is a difference that cancels, so read values below 1e-13 of the forces "
         "as zero, and let `holonom free` prove it."
     ),
-    HardCase.VANISHING_LENGTH: (
+    HardCase.VANISHING_LENGTH: translatable(
         "A controlled length goes through zero, where its constraint has no gradient and no reaction can act: "
         "end the run before it, or choose a law that keeps the length away from zero."
     ),
@@ -138,7 +139,9 @@ def dependence(matrices: MotionMatrices, at: Instant) -> str | None:
     found = matrices(*at)
     rank = rank_of(weighted_constraints(found.mass, found.jacobian).singular_values())
     g = len(found.jacobian)
-    return None if rank == g else f"of {g} constraints only {rank} are independent at t = {at.t:g}"
+    if rank == g:
+        return None
+    return translatable("of %(g)s constraints only %(rank)s are independent at t = %(t)g", g=g, rank=rank, t=at.t)
 
 
 def stiffness(matrices: MotionMatrices, at: Instant) -> float:
@@ -200,19 +203,30 @@ def engine_text(legs: "Sequence[Leg]") -> str:
         For instance ``taylor`` or ``taylor, robust 0.31..0.35, taylor``.
     """
     if len(legs) == 1:
-        return str(legs[0].engine)
+        return translated(legs[0].engine)
     robust = [leg for leg in legs if leg.engine is EngineName.ROBUST]
     if len(robust) > LISTED:
-        return f"{legs[0].engine}, robust {len(robust)} times from {robust[0].start:.6g} to {robust[-1].end:.6g}"
+        return gettext(
+            "%(engine)s, robust %(count)s times from %(start).6g to %(end).6g",
+            engine=translated(legs[0].engine),
+            count=len(robust),
+            start=robust[0].start,
+            end=robust[-1].end,
+        )
     spans = {leg: f" {leg.start:.6g}..{leg.end:.6g}" for leg in robust}
-    return ", ".join(f"{leg.engine}{spans.get(leg, '')}" for leg in legs)
+    return ", ".join(f"{translated(leg.engine)}{spans.get(leg, '')}" for leg in legs)
 
 
 def remarks(legs: "Sequence[Leg]", cases: Iterable[HardCase]) -> Iterator[str]:
     """What happened on the way, and what to do about the hard cases that the motion is: one sentence each."""
     called = [leg for leg in legs if leg.engine is EngineName.ROBUST and leg.case is not None]
     for leg in called[:LISTED]:
-        yield f"From t = {leg.start:.6g} to {leg.end:.6g} the robust engine takes over, because {leg.reason}."
+        yield gettext(
+            "From t = %(start).6g to %(end).6g the robust engine takes over, because %(reason)s.",
+            start=leg.start,
+            end=leg.end,
+            reason=translated(leg.reason),
+        )
     if len(called) > LISTED:
-        yield f"The robust engine takes over {len(called)} times in all."
-    yield from map(advice, cases)
+        yield gettext("The robust engine takes over %(count)s times in all.", count=len(called))
+    yield from (translated(advice(kind)) for kind in cases)

@@ -5,6 +5,7 @@ import subprocess
 import pytest
 
 from holonom.companion.paper import REPOSITORY, book_of_the_paper
+from holonom.companion.sessions import session_text
 
 BOOK = book_of_the_paper()
 QUICK = ("worked-example", "free-motion")
@@ -13,7 +14,9 @@ QUICK = ("worked-example", "free-motion")
 def run(slug: str, tmp_path) -> str:
     """What a session prints, the library being where it is here."""
     file = tmp_path / f"{slug}.mac"
-    file.write_text(BOOK.sessions[slug].replace("load(holonom)", f'load("{REPOSITORY / "maxima" / "holonom.mac"}")'))
+    file.write_text(
+        session_text(BOOK.sessions[slug]).replace("load(holonom)", f'load("{REPOSITORY / "maxima" / "holonom.mac"}")')
+    )
     command = ["maxima", "--very-quiet", "-b", str(file)]
     done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=120)
     return done.stdout.replace("\\\n", "")  # where Maxima breaks a line within a name

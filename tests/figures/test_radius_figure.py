@@ -16,7 +16,7 @@ def figure(tmp_path_factory):
     with pytest.MonkeyPatch.context() as few:
         few.setattr(convergence, "CONTROLS", [Fraction(-1), Fraction(0), Fraction(3, 10)])
         few.setattr(convergence, "ORDERS_OF_RADII", (30, 40))
-        convergence.draw_radius(path)
+        convergence.draw_radius(convergence.find_radii(), path)
     return ElementTree.parse(path)
 
 

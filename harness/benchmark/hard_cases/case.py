@@ -7,6 +7,7 @@ from enum import StrEnum
 import mpmath
 from mpmath import mp, mpf
 
+from ...language import translatable
 from ...simulation.diagnosis import HardCase, advice
 
 MOST = 16.0  # digits of a double
@@ -26,9 +27,9 @@ class Extent(StrEnum):
 class Outcome(StrEnum):
     """What a method made of a case: ours hold or fail; one that is there for comparison may lose it."""
 
-    HOLDS = "holds"
-    FAILS = "fails"
-    LOSES = "loses it"
+    HOLDS = translatable("holds")
+    FAILS = translatable("fails")
+    LOSES = translatable("loses it")
 
 
 @dataclass(frozen=True)

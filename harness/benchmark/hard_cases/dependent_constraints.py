@@ -9,6 +9,7 @@ the legs with the ground: T = m l^2 (1 + 6 cos(phi)^2) phi'^2, V = 8 m g l sin(p
 import numpy as np
 from mpmath import asin, cos, findroot, mpf, quad, sin, sqrt
 
+from ...language import translatable
 from ...simulation.diagnosis import HardCase
 from ...simulation.matrices import MotionMatrices, Vector
 from .case import Extent, Findings, Sweep, certified, digits_kept, ours, required
@@ -28,8 +29,8 @@ def parallel_constraints(extent: Extent) -> Findings:
     solves = every_solve("hard/swing.mac")
     digits = {name: tuple(_worst(solve, angle) for angle in ANGLES) for name, solve in solves.items()}
     judged = {name: row[ANGLES.index(JUDGED)] for name, row in digits.items()}
-    yield from solves_kept(f"accelerations at the angle {JUDGED:g}", judged, needed=8.0)
-    yield Sweep("angle between the constraints", ANGLES, digits)
+    yield from solves_kept(translatable("accelerations at the angle %(judged)g", judged=JUDGED), judged, needed=8.0)
+    yield Sweep(translatable("angle between the constraints"), ANGLES, digits)
 
 
 def _worst(solve: SolveAt, angle: float) -> float:
@@ -57,10 +58,12 @@ def sarrus_linkage(extent: Extent) -> Findings:
     places, reactions = coordinates(phi), constraint_forces(phi)
     motion, plain = simulated(problem(SARRUS), float(UNTIL)), plain_motion(problem(SARRUS), float(UNTIL))
     multipliers = least_multipliers(motion.state, reactions)
-    yield from places_kept("coordinates", plain, motion, places, needed)
-    yield ours(motion.engine, "constraint forces", digits_kept(motion.constraint_forces, reactions), needed)
-    yield ours(motion.engine, "least multipliers", digits_kept(motion.multipliers, multipliers), needed)
-    yield required(motion.engine, "redundancy reported", HardCase.REDUNDANT in motion.cases)
+    yield from places_kept(translatable("coordinates"), plain, motion, places, needed)
+    yield ours(
+        motion.engine, translatable("constraint forces"), digits_kept(motion.constraint_forces, reactions), needed
+    )
+    yield ours(motion.engine, translatable("least multipliers"), digits_kept(motion.multipliers, multipliers), needed)
+    yield required(motion.engine, translatable("redundancy reported"), HardCase.REDUNDANT in motion.cases)
 
 
 @certified

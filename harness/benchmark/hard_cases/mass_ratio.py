@@ -10,6 +10,7 @@ import mpmath
 import numpy as np
 from mpmath import mp, mpf, sqrt
 
+from ...language import translatable
 from ...simulation.matrices import Vector
 from .case import Extent, Findings, digits_kept, ours
 from .runs import problem, simulated
@@ -30,10 +31,10 @@ DIRECTIONS, BENDS, RATES = (
 def mass_ratio(extent: Extent) -> Findings:
     """Digits of the accelerations by each solve, against sixty-digit ones, and of the places."""
     digits = {name: _worst(solve) for name, solve in every_solve(FILE).items()}
-    yield from solves_kept("accelerations", digits, NEEDED)
+    yield from solves_kept(translatable("accelerations"), digits, NEEDED)
     motion = simulated(problem(FILE), UNTIL)
     places = digits_kept(motion.coordinates, falling(mpf(UNTIL)))
-    yield ours(motion.engine, f"places at t = {UNTIL}", places, NEEDED_PLACES)
+    yield ours(motion.engine, translatable("places at t = %(t)s", t=UNTIL), places, NEEDED_PLACES)
 
 
 def _worst(solve: SolveAt) -> float:

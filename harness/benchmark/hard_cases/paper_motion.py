@@ -6,6 +6,7 @@ The sum s = q1 + q2 obeys s'' + 2 s' + s = 0, so that s = (a + b t) exp(-t); q1'
 import numpy as np
 from mpmath import exp, mpf
 
+from ...language import translatable
 from .case import Extent, Findings, certified, digits_of_error, ours
 from .runs import places_kept, plain_motion, problem, simulated
 from .solves import TEXTBOOK, SolveAt, every_solve, solves_kept
@@ -47,9 +48,14 @@ def free_motion(extent: Extent) -> Findings:
     digits = {
         name: min(_vanishing(solve, mpf(t)) for t in range(last + 1)) for name, solve in every_solve(*SCENE).items()
     }
-    yield from solves_kept("zero multiplier", digits, needed, compared=(TEXTBOOK,))
+    yield from solves_kept(translatable("zero multiplier"), digits, needed, compared=(TEXTBOOK,))
     motion = simulated(problem(*SCENE), last)
-    yield ours(motion.engine, f"zero multiplier at t = {last}", _zero(motion.multipliers[0], last), needed)
+    yield ours(
+        motion.engine,
+        translatable("zero multiplier at t = %(t)s", t=last),
+        _zero(motion.multipliers[0], last),
+        needed,
+    )
 
 
 def _vanishing(solve: SolveAt, t: mpf) -> float:
@@ -73,5 +79,9 @@ def overflowing_control(extent: Extent) -> Findings:
     needed = 11.0
     for t in (355, 360):
         motion, plain = simulated(problem(*SCENE), t), plain_motion(problem(*SCENE), t)
-        yield from places_kept(f"coordinates at t = {t}", plain, motion, coordinates(mpf(t)), needed)
-        yield ours(motion.engine, f"zero multiplier at t = {t}", _zero(motion.multipliers[0], t), needed)
+        yield from places_kept(
+            translatable("coordinates at t = %(t)s", t=t), plain, motion, coordinates(mpf(t)), needed
+        )
+        yield ours(
+            motion.engine, translatable("zero multiplier at t = %(t)s", t=t), _zero(motion.multipliers[0], t), needed
+        )

@@ -7,6 +7,7 @@ Whittaker, Analytical Dynamics, section 44.
 
 from mpmath import ellipfun, ellipk, mpf, pi, sin, sqrt
 
+from ...language import translatable
 from ...simulation.diagnosis import HardCase
 from .case import Extent, Findings, certified, digits_kept, digits_of_error, ours, required, theirs
 from .runs import PLAIN, places_kept, plain_motion, problem, simulated
@@ -62,10 +63,12 @@ def constraint_given_twice(extent: Extent) -> Findings:
     multiplier = -3 * GRAVITY * depth  # m g cos(phi) + m l phi'^2, phi'^2 = 2 g/l cos(phi), towards the hinge
     force = [multiplier * x, -multiplier * depth]
     motion, plain = simulated(swinging, until), plain_motion(swinging, until)
-    yield from places_kept("coordinates", plain, motion, [x, -depth], needed)
-    yield ours(motion.engine, "constraint force", digits_kept(motion.constraint_forces, force), needed)
-    yield ours(motion.engine, "least multipliers", digits_kept(motion.multipliers, 2 * [multiplier / 2]), needed)
-    yield required(motion.engine, "redundancy reported", HardCase.REDUNDANT in motion.cases)
+    yield from places_kept(translatable("coordinates"), plain, motion, [x, -depth], needed)
+    yield ours(motion.engine, translatable("constraint force"), digits_kept(motion.constraint_forces, force), needed)
+    yield ours(
+        motion.engine, translatable("least multipliers"), digits_kept(motion.multipliers, 2 * [multiplier / 2]), needed
+    )
+    yield required(motion.engine, translatable("redundancy reported"), HardCase.REDUNDANT in motion.cases)
 
 
 REVOLUTIONS = {Extent.SHORT: 5, Extent.FULL: 50}
@@ -84,9 +87,11 @@ def dead_centres(extent: Extent) -> Findings:
     until = round(turns * revolution(frequency))
     motion, plain = simulated(linkage, until), plain_motion(linkage, until)
     tip = turning(frequency, mpf(until))
-    yield from places_kept(f"place after {turns} revolutions", plain, motion, tip, needed, scale=1)
-    yield ours(motion.engine, "energy", digits_of_error(motion.energy_error, energy), needed)
-    yield required(motion.engine, "passage reported", HardCase.SINGULAR_PASSAGE in motion.cases)
+    yield from places_kept(
+        translatable("place after %(turns)s revolutions", turns=turns), plain, motion, tip, needed, scale=1
+    )
+    yield ours(motion.engine, translatable("energy"), digits_of_error(motion.energy_error, energy), needed)
+    yield required(motion.engine, translatable("passage reported"), HardCase.SINGULAR_PASSAGE in motion.cases)
 
 
 PERIODS = 10_000
@@ -101,13 +106,22 @@ def long_run(extent: Extent) -> Findings:
     periods = PLAIN_PERIODS[extent]
     until, place = _after(periods)
     state = plain_motion(swinging, until)
-    yield theirs(PLAIN, f"place after {periods} periods", digits_kept(state[:2], place), needed)
-    yield theirs(PLAIN, "constraint", digits_of_error(abs(state[0] ** 2 + state[1] ** 2 - 1), 1), needed_of_drift)
+    yield theirs(
+        PLAIN, translatable("place after %(periods)s periods", periods=periods), digits_kept(state[:2], place), needed
+    )
+    yield theirs(
+        PLAIN, translatable("constraint"), digits_of_error(abs(state[0] ** 2 + state[1] ** 2 - 1), 1), needed_of_drift
+    )
     until, place = _after(PERIODS)
     motion = simulated(swinging, until)
-    yield ours(motion.engine, f"place after {PERIODS} periods", digits_kept(motion.coordinates, place), needed)
-    yield ours(motion.engine, "constraint", digits_of_error(motion.residual, 1), needed_of_drift)
-    yield ours(motion.engine, "energy", digits_of_error(motion.energy_error, energy), needed_of_drift)
+    yield ours(
+        motion.engine,
+        translatable("place after %(periods)s periods", periods=PERIODS),
+        digits_kept(motion.coordinates, place),
+        needed,
+    )
+    yield ours(motion.engine, translatable("constraint"), digits_of_error(motion.residual, 1), needed_of_drift)
+    yield ours(motion.engine, translatable("energy"), digits_of_error(motion.energy_error, energy), needed_of_drift)
 
 
 @certified

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+from ...language import translatable
 from ...simulation.diagnosis import HardCase
 from .case import Case, CaseReport, Extent, examined
 from .dependent_constraints import parallel_constraints, sarrus_linkage
@@ -13,54 +14,69 @@ from .vanishing_length import vanishing_length
 
 REGISTER = (
     Case(
-        "parallel constraints",
+        translatable("parallel constraints"),
         HardCase.NEARLY_DEPENDENT,
-        "a pendulum on the circle that the two rods leave free, in closed form",
+        translatable("a pendulum on the circle that the two rods leave free, in closed form"),
         parallel_constraints,
     ),
     Case(
-        "constraint given twice",
+        translatable("constraint given twice"),
         HardCase.REDUNDANT,
-        "the pendulum with one constraint, in elliptic functions; half of its multiplier for each",
+        translatable("the pendulum with one constraint, in elliptic functions; half of its multiplier for each"),
         constraint_given_twice,
     ),
     Case(
-        "redundant spatial mechanism",
+        translatable("redundant spatial mechanism"),
         HardCase.REDUNDANT,
-        "Sarrus' linkage reduced to the angle of its legs, a quadrature",
+        translatable("Sarrus' linkage reduced to the angle of its legs, a quadrature"),
         sarrus_linkage,
     ),
     Case(
-        "parallelogram through its dead centres",
+        translatable("parallelogram through its dead centres"),
         HardCase.SINGULAR_PASSAGE,
-        "the rods' common angle, in elliptic functions",
+        translatable("the rods' common angle, in elliptic functions"),
         dead_centres,
     ),
-    Case("spring 1e6 times stiffer", HardCase.STIFF, "two coupled oscillators, in closed form", stiff_spring),
-    Case("car axis", HardCase.STIFF, "the published solution, right to about twelve decimals", car_axis),
     Case(
-        "overflowing control",
+        translatable("spring 1e6 times stiffer"),
+        HardCase.STIFF,
+        translatable("two coupled oscillators, in closed form"),
+        stiff_spring,
+    ),
+    Case(
+        translatable("car axis"),
+        HardCase.STIFF,
+        translatable("the published solution, right to about twelve decimals"),
+        car_axis,
+    ),
+    Case(
+        translatable("overflowing control"),
         HardCase.OVERFLOW,
-        "the paper's free motion, in closed form; its multiplier is zero",
+        translatable("the paper's free motion, in closed form; its multiplier is zero"),
         overflowing_control,
     ),
     Case(
-        "mass ratio of 1e12",
+        translatable("mass ratio of 1e12"),
         HardCase.MASS_RATIO,
-        "two masses on two rods, by hand with 60 digits; the heavy one in free fall",
+        translatable("two masses on two rods, by hand with 60 digits; the heavy one in free fall"),
         mass_ratio,
     ),
-    Case("pendulum for ten thousand periods", HardCase.LONG_RUN, "the pendulum in elliptic functions", long_run),
     Case(
-        "cancellation along a free motion",
+        translatable("pendulum for ten thousand periods"),
+        HardCase.LONG_RUN,
+        translatable("the pendulum in elliptic functions"),
+        long_run,
+    ),
+    Case(
+        translatable("cancellation along a free motion"),
         HardCase.FREE_CANCELLATION,
-        "the paper's free motion under u = u0 exp(t), where every multiplier is zero",
+        translatable("the paper's free motion under u = u0 exp(t), where every multiplier is zero"),
         free_motion,
     ),
     Case(
-        "controlled length through zero",
+        translatable("controlled length through zero"),
         HardCase.VANISHING_LENGTH,
-        "the length 1 - t is zero at t = 1",
+        translatable("the length 1 - t is zero at t = 1"),
         vanishing_length,
     ),
 )

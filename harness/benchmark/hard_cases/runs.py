@@ -15,6 +15,7 @@ from scipy.integrate import solve_ivp
 
 from ...confined import Limits
 from ...files import shared
+from ...language import translatable
 from ...program.motion_problem import MotionProblem, motion_problem
 from ...program.motion_program import Solve
 from ...program.request import Request
@@ -26,7 +27,7 @@ from .case import Result, digits_kept, ours, theirs
 
 EXAMPLES = shared("examples")
 TOLERANCE = 1e-12  # of the plain way
-PLAIN = "bordered system, DOP853"
+PLAIN = translatable("bordered system, DOP853")
 EVALUATIONS = 1_000_000  # after them it counts as stuck
 
 

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...language import translatable
 from ...program.motion_problem import MotionProblem
 from ...program.motion_program import Solve
 from ...program.numpy_function import NumpyFunction
@@ -16,7 +17,8 @@ from ...simulation.matrices import Matrices, MotionMatrices, Vector
 from .case import Result, ours, theirs
 from .runs import problem
 
-TEXTBOOK, DIRECT, ORTHOGONAL, PIVOTED = "textbook formula", "direct", "orthogonal", "LAPACK, pivoted"
+TEXTBOOK, DIRECT = translatable("textbook formula"), translatable("direct")
+ORTHOGONAL, PIVOTED = translatable("orthogonal"), translatable("LAPACK, pivoted")
 
 
 class Solved(NamedTuple):

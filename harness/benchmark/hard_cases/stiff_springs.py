@@ -9,6 +9,7 @@ a linear system, whose motion is a sum of two oscillations.
 
 from mpmath import cos, eigsy, matrix, mpf, sqrt
 
+from ...language import translatable
 from .case import Extent, Findings, certified, digits_of_error, ours
 from .runs import places_kept, plain_motion, problem, simulated
 
@@ -36,8 +37,10 @@ def stiff_spring(extent: Extent) -> Findings:
     """Digits of the coordinates and of the energy."""
     rail, until, needed = problem("hard/stiff_spring.mac"), INSTANTS[extent], 10.0
     motion, plain = simulated(rail, until), plain_motion(rail, until)
-    yield from places_kept(f"coordinates at t = {until}", plain, motion, coordinates(mpf(until)), needed)
-    yield ours(motion.engine, "energy", digits_of_error(motion.energy_error, ENERGY), needed)
+    yield from places_kept(
+        translatable("coordinates at t = %(t)s", t=until), plain, motion, coordinates(mpf(until)), needed
+    )
+    yield ours(motion.engine, translatable("energy"), digits_of_error(motion.energy_error, ENERGY), needed)
 
 
 PUBLISHED = tuple(
@@ -59,4 +62,4 @@ def car_axis(extent: Extent) -> Findings:
     """
     axis, until, needed = problem("car_axis.mac"), 3, 10.0
     motion, plain = simulated(axis, until, tol=1e-14), plain_motion(axis, until)
-    yield from places_kept(f"places at t = {until}", plain, motion, PUBLISHED, needed, scale=1)
+    yield from places_kept(translatable("places at t = %(t)s", t=until), plain, motion, PUBLISHED, needed, scale=1)

@@ -7,6 +7,7 @@ from math import nan
 from mpmath import mpf
 
 from ...failures import HolonomError
+from ...language import translatable
 from ...simulation.diagnosis import HardCase, advice
 from .case import Extent, Findings, Result, digits_kept, ours, required
 from .runs import problem, simulated
@@ -28,9 +29,11 @@ def results_of(scene: str) -> Iterator[Result]:
     """What the refusal to follow a scene says."""
     said = refusal(scene)
     instants = [float(instant) for instant in INSTANT.findall(said)] or [nan]
-    yield ours(ENGINE, f"instant of the stop, {scene}", digits_kept(instants, [VANISHES]), NEEDED)
-    yield required(ENGINE, "constraint named", "the constraint of lambda1" in said)
-    yield required(ENGINE, "reason given", advice(HardCase.VANISHING_LENGTH) in said)
+    yield ours(
+        ENGINE, translatable("instant of the stop, %(scene)s", scene=scene), digits_kept(instants, [VANISHES]), NEEDED
+    )
+    yield required(ENGINE, translatable("constraint named"), "the constraint of lambda1" in said)
+    yield required(ENGINE, translatable("reason given"), advice(HardCase.VANISHING_LENGTH) in said)
 
 
 def refusal(scene: str) -> str:

@@ -13,6 +13,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ...failures import HolonomError
+from ...language import translatable
 from ...program.heyoka_function import import_heyoka
 from ...program.timing import Batch, python_batch, shortest_times
 from .measurement import Candidate, Measurement, Omission, Prepared, relative_error
@@ -69,7 +70,9 @@ def measure(candidates: Iterable[Candidate], reference: Reference, advance: Call
     impatient: set[str] = set()
     for candidate in candidates:
         if candidate.method in impatient:
-            results.append(_omission(candidate, f"the setting before it took more than {PATIENCE:g} s"))
+            results.append(
+                _omission(candidate, translatable("the setting before it took more than %(time)g s", time=PATIENCE))
+            )
         else:
             result, prepared = _first_run(candidate, reference)
             if isinstance(result, Measurement) and result.seconds > PATIENCE:
@@ -100,7 +103,9 @@ def _first_run(candidate: Candidate, reference: Reference) -> tuple[Result, Prep
         return _omission(candidate, str(refusal)), None
     error = relative_error(prepared.state(outcome), reference.states[candidate.instant])
     if not reference.can_tell(error):
-        return _omission(candidate, f"its error, {error:.1g}, is none that the reference can tell"), None
+        return _omission(
+            candidate, translatable("its error, %(error).1g, is none that the reference can tell", error=error)
+        ), None
     return (
         Measurement(
             group=candidate.group,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...language import translatable
 from ...program.motion_problem import MotionProblem
 from ...program.motion_program import Solve
 from ...program.precision import Precision, read_precision
@@ -46,19 +47,21 @@ def taylor_ladder(
 
 def taylor_name(precision: str) -> str:
     """Name of the method, given its precision."""
-    return f"Taylor, {precision} digits" if precision.isdecimal() else f"Taylor, {precision}"
+    if precision.isdecimal():
+        return translatable("Taylor, %(digits)s digits", digits=precision)
+    return translatable("Taylor, %(precision)s", precision=precision)
 
 
 def solve_name(solve: Solve) -> str:
     """Name of the Taylor engine on the program of one solve."""
-    return f"solve: {solve}"
+    return translatable("solve: %(solve)s", solve=solve)
 
 
 def drift_cures(problem: MotionProblem, until: Fraction, tol: float) -> Iterator[Candidate]:
     """The cures of drift at one tolerance, in double precision; arguments as of `taylor_ladder`."""
     for drift in Stabilization:
         prepare = partial(prepare_taylor, problem, until, "double", tol, drift)
-        yield Candidate(Group.DRIFT, f"drift: {drift}", f"tol {tol:g}", until, prepare)
+        yield Candidate(Group.DRIFT, translatable("drift: %(cure)s", cure=drift), f"tol {tol:g}", until, prepare)
 
 
 def the_two_solves(problems: Sequence[MotionProblem], until: Fraction, tol: float) -> Iterator[Candidate]:
@@ -115,7 +118,7 @@ def _compact(problem: MotionProblem, precision: str) -> bool | None:
     return problem.motion.operations > LARGEST_UNROLLED if precision in HARDWARE else None
 
 
-RUNGE_KUTTA = "Runge-Kutta engine"
+RUNGE_KUTTA = translatable("Runge-Kutta engine")
 
 
 def runge_kutta_ladder(problem: MotionProblem, until: Fraction, tolerances: Sequence[float]) -> Iterator[Candidate]:

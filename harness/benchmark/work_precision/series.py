@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import mpmath
 
 from ...documents import Document, ask, read
+from ...language import translatable
 from ...mathjson import number, numbers
 from ...program.motion_problem import MotionProblem
 from ...program.precision import read_precision
@@ -72,7 +73,13 @@ def double_series(expansion: Expansion, orders: Sequence[int]) -> Iterator[Candi
     """Expansions in double precision."""
     for order in orders:
         prepare = partial(_prepare_double, expansion, order)
-        yield Candidate(Group.SERIES, "series, double", f"order {order}", expansion.instant, prepare)
+        yield Candidate(
+            Group.SERIES,
+            translatable("series, double"),
+            translatable("order %(order)s", order=order),
+            expansion.instant,
+            prepare,
+        )
 
 
 def maxima_series(
@@ -112,7 +119,7 @@ def maxima_series(
         yield Measurement(
             group=Group.SERIES,
             method=series_name(digits),
-            setting=f"order {entry['order']}",
+            setting=translatable("order %(order)s", order=entry["order"]),
             instant=expansion.instant,
             error=relative_error(found, reference.states[expansion.instant]),
             seconds=float(entry["seconds"]),
@@ -123,7 +130,9 @@ def maxima_series(
 
 def series_name(digits: int | str) -> str:
     """Name of the method, given the digits of its coefficients."""
-    return f"series, {digits}" if digits == EXACT else f"series, {digits} digits"
+    if digits == EXACT:
+        return translatable("series, exact")
+    return translatable("series, %(digits)s digits", digits=digits)
 
 
 def _prepare_double(expansion: Expansion, order: int) -> Prepared:

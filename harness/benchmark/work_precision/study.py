@@ -11,6 +11,7 @@ from typing import Any
 from ...confined import Limits
 from ...documents import Publication, published
 from ...failures import Failure, HolonomError
+from ...language import translatable
 from ...program.motion_problem import MotionProblem, motion_problem, require_analytic
 from ...program.motion_program import Solve
 from ...program.precision import read_precision
@@ -142,7 +143,7 @@ def _expansion(problem: MotionProblem, until: Fraction) -> tuple[Expansion | Non
     try:
         return expansion_of(problem, until), []
     except HolonomError as refusal:
-        return None, [Omission("series", "all orders", str(refusal))]
+        return None, [Omission("series", translatable("all orders"), str(refusal))]
 
 
 def _series(
@@ -154,15 +155,21 @@ def _series(
         try:
             found = list(maxima_series(file, request, limits, expansion, plan.orders, digits, reference))
         except HolonomError as refusal:
-            omissions.append(Omission(series_name(digits), "all orders", str(refusal)))
+            omissions.append(Omission(series_name(digits), translatable("all orders"), str(refusal)))
             continue
         for m in found:
             if reference.can_tell(m.error):
                 measurements.append(m)
             else:
-                omissions.append(Omission(m.method, m.setting, "its error is less than the reference can tell"))
+                omissions.append(
+                    Omission(m.method, m.setting, translatable("its error is less than the reference can tell"))
+                )
         omissions += [
-            Omission(series_name(digits), f"order {order}", "the order before it took too long")
+            Omission(
+                series_name(digits),
+                translatable("order %(order)s", order=order),
+                translatable("the order before it took too long"),
+            )
             for order in plan.orders[len(found) :]
         ]
     return measurements, omissions

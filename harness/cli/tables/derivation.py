@@ -11,6 +11,7 @@ from rich.table import Table
 from rich.terminal_theme import DIMMED_MONOKAI
 from rich.text import Text
 
+from ...language import gettext, ngettext, translatable, translated
 from .text import counted, formula, styled
 
 if TYPE_CHECKING:
@@ -115,7 +116,19 @@ def show_errata(console: Console, equations: Sequence["PrintedEquation"]) -> Non
     for equation in equations:
         _show_misprint(console, equation)
     misprints = sum(not equation.agrees for equation in equations)
-    console.print(f"{len(equations)} equations, {counted(misprints, 'misprint')} in our copy of the paper")
+    console.print(_summary(len(equations), misprints))
+
+
+def _summary(equations: int, misprints: int) -> str:
+    if not misprints:
+        return gettext("%(equations)s equations, no misprints in our copy of the paper", equations=equations)
+    return ngettext(
+        "%(equations)s equations, %(misprints)s misprint in our copy of the paper",
+        "%(equations)s equations, %(misprints)s misprints in our copy of the paper",
+        misprints,
+        equations=equations,
+        misprints=misprints,
+    )
 
 
 def draw_errata(equations: Sequence["PrintedEquation"]) -> str:
@@ -127,18 +140,24 @@ def draw_errata(equations: Sequence["PrintedEquation"]) -> str:
 
 
 def _errata_table(equations: Sequence["PrintedEquation"]) -> Table:
-    table = Table("no.", "equation", "as printed", title="The paper as our copy prints it", title_justify="left")
+    heads = gettext("no."), gettext("equation"), gettext("as printed")
+    table = Table(*heads, title=gettext("The paper as our copy prints it"), title_justify="left")
     for equation in equations:
-        table.add_row(equation.number, equation.name, styled("agrees" if equation.agrees else "differs"))
+        verdict = translatable("agrees") if equation.agrees else translatable("differs")
+        table.add_row(equation.number, translated(equation.name), styled(verdict))
     return table
 
 
 def _show_misprint(console: Console, equation: "PrintedEquation") -> None:
-    said = {"difference": equation.difference, "corrected": equation.corrected, "remark": equation.remark}
+    said = {
+        gettext("difference"): equation.difference,
+        gettext("corrected"): equation.corrected,
+        gettext("remark"): equation.remark and translated(equation.remark),
+    }
     if equation.agrees and not equation.remark:
         return
     number = f"({equation.number}) " if equation.number else ""
-    console.print(Text(f"{number}{equation.name}", style="cyan"))
+    console.print(Text(f"{number}{translated(equation.name)}", style="cyan"))
     for what, text in said.items():
         if text:
             console.print(f"    {what}: {text}", soft_wrap=True, markup=False)

@@ -7,6 +7,8 @@ import click
 from rich.console import Console
 from rich.text import Text
 
+from ...language import translated
+
 PIPE_WIDTH = 100_000  # columns where there is no terminal: no table is cut
 CELL_WIDTH = 110  # columns that fit a notebook's cell
 HTML = '<pre style="white-space: pre; overflow-x: auto; line-height: normal">{code}</pre>'
@@ -53,7 +55,7 @@ def formula(expression: object) -> str:
 
 def styled(verdict: str) -> Text:
     """A verdict in its colour."""
-    return Text(verdict, style=STYLES[verdict])
+    return Text(translated(verdict), style=STYLES[verdict])
 
 
 def counted(count: int, what: str) -> str:

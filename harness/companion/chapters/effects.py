@@ -9,6 +9,7 @@ import numpy as np
 from ...benchmark.machine import this_machine
 from ...confined import Limits
 from ...figures.motion import draw_with_and_without
+from ...language import translatable
 from ...program.effects import MeasuredCosts, scene_costs
 from ...program.request import Request
 from ...record import Record
@@ -51,8 +52,8 @@ def chapter(root: Path) -> Chapter:
 
     return Chapter(
         slug="effects",
-        title="Effects",
-        aim="Gravity, drag, a turning frame, each on and off by its name; what is off costs nothing.",
+        title=translatable("Effects"),
+        aim=translatable("Gravity, drag, a turning frame, each on and off by its name; what is off costs nothing."),
         template="effects.html",
         runs={
             "pendulum": derived(file),

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...figures.curves import Panel, draw_curves
+from ...language import gettext, translatable
 from ...simulation.result import Simulation
 from ..cards import derivation_cards, files_of, missing, named_equations, printed_card
 from ..chapter import Chapter, Page
@@ -36,14 +37,16 @@ def chapter(root: Path) -> Chapter:
                 "bob_equations": named_equations(results["bob"]),
                 "pendulum": named_equations(results["pendulum"]),
             },
-            figures={"bob": draw_curves(panels(results["motion"]), "t (units of the scene)")},
+            figures={"bob": draw_curves(panels(results["motion"]), gettext("t (units of the scene)"))},
             sources=files_of(cards),
         )
 
     return Chapter(
         slug="equations-of-motion",
-        title="Equations of motion",
-        aim="From the kinetic energy to the accelerations, the multipliers and the constraint forces: (2) to (9).",
+        title=translatable("Equations of motion"),
+        aim=translatable(
+            "From the kinetic energy to the accelerations, the multipliers and the constraint forces: (2) to (9)."
+        ),
         template="equations_of_motion.html",
         runs={
             "paper": derived(root / PAPER),
@@ -65,9 +68,9 @@ def momentum(motion: Simulation) -> NDArray[np.float64]:
 def panels(motion: Simulation) -> list[Panel]:
     """What changes as the string is drawn in, and what does not."""
     shown = {
-        "length r": motion.coordinates["r"],
-        "angular velocity φ̇": motion.velocities["dot(phi)"],
-        "pull of the string, -λ₁": -motion.multipliers["lambda1"],
-        "angular momentum m r² φ̇": momentum(motion),
+        gettext("length r"): motion.coordinates["r"],
+        gettext("angular velocity φ̇"): motion.velocities["dot(phi)"],
+        gettext("pull of the string, -λ₁"): -motion.multipliers["lambda1"],
+        gettext("angular momentum m r² φ̇"): momentum(motion),
     }
-    return [Panel("units of the scene", {name: (motion.instants, values) for name, values in shown.items()})]
+    return [Panel(gettext("units of the scene"), {name: (motion.instants, values) for name, values in shown.items()})]

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from ...figures.curves import Panel, draw_curves
+from ...language import gettext, translatable
 from ...simulation.result import Simulation
 from ..cards import derivation_cards, files_of, named_equations, printed_card, scene_cards, scene_named
 from ..chapter import Chapter, Page
@@ -43,14 +44,18 @@ def chapter(root: Path) -> Chapter:
                 "pushed_until": float(results["pushed"].instants[-1]),
                 "pendulum": named_equations(results["pendulum"]),
             },
-            figures={"cost": draw_curves(panels(results["unpushed"], results["pushed"], balance), "t (dimensionless)")},
+            figures={
+                "cost": draw_curves(
+                    panels(results["unpushed"], results["pushed"], balance), gettext("t (dimensionless)")
+                )
+            },
             sources=files_of(cards),
         )
 
     return Chapter(
         slug="free-motion",
-        title="Free motion",
-        aim="When the constraints are kept without a push: the condition (10).",
+        title=translatable("Free motion"),
+        aim=translatable("When the constraints are kept without a push: the condition (10)."),
         template="free_motion.html",
         runs={
             "paper": derived(root / PAPER),
@@ -73,14 +78,17 @@ def panels(unpushed: Simulation, pushed: Simulation, balance: EnergyBalance) -> 
     """The multiplier under both laws, and where the energy goes under the second."""
     multipliers = {"u = u₀ exp(t)": unpushed, "u = u₀ + t": pushed}
     work = {
-        "kinetic energy gained": balance.gained,
-        "work of spring and damping": balance.by_forces,
-        "work at the knob": balance.by_knob,
+        gettext("kinetic energy gained"): balance.gained,
+        gettext("work of spring and damping"): balance.by_forces,
+        gettext("work at the knob"): balance.by_knob,
     }
     return [
         Panel(
-            "multiplier λ₁\n(dimensionless)",
+            gettext("multiplier λ₁\n(dimensionless)"),
             {law: (motion.instants, motion.multipliers["lambda1"]) for law, motion in multipliers.items()},
         ),
-        Panel("u = u₀ + t: energy\n(dimensionless)", {name: (pushed.instants, each) for name, each in work.items()}),
+        Panel(
+            gettext("u = u₀ + t: energy\n(dimensionless)"),
+            {name: (pushed.instants, each) for name, each in work.items()},
+        ),
     ]

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from ...language import translatable
 from ..chapter import Chapter, Page
 from ..pages import TEMPLATES
 
@@ -20,8 +21,8 @@ def chapter(root: Path) -> Chapter:
 
     return Chapter(
         slug="further-reading",
-        title="History, bibliography, glossary",
-        aim="Where the questions come from, what to read, and the words in English and Chinese.",
+        title=translatable("History, bibliography, glossary"),
+        aim=translatable("Where the questions come from, what to read, and the words in English and Chinese."),
         template="further_reading.html",
         runs={},
         page=page,

@@ -6,6 +6,7 @@ from pathlib import Path
 from ...benchmark.hard_cases.case import CaseReport, Extent, examined
 from ...benchmark.hard_cases.register import REGISTER
 from ...figures.benchmark import draw_stability
+from ...language import translatable
 from ..chapter import Chapter, Page, Run
 from ..runs import drawn
 
@@ -26,8 +27,8 @@ def chapter(root: Path) -> Chapter:
 
     return Chapter(
         slug="hard-cases",
-        title="Hard cases",
-        aim="Where a plain method loses its digits, what keeps them, and what to do.",
+        title=translatable("Hard cases"),
+        aim=translatable("Where a plain method loses its digits, what keeps them, and what to do."),
         template="hard_cases.html",
         runs={case.name: Run(examined, (case, Extent.SHORT)) for case in REGISTER},
         page=page,

@@ -11,6 +11,7 @@ from sympy import Expr, Symbol
 
 from ...figures.curves import Panel, draw_curves
 from ...figures.style import lettered
+from ...language import gettext, translatable
 from ...mathjson import number, numbers
 from ...record import Equation, Scene
 from ...series.power_series import MotionSeries, NumberTexts
@@ -46,14 +47,14 @@ def chapter(root: Path) -> Chapter:
                 "orders": (LOW_ORDER, HIGH_ORDER),
                 "compared": compared(results["expanded"]),
             },
-            figures={"first-instants": draw_curves([beginning(results["expanded"])], "t (dimensionless)")},
+            figures={"first-instants": draw_curves([beginning(results["expanded"])], gettext("t (dimensionless)"))},
             sources=files_of([*eliminated, *cards]),
         )
 
     return Chapter(
         slug="initial-motion",
-        title="Initial motion",
-        aim="What the system does in the first instants: (11) to (13), (18) and (19).",
+        title=translatable("Initial motion"),
+        aim=translatable("What the system does in the first instants: (11) to (13), (18) and (19)."),
         template="initial_motion.html",
         runs={
             "paper": derived(root / PAPER),
@@ -92,6 +93,11 @@ def beginning(expanded: MotionSeries) -> Panel:
     with mpmath.workdps(expanded.digits):
         coefficients = [float(each) for each in numbers(expanded.coordinates[SHOWN])]
     times = np.linspace(0, float(LAST), 101)
-    orders = {f"order {order}": order for order in range(1, LOW_ORDER + 1)} | {"motion": HIGH_ORDER}
+    orders = {gettext("order %(order)s", order=order): order for order in range(1, LOW_ORDER + 1)} | {
+        gettext("motion"): HIGH_ORDER
+    }
     sums = {name: np.polynomial.polynomial.polyval(times, coefficients[: k + 1]) for name, k in orders.items()}
-    return Panel(f"{lettered(SHOWN)} (dimensionless)", {name: (times, values) for name, values in sums.items()})
+    return Panel(
+        gettext("%(quantity)s (dimensionless)", quantity=lettered(SHOWN)),
+        {name: (times, values) for name, values in sums.items()},
+    )

@@ -5,6 +5,7 @@ from itertools import takewhile
 from pathlib import Path
 
 from ...errata import PrintedEquation
+from ...language import translatable
 from ..cards import anchor, anchors
 from ..chapter import Chapter, Page
 from ..runs import printed
@@ -35,8 +36,8 @@ def chapter(root: Path) -> Chapter:
 
     return Chapter(
         slug="misprints",
-        title="Misprints",
-        aim="Every equation that the paper prints, as our copy has it, compared with the derived one.",
+        title=translatable("Misprints"),
+        aim=translatable("Every equation that the paper prints, as our copy has it, compared with the derived one."),
         template="misprints.html",
         runs={"printed": printed()},
         page=page,

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ...language import translatable
 from ..chapter import Chapter, Page
 from ..pages import TEMPLATES
 
@@ -48,8 +49,8 @@ def chapter(root: Path) -> Chapter:
 
     return Chapter(
         slug="notation",
-        title="Notation",
-        aim="The paper's symbols, and their names in Maxima and in Python.",
+        title=translatable("Notation"),
+        aim=translatable("The paper's symbols, and their names in Maxima and in Python."),
         template="notation.html",
         runs={},
         page=page,

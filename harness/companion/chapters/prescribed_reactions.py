@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from ...figures.curves import Panel, draw_curves
+from ...language import gettext, translatable
 from ...simulation.result import Simulation
 from ..chapter import Chapter, Page
 from ..examples import PRESCRIBED_TENSION
@@ -35,14 +36,14 @@ def chapter(root: Path) -> Chapter:
                 "series": {name: results[f"{name} series"] for name in SCENES},
                 "excerpts": [excerpt(root, SOURCE, name) for name in FUNCTIONS],
             },
-            figures={"winch": draw_curves(panels(results), "t (units of the scene)")},
+            figures={"winch": draw_curves(panels(results), gettext("t (units of the scene)"))},
             sources=(SOURCE, PRESCRIBED_TENSION),
         )
 
     return Chapter(
         slug="prescribed-reactions",
-        title="Prescribed reactions",
-        aim="Free motion asks for reactions that are zero; one may as well ask for any other.",
+        title=translatable("Prescribed reactions"),
+        aim=translatable("Free motion asks for reactions that are zero; one may as well ask for any other."),
         template="prescribed_reactions.html",
         runs={"tension": derived(file)}
         | {f"{name} motion": simulation(file, name, UNTIL, SAMPLES) for name in SCENES[1:]}
@@ -55,14 +56,14 @@ def chapter(root: Path) -> Chapter:
 def panels(results: Mapping[str, Simulation]) -> list[Panel]:
     """What is prescribed, and what the winch does."""
     motions = {name: results[f"{name} motion"] for name in SCENES[1:]}
-    labels = {name: "steady" if name == SCENES[1] else "growing" for name in motions}
+    labels = {name: gettext("steady") if name == SCENES[1] else gettext("growing") for name in motions}
     return [
         Panel(
-            "multiplier λ₁\n(units of the scene)",
+            gettext("multiplier λ₁\n(units of the scene)"),
             {labels[name]: (motion.instants, motion.multipliers["lambda1"]) for name, motion in motions.items()},
         ),
         Panel(
-            "length u of the string\n(units of the scene)",
+            gettext("length u of the string\n(units of the scene)"),
             {labels[name]: (motion.instants, motion.coordinates["u"]) for name, motion in motions.items()},
         ),
     ]

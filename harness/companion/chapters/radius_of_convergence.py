@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -9,15 +10,16 @@ import mpmath
 import sympy
 from sympy import Expr, Symbol
 
-from ...figures.convergence import draw_partial_sums, draw_radius
+from ...figures.convergence import draw_partial_sums, draw_radius, find_radii
+from ...language import translatable
 from ...mathjson import number, numbers
 from ...series.power_series import MotionSeries
 from ...simulation.result import Simulation
 from ..cards import named_equations, scene_named
-from ..chapter import Chapter, Page
+from ..chapter import Chapter, Page, Run
 from ..examples import FREE_SCENE, INITIAL_SCENE, PAPER, PENDULUM
 from ..expressions import zeros
-from ..runs import Derived, derived, figure, series, simulation
+from ..runs import Derived, derived, drawn, series, simulation
 
 ORDER = 80
 ORDERS, INSTANTS = (5, 10, 20, 40, 80), (0.5, 1.0)  # within the radius and beyond it
@@ -51,13 +53,18 @@ def chapter(root: Path) -> Chapter:
                     float(instant) for instant in (results["motion"].instants[0], results["motion"].instants[-1])
                 ],
             },
-            figures={"partial-sums": partial_sums(results["initial"], results["motion"]), "radius": results["radius"]},
+            figures={
+                "partial-sums": partial_sums(results["initial"], results["motion"]),
+                "radius": drawn(partial(draw_radius, results["radius"])),
+            },
         )
 
     return Chapter(
         slug="radius-of-convergence",
-        title="Radius of convergence and the global trajectory",
-        aim="How far the series of the initial motion holds, what sets the limit, and how to go beyond it.",
+        title=translatable("Radius of convergence and the global trajectory"),
+        aim=translatable(
+            "How far the series of the initial motion holds, what sets the limit, and how to go beyond it."
+        ),
         template="radius_of_convergence.html",
         runs={
             "paper": derived(root / PAPER),
@@ -65,7 +72,7 @@ def chapter(root: Path) -> Chapter:
             "free": series(root / PAPER, FREE_SCENE, ORDER),
             "pendulum": series(root / PENDULUM, SWING, ORDER),
             "motion": simulation(root / PAPER, INITIAL_SCENE, UNTIL, SAMPLES),
-            "radius": figure(draw_radius),
+            "radius": Run(find_radii),
         },
         page=page,
     )

@@ -5,6 +5,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
+from ...language import translatable
 from ...reference.topics import topics
 from ..chapter import Chapter, Page
 
@@ -19,8 +20,8 @@ def chapter(root: Path) -> Chapter:
 
     return Chapter(
         slug="reference",
-        title="Reference",
-        aim="Every entry of a description, every command, every document and every name in Python.",
+        title=translatable("Reference"),
+        aim=translatable("Every entry of a description, every command, every document and every name in Python."),
         template="reference.html",
         runs={},
         page=page,

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from ...figures.tilted_plane import draw_tilted_plane
+from ...language import translatable
 from ..cards import derivation_cards, files_of, scene_named
 from ..chapter import Chapter, Page
 from ..examples import CABIN, FREE_SCENE, LINKAGE, PAPER, PENDULUM
@@ -41,8 +42,10 @@ def chapter(root: Path) -> Chapter:
 
     return Chapter(
         slug="the-system",
-        title="The system and its words",
-        aim="Coordinates, controls, constraints: what a controllable system is, and how to write one down.",
+        title=translatable("The system and its words"),
+        aim=translatable(
+            "Coordinates, controls, constraints: what a controllable system is, and how to write one down."
+        ),
         template="the_system.html",
         runs={
             "paper": derived(root / PAPER),

@@ -8,6 +8,7 @@ import numpy as np
 
 from ...figures.curves import Panel, draw_curves
 from ...free_motion import FreeMotion
+from ...language import gettext, translatable
 from ..chapter import Chapter, Page
 from ..examples import BEAD, BOB, CABIN, INITIAL_SCENE, PAPER, PENDULUM, SPHERICAL_PENDULUM
 from ..excerpts import excerpt
@@ -37,14 +38,14 @@ def chapter(root: Path) -> Chapter:
                 "titles": {name: results[name].record.system.title for name in FILES},
                 "excerpts": [excerpt(root, SOURCE, name) for name in FUNCTIONS],
             },
-            figures={"strings": draw_curves([lengths(results)], "t (units of the scene)")},
+            figures={"strings": draw_curves([lengths(results)], gettext("t (units of the scene)"))},
             sources=(SOURCE,),
         )
 
     return Chapter(
         slug="trajectory-control",
-        title="The control for one trajectory",
-        aim="Where no law serves every motion, one may still serve this motion.",
+        title=translatable("The control for one trajectory"),
+        aim=translatable("Where no law serves every motion, one may still serve this motion."),
         template="trajectory_control.html",
         runs={name: derived(root / file) for name, file in FILES.items()}
         | {f"{name} free": free(root / file, SCENES.get(name)) for name, file in FILES.items()},
@@ -54,10 +55,11 @@ def chapter(root: Path) -> Chapter:
 
 def lengths(results: Mapping[str, FreeMotion]) -> Panel:
     """The lengths of two strings that never pull."""
-    shown = {"pendulum: thrown, and falling": "pendulum", "bob on the table: straight on": "bob"}
+    shown = {gettext("pendulum: thrown, and falling"): "pendulum", gettext("bob on the table: straight on"): "bob"}
     curves = {
         label: np.array(results[f"{name} free"].trajectory.samples, dtype=float).T for label, name in shown.items()
     }
     return Panel(
-        "length u of the string\n(units of the scene)", {label: (each[0], each[1]) for label, each in curves.items()}
+        gettext("length u of the string\n(units of the scene)"),
+        {label: (each[0], each[1]) for label, each in curves.items()},
     )

@@ -17,6 +17,7 @@ from ...confined import Limits
 from ...figures.curves import Panel, draw_curves
 from ...figures.style import lettered_text
 from ...free_motion import Free, FreeMotion
+from ...language import gettext, translatable
 from ...mathjson import from_sympy
 from ...program.javascript_source import javascript_source
 from ...program.model import Model, scene_model
@@ -67,10 +68,10 @@ def chapter(root: Path) -> Chapter:
             figures={
                 "knob": draw_curves(
                     [
-                        Panel("multiplier λ₁\n(dimensionless)", multipliers),
-                        Panel("power at the knob\n(dimensionless)", powers),
+                        Panel(gettext("multiplier λ₁\n(dimensionless)"), multipliers),
+                        Panel(gettext("power at the knob\n(dimensionless)"), powers),
                     ],
-                    "t (dimensionless)",
+                    gettext("t (dimensionless)"),
                 )
             },
             sources=(KNOB,),
@@ -79,8 +80,10 @@ def chapter(root: Path) -> Chapter:
 
     return Chapter(
         slug="turn-the-knob",
-        title="Turn the knob",
-        aim="Choose the law, the damping and the start, and see what the reaction does, and what it costs.",
+        title=translatable("Turn the knob"),
+        aim=translatable(
+            "Choose the law, the damping and the start, and see what the reaction does, and what it costs."
+        ),
         template="turn_the_knob.html",
         runs={
             "knob": derived(file),

@@ -7,6 +7,7 @@ from typing import Any
 
 from ...figures.curves import Panel, draw_curves
 from ...free_motion import FreeMotion
+from ...language import gettext, translatable
 from ...simulation.result import Simulation
 from ..chapter import Chapter, Page
 from ..examples import BEAD, CABIN, INITIAL_SCENE, KNOB, PAPER, PENDULUM, SPHERICAL_PENDULUM
@@ -34,15 +35,15 @@ def chapter(root: Path) -> Chapter:
                 "others": tuple(OTHERS),
                 "excerpts": [excerpt(root, SOURCE, name) for name in FUNCTIONS],
             },
-            figures={"dampings": draw_curves([under_dampings(results)], "t (dimensionless)")},
+            figures={"dampings": draw_curves([under_dampings(results)], gettext("t (dimensionless)"))},
             sources=(SOURCE,),
         )
 
     files = {"paper": PAPER, **OTHERS}
     return Chapter(
         slug="universal-controls",
-        title="Which controls make every motion free",
-        aim="The condition (10) for all states at once is a differential equation for the control.",
+        title=translatable("Which controls make every motion free"),
+        aim=translatable("The condition (10) for all states at once is a differential equation for the control."),
         template="universal_controls.html",
         runs={name: derived(root / file) for name, file in files.items()}
         | {f"c = {c}": simulation(root / KNOB, EXPONENTIAL, UNTIL, SAMPLES, (("c", c),)) for c in DAMPINGS}
@@ -55,4 +56,4 @@ def under_dampings(results: Mapping[str, Simulation]) -> Panel:
     """The multiplier under the paper's law, for some dampings."""
     motions = {f"c = {c}": results[f"c = {c}"] for c in DAMPINGS}
     curves = {name: (motion.instants, motion.multipliers["lambda1"]) for name, motion in motions.items()}
-    return Panel("multiplier λ₁ (dimensionless)", curves)
+    return Panel(gettext("multiplier λ₁ (dimensionless)"), curves)

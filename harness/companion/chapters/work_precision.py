@@ -12,6 +12,7 @@ from ...benchmark.work_precision.study import Study, study
 from ...confined import Limits
 from ...figures.benchmark import draw_study
 from ...figures.curves import draw_drift
+from ...language import translatable
 from ...program.motion_problem import motion_problem
 from ...program.request import Request
 from ...simulation.request import SimulationRequest, Stabilization
@@ -62,8 +63,10 @@ def chapter(root: Path) -> Chapter:
 
     return Chapter(
         slug="accuracy",
-        title="What accuracy costs in time",
-        aim="How many digits which method keeps, what each further one takes, and how constraints are kept.",
+        title=translatable("What accuracy costs in time"),
+        aim=translatable(
+            "How many digits which method keeps, what each further one takes, and how constraints are kept."
+        ),
         template="accuracy.html",
         runs={
             "study": Run(short_study, (root / PAPER, INITIAL_SCENE)),

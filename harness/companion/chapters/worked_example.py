@@ -13,6 +13,7 @@ from sympy import Expr, Symbol
 from ...errata import PrintedEquation
 from ...figures.curves import Panel, draw_curves
 from ...free_motion import FreeMotion
+from ...language import gettext, translatable, translated
 from ...mathjson import from_sympy
 from ...record import Equation, Relation
 from ...simulation.result import Simulation
@@ -26,7 +27,7 @@ from ..runs import Derived, derived, free, printed, simulation
 from ..steps import step
 
 FIRST_NUMBER = "14"
-UNTIL, SAMPLES, TIME = Fraction(3), 2001, "t (dimensionless)"
+UNTIL, SAMPLES = Fraction(3), 2001
 RATES = ("{}".format, "dot({})".format, "ddot({})".format)  # names of a quantity and its rates
 
 
@@ -68,10 +69,10 @@ COUNTERPARTS = {
 }
 
 SECTIONS = {
-    "14": "The system",
-    "condition of free motion of the example": "Free motion",
-    "equation of motion of q1": "Equations of motion",
-    "initial state of the example": "Initial motion",
+    "14": translatable("The system"),
+    "condition of free motion of the example": translatable("Free motion"),
+    "equation of motion of q1": translatable("Equations of motion"),
+    "initial state of the example": translatable("Initial motion"),
 }
 """Titles of the chapter's sections, by the number or name of the equation that each begins with."""
 
@@ -105,15 +106,17 @@ def chapter(root: Path) -> Chapter:
                 "difference": under(laws[INITIAL_SCENE], derived_multiplier - printed_multiplier),
             },
             figures={
-                "misprint": draw_curves([printed_and_derived(paper, printed_multiplier, results["pushed"])], TIME)
+                "misprint": draw_curves(
+                    [printed_and_derived(paper, printed_multiplier, results["pushed"])], gettext("t (dimensionless)")
+                )
             },
             sources=files_of(cards),
         )
 
     return Chapter(
         slug="worked-example",
-        title="The worked example",
-        aim="Section 4 of the paper, equation by equation: as printed, and as derived.",
+        title=translatable("The worked example"),
+        aim=translatable("Section 4 of the paper, equation by equation: as printed, and as derived."),
         template="worked_example.html",
         runs={
             "paper": derived(root / PAPER),
@@ -163,8 +166,10 @@ def worked(paper: Derived, found: FreeMotion, pushed: Simulation) -> dict[str, A
 def printed_and_derived(paper: Derived, printed: Expr, pushed: Simulation) -> Panel:
     """The multiplier along the second task's motion, as derived and by the formula in print."""
     values = values_along(printed, scene_named(paper, INITIAL_SCENE), pushed)
-    shown = {"as derived": pushed.multipliers["lambda1"], "by the formula in print": values}
-    return Panel("multiplier λ₁ (dimensionless)", {name: (pushed.instants, each) for name, each in shown.items()})
+    shown = {gettext("as derived"): pushed.multipliers["lambda1"], gettext("by the formula in print"): values}
+    return Panel(
+        gettext("multiplier λ₁ (dimensionless)"), {name: (pushed.instants, each) for name, each in shown.items()}
+    )
 
 
 def _cards(example: list[PrintedEquation], paper: Derived, laws: tuple, root: Path) -> list[Card]:
@@ -187,7 +192,7 @@ def _derived(each: PrintedEquation, paper: Derived, laws: tuple, root: Path) -> 
         return (), ()
     equation = named_equations(paper, found.scene)[found.equation]
     one = replace(equation, relations=(equation.relations[found.place],))
-    title = f"({equation.number}) {equation.name}"
+    title = f"({equation.number}) {translated(equation.name)}"
     return (Instance(title, one, verdicts_on(paper, equation, found.scene)),), step(root, equation.id)
 
 
@@ -197,7 +202,7 @@ def _law(laws: tuple, paper: Derived) -> Instance:
     condition = named_equations(paper, FREE_SCENE)["free_motion_residual"]
     verdicts = verdicts_on(paper, condition, FREE_SCENE)
     return Instance(
-        "the laws under which (10) vanishes for every state", Equation("law", "15", "law", relations), verdicts
+        gettext("the laws under which (10) vanishes for every state"), Equation("law", "15", "law", relations), verdicts
     )
 
 

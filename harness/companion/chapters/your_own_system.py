@@ -7,6 +7,7 @@ from typing import Any
 from ...documents import Document, ask
 from ...failures import HolonomError
 from ...files import private_directory
+from ...language import translatable
 from ..chapter import Chapter, Page, Run
 from ..examples import PENDULUM
 from ..excerpts import excerpt
@@ -35,8 +36,8 @@ def chapter(root: Path) -> Chapter:
 
     return Chapter(
         slug="your-own-system",
-        title="How to do it with a system of your own",
-        aim="From a description in a file to pages like these.",
+        title=translatable("How to do it with a system of your own"),
+        aim=translatable("From a description in a file to pages like these."),
         template="your_own_system.html",
         runs={
             "pendulum": derived(root / PENDULUM),

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...failures import Failure, HolonomError
+from ...language import translatable
 from ...program.motion_problem import MotionProblem, require_analytic
 from ...program.precision import Precision
 from ..constraints.singularity import Watch, no_gradient
@@ -215,7 +216,7 @@ class ProgramEngine:
         outcome, _, step, _, output, _ = self._integrator.propagate_until(until, 1, c_output=dense)
         if outcome == self._failed:
             self._go_back(instant, before)
-            reason = f"numbers leave the range of {self.precision.name} precision"
+            reason = translatable("numbers leave the range of %(precision)s precision", precision=self.precision.name)
             self._obstacle = self._obstacle_here(HardCase.OVERFLOW, reason)
             return []
         self.steps += 1
@@ -228,7 +229,9 @@ class ProgramEngine:
         """What the constraints' directions, the gradients and the length of the last step say about the next ones."""
         t = float(self.time)
         if self.watch.singular_ahead(t, self.state):
-            return self._obstacle_here(HardCase.SINGULAR_PASSAGE, "the configuration nears a singular one")
+            return self._obstacle_here(
+                HardCase.SINGULAR_PASSAGE, translatable("the configuration nears a singular one")
+            )
         if self.time == until or abs(self._integrator.last_h) >= SHORTEST * self._longest:
             return None
         vanished = self.watch.vanished(t, self.state)

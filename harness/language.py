@@ -1,0 +1,122 @@
+"""The language in which a reader is addressed: messages are written in English, and a catalog translates them.
+
+    with speaking("zh"):
+        gettext("Chapter %(label)s", label=5)
+
+What is made before the language is known, a title or a reason in a result, is marked with `translatable` and translated
+with `translated` where it is shown. Catalogs are ``locale/LANGUAGE/LC_MESSAGES/holonom.po``; `make catalog` collects
+their messages from the sources.
+"""
+
+from __future__ import annotations
+
+import gettext as catalogs
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from functools import cache
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+from .failures import missing_package
+
+ENGLISH = "en"
+LANGUAGES = {ENGLISH: "English", "zh": "中文"}
+LOCALE, DOMAIN = Path(__file__).with_name("locale"), "holonom"
+_spoken: ContextVar[str] = ContextVar("spoken", default=ENGLISH)
+
+
+class Message(str):
+    """A message in English that remembers what it was made of, so that it can still be translated.
+
+    Attributes
+    ----------
+    pattern : str
+        The message with its named placeholders, ``%(name)s``.
+    values : dict of str to object
+        What stands in their places; messages among them are translated with it.
+    """
+
+    pattern: str
+    values: dict[str, Any]
+
+    def __new__(cls, pattern: str, **values: Any) -> Message:
+        """The English message, and what it was made of."""
+        made = super().__new__(cls, pattern % values if values else pattern)
+        made.pattern, made.values = pattern, values
+        return made
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _message, (self.pattern, self.values)
+
+
+def _message(pattern: str, values: dict[str, Any]) -> Message:
+    return Message(pattern, **values)
+
+
+translatable = Message
+"""Marks a message, which is English until it is translated."""
+
+
+@contextmanager
+def speaking(language: str) -> Iterator[None]:
+    """Translate into a language inside the block."""
+    token = _spoken.set(language)
+    try:
+        yield
+    finally:
+        _spoken.reset(token)
+
+
+def spoken() -> str:
+    """The language that messages are translated into."""
+    return _spoken.get()
+
+
+def gettext(message: str, **values: Any) -> str:
+    """A message in the language spoken, with values in its placeholders where some are given."""
+    found = _catalog(spoken()).gettext(message) if message else message
+    return found % values if values else found
+
+
+def ngettext(singular: str, plural: str, count: int, **values: Any) -> str:
+    """The form of a message that fits a count."""
+    found = _catalog(spoken()).ngettext(singular, plural, count)
+    return found % values if values else found
+
+
+def translated(text: str) -> str:
+    """A text in the language spoken: a `Message` with its values, any other where the catalog knows it."""
+    if not isinstance(text, Message):
+        return gettext(str(text))
+    values = {name: translated(each) if isinstance(each, str) else each for name, each in text.values.items()}
+    return gettext(text.pattern, **values)
+
+
+def catalog_file(language: str) -> Path:
+    """The catalog of a language."""
+    return LOCALE / language / "LC_MESSAGES" / f"{DOMAIN}.po"
+
+
+@cache
+def _catalog(language: str) -> catalogs.NullTranslations:
+    """The messages of a language; of English none, for they are English.
+
+    Raises
+    ------
+    HolonomError
+        Babel, which reads catalogs, is not installed.
+    """
+    if language == ENGLISH:
+        return catalogs.NullTranslations()
+    try:
+        from babel.messages.mofile import write_mo
+        from babel.messages.pofile import read_po
+    except ImportError:
+        raise missing_package("babel") from None
+    compiled = BytesIO()
+    with catalog_file(language).open("rb") as file:
+        write_mo(compiled, read_po(file, locale=language))
+    compiled.seek(0)
+    return catalogs.GNUTranslations(compiled)

@@ -1,0 +1,105 @@
+"""The pages in other languages: all their prose goes through the catalog, and each has its twin."""
+
+import re
+from gettext import NullTranslations
+from xml.etree.ElementTree import Element
+
+import pages
+import pytest
+from click.testing import CliRunner
+
+from holonom import language
+from holonom.cli import holonom
+from holonom.companion import book, motions
+from holonom.companion.paper import REPOSITORY, book_of_the_paper
+from holonom.files import write_whole_directory
+from holonom.language import speaking
+
+PLACEHOLDER = re.compile(r"%\(\w+\)[.\d]*[a-z]")
+OPEN, CLOSE = "⟦", "⟧"
+CODE = {"code", "pre", "math", "script", "style", "select"}
+
+
+@pytest.fixture(scope="module")
+def twins(tmp_path_factory):
+    """Directory of a companion in English and Chinese."""
+    directory = tmp_path_factory.mktemp("twins") / "pages"
+    cabin = REPOSITORY / "examples" / "weightless_cabin.mac"
+    arguments = ["companion", str(cabin), "-o", str(directory), "--language", "en", "--language", "zh"]
+    assert CliRunner(mix_stderr=False).invoke(holonom, arguments, standalone_mode=False).return_value == 0
+    return directory
+
+
+def test_every_page_has_its_twin_and_names_its_language(twins):
+    chinese = {page.relative_to(twins / "zh") for page in pages.pages(twins / "zh")}
+    assert {page.relative_to(twins) for page in pages.pages(twins)} == chinese | {"zh" / page for page in chinese}
+    for page in chinese:
+        assert pages.parsed(twins / page).get("lang") == "en"
+        assert pages.parsed(twins / "zh" / page).get("lang") == "zh"
+
+
+def test_every_page_links_its_twin_in_both_directions(twins):
+    assert pages.broken_references(twins) == []
+    for page in pages.pages(twins / "zh"):
+        twin = twins / page.relative_to(twins / "zh")
+        assert linked(page, "en") == [twin.resolve()] * 2
+        assert linked(twin, "zh") == [page.resolve()] * 2
+
+
+def linked(page, hreflang: str) -> list:
+    """The pages in another language that a page links to, in its head and for the reader."""
+    elements = [each for each in pages.parsed(page).iter() if each.get("hreflang") == hreflang]
+    return [(page.parent / each.get("href")).resolve() for each in elements]
+
+
+class Bracketing(NullTranslations):
+    """A language that puts every message into brackets, and what stands in its places outside of them."""
+
+    def gettext(self, message):
+        return OPEN + PLACEHOLDER.sub(lambda place: CLOSE + place[0] + OPEN, message) + CLOSE
+
+    def ngettext(self, singular, plural, count):
+        return self.gettext(plural)
+
+
+@pytest.fixture(scope="module")
+def bracketed(results, tmp_path_factory):
+    """Directory of the companion of the paper in that language; the pictures of the gallery are left out."""
+    directory = tmp_path_factory.mktemp("bracketed") / "pages"
+    known = language._catalog
+    with pytest.MonkeyPatch.context() as changed:
+        changed.setattr(language, "_catalog", lambda name: Bracketing() if name == "zh" else known(name))
+        changed.setattr(motions, "figures_of", lambda shown: {})
+        with speaking("zh"):
+            write_whole_directory(directory, book.pages(book_of_the_paper(), results))
+    return directory
+
+
+def prose(element: Element) -> str:
+    """The text of an element without mathematics and code."""
+    text = element.text or ""
+    for each in element:
+        tag = each.tag.rpartition("}")[2] if isinstance(each.tag, str) else "script"
+        text += ("" if tag in CODE or each.get("lang") == "en" else prose(each)) + (each.tail or "")
+    return text
+
+
+def outside(text: str) -> str:
+    """What is in no brackets."""
+    depth, found = 0, []
+    for letter in text:
+        depth += (letter == OPEN) - (letter == CLOSE)
+        found.append(letter if depth == 0 and letter != CLOSE else " ")
+    return "".join(found)
+
+
+def test_no_prose_of_the_paper_s_companion_stands_outside_of_the_catalog(bracketed):
+    found = {}
+    for page in pages.pages(bracketed):
+        if page.parent.name not in ("source", "reference"):
+            words = re.findall(r"[A-Za-z]{3,}", outside(prose(pages.parsed(page))))
+            found[page.name] = sorted(set(words) - NAMES)
+    assert {page: words for page, words in found.items() if words} == {}
+
+
+NAMES = set()
