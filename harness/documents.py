@@ -5,7 +5,7 @@ programs, which are read strictly where they are read.
 """
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from enum import StrEnum
 from fractions import Fraction
 from functools import cache
@@ -18,7 +18,7 @@ from .failures import Failure, HolonomError
 from .maxima import DEFAULT_LIMITS, NO_SETTINGS, ask_scene, run_batch
 
 if TYPE_CHECKING:
-    from jsonschema import Draft202012Validator
+    from jsonschema_rs import Draft202012Validator
 
 SCHEMAS = Path(__file__).with_name("schemas")
 VERSION = 1
@@ -125,14 +125,13 @@ def require(document: Document | Publication, content: Any) -> None:
     HolonomError
         It has not.
     """
-    from jsonschema.exceptions import best_match
+    errors = _validator(document).iter_errors(content)
+    if error := min(errors, key=lambda each: len(each.instance_path), default=None):
+        raise _refusal(document, f"at {_json_path(error.instance_path)}, {error.message[:SHOWN]}")
 
-    try:
-        error = best_match(_validator(document).iter_errors(content))
-    except RecursionError:
-        raise _refusal(document, "it is nested too deeply") from None
-    if error is not None:
-        raise _refusal(document, f"at {error.json_path}, {error.message[:SHOWN]}")
+
+def _json_path(steps: Iterable[str | int]) -> str:
+    return "$" + "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in steps)
 
 
 def published(name: Document | Publication, content: Mapping[str, Any]) -> dict[str, Any]:
@@ -147,7 +146,7 @@ def schema(name: str) -> dict[str, Any]:
 
 @cache
 def _validator(name: str) -> "Draft202012Validator":
-    from jsonschema import Draft202012Validator
+    from jsonschema_rs import Draft202012Validator
 
     return Draft202012Validator(schema(name))
 

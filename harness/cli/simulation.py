@@ -175,7 +175,7 @@ def _imported_meanwhile() -> Iterator[None]:
 
 def _import_what_follows(own_process: bool) -> None:
     with suppress(ImportError, HolonomError):  # what is missing is told when it is needed
-        import jsonschema  # noqa: F401
+        import jsonschema_rs  # noqa: F401
 
         if own_process:
             _import_heyoka_alone()
