@@ -25,12 +25,10 @@ from pathlib import Path
 from .confined import MIB, Confinement, LimitExceeded, Limits, Sandbox, run_confined, surroundings
 from .failures import Failure, HolonomError
 from .files import near_file, private_directory, shared
-from .preloaded import ARGUMENTS, ENVIRONMENT, QUIET, preloaded_image
+from .preloaded import ARGUMENTS, ENVIRONMENT, JOBS, QUIET, preloaded_image, quoted
 from .supervisor import doing
 
 LIBRARY = shared("maxima")
-HEADLESS = Path(__file__).with_name("headless.lisp")
-DESCRIPTION = Path(__file__).with_name("description.lisp")
 DEFAULT_LIMITS = Limits()
 NO_SETTINGS: Mapping[str, str] = {}
 LAST_LINES = 10  # lines of Maxima's output that an error carries
@@ -124,7 +122,7 @@ def ask_scene(
         return run_batch(scene, writer, limits, settings)
     began = time.monotonic()
     with doing("running the scene file"), _new_run(scene, limits, settings) as run:
-        printed = _run(run, f"run-scene {_copy(run)} {_quoted(run.leaves('description').name)}", writer)
+        printed = _run(run, f"run-scene {_copy(run)} {quoted(run.leaves('description').name)}", writer)
         description = _left_behind(run, "description", printed)
     rest = replace(limits, seconds=limits.seconds - (time.monotonic() - began))
     with doing("deriving with Maxima"), _new_run(scene, rest, settings) as run:
@@ -182,7 +180,7 @@ def run_rtest(rtest: Path, limits: Limits = DEFAULT_LIMITS) -> int:
         raise HolonomError(Failure.RTEST_UNPAIRED, rtest)
     with _new_run(LIBRARY / "holonom.mac", limits, NO_SETTINGS) as run:
         shutil.copy(rtest, run.directory)  # for Maxima leaves a list of errors beside the file it tests
-        test = _quoted(f"(open_namespace(), batch({_quoted(rtest.name)}, test))$")
+        test = quoted(f"(open_namespace(), batch({quoted(rtest.name)}, test))$")
         printed = _run(run, f"run-file {_copy(run)} {test}", test)
     if re.findall(r"(\d+)/(\d+) tests passed", printed) != [(str(tests), str(tests))]:
         raise HolonomError(Failure.RTEST_FAILED, rtest, str(tests), last_lines=tuple(printed.splitlines()))
@@ -273,7 +271,7 @@ def read_maxima_text(file: Path) -> str:
 
 def _call(writer: str, run: Run) -> str:
     """Maxima text that writes the document, as Lisp text."""
-    return _quoted(f"{writer}({_quoted(run.leaves('document').name)})$")
+    return quoted(f"{writer}({quoted(run.leaves('document').name)})$")
 
 
 def _run(run: Run, start: str, writer: str) -> str:
@@ -281,15 +279,13 @@ def _run(run: Run, start: str, writer: str) -> str:
     maxima = _maxima()
     outcome = run.leaves("outcome")
     preparation = f"(holonom_print : false, {_set(run.settings)})$"
-    arguments = [_quoted(each) for each in (run.file.resolve(), LIBRARY, preparation, outcome.name, run.mark)]
-    parts = [
-        *(each.read_text(encoding="utf-8") for each in (HEADLESS, DESCRIPTION)),
-        f"({start} '({' '.join(arguments)}))\n",
-    ]
-    (run.directory / "job.lisp").write_bytes(os.fsencode("\n".join(parts)))
+    arguments = [quoted(each) for each in (run.file.resolve(), LIBRARY, preparation, outcome.name, run.mark)]
     confinement = _confinement(run, Path(maxima))
     image = preloaded_image(maxima, LIBRARY, frozenset(_passed_on().items()))
     program = [maxima] if image is None else [str(image), *ARGUMENTS]
+    known = () if image else JOBS
+    parts = [*(each.read_text(encoding="utf-8") for each in known), f"({start} '({' '.join(arguments)}))\n"]
+    (run.directory / "job.lisp").write_bytes(os.fsencode("(in-package :maxima)\n" + "\n".join(parts)))
     command = [*program, *QUIET, "--preload-lisp=job.lisp"]
     output = bytearray()
     try:
@@ -420,11 +416,6 @@ def _set(settings: Mapping[str, str]) -> str:
 
 def _repeating_command(file: Path, call: str, settings: Mapping[str, str]) -> str:
     """A shell command that repeats a run with Maxima alone."""
-    search = f"file_search_maxima : cons({_quoted(LIBRARY / '$$$.mac')}, file_search_maxima)$"
-    statements = f"{_set(settings)}$ {search} batch({_quoted(file.resolve())})$ {call}"
+    search = f"file_search_maxima : cons({quoted(LIBRARY / '$$$.mac')}, file_search_maxima)$"
+    statements = f"{_set(settings)}$ {search} batch({quoted(file.resolve())})$ {call}"
     return f"maxima --init=/dev/null --batch-string={shlex.quote(statements)} </dev/null"
-
-
-def _quoted(text: str | Path) -> str:
-    """A string literal, for Lisp and for Maxima alike."""
-    return '"' + str(text).replace("\\", "\\\\").replace('"', '\\"') + '"'

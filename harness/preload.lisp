@@ -1,29 +1,37 @@
 ;;; Maxima with the library loaded, saved as an image
 ;;;
-;;; GCL interprets what it loads as text. The library's Lisp functions are compiled first, all as one file, where there
-;;; is a C compiler; the file is kept with what it was compiled to, and serves as long as the functions do not change.
+;;; GCL interprets what it loads as text. The Lisp functions of the library and of the files that runs are made of are
+;;; compiled first, all as one file, where there is a C compiler; the file is kept with what it was compiled to, and
+;;; serves as long as the functions do not change.
 
 (in-package :maxima)
 
-(defun save-with-library (library)
-  "Load the library, compile its functions, and save this Maxima in a file called image, in the working directory."
+(defun save-with-library (library &rest jobs)
+  "Load the library and the files JOBS, compile their functions, and save this Maxima in a file called image, in the
+working directory."
   (mfuncall '$load (concatenate 'string library "/holonom.mac"))
   (mfuncall '$load "stringproc")        ; which Maxima looks for and interprets when its first function is called
   (setf (symbol-function 'cl-info::load-primary-index) #'(lambda () nil)) ; it is in the image, too
-  (ignore-errors (load-compiled (library-functions library)))
+  (mapc #'load jobs)
+  (ignore-errors (load-compiled (functions-of library jobs)))
   (setq *maxima-started* nil *asked-for* nil)
   #+gcl (si::save-system "image")
   (quit))
 
-(defun library-functions (library)
-  "The text of all functions that the library defines in Lisp."
+(defun functions-of (library jobs)
+  "The text of all functions that the library, in its namespace, and the files JOBS define in Lisp."
   (with-output-to-string (out)
     (let ((*package* (find-package :maxima)) (*print-pretty* nil))
       (dolist (path (append (directory (concatenate 'string library "/one_pass.lisp"))
                             (directory (concatenate 'string library "/*/*.lisp"))))
-        (with-open-file (in path)
-          (dolist (form (lisp-in-namespace (lisp-forms in)))
-            (if (and (eq (first form) 'defun) (fboundp (second form))) (format out "~S~%" form))))))))
+        (write-functions (lisp-in-namespace (forms-in path)) out))
+      (dolist (path jobs) (write-functions (forms-in path) out)))))
+
+(defun forms-in (path) (with-open-file (in path) (lisp-forms in)))
+
+(defun write-functions (forms out)
+  (dolist (form forms)
+    (if (and (eq (first form) 'defun) (fboundp (second form))) (format out "~S~%" form))))
 
 (defun load-compiled (text)
   "Load functions, compiled now or kept from before: kept.lisp and kept.o."

@@ -1,6 +1,6 @@
 """Maxima with the library already loaded, kept as an image in the user's cache: each run is spared the loading.
 
-In it the library's Lisp functions are compiled (`preload.lisp`).
+In it the library's Lisp functions, and those that runs are made of, are compiled (`preload.lisp`).
 An image is made when it is first wanted, by Maxima itself, and bears the name of all that it depends on: the program,
 the library's text, this file. It is used only where it belongs to the user, is out of others' reach, and has the
 checksum that it was made with; where there is none, or none can be made, a run loads the library, and finds the same.
@@ -36,7 +36,8 @@ FREE_SPACE = 1024 * MIB  # on a fuller disk none is made
 MAKING = Limits(seconds=40.0, sandbox=Sandbox.TRUSTED)  # the library alone is run
 BOOT = Path("/proc/sys/kernel/random/boot_id")  # Linux names there each start of the machine
 PRELOAD = Path(__file__).with_name("preload.lisp")
-COMPILED = ("functions.lisp", "functions.o")  # the library's Lisp functions, and what they were compiled to
+JOBS = tuple(Path(__file__).with_name(f"{name}.lisp") for name in ("headless", "description"))  # what runs are made of
+COMPILED = ("functions.lisp", "functions.o")  # all Lisp functions, and what they were compiled to
 
 
 @cache
@@ -67,6 +68,11 @@ def preloaded_image(maxima: str, library: Path, environment: frozenset[tuple[str
     return None
 
 
+def quoted(text: str | Path) -> str:
+    """A string literal, for Lisp and for Maxima alike."""
+    return '"' + str(text).replace("\\", "\\\\").replace('"', '\\"') + '"'
+
+
 def _own_folder() -> Path:
     """The folder of the images; refused where others may write to it."""
     folder = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache", "holonom")
@@ -80,7 +86,7 @@ def _own_folder() -> Path:
 def _name(maxima: str, library: Path, environment: frozenset[tuple[str, str]]) -> str:
     program = Path(maxima).resolve()
     known = [program, program.stat().st_size, program.stat().st_mtime_ns, library, sorted(environment)]
-    texts = [Path(__file__), PRELOAD, *sorted(_texts(library))]
+    texts = [Path(__file__), PRELOAD, *JOBS, *sorted(_texts(library))]
     return sha256(b"\0".join([repr(known).encode(), *(each.read_bytes() for each in texts)])).hexdigest()
 
 
@@ -145,8 +151,8 @@ def _make(image: Path, maxima: str, library: Path, environment: Mapping[str, str
     kept = [image.with_name(name) for name in COMPILED]
     with private_directory() as directory, draft_of(image) as draft:
         _take_along(kept, directory)
-        quoted = str(library).replace("\\", "\\\\").replace('"', '\\"')
-        asked = f'{PRELOAD.read_text(encoding="utf-8")}\n(save-with-library "{quoted}")\n'
+        names = " ".join(map(quoted, (library, *JOBS)))
+        asked = f"{PRELOAD.read_text(encoding='utf-8')}\n(save-with-library {names})\n"
         (directory / "save.lisp").write_text(asked, encoding="utf-8")
         inside = {"HOME": str(directory), "TMPDIR": str(directory), "MAXIMA_USERDIR": str(directory), "LC_ALL": "C"}
         confinement = Confinement(directory, {**environment, **ENVIRONMENT, **inside}, (), MAKING)
