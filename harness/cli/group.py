@@ -52,7 +52,8 @@ class Commands(click.Group):
         try:
             return super().resolve_command(ctx, args)
         except click.UsageError as error:
-            if near := get_close_matches(args[0], self.list_commands(ctx)):
+            near = get_close_matches(args[0], self.list_commands(ctx))
+            if near and "Did you mean" not in error.message:  # newer versions of Click say it themselves
                 error.message += f" Did you mean {' or '.join(near)}?"
             raise
 
