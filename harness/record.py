@@ -237,11 +237,6 @@ def derived_record(
 def read_record(text: str) -> Record:
     """Read a derivation record.
 
-    Parameters
-    ----------
-    text : str
-        The JSON document.
-
     Returns
     -------
     Record

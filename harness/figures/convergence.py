@@ -109,13 +109,7 @@ class RadiiFound(NamedTuple):
 
 
 def find_radii() -> RadiiFound:
-    """Estimate the radii that `draw_radius` draws.
-
-    Raises
-    ------
-    HolonomError
-        As `holonom.series.power_series.compute_series`.
-    """
+    """Estimate the radii that `draw_radius` draws; raises as `holonom.series.power_series.compute_series`."""
     coarse, fine = (_radii(LINEAR, order) for order in ORDERS_OF_RADII)
     return RadiiFound(coarse, fine, _radii(EXPONENTIAL, ORDER_OF_ENTIRE))
 

@@ -12,6 +12,27 @@ from .motion_program import Atom, Call, Constant, Expression, Name, Operation, P
 
 Value = TypeVar("Value")
 
+ELEMENTARY = {
+    Operation.SQRT: "sqrt",
+    Operation.EXP: "exp",
+    Operation.LN: "log",
+    Operation.SIN: "sin",
+    Operation.COS: "cos",
+    Operation.TAN: "tan",
+    Operation.SINH: "sinh",
+    Operation.COSH: "cosh",
+    Operation.TANH: "tanh",
+    Operation.ARCSIN: "asin",
+    Operation.ARCCOS: "acos",
+    Operation.ARCTAN: "atan",
+    Operation.ARCTAN2: "atan2",
+    Operation.ARSINH: "asinh",
+    Operation.ARCOSH: "acosh",
+    Operation.ARTANH: "atanh",
+    Operation.ERF: "erf",
+}
+"""Functions that C, Python, NumPy, JavaScript and heyoka call by the same names."""
+
 
 @dataclass(frozen=True)
 class Arithmetic(Generic[Value]):

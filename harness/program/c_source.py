@@ -16,33 +16,13 @@ from textwrap import indent
 
 from ..failures import Failure, HolonomError
 from . import infix
-from .arithmetic import Arithmetic
+from .arithmetic import ELEMENTARY, Arithmetic
 from .infix import Formula
 from .motion_program import Constant, Operation, Program, names_in
 
 IDENTIFIER = re.compile(r"[A-Za-z]\w*", re.ASCII)
 
-FUNCTIONS = {
-    Operation.SQRT: "sqrt",
-    Operation.EXP: "exp",
-    Operation.LN: "log",
-    Operation.ABS: "fabs",
-    Operation.SIGN: "sign",
-    Operation.SIN: "sin",
-    Operation.COS: "cos",
-    Operation.TAN: "tan",
-    Operation.SINH: "sinh",
-    Operation.COSH: "cosh",
-    Operation.TANH: "tanh",
-    Operation.ARCSIN: "asin",
-    Operation.ARCCOS: "acos",
-    Operation.ARCTAN: "atan",
-    Operation.ARCTAN2: "atan2",
-    Operation.ARSINH: "asinh",
-    Operation.ARCOSH: "acosh",
-    Operation.ARTANH: "atanh",
-    Operation.ERF: "erf",
-}
+FUNCTIONS = ELEMENTARY | {Operation.ABS: "fabs", Operation.SIGN: "sign"}
 
 HELPERS = """\
 static inline double square(double x) { return x*x; }

@@ -132,11 +132,6 @@ def scene_costs(file: Path, request: Request, limits: Limits) -> MeasuredCosts:
 def read_costs(text: str) -> Costs:
     """Read the document of what a scene pays for.
 
-    Parameters
-    ----------
-    text : str
-        JSON, as Maxima writes it.
-
     Raises
     ------
     HolonomError

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..failures import Failure, HolonomError, missing_package, require_room
-from .arithmetic import Arithmetic, run_program
+from .arithmetic import ELEMENTARY, Arithmetic, run_program
 from .motion_program import Constant, Operation, Program
 
 if TYPE_CHECKING:
@@ -23,26 +23,6 @@ if TYPE_CHECKING:
 # Operations from which heyoka's compact mode is taken. Measured on chains: at 2000 both modes compile in the same time
 # and compact code is a quarter slower; at 4000 it compiles in 60 % of the time and is as fast.
 COMPACT_FROM = 3000
-
-FUNCTIONS = {
-    Operation.SQRT: "sqrt",
-    Operation.EXP: "exp",
-    Operation.LN: "log",
-    Operation.SIN: "sin",
-    Operation.COS: "cos",
-    Operation.TAN: "tan",
-    Operation.SINH: "sinh",
-    Operation.COSH: "cosh",
-    Operation.TANH: "tanh",
-    Operation.ARCSIN: "asin",
-    Operation.ARCCOS: "acos",
-    Operation.ARCTAN: "atan",
-    Operation.ARCTAN2: "atan2",
-    Operation.ARSINH: "asinh",
-    Operation.ARCOSH: "acosh",
-    Operation.ARTANH: "atanh",
-    Operation.ERF: "erf",
-}
 
 
 class HeyokaFunction:
@@ -174,7 +154,7 @@ def _arithmetic(heyoka: ModuleType, number: Callable[[Fraction], object]) -> Ari
         constants={Constant.PI: heyoka.pi, Constant.E: heyoka.exp(constant(Fraction(1)))},
         power=power,
         operations={
-            **{operation: getattr(heyoka, function) for operation, function in FUNCTIONS.items()},
+            **{operation: getattr(heyoka, function) for operation, function in ELEMENTARY.items()},
             Operation.ADD: lambda *terms: heyoka.sum(list(terms)),
             Operation.MULTIPLY: lambda *factors: heyoka.prod(list(factors)),
             Operation.SUBTRACT: lambda a, b: a - b,

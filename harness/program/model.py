@@ -83,11 +83,6 @@ def scene_model(file: Path, request: Request, parameters: Sequence[str], limits:
 def read_model(text: str) -> Model:
     """Read the document of a model.
 
-    Parameters
-    ----------
-    text : str
-        JSON, as Maxima writes it.
-
     Raises
     ------
     HolonomError

@@ -256,11 +256,6 @@ def problem_document(
 def read_problem(text: str) -> MotionProblem:
     """Read the document of a motion problem.
 
-    Parameters
-    ----------
-    text : str
-        JSON, as Maxima writes it.
-
     Raises
     ------
     HolonomError

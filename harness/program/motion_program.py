@@ -129,11 +129,6 @@ class Program:
 def read_program(text: str) -> Program:
     """Read the document of a motion program.
 
-    Parameters
-    ----------
-    text : str
-        JSON, as Maxima writes it.
-
     Raises
     ------
     HolonomError

@@ -16,33 +16,17 @@ from types import CodeType, FunctionType
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arithmetic import Arithmetic
+from .arithmetic import ELEMENTARY, Arithmetic
 from .motion_program import Constant, Name, Operation, Program, names_in
 
 BLOCK = 4096  # points carried through the program at a time; the fastest of 256, 1024, 4096 and 16384 as measured
 
-UFUNCS = {
-    Operation.SQRT: np.sqrt,
-    Operation.EXP: np.exp,
-    Operation.LN: np.log,
+OF_SCIPY = {Operation.ERF: ELEMENTARY[Operation.ERF]}  # ufuncs of scipy.special, loaded where a program calls one
+UFUNCS = {operation: getattr(np, name) for operation, name in ELEMENTARY.items() if operation not in OF_SCIPY} | {
     Operation.ABS: np.abs,
     Operation.SIGN: np.sign,
-    Operation.SIN: np.sin,
-    Operation.COS: np.cos,
-    Operation.TAN: np.tan,
-    Operation.SINH: np.sinh,
-    Operation.COSH: np.cosh,
-    Operation.TANH: np.tanh,
-    Operation.ARCSIN: np.arcsin,
-    Operation.ARCCOS: np.arccos,
-    Operation.ARCTAN: np.arctan,
-    Operation.ARCTAN2: np.arctan2,
-    Operation.ARSINH: np.arcsinh,
-    Operation.ARCOSH: np.arccosh,
-    Operation.ARTANH: np.arctanh,
 }
 UFUNC_NAMES = {ufunc.__name__: ufunc for ufunc in (*UFUNCS.values(), np.square, np.power)}
-OF_SCIPY = {Operation.ERF: "erf"}  # ufuncs of scipy.special, which is loaded where a program calls one
 
 
 class NumpyFunction:

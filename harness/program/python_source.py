@@ -10,31 +10,14 @@ from functools import partial
 
 from ..failures import Failure, HolonomError
 from . import infix
-from .arithmetic import Arithmetic
+from .arithmetic import ELEMENTARY, Arithmetic
 from .c_source import IDENTIFIER, comment_text, title_of
 from .infix import Formula, Rank
 from .motion_program import Constant, Operation, Program
 
-FUNCTIONS = {
-    Operation.SQRT: "functions.sqrt",
-    Operation.EXP: "functions.exp",
-    Operation.LN: "functions.log",
+FUNCTIONS = {operation: f"functions.{name}" for operation, name in ELEMENTARY.items()} | {
     Operation.ABS: "abs",
     Operation.SIGN: "sign",
-    Operation.SIN: "functions.sin",
-    Operation.COS: "functions.cos",
-    Operation.TAN: "functions.tan",
-    Operation.SINH: "functions.sinh",
-    Operation.COSH: "functions.cosh",
-    Operation.TANH: "functions.tanh",
-    Operation.ARCSIN: "functions.asin",
-    Operation.ARCCOS: "functions.acos",
-    Operation.ARCTAN: "functions.atan",
-    Operation.ARCTAN2: "functions.atan2",
-    Operation.ARSINH: "functions.asinh",
-    Operation.ARCOSH: "functions.acosh",
-    Operation.ARTANH: "functions.atanh",
-    Operation.ERF: "functions.erf",
 }
 
 SOURCE = '''\
