@@ -150,22 +150,32 @@ def _make(image: Path, maxima: str, library: Path, environment: Mapping[str, str
         raise OSError(None, "there is too little space", str(image))
     kept = [image.with_name(name) for name in COMPILED]
     with private_directory() as directory, draft_of(image) as draft:
-        _take_along(kept, directory)
-        names = " ".join(map(quoted, (library, *JOBS)))
-        asked = f"{PRELOAD.read_text(encoding='utf-8')}\n(save-with-library {names})\n"
-        (directory / "save.lisp").write_text(asked, encoding="utf-8")
         inside = {"HOME": str(directory), "TMPDIR": str(directory), "MAXIMA_USERDIR": str(directory), "LC_ALL": "C"}
         confinement = Confinement(directory, {**environment, **ENVIRONMENT, **inside}, (), MAKING)
-        run_confined([maxima, *QUIET, "--preload-lisp=save.lisp"], confinement, bytearray())
-        if (directory / "image").exists():
-            shutil.move(directory / "image", draft)
-            draft.chmod(0o500)
-        if run_confined([str(draft), *ARGUMENTS, *QUIET, "--batch-string=quit();"], confinement, bytearray()) != 0:
+        _take_along(kept, directory)
+        _save(draft, maxima, library, confinement)
+        if not _runs(draft, confinement):
             draft.unlink(missing_ok=True)
             draft.touch()
         _keep([directory / name for name in COMPILED], kept)
         _checksum_file([image]).write_text(_checksum([draft]), encoding="ascii")
         draft.replace(image)
+
+
+def _save(draft: Path, maxima: str, library: Path, confinement: Confinement) -> None:
+    """Have Maxima save itself with the library; there is no draft where it cannot."""
+    names = " ".join(map(quoted, (library, *JOBS)))
+    asked = f"{PRELOAD.read_text(encoding='utf-8')}\n(save-with-library {names})\n"
+    (confinement.directory / "save.lisp").write_text(asked, encoding="utf-8")
+    run_confined([maxima, *QUIET, "--preload-lisp=save.lisp"], confinement, bytearray())
+    saved = confinement.directory / "image"
+    if saved.exists():
+        shutil.move(saved, draft)
+        draft.chmod(0o500)
+
+
+def _runs(program: Path, confinement: Confinement) -> bool:
+    return run_confined([str(program), *ARGUMENTS, *QUIET, "--batch-string=quit();"], confinement, bytearray()) == 0
 
 
 def _take_along(kept: Sequence[Path], directory: Path) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from holonom.maxima_path import put_into_maxima
+from holonom.installation import put_into_maxima
 from holonom.reference.entries import function_texts
 
 ROOT = Path(__file__).parents[1]

@@ -6,7 +6,7 @@ internal error, 130 when interrupted, 141 where nobody reads what is written.
 Modules are imported inside the commands: ``holonom --help`` waits for no SymPy.
 """
 
-from . import benchmark, companion, derivation, free_motion, installation, programs, series, simulation, sweep
+from . import benchmark, companion, derivation, free_motion, installation, motion, programs, sweep
 from .group import holonom, main, run
 
 __all__ = [
@@ -17,9 +17,8 @@ __all__ = [
     "holonom",
     "installation",
     "main",
+    "motion",
     "programs",
     "run",
-    "series",
-    "simulation",
     "sweep",
 ]

@@ -58,7 +58,7 @@ def maxima_path() -> int:
     Then `? holonomic_system`, example(holonomic_system) and demo(holonom) work in Maxima as well. The directory is the
     one that MAXIMA_USERDIR names, or .maxima in the home directory; no file of yours there is replaced.
     """
-    from ..maxima_path import put_into_maxima, user_directory
+    from ..installation import put_into_maxima, user_directory
     from .tables.text import make_console
 
     stub = put_into_maxima(user_directory())

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.integrate import cumulative_simpson
 from sympy import Expr, Symbol
 
-from ..crosscheck.reaction_power import power_of_forces, reaction_power
+from ..crosscheck.independent import power_of_forces, reaction_power
 from ..crosscheck.system import described_system
 from ..record import Scene, System
 from ..simulation.result import Simulation
