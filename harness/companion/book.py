@@ -39,7 +39,6 @@ class Book:
 
     Attributes
     ----------
-    title, subtitle : str
     foreword : str
         Template of what the first page says before the contents.
     command : str
@@ -78,13 +77,11 @@ def make_book(
 
     Parameters
     ----------
-    book : Book
     directory : Path
         Where the pages are put, those of each language but the first in a directory of its name; of a companion that is
         there, the pages are replaced and what else there is stays.
     pdf : Path or None
         The file that they are printed to as one book; of each language but the first, with its name before the ending.
-    languages : sequence of str
     done : callable
         Called each time that one of the runs is done.
 
@@ -138,7 +135,6 @@ def pages(book: Book, results: Mapping[Run, Any], twins: tuple[Twin, ...] = ()) 
 
     Parameters
     ----------
-    book : Book
     results : mapping of Run to object
         Of all the book's runs.
     twins : tuple of Twin

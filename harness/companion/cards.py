@@ -23,7 +23,6 @@ class Instance:
     ----------
     title : str
         The system, or the scene of it.
-    equation : Equation
     verdicts : tuple of EquationVerdict
         What the cross-check says of it; a third opinion is one more.
     """
@@ -79,7 +78,6 @@ def derivation_cards(
         Which ones; the cards come in the order of the first record.
     derivations : sequence of Derived
         The first has the equations that are shown, the others those shown on request.
-    printed : iterable of PrintedEquation
     root : Path
         The repository that the Maxima lines are taken from.
     """
@@ -98,11 +96,8 @@ def scene_cards(
 
     Parameters
     ----------
-    numbers : sequence of str
     scenes : sequence of (Derived, str)
         The derivation, and the name of the scene in it.
-    printed : iterable of PrintedEquation
-    root : Path
     prefix : str
         What the anchors begin with, where a page shows the cards of several scenes.
     """

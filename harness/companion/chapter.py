@@ -56,7 +56,6 @@ class Chapter:
     ----------
     slug : str
         Name of the page's file, without its ending.
-    title : str
     aim : str
         What the chapter is about, in one line of the contents.
     template : str

@@ -20,7 +20,6 @@ class Excerpt:
         What is defined.
     first_line : int
         Line of the file that the excerpt starts in, from 1.
-    text : str
     """
 
     file: str
@@ -36,8 +35,6 @@ def excerpt(root: Path, file: str, name: str) -> Excerpt:
     ----------
     root : Path
         The directory that `file` is relative to.
-    file : str
-    name : str
 
     Raises
     ------

@@ -69,14 +69,10 @@ def follow(file: Path, scene: str | None, until: Fraction | None, settings: Sett
 
     Parameters
     ----------
-    file : Path
     scene : str or None
         Without a name, the last one of the file.
     until : Fraction or None
         Without it, the end of the scene's time span.
-    settings : tuple of (str, str)
-    limits : Limits
-        What Maxima may take.
 
     Raises
     ------

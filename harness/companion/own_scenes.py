@@ -27,7 +27,6 @@ def book_of_scenes(files: Sequence[Path], settings: Settings, limits: Limits) ->
 
     Parameters
     ----------
-    files : sequence of Path
     settings : tuple of (str, str)
         Numbers for what the files leave open.
     limits : Limits

@@ -41,7 +41,6 @@ class Entry:
     ----------
     label : str
         Its number, or the letter of an appendix.
-    slug, title, aim : str
     """
 
     label: str
@@ -64,7 +63,6 @@ class Twin:
 
     Attributes
     ----------
-    language : str
     directory : str
         From this book's own, with a slash at its end.
     """
@@ -84,14 +82,12 @@ class Contents:
 
     Attributes
     ----------
-    title, subtitle : str
     foreword : str
         Template of what the first page says before the contents.
     command : str
         The command that makes the book.
     maxima : str
         Version of Maxima that derived it.
-    parts : tuple of Part
     sessions : frozenset of str
         Slugs of the chapters that have a session of Maxima.
     language : str
@@ -126,7 +122,6 @@ def chapter_page(book: Contents, chapter: Chapter, content: Mapping[str, Any]) -
 
     Parameters
     ----------
-    book : Contents
     chapter : Chapter
         One of the book's.
     content : mapping of str to object
@@ -163,10 +158,8 @@ def printed_page(
 
     Parameters
     ----------
-    book : Contents
     front : Markup
         Title and foreword.
-    chapters : sequence of (Entry, Markup)
     sheets : mapping of str to int
         The sheet that each place is on, as far as it is known.
     """

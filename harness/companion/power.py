@@ -48,7 +48,6 @@ def energy_balance(system: System, scene: Scene, motion: Simulation) -> EnergyBa
     ----------
     system : System
         Without potential energy.
-    scene : Scene
     motion : Simulation
         Of that scene, with its multipliers, at many equidistant instants.
     """

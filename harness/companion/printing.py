@@ -45,7 +45,6 @@ def print_book(contents: Contents, files: Mapping[str, str | bytes], pdf: Path) 
 
     Parameters
     ----------
-    contents : Contents
     files : mapping of str to str or bytes
         All that the book consists of, by name: pages, figures, style and font.
     pdf : Path

@@ -58,7 +58,6 @@ class FileAnswers:
 
     Attributes
     ----------
-    derived : Derived
     free : mapping of str to FreeMotion or Refusal
         By scene.
     series : mapping of str to MotionSeries or Refusal

@@ -119,7 +119,6 @@ def draw_radius(found: RadiiFound, file: Path) -> None:
 
     Parameters
     ----------
-    found : RadiiFound
     file : Path
         The SVG file to write.
 

@@ -39,9 +39,6 @@ class Grid:
 
     Attributes
     ----------
-    name : str
-    first, last : float
-    count : int
     text : str
         How they were asked for.
     """
@@ -64,8 +61,6 @@ class Listed:
 
     Attributes
     ----------
-    name : str
-    numbers : tuple of float
     text : str
         How they were asked for.
     """
@@ -93,9 +88,6 @@ class Sample:
 
     Attributes
     ----------
-    name : str
-    distribution : Distribution
-    first, second : float
     text : str
         How they were asked for.
     """
@@ -123,11 +115,8 @@ class Axes:
 
     Attributes
     ----------
-    values : tuple of Grid or Listed
-    samples : tuple of Sample
     size : int
         Members of the sample; one without samples.
-    seed : int
     """
 
     values: tuple[Values, ...]

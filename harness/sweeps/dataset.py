@@ -50,7 +50,6 @@ class SweepFolder:
 
     Parameters
     ----------
-    path : Path
     document : mapping
         What the sweep is, as `sweep.json` among the schemas says.
 

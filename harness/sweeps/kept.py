@@ -65,7 +65,6 @@ class Kept:
     ----------
     text : str
         As it was asked for, without blanks: the name of its column.
-    kind : Kind
     quantity : Expression or None
         None where the whole motion is meant.
     instant : Fraction or None

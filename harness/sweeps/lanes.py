@@ -220,7 +220,6 @@ class _Along:
 
     Parameters
     ----------
-    integrator : heyoka.taylor_adaptive_batch
     first : int
         Place in the state of the first of them.
     """

@@ -40,8 +40,6 @@ def along_motion(problem: MotionProblem, known: Known) -> dict[str, Any]:
 
     Parameters
     ----------
-    problem : MotionProblem
-        Without an obstacle.
     known : mapping of str to heyoka.expression
         The time, the state and the open parameters.
     """
@@ -55,7 +53,6 @@ def expressions_of(quantities: Sequence[Expression], known: Known) -> list[Any]:
 
     Parameters
     ----------
-    quantities : sequence of Expression
     known : mapping of str to heyoka.expression
         What they are made of.
     """

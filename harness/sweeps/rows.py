@@ -60,8 +60,6 @@ class Plan:
     ----------
     problem : MotionProblem
         Its open parameters are those that vary.
-    axes : Axes
-    kept : tuple of Kept
     tol : float
         Tolerance of a step.
     until : Fraction or None
@@ -302,7 +300,6 @@ class _Rows:
     Parameters
     ----------
     values : ndarray, shape (p, k)
-    columns : tuple of str
     """
 
     def __init__(self, values: Floats, columns: tuple[str, ...]) -> None:

@@ -39,8 +39,6 @@ class SweepRequest:
 
     Parameters
     ----------
-    axes : Axes
-    kept : tuple of Kept
     tol : float
         Tolerance of a step.
     until : Fraction or None
@@ -135,14 +133,8 @@ def run_sweep(
 
     Parameters
     ----------
-    file : Path
-        The scene file.
-    request : Request
-    wanted : SweepRequest
     folder : Path
         Where its files are, or are to be.
-    limits : Limits
-        What Maxima may take.
     progress : callable or None
         Told how many rows are there, now and then.
 

@@ -36,8 +36,6 @@ class SingleMotions:
 
     Parameters
     ----------
-    problem : MotionProblem
-    request : SimulationRequest
     along, points : sequence of Expression
         Quantities to look at along the motion, and at the instants asked for.
     may_hide : bool

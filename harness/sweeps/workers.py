@@ -31,8 +31,6 @@ def compute(plan: Plan, chunks: Sequence[Chunk], take: Take, workers: int, sched
 
     Parameters
     ----------
-    plan : Plan
-    chunks : sequence of Chunk
     take : callable
         Is given each chunk with the bytes of its file.
     workers : int
@@ -62,7 +60,6 @@ def make_part(plan: bytes, chunk: Chunk) -> bytes:
     ----------
     plan : bytes
         A plan, pickled.
-    chunk : Chunk
 
     Returns
     -------

@@ -35,8 +35,6 @@ def taylor_ladder(
 
     Parameters
     ----------
-    problem : MotionProblem
-        Without an obstacle.
     precision : str
         As `holonom.program.precision.read_precision` takes it.
     """
@@ -122,13 +120,7 @@ RUNGE_KUTTA = translatable("Runge-Kutta engine")
 
 
 def runge_kutta_ladder(problem: MotionProblem, until: Fraction, tolerances: Sequence[float]) -> Iterator[Candidate]:
-    """The Runge-Kutta engine, tolerance by tolerance.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-        Without an obstacle.
-    """
+    """The Runge-Kutta engine, tolerance by tolerance."""
     for tol in tolerances:
         prepare = partial(_prepare_runge_kutta, problem, until, tol)
         yield Candidate(Group.RUNGE_KUTTA, RUNGE_KUTTA, f"tol {tol:g}", until, prepare)

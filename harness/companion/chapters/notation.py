@@ -21,7 +21,6 @@ class Symbol:
     ----------
     paper : str
         TeX.
-    meaning : str
     scene : str
         As it is written in a scene file and printed by Maxima.
     maxima : str

@@ -13,13 +13,7 @@ from ..evaluation import Numbers, zeros
 
 
 class ProgramProjection:
-    """Projects states in the mass metric, by the pivots of the motion program.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-        Without an obstacle.
-    """
+    """Projects states in the mass metric, by the pivots of the motion program."""
 
     def __init__(self, problem: MotionProblem, precision: Precision) -> None:
         self._nearest = problem.once(

@@ -34,12 +34,7 @@ HARDWARE = ("double", "extended")
 
 
 def better_code(code: Code, precision: Precision) -> Code | None:
-    """The next better code, if there is one in these numbers.
-
-    Returns
-    -------
-    Code or None
-    """
+    """The next better code, if there is one in these numbers."""
     if code is Code.UNROLLED or precision.name not in HARDWARE:
         return None
     return Code.COMPACT if code is Code.QUICK else Code.UNROLLED

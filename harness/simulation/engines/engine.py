@@ -16,7 +16,6 @@ class Piece(NamedTuple):
 
     Attributes
     ----------
-    start, end : number
     states : callable
         Takes instants of the step, shape (k,), to states, shape (2n, k): coordinates, then velocities.
     """
@@ -50,7 +49,6 @@ class Obstacle(HolonomError):
     ----------
     t : float
         The instant that is reached.
-    case : HardCase
     reason : str
         A clause about that instant.
     passed : callable
@@ -67,7 +65,6 @@ class Engine(Protocol):
 
     Attributes
     ----------
-    name : EngineName
     time : number
         The instant that is reached.
     state : ndarray, shape (2n,)
@@ -78,7 +75,6 @@ class Engine(Protocol):
         Tolerance of a step.
     code : str
         How heyoka compiled it; empty where it did not.
-    compile_seconds : float
     amid_passage : bool
         Whether a singular configuration is so near that only this engine can go on.
     """

@@ -48,7 +48,6 @@ class Integrator(Protocol):
         The instant that is reached; the length of the last step.
     state : ndarray, shape (2n,)
         At that instant, in place.
-    tol : number
     """
 
     time: Any
@@ -75,12 +74,8 @@ class ProgramEngine:
 
     Parameters
     ----------
-    problem : MotionProblem
-        Without an obstacle.
-    precision : Precision
     failed : object
         The outcome of the integrator's steps where the last one led to no numbers.
-
     """
 
     name: EngineName
@@ -115,7 +110,6 @@ class ProgramEngine:
 
         Parameters
         ----------
-        instant : number
         state : array_like, shape (2n,)
         """
         self._go_back(instant, state)

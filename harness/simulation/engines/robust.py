@@ -54,7 +54,6 @@ class RobustEngine:
 
     Parameters
     ----------
-    problem : MotionProblem
     tol : float or None
         Tolerance of a step, relative and absolute.
 
@@ -83,7 +82,6 @@ class RobustEngine:
 
         Parameters
         ----------
-        instant : float
         state : ndarray, shape (2n,)
         """
         self._arc: Arc | None = None

@@ -45,8 +45,6 @@ class RungeKuttaEngine(ProgramEngine):
 
     Parameters
     ----------
-    problem : MotionProblem
-        Without an obstacle.
     tol : float or None
         Tolerance of a step, relative and absolute; None for `USUAL`.
     drift : Stabilization
@@ -92,8 +90,6 @@ class PrinceDormand(ctypes.Structure):
 
     Parameters
     ----------
-    problem : MotionProblem
-        Without an obstacle.
     tol : float
         Relative and absolute.
     projects : bool
@@ -107,7 +103,6 @@ class PrinceDormand(ctypes.Structure):
         At that instant, in place.
     last_h : float
         Length of the last step.
-    tol : float
 
     Raises
     ------
@@ -148,8 +143,6 @@ class PrinceDormand(ctypes.Structure):
 
         Parameters
         ----------
-        until : float
-        max_steps : int
         c_output : bool
             Whether the states between the steps are wanted.
 

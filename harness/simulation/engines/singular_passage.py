@@ -39,7 +39,6 @@ class Arc:
 
     Attributes
     ----------
-    start, end : float
     coordinates, velocities : ndarray, shapes (NODES + 2, n) and (NODES + 1, n)
         Coefficients of Legendre's polynomials over the arc.
     """

@@ -30,8 +30,6 @@ class Leg(NamedTuple):
 
     Attributes
     ----------
-    engine : EngineName
-    start, end : float
     case : HardCase or None
         What the robust engine was called for; None where nobody called it.
     reason : str
@@ -50,9 +48,6 @@ class SwitchingEngine:
 
     Parameters
     ----------
-    problem : MotionProblem
-    request : SimulationRequest
-    precision : Precision
     end : number
         The last instant.
 

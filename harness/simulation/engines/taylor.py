@@ -33,12 +33,8 @@ class TaylorEngine(ProgramEngine):
 
     Parameters
     ----------
-    problem : MotionProblem
-        Without an obstacle.
     tol : float or None
         Tolerance of a step; None for the precision of the numbers.
-    precision : Precision or str
-    drift : Stabilization
     compact : bool or None
         Whether to compile in compact mode; None to begin with code that is quickly compiled, and to compile better
         code when what is left of a run earns that back.
@@ -138,7 +134,6 @@ def block_within(allowed: float, steps: int, drift: float) -> int:
 
     Parameters
     ----------
-    allowed : float
     steps : int
         Of the block before.
     drift : float
