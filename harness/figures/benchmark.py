@@ -23,7 +23,7 @@ SECONDS, OPERATIONS = translatable("time / s"), translatable("operations")
 
 
 @dataclass(frozen=True)
-class Panel:
+class View:
     """What one panel shows."""
 
     title: str
@@ -32,12 +32,12 @@ class Panel:
 
 
 PANELS = (
-    Panel(translatable("Methods, to t = %(until)g"), lambda m: _in_contest(m) and digits_of(m) <= FEW_DIGITS, SECONDS),
-    Panel(translatable("The same by operations"), lambda m: _in_contest(m) and digits_of(m) <= FEW_DIGITS, OPERATIONS),
-    Panel(translatable("Many digits, to t = %(until)g"), lambda m: m.group is Group.TAYLOR, SECONDS),
-    Panel(translatable("The same by operations"), lambda m: m.group is Group.TAYLOR, OPERATIONS),
-    Panel(translatable("One series, to t = %(instant)g, order by order"), lambda m: m.group is Group.SERIES, SECONDS),
-    Panel(translatable("Cures of drift and the two solves"), lambda m: m.group in {Group.DRIFT, Group.SOLVE}, SECONDS),
+    View(translatable("Methods, to t = %(until)g"), lambda m: _in_contest(m) and digits_of(m) <= FEW_DIGITS, SECONDS),
+    View(translatable("The same by operations"), lambda m: _in_contest(m) and digits_of(m) <= FEW_DIGITS, OPERATIONS),
+    View(translatable("Many digits, to t = %(until)g"), lambda m: m.group is Group.TAYLOR, SECONDS),
+    View(translatable("The same by operations"), lambda m: m.group is Group.TAYLOR, OPERATIONS),
+    View(translatable("One series, to t = %(instant)g, order by order"), lambda m: m.group is Group.SERIES, SECONDS),
+    View(translatable("Cures of drift and the two solves"), lambda m: m.group in {Group.DRIFT, Group.SOLVE}, SECONDS),
 )
 
 

@@ -72,13 +72,12 @@ def condition(at: Matrices) -> float:
 
 
 class EnergyBalance:
-    """Energy of a motion, and the power that goes into it.
+    """Energy of a motion, and the power that goes into it: at instants, shape (k,), and states, shape (2n, k).
 
     Parameters
     ----------
     multipliers : callable
-        Takes instants, shape (k,), and states, shape (2n, k), to multipliers, shape (g, k). It is called only where
-        constraints move, and do work.
+        Takes these to multipliers, shape (g, k). It is called only where constraints move, and do work.
 
     Attributes
     ----------
@@ -102,31 +101,11 @@ class EnergyBalance:
         self.conservative = not self._moving and not hidden and self._without_power(2 * len(problem.coordinates))
 
     def energy(self, instants: Numbers, states: Numbers) -> Numbers:
-        """The energy function at states of the motion.
-
-        Parameters
-        ----------
-        instants : ndarray, shape (k,)
-        states : ndarray, shape (2n, k)
-
-        Returns
-        -------
-        ndarray, shape (k,)
-        """
+        """The energy function at states of the motion."""
         return self._output("energy", instants, states, self._no_multipliers(len(instants)))
 
     def power(self, instants: Numbers, states: Numbers) -> Numbers:
-        """Power of what is not conservative and of the controls, at states of the motion.
-
-        Parameters
-        ----------
-        instants : ndarray, shape (k,)
-        states : ndarray, shape (2n, k)
-
-        Returns
-        -------
-        ndarray, shape (k,)
-        """
+        """Power of what is not conservative and of the controls, at states of the motion."""
         reactions = self._multipliers(instants, states) if self._moving else self._no_multipliers(len(instants))
         return self._output("power", instants, states, reactions)
 

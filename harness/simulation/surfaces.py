@@ -54,12 +54,11 @@ class SignedFunctions(ABC):
 
     @abstractmethod
     def values(self, instants: Numbers, states: Numbers) -> Numbers:
-        """Each function times its sign, shape (functions, k): negative behind its crossing.
+        """Each function at instants, shape (k,), and states, shape (2n, k), times its sign: negative behind its crossing.
 
-        Parameters
-        ----------
-        instants : ndarray, shape (k,)
-        states : ndarray, shape (2n, k)
+        Returns
+        -------
+        ndarray of float, shape (functions, k)
         """
 
     def first_crossing(self, piece: Piece, left: Sequence[str]) -> Crossing | None:
@@ -155,17 +154,7 @@ class Surfaces(SignedFunctions):
         self._functions = [evaluation(program, precision) for program in programs]
 
     def values(self, instants: Numbers, states: Numbers) -> Numbers:
-        """How far inside of its pattern the motion is, by each surface; negative outside.
-
-        Parameters
-        ----------
-        instants : ndarray, shape (k,)
-        states : ndarray, shape (2n, k)
-
-        Returns
-        -------
-        ndarray of float, shape (surfaces, k)
-        """
+        """How far inside of its pattern the motion is, by each surface; negative outside."""
         unused = zeros(self._precision, self._unused, len(instants))
         inputs = np.ascontiguousarray(np.concatenate([np.reshape(instants, (1, -1)), states, unused]))
         found = [as_floats(function(inputs)[0]) for function in self._functions]

@@ -69,6 +69,9 @@ class WeightedConstraints:
 class FactoredConstraints:
     """The constraints' directions in an orthonormal basis, W = Q C.
 
+    Methods take and return forces and accelerations of shape (n,); residuals, curvatures c and multipliers are of
+    shape (g,).
+
     Attributes
     ----------
     basis : ndarray, shape (n, r)
@@ -85,63 +88,20 @@ class FactoredConstraints:
     inverse: Matrix
 
     def correction(self, residual: Vector) -> Vector:
-        """The change d, least in the mass metric, with J d = -residual.
-
-        Parameters
-        ----------
-        residual : ndarray, shape (g,)
-
-        Returns
-        -------
-        ndarray, shape (n,)
-        """
+        """The change d, least in the mass metric, with J d = -residual."""
         return self.weighted.unweighted(self.basis @ self._along(residual))
 
     def accelerations(self, force: Vector, curvature: Vector) -> Vector:
-        """Accelerations of A a - J^T lambda = h, J a = -c.
-
-        Parameters
-        ----------
-        force : ndarray, shape (n,)
-            h.
-        curvature : ndarray, shape (g,)
-            c.
-
-        Returns
-        -------
-        ndarray, shape (n,)
-        """
+        """Accelerations of A a - J^T lambda = h, J a = -c."""
         free = self.complement.T @ self._weighted_force(force, curvature)
         return self.weighted.unweighted(self.basis @ self._along(curvature) + self.complement @ free)
 
     def multipliers(self, force: Vector, curvature: Vector) -> Vector:
-        """Multipliers of A a - J^T lambda = h, J a = -c: of all that give the constraint forces, the least.
-
-        Parameters
-        ----------
-        force : ndarray, shape (n,)
-            h.
-        curvature : ndarray, shape (g,)
-            c.
-
-        Returns
-        -------
-        ndarray, shape (g,)
-        """
+        """Multipliers of A a - J^T lambda = h, J a = -c: of all that give the constraint forces, the least."""
         return self._least(self._along(curvature) - self.basis.T @ self._weighted_force(force, curvature))
 
     def multipliers_of(self, reactions: Vector) -> Vector:
-        """The least multipliers with J^T lambda = A a - h for accelerations that are known.
-
-        Parameters
-        ----------
-        reactions : ndarray, shape (n,)
-            A a - h.
-
-        Returns
-        -------
-        ndarray, shape (g,)
-        """
+        """The least multipliers with J^T lambda = A a - h for accelerations that are known."""
         return self._least(self.basis.T @ self.weighted.per_root_mass(reactions))
 
     def _weighted_force(self, force: Vector, curvature: Vector) -> Vector:
