@@ -54,7 +54,7 @@ class SignedFunctions(ABC):
 
     @abstractmethod
     def values(self, instants: Numbers, states: Numbers) -> Numbers:
-        """Each function at instants, shape (k,), and states, shape (2n, k), times its sign: negative behind its crossing.
+        """Each function times its sign, negative behind its crossing, at instants (k,) and states (2n, k).
 
         Returns
         -------
