@@ -200,7 +200,9 @@ class FreeMotion(Shown):
     """The answers about one scene.
 
     ``condition`` is None where (10) is not written out, and ``left_out`` says why; ``prescribed`` is None where the
-    scene prescribes no reactions, ``open`` where the mass matrix is regular.
+    scene prescribes no reactions, ``open`` where the mass matrix is regular. ``redundant`` are the multipliers of the
+    constraints that follow from the others: (10) is that of the others, and a motion is free where it has no
+    constraint forces.
     """
 
     scene: str
@@ -211,6 +213,7 @@ class FreeMotion(Shown):
     trajectory: TrajectoryControl
     prescribed: PrescribedReactions | None
     open: OpenAccelerations | None
+    redundant: tuple[str, ...]
 
     def _table(self) -> Show:
         from .cli.tables.free_motion import show_free_motion
@@ -273,6 +276,7 @@ def free_motion(
         and OpenAccelerations(
             left_open["rank"], tuple(map(_law, left_open["directions"])), tuple(left_open["deciding"])
         ),
+        tuple(document["redundant"]),
     )
 
 
@@ -303,7 +307,7 @@ def _universal(document: dict) -> UniversalControls:
 
 
 def _checked_law(document: dict, law: dict, constants: list, free: list, positive: list) -> UniversalLaw:
-    system = described_system(read_system(document["system"]), document["effects"])
+    system = described_system(read_system(document["system"]), document["effects"]).without(document["redundant"])
     controls, conditions = _law(law), _expressions(positive)
     judgement = judge_law(
         system,

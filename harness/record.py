@@ -155,12 +155,14 @@ class Derivation:
     `closed_form_operations` counts the operations of (8) and (11) as written; None where they are too long to read
     and stay a linear system, which the motion program solves; `left_out` names them. `mass_matrix` is ``regular``; or
     ``supported`` where it is singular and the constraints make up for it: A + J^T J is in its place in what is solved,
-    and J^T times (7) is added to the equations of motion.
+    and J^T times (7) is added to the equations of motion. `redundant` are the multipliers of the constraints that
+    follow from the others: what is solved, (4), (5) and (8) to (11), is solved without these constraints.
     """
 
     effects: tuple[str, ...]
     equations: tuple[Equation, ...]
     mass_matrix: str
+    redundant: tuple[str, ...]
     closed_form_operations: int | None
     left_out: LeftOut | None = None
 
@@ -287,6 +289,7 @@ def _derivation(derivation: dict[str, Any]) -> Derivation:
         tuple(derivation["effects"]),
         _each(_equation, derivation["equations"]),
         derivation["mass_matrix"],
+        tuple(derivation["redundant"]),
         derivation["closed_form_operations"],
         _left_out(derivation["left_out"]),
     )

@@ -14,6 +14,7 @@ from .derivation import DerivationClaims
 from .independent import IndependentEquations
 from .initial_motion import SceneClaims
 from .points import fresh_seed
+from .redundancy import judge_redundancy
 from .report import CheckReport, EquationVerdict, Verdict
 from .system import MechanicalSystem, described_system
 from .verdict import Comparison, judge
@@ -83,6 +84,8 @@ def check_record(record: Record, seed: str | None = None) -> CheckReport:
     verdicts: list[EquationVerdict] = []
     for place, each in enumerate(record.derivations):
         verdicts += _check_derivation(Place(place), claims[place], each.left_out, seed)
+        if each.redundant:
+            verdicts.append(_check_redundancy(Place(place), claims[place], record, seed))
     for place, each in enumerate(record.derivations):
         verdicts += _left_out(Place(place), each.left_out)
     for scene in record.scenes:
@@ -95,7 +98,11 @@ def check_record(record: Record, seed: str | None = None) -> CheckReport:
 def _claims(record: Record, derived: Derivation) -> DerivationClaims:
     system = described_system(record.system, derived.effects)
     supported = derived.mass_matrix == "supported"
-    return DerivationClaims(IndependentEquations(system, supported), tuple(derived.equations))
+    return DerivationClaims(
+        IndependentEquations(system),
+        IndependentEquations(system.without(derived.redundant), supported),
+        tuple(derived.equations),
+    )
 
 
 def _check_derivation(
@@ -106,8 +113,16 @@ def _check_derivation(
     yield from _missing(place, _expected(claims, left_out), claims.equations)
     from . import lagranges_method  # loads SymPy's mechanics, which nothing else of this package needs
 
-    if lagranges_method.can_take(claims.system):
+    if lagranges_method.can_take(claims.known.system):
         yield _judged(place, lagranges_method.OPINION, lagranges_method.compare(claims.known), seed)
+
+
+def _check_redundancy(place: Place, claims: DerivationClaims, record: Record, seed: str) -> EquationVerdict:
+    starts = [SceneClaims(scene, claims) for scene in record.scenes if scene.derivation == place.derivation]
+    found = judge_redundancy(claims.system, claims.known.system, [each.configuration for each in starts], seed)
+    names = ", ".join(each.name for each in claims.system.multipliers if each not in claims.known.system.multipliers)
+    what = ("redundant_constraints", "1", f"constraints that follow from the others: those of {names}")
+    return EquationVerdict(*what, *place, found.verdict, found.digits, found.points, found.detail)
 
 
 def _check_scene(place: Place, claims: SceneClaims, seed: str) -> Iterator[EquationVerdict]:
@@ -157,7 +172,9 @@ def _missing(place: Place, expected: Mapping[str, str], present: Iterable[Equati
 
 def _expected(claims: DerivationClaims, left_out: LeftOut | None) -> Mapping[str, str]:
     holds_some = any(equation.id in SOLVED for equation in claims.equations)
-    return STATED | SOLVED if holds_some or _predicted_size(claims.system) <= _share(READABLE, left_out) else STATED
+    return (
+        STATED | SOLVED if holds_some or _predicted_size(claims.known.system) <= _share(READABLE, left_out) else STATED
+    )
 
 
 def _expected_in_scene(claims: SceneClaims) -> Mapping[str, str]:

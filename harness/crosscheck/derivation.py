@@ -26,15 +26,25 @@ ClosedForm = Mapping[sp.Symbol, sp.Expr]
 
 @dataclass(frozen=True)
 class DerivationClaims:
-    """A derivation of the record beside the independent evaluation of its system."""
+    """A derivation of the record beside the independent evaluation of its system.
 
+    Attributes
+    ----------
+    stated : IndependentEquations
+        Of the system as it is described.
+    known : IndependentEquations
+        Of its independent constraints: what is solved.
+    equations : tuple of Equation
+    """
+
+    stated: IndependentEquations
     known: IndependentEquations
     equations: tuple[Equation, ...]
 
     @property
     def system(self) -> MechanicalSystem:
         """The system that the derivation is of."""
-        return self.known.system
+        return self.stated.system
 
     def driven_accelerations(self) -> ClosedForm | None:
         """Accelerations with multipliers (4), where the record holds them."""
@@ -47,8 +57,9 @@ class DerivationClaims:
         return driven and {a: value.xreplace(released) for a, value in driven.items()}
 
     def multipliers(self) -> ClosedForm | None:
-        """Multipliers in closed form (8), where the record holds them."""
-        return self._solution("multipliers", self.system.multipliers)
+        """Multipliers of the independent constraints in closed form (8), where the record holds them."""
+        solution = self._solution("multipliers", self.system.multipliers)
+        return solution and {multiplier: solution[multiplier] for multiplier in self.known.system.multipliers}
 
     def motion(self) -> ClosedForm | None:
         """Accelerations (11) and multipliers (8) together."""
@@ -75,7 +86,7 @@ def constraints(claims: DerivationClaims, relations: Relations) -> Comparison:
 
 def equations_of_motion(claims: DerivationClaims, relations: Relations) -> Comparison:
     """(2) and (3): left less right side is the residual of Lagrange's equation."""
-    return Comparison(residual_pairs("equation of motion", relations, claims.known.motion))
+    return Comparison(residual_pairs("equation of motion", relations, claims.stated.motion))
 
 
 def split_kinetic_energy(claims: DerivationClaims, relations: Relations) -> Comparison:
@@ -127,7 +138,7 @@ def christoffel_symbols(claims: DerivationClaims, relations: Relations) -> Compa
     claimed = entries_of("christoffel", (n, n, n), relations)
     at_rest = dict.fromkeys(claims.system.accelerations, sp.Integer(0))
     pairs = []
-    for s, residual in enumerate(claims.known.kinetic):
+    for s, residual in enumerate(claims.stated.kinetic):
         quadratic = residual.xreplace(at_rest)
         for k, m in combinations_with_replacement(range(n), 2):
             symbol = claimed.get((k + 1, m + 1, s + 1), claimed.get((m + 1, k + 1, s + 1)))
@@ -140,7 +151,7 @@ def christoffel_symbols(claims: DerivationClaims, relations: Relations) -> Compa
 
 def constraint_accelerations(claims: DerivationClaims, relations: Relations) -> Comparison:
     """(7): the second total derivative of each constraint."""
-    expected = claims.known.constraint_accelerations
+    expected = claims.stated.constraint_accelerations
     return Comparison(residual_pairs("constraint acceleration", relations, expected))
 
 
@@ -155,9 +166,13 @@ def equations_for_multipliers(claims: DerivationClaims, relations: Relations) ->
 
 
 def multipliers(claims: DerivationClaims, relations: Relations) -> Comparison:
-    """(8), solved: the multipliers of the bordered system."""
+    """(8), solved: the multipliers of the bordered system, zero for redundant constraints."""
+    solved = set(claims.known.system.multipliers)
     return Comparison(
-        _solved_pairs(solved_for(claims.system.multipliers, relations)),
+        tuple(
+            Pair(multiplier.name, value, multiplier if multiplier in solved else sp.Integer(0))
+            for multiplier, value in solved_for(claims.system.multipliers, relations).items()
+        ),
         solves=(claims.known.bordered,),
         certificate=claims.motion(),
     )

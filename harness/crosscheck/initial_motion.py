@@ -33,7 +33,7 @@ class SceneClaims:
 
     @property
     def known(self) -> IndependentEquations:
-        """The independent evaluation of the scene's system."""
+        """The independent evaluation of the independent constraints of the scene's system."""
         return self.derivation.known
 
     @property
@@ -78,6 +78,17 @@ class SceneClaims:
         """The initial instant, the controls and the state then, in symbols q1_0, dot(q1)_0."""
         return {**self.controls_at_start, **{symbol: initial(symbol) for symbol in self.state}}
 
+    @cached_property
+    def configuration(self) -> Definitions:
+        """The initial instant, parameters, controls and coordinates, as far as the scene has numbers for them."""
+        parameters = {sp.Symbol(x, real=True): y for x, y in self.scene.parameter_values.items()}
+        values = {sp.Symbol(x, real=True): y for x, y in self.scene.initial_state.items()}
+        known = {**values, **self.controls_at_start, **parameters}
+        at_start = {
+            symbol: value.xreplace(self.controls_at_start).xreplace(parameters) for symbol, value in known.items()
+        }
+        return {symbol: value for symbol, value in at_start.items() if value.is_number}
+
     def certificate(self, *solutions: Definitions) -> Definitions | None:
         """Claimed closed forms of the motion at the start, with the record's multipliers."""
         multipliers = self.derivation.multipliers()
@@ -118,7 +129,7 @@ def initial_state(claims: SceneClaims, relations: Relations) -> Comparison:
         (
             *(Pair(name.name, claimed[name], stated[name]) for name in names),
             *_vanishing("constraint", claims.system.constraints),
-            *_vanishing("rate of constraint", claims.known.constraint_rates),
+            *_vanishing("rate of constraint", claims.derivation.stated.constraint_rates),
         ),
         given={**parameters, **claimed, **claims.start},
     )
@@ -136,7 +147,7 @@ def determined_initial_values(claims: SceneClaims, relations: Relations) -> Comp
         raise NotComparable(f"values of {_names(fixed)} where the scene leaves out {_names(left_out)}")
     stated = {initial(sp.Symbol(x, real=True)): y for x, y in claims.scene.initial_state.items()}
     residuals = [
-        *_for_all_states(claims.system.coordinates, claims.system.constraints, fixed),
+        *_for_all_states(claims.system.coordinates, claims.known.system.constraints, fixed),
         *_for_all_states(claims.system.velocities, claims.known.constraint_rates, fixed),
     ]
     numbers = [name for name, value in fixed.items() if value.is_number]

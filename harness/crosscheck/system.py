@@ -9,7 +9,7 @@ symbol that is its derivative along the motion:
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 
@@ -84,6 +84,17 @@ class MechanicalSystem:
                 for lower, higher in pairwise(history(symbol))
             },
         }
+
+    def without(self, redundant: Collection[str]) -> MechanicalSystem:
+        """Leave out the constraints whose multipliers have these names."""
+        kept = [
+            (multiplier, f)
+            for multiplier, f in zip(self.multipliers, self.constraints, strict=True)
+            if multiplier.name not in redundant
+        ]
+        return replace(
+            self, multipliers=tuple(multiplier for multiplier, _ in kept), constraints=tuple(f for _, f in kept)
+        )
 
     def total_rate(self, expression: sp.Expr) -> sp.Expr:
         """Total time derivative d/dt of an expression along any motion."""

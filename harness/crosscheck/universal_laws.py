@@ -16,6 +16,7 @@ from mpmath import mp
 
 from .independent import IndependentEquations
 from .linear import LinearEquations
+from .manifold import moved_onto, valuation
 from .points import IrregularPoint, Valuation, fresh_seed, random_point
 from .report import Verdict
 from .system import MechanicalSystem, dotted
@@ -23,9 +24,6 @@ from .verdict import DIGITS, POINTS, WORKING_DIGITS, Judgement
 
 DRAWS = 40
 """Draws for each state before the search for a regular one is given up."""
-
-NEWTON_STEPS = 60
-"""Steps of Newton's method towards the manifold; quadratic convergence needs a dozen from nearby."""
 
 
 @dataclass(frozen=True)
@@ -118,39 +116,11 @@ class _MovedByLaw:
         if any(Valuation(point)(expression) <= 0 for expression in self.positive):
             raise IrregularPoint
         state: dict[sp.Symbol, mp.mpf] = {symbol: mp.mpf(number.p) / number.q for symbol, number in point.items()}
-        for _ in range(NEWTON_STEPS):
-            if not self._corrected(state, self.coordinates, self.constraints):
-                break
-        else:
-            raise IrregularPoint
-        self._corrected(state, self.velocities, self.rates)
-        found = self.motion.solution(_valuation(state))
+        moved_onto(state, self.coordinates, self.constraints, self.jacobian)
+        moved_onto(state, self.velocities, self.rates, self.jacobian)
+        found = self.motion.solution(valuation(state))
         scale = max(1, *(abs(number) for number in (*state.values(), *found.values()))) ** 2
         for multiplier in self.multipliers:
             if abs(left := found[multiplier]) > mp.mpf(10) ** -DIGITS * scale:
                 return f"{multiplier} is {mp.nstr(left, 12)}"
         return ""
-
-    def _corrected(
-        self, state: dict[sp.Symbol, mp.mpf], unknowns: Sequence[sp.Symbol], residuals: Sequence[sp.Expr]
-    ) -> bool:
-        """Move the unknowns by the shortest step that takes the residuals to zero; whether there was one to take."""
-        if not residuals:
-            return False
-        value = _valuation(state)
-        right = mp.matrix([value(residual) for residual in residuals])
-        size = max(abs(number) for number in state.values())
-        if max(map(abs, right)) <= mp.mpf(10) ** -(DIGITS + 10) * max(1, size):
-            return False
-        jacobian = mp.matrix([[value(entry) for entry in row] for row in self.jacobian])
-        move = jacobian.T * mp.lu_solve(jacobian * jacobian.T, right)
-        for unknown, by in zip(unknowns, move, strict=True):
-            state[unknown] -= by
-        return True
-
-
-def _valuation(state: Mapping[sp.Symbol, mp.mpf]) -> Valuation:
-    value = Valuation({})
-    for symbol, number in state.items():
-        value.define(symbol, number)
-    return value

@@ -162,7 +162,14 @@ def scalar_statements(program: Program, inputs: Sequence[str]) -> Iterator[str]:
 def title_of(program: Program) -> str:
     """One line on what the program is."""
     scene = f" of {program.scene}" if program.scene else ""
-    return f"Motion program{scene}: {program.operations} operations, {program.solve} solve ({program.method})"
+    operations = f"{program.operations} operations, {program.solve} solve ({program.method})"
+    return f"Motion program{scene}: {operations}{_redundancy(program)}"
+
+
+def _redundancy(program: Program) -> str:
+    names = program.redundant
+    are, whose = ("are", "whose constraints follow") if len(names) > 1 else ("is", "whose constraint follows")
+    return f"; {', '.join(names)} {are} put to zero, {whose} from the others" if names else ""
 
 
 def comment_text(text: str) -> str:

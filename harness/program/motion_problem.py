@@ -193,6 +193,17 @@ class MotionProblem:
         return tuple(float(self.values[name]) for name in self.parameters)
 
     @property
+    def independent(self) -> tuple[int, ...]:
+        """Which constraints, counted from 0, are not known to follow from the others."""
+        redundant = self.motion.redundant if self.motion else ()
+        return tuple(beta for beta, multiplier in enumerate(self.multipliers) if multiplier not in redundant)
+
+    @property
+    def dependent(self) -> bool:
+        """Whether constraints may depend on one another."""
+        return self.obstacle is not None or len(self.independent) < len(self.multipliers)
+
+    @property
     def state(self) -> tuple[str, ...]:
         """Names of the coordinates, then of the velocities."""
         return (*self.coordinates, *(f"dot({name})" for name in self.coordinates))

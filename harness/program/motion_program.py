@@ -111,6 +111,9 @@ class Program:
         Name of the scene it was written for; None for a system alone.
     method : str
         Which factorisation the solve uses, for instance ``bordered`` or ``schur``.
+    redundant : tuple of str
+        Multipliers that were put to zero, for their constraints follow from the others near the start: accelerations
+        and constraint forces are unique, multipliers are not.
     operations : int
         What it costs, as Maxima counted.
     assignments : tuple of (str, Expression)
@@ -120,6 +123,7 @@ class Program:
     scene: str | None
     solve: Solve
     method: str
+    redundant: tuple[str, ...]
     operations: int
     inputs: tuple[str, ...]
     assignments: tuple[tuple[str, Expression], ...]
@@ -159,6 +163,7 @@ def _checked(document: Mapping[str, Any]) -> Program:
         scene=document["scene"],
         solve=Solve(document["solve"]),
         method=document["method"],
+        redundant=tuple(document["redundant"]),
         operations=document["operations"],
         inputs=tuple(document["inputs"]),
         assignments=tuple((name, _expression(tree, DEEPEST)) for name, tree in document["assignments"]),

@@ -4,7 +4,7 @@ Its matrices tell at the start and at the end; what the engines meet on the way,
 configurations, vanishing gradients, they tell themselves.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from enum import StrEnum
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -50,8 +50,8 @@ ADVICE = {
         "and trust the constraint forces rather than single multipliers."
     ),
     HardCase.REDUNDANT: translatable(
-        "The constraints are redundant: leave the robust engine to work; the motion and the constraint forces are "
-        "unique, while the multipliers are the ones of smallest norm, so remove constraints to give them a meaning."
+        "The constraints are redundant: the motion and the constraint forces are unique, single multipliers are not; "
+        "remove constraints to give them a meaning."
     ),
     HardCase.SINGULAR_PASSAGE: translatable(
         "The motion passes a singular configuration: keep the default engine, which hands over to the robust one, "
@@ -97,12 +97,21 @@ class Instant(NamedTuple):
 
 
 def hard_cases(
-    matrices: MotionMatrices, start: Instant, end: Instant, multipliers: Vector, steps: int
+    matrices: Callable[[float, Vector], Matrices],
+    independent: Sequence[int],
+    start: Instant,
+    end: Instant,
+    multipliers: Vector,
+    steps: int,
 ) -> Iterator[HardCase]:
     """The kinds of hard case that a motion is.
 
     Parameters
     ----------
+    matrices : callable
+        As `MotionMatrices`.
+    independent : sequence of int
+        Constraints, from 0, that are not known to follow from the others.
     multipliers : ndarray, shape (g,)
         At the end.
     steps : int
@@ -111,10 +120,13 @@ def hard_cases(
     Yields
     ------
     HardCase
-        Nearly dependent constraints, large mass ratio, overflow, free motion, long run, stiffness.
+        Redundant constraints that the program leaves out, nearly dependent constraints, large mass ratio, overflow,
+        free motion, long run, stiffness.
     """
     ends = [matrices(*start), matrices(*end)]
-    if any(ILL_CONDITIONED < condition(at) < DEPENDENT for at in ends):
+    if len(independent) < len(multipliers):
+        yield HardCase.REDUNDANT
+    if any(ILL_CONDITIONED < condition(at.under(independent)) < DEPENDENT for at in ends):
         yield HardCase.NEARLY_DEPENDENT
     if any(_mass_ratio(at) > UNEQUAL_MASSES for at in ends):
         yield HardCase.MASS_RATIO
@@ -134,9 +146,9 @@ def dependence(matrices: MotionMatrices, at: Instant) -> str | None:
     Returns
     -------
     str or None
-        A clause; None where the constraints are independent.
+        A clause; None where the constraints, those apart that are known to follow from others, are independent.
     """
-    found = matrices(*at)
+    found = matrices.independent(*at)
     rank = rank_of(weighted_constraints(found.mass, found.jacobian).singular_values())
     g = len(found.jacobian)
     if rank == g:

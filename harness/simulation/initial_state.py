@@ -61,7 +61,7 @@ class InitialStates:
             raise HolonomError(Failure.START_UNFOLLOWED, problem.scene, start.obstacle)
         self._instant, self._n = float(problem.start["t"]), len(problem.coordinates)
         self._evaluate = lane_evaluation(problem, start.program)
-        self._matrices, self._redundant = LaneMatrices(problem), problem.obstacle is not None
+        self._matrices, self._redundant = LaneMatrices(problem), problem.dependent
         n = self._n
         present = {name for name in problem.matrices.outputs if name.startswith("J[")}
         touches = np.array(

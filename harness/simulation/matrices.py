@@ -5,6 +5,7 @@ A a - J^T lambda = h,  J a = -c, beside the constraints f and their rate df/dt.
 
 import math
 import re
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -46,13 +47,18 @@ class Matrices(NamedTuple):
     residual_rate: Vector
     finite: bool | NDArray[np.bool_]
 
+    def under(self, constraints: Sequence[int]) -> "Matrices":
+        """The same under some of the constraints alone, counted from 0."""
+        of_constraints = ("jacobian", "curvature", "residual", "residual_rate")
+        return self._replace(**{name: getattr(self, name)[list(constraints)] for name in of_constraints})
+
 
 class MotionMatrices:
     """The matrices of a motion as a function of its state."""
 
     def __init__(self, problem: MotionProblem) -> None:
         require_analytic(problem)
-        self._layout = _Layout(problem)
+        self._layout, self._kept = _Layout(problem), problem.independent
         self._evaluate = evaluation_once(problem, problem.matrices, read_precision("double"))
         unused = [0.0] * len(problem.multipliers)
         self._inputs = np.array([0.0] * (1 + len(problem.state)) + unused + list(problem.numbers))
@@ -68,6 +74,10 @@ class MotionMatrices:
         self._inputs[0] = t
         self._inputs[1 : 1 + len(state)] = state
         return self._layout.matrices(self._evaluate(self._inputs))
+
+    def independent(self, t: float, state: Vector) -> Matrices:
+        """Evaluate the matrices of the constraints that do not follow from others."""
+        return self(t, state).under(self._kept)
 
 
 class LaneMatrices:

@@ -246,7 +246,7 @@ class _Simulation:
             multipliers=dict(zip(observed, multipliers, strict=False)),
             residuals=left,
             energy_error=self.exchange.last_error,
-            condition=condition(at),
+            condition=condition(at.under(self.problem.independent)),
             steps=self.motion.steps,
             legs=tuple(self.motion.legs),
             code=self.motion.code,
@@ -283,7 +283,7 @@ class _Simulation:
         """Those that the robust engine was called for, then those that the ends tell; each once."""
         start, end = Instant(float(self.start), as_floats(self.first)), Instant(float(self.end), as_floats(state))
         called_for = [leg.case for leg in self.motion.legs if leg.case is not None]
-        found = hard_cases(self.motion.matrices, start, end, multipliers, self.motion.steps)
+        found = hard_cases(self.motion.matrices, self.problem.independent, start, end, multipliers, self.motion.steps)
         answering = self.problem.reactions or not self.problem.servo  # servo-constraints have no reaction by themselves
         found = (case for case in found if answering or case is not HardCase.FREE_CANCELLATION)
         return tuple(dict.fromkeys([*called_for, *found]))

@@ -366,37 +366,54 @@
 ;;; ---- two expansions compared --------------------------------------------------------------
 ;;;
 ;;; What rounding leaves of a zero shrinks with the digits of the arithmetic: a coefficient that
-;;; falls by as many digits as were added, but for a few, is none.
+;;; falls by as many digits as were added, but for a few, is none. The coarser expansion may have come
+;;; out as zero by luck; then the finer one is none that is as small as what is left of others of its order.
 
 (defvar *few-digits* 5)
 
 (defun $agreeing_digits (coarse fine added)
   "Significant decimal digits that all coefficients of two expansions share."
-  (let ((digits most-positive-fixnum))
+  (let ((digits most-positive-fixnum) (noise (rounding-by-order coarse fine added)))
     (map-coefficients coarse fine
-                      #'(lambda (a b)
-                          (if (not (rounded-zero-p a b added))
+                      #'(lambda (a b order)
+                          (if (not (rounded-zero-p a b added (svref noise order)))
                               (setq digits (min digits (shared-digits a b))))
                           0))
     digits))
 
 (defun $without_rounded_zeros (coarse fine added)
   "The finer expansion, where rounding has left no zero."
-  (map-coefficients coarse fine
-                    #'(lambda (a b) (if (rounded-zero-p a b added) 0 b))))
+  (let ((noise (rounding-by-order coarse fine added)))
+    (map-coefficients coarse fine
+                      #'(lambda (a b order) (if (rounded-zero-p a b added (svref noise order)) 0 b)))))
 
-(defun rounded-zero-p (a b added)
+(defun rounded-zero-p (a b added noise)
+  (if (eql a 0) (<= (abs b) noise) (shrinks-p a b added)))
+
+(defun shrinks-p (a b added)
   (<= (* (abs b) (expt 10 (- added *few-digits*))) (abs a)))
+
+(defun rounding-by-order (coarse fine added)
+  "For each order the most that is left of a coefficient that shrinks, and a few digits more."
+  (let ((noise (make-array (length (cdr (third (second coarse)))) :initial-element 0)))
+    (map-coefficients coarse fine
+                      #'(lambda (a b order)
+                          (if (and (not (eql a 0)) (shrinks-p a b added))
+                              (setf (svref noise order)
+                                    (max (svref noise order) (* (abs b) (expt 10 *few-digits*)))))
+                          0))
+    noise))
 
 (defun map-coefficients (coarse fine function)
   (cons '(mlist)
         (mapcar #'(lambda (x y)
-                    (list '(mlist) (second x)
-                          (cons '(mlist)
-                                (mapcar #'(lambda (a b)
-                                            (maxima-number (funcall function (rational-of a)
-                                                                    (rational-of b))))
-                                        (cdr (third x)) (cdr (third y))))))
+                    (let ((order -1))
+                      (list '(mlist) (second x)
+                            (cons '(mlist)
+                                  (mapcar #'(lambda (a b)
+                                              (maxima-number (funcall function (rational-of a)
+                                                                      (rational-of b) (incf order))))
+                                          (cdr (third x)) (cdr (third y)))))))
                 (cdr coarse) (cdr fine))))
 
 (defun shared-digits (a b)

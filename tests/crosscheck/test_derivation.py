@@ -24,7 +24,7 @@ def claims(every_term_record: Record) -> DerivationClaims:
 def claims_of(record: Record) -> DerivationClaims:
     derived = record.derivations[0]
     known = IndependentEquations(described_system(record.system, derived.effects))
-    return DerivationClaims(known, tuple(derived.equations))
+    return DerivationClaims(known, known, tuple(derived.equations))
 
 
 def verdict(claims: DerivationClaims, equation: Equation, relations: tuple[Relation, ...]) -> Verdict:

@@ -27,7 +27,7 @@ def claims_of(record: Record, scene: int) -> SceneClaims:
     described = record.scenes[scene]
     derived = record.derivations[described.derivation]
     known = IndependentEquations(described_system(record.system, derived.effects))
-    return SceneClaims(described, DerivationClaims(known, tuple(derived.equations)))
+    return SceneClaims(described, DerivationClaims(known, known, tuple(derived.equations)))
 
 
 def verdict(claims: SceneClaims, equation: Equation, relations: tuple[Relation, ...]) -> Verdict:

@@ -40,6 +40,7 @@ def document(
         "scene": None,
         "solve": "direct",
         "method": "bordered",
+        "redundant": [],
         "operations": operations,
         "inputs": list(inputs),
         "assignments": [list(assignment) for assignment in assignments],

@@ -289,12 +289,13 @@ def test_a_singular_bordered_matrix_is_refused(write_scene):
     assert "singular" in refusal_of(write_scene(text))
 
 
-def test_dependent_constraints_are_refused(write_scene):
-    file = write_scene(
+def test_a_redundant_constraint_costs_nothing(write_scene):
+    described = (
         'load("holonom.mac")$ system : holonomic_system(coordinates = [x, y], kinetic_energy = dot(x)^2 + dot(y)^2,'
-        " constraints = [x + y, 2*x + 2*y])$"
+        " constraints = [x^2 + y^2 - 1{}])$"
     )
-    assert "depends on the others" in refusal_of(file)
+    twice, once = (costs_of(write_scene(described.format(more))) for more in (", 2*(x^2 + y^2 - 1)", ""))
+    assert twice["operations"] == once["operations"] > 0
 
 
 def test_a_value_for_an_undeclared_parameter_is_refused(write_scene):

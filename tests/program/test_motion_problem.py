@@ -37,13 +37,16 @@ def test_part_of_a_program_gives_the_numbers_of_the_whole(paper):
     assert part.operations < paper.motion.operations + len(paper.motion.assignments)
 
 
-def test_constraint_given_twice_is_told_and_leaves_the_matrices(write_scene):
+def test_a_constraint_given_twice_is_told_and_its_multiplier_is_zero(write_scene):
     file = write_scene("""load("holonom.mac")$
 system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2, constraints = [x - y, x - y])$
 slide : holonomic_scene(system, initial_state = [x = 0, dot(x) = 1])$""")
     problem = motion_problem(file, Request(), Limits())
-    assert "constraint 2 depends on the others" in problem.obstacle
-    assert problem.motion is problem.projection is None
+    assert problem.obstacle is None
+    assert problem.motion.redundant == ("lambda2",)
+    assert problem.motion.outputs["lambda2"] == 0
+    assert problem.independent == (0,)
+    assert problem.dependent
     assert {"J[2,1]", "residual[2]", "h[1]"} <= problem.matrices.outputs.keys()
 
 

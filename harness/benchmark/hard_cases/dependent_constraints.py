@@ -46,23 +46,22 @@ def _worst(solve: SolveAt, angle: float) -> float:
 
 
 SARRUS = "hard/sarrus_linkage.mac"
-DEPENDENT = 1e-8  # singular values of J that count as none
 
 with certified:
     UNTIL, GRAVITY, START = mpf(3) / 10, mpf("9.81"), asin(mpf(4) / 5)
 
 
 def sarrus_linkage(extent: Extent) -> Findings:
-    """Digits of the motion, of the unique constraint forces, and of the multipliers of smallest norm."""
+    """Digits of the motion, of the unique constraint forces, and of the multipliers that are zero where redundant."""
     phi, needed = fallen(UNTIL), 12.0
     places, reactions = coordinates(phi), constraint_forces(phi)
     motion, plain = simulated(problem(SARRUS), float(UNTIL)), plain_motion(problem(SARRUS), float(UNTIL))
-    multipliers = least_multipliers(motion.state, reactions)
+    multipliers = chosen_multipliers(motion.state, reactions)
     yield from places_kept(translatable("coordinates"), plain, motion, places, needed)
     yield ours(
         motion.engine, translatable("constraint forces"), digits_kept(motion.constraint_forces, reactions), needed
     )
-    yield ours(motion.engine, translatable("least multipliers"), digits_kept(motion.multipliers, multipliers), needed)
+    yield ours(motion.engine, translatable("multipliers"), digits_kept(motion.multipliers, multipliers), needed)
     yield required(motion.engine, translatable("redundancy reported"), HardCase.REDUNDANT in motion.cases)
 
 
@@ -94,7 +93,10 @@ def constraint_forces(phi: mpf) -> list[mpf]:
     return elbows + 3 * corner
 
 
-def least_multipliers(state: Vector, forces: list[mpf]) -> Vector:
-    """The multipliers of smallest norm among those that give the forces: the pseudo-inverse of J^T."""
-    jacobian = MotionMatrices(problem(SARRUS))(float(UNTIL), state).jacobian
-    return np.linalg.pinv(jacobian.T, DEPENDENT) @ np.array(forces, dtype=float)
+def chosen_multipliers(state: Vector, forces: list[mpf]) -> Vector:
+    """Of the multipliers that give the forces those that are zero for redundant constraints."""
+    kept = list(problem(SARRUS).independent)
+    jacobian = MotionMatrices(problem(SARRUS)).independent(float(UNTIL), state).jacobian
+    multipliers = np.zeros(len(problem(SARRUS).multipliers))
+    multipliers[kept] = np.linalg.lstsq(jacobian.T, np.array(forces, dtype=float))[0]
+    return multipliers

@@ -22,7 +22,7 @@ REGISTER = (
     Case(
         translatable("constraint given twice"),
         HardCase.REDUNDANT,
-        translatable("the pendulum with one constraint, in elliptic functions; half of its multiplier for each"),
+        translatable("the pendulum with one constraint, in elliptic functions"),
         constraint_given_twice,
     ),
     Case(

@@ -21,6 +21,13 @@ def show_free_motion(console: Console, found: "FreeMotion") -> None:
         _show_list(console, "condition of free motion (10): not written out", [found.left_out or ""])
     else:
         _show_list(console, "condition of free motion (10)", [f"{formula(e)} = 0" for e in found.condition])
+    if found.redundant:
+        names = ", ".join(found.redundant)
+        _show_list(
+            console,
+            "redundant constraints",
+            [f"those of {names} follow from the others, of which (10) is; these multipliers are put to zero"],
+        )
     if found.open is not None:
         _show_open(console, found.open)
     _show_list(console, f"{found.scene}: {_verdict(found.motion)}", [_first(found.motion), found.motion.evidence])

@@ -279,7 +279,10 @@ EXHIBITS = (
             translatable(
                 "A pendulum whose one constraint is given twice. Nothing of that is to be seen in its motion."
             ),
-            translatable("Each of the two multipliers carries half of the force: their curves are one."),
+            translatable(
+                "The second constraint follows from the first, whose multiplier carries the force; the other is put to "
+                "zero."
+            ),
         ),
     ),
     Exhibit(
@@ -290,7 +293,9 @@ EXHIBITS = (
                 "Two pairs of hinged plates at right angles let the table go straight down and no other way, with one "
                 "constraint more than it needs."
             ),
-            translatable("The table's corners fall alike. The multipliers are those of the smallest norm."),
+            translatable(
+                "The table's corners fall alike. The multipliers are those that are zero for the redundant constraint."
+            ),
         ),
     ),
     Exhibit(
@@ -301,7 +306,10 @@ EXHIBITS = (
                 "Five bars and the ground along the edges of a cube, with six hinges. By the count of its constraints "
                 "it should be rigid, and it falls."
             ),
-            translatable("The forces of the constraints are unique. The multipliers are those of the smallest norm."),
+            translatable(
+                "The forces of the constraints are unique. The multipliers are those that are zero for the redundant "
+                "constraint."
+            ),
         ),
     ),
     Exhibit(

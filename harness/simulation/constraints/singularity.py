@@ -95,7 +95,8 @@ class Watch:
     """Watches the constraints of a motion."""
 
     def __init__(self, problem: MotionProblem) -> None:
-        self._names, self._matrices = problem.multipliers, MotionMatrices(problem)
+        self._names = [problem.multipliers[beta] for beta in problem.independent]
+        self._matrices = MotionMatrices(problem)
         start = [float(problem.start[name]) for name in problem.state]
         self._scale = self._constraints(float(problem.start["t"]), start).scale
         self._least = 1.0
@@ -126,7 +127,7 @@ class Watch:
         return self._names[left.argmin()] if left.min(initial=1.0) < VANISHED else None
 
     def _constraints(self, t: float, state: Numbers) -> WeightedConstraints:
-        at = self._matrices(float(t), as_floats(state))
+        at = self._matrices.independent(float(t), as_floats(state))
         return weighted_constraints(at.mass, at.jacobian)
 
 

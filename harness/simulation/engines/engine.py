@@ -32,7 +32,8 @@ class Solutions(NamedTuple):
     ----------
     accelerations : ndarray, shape (n, k)
     multipliers : ndarray, shape (g, k)
-        Where constraints are redundant, the least of all that give the constraint forces.
+        Zero for the constraints that the program leaves out as redundant; where dependent ones are left, the least of
+        all that give the constraint forces.
     constraint_forces : ndarray, shape (n, k)
         J^T lambda, unique; of shape (0, k) where the scene does not observe them.
     """

@@ -74,7 +74,8 @@ class RobustEngine:
         self.compile_seconds = time.perf_counter() - clock
         self.n, self.steps, self.tol = len(problem.coordinates), 0, max(tol or TOLERANCE, TIGHTEST)
         self.stiff, self._stiffness = False, StiffnessWatch()
-        self._multipliers, self._places, self._arcs = problem.multipliers, [], []
+        self._multipliers, self._independent = problem.multipliers, problem.independent
+        self._places, self._arcs = [], []
         self.restart(*start_of(problem))
 
     def restart(self, instant: float, state: Vector) -> None:
@@ -149,7 +150,17 @@ class RobustEngine:
         else:
             accelerations = arc.accelerations(t)
             multipliers = factored.multipliers_of(at.mass @ accelerations - at.force)
-        return Solutions(accelerations, multipliers, at.jacobian.T @ multipliers)
+        forces = at.jacobian.T @ multipliers
+        return Solutions(accelerations, self._as_in_the_program(at.jacobian, multipliers, forces), forces)
+
+    def _as_in_the_program(self, jacobian: Matrix, multipliers: Vector, forces: Vector) -> Vector:
+        """Of the multipliers that give the constraint forces those that are zero for redundant constraints."""
+        kept = list(self._independent)
+        if len(kept) == len(multipliers):
+            return multipliers
+        chosen = np.zeros_like(multipliers)
+        chosen[kept] = np.linalg.lstsq(jacobian[kept].T, forces)[0]
+        return chosen
 
     @property
     def dependent(self) -> tuple[str, ...]:

@@ -50,6 +50,7 @@ def program(assignments):
             "scene": None,
             "solve": "direct",
             "method": "schur",
+            "redundant": [],
             "operations": 0,
             "inputs": ["x", "y"],
             "assignments": assignments,

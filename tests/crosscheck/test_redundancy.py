@@ -1,0 +1,38 @@
+"""Constraints that are said to follow from the others: found where they do, and where they do not."""
+
+import dataclasses
+
+import pytest
+
+import holonom
+from holonom.crosscheck import check_record
+from holonom.crosscheck.report import Verdict
+
+SLIDE = """
+system : holonomic_system(coordinates = [x, y, z], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2,
+  potential_energy = [gravity = 10*y], constraints = [x^2 + y^2 - u^2, z - x, (x^2 + y^2)^2 - u^4 + z - x])$
+"""
+SCENE = "scene : holonomic_scene(system, control_law = [u = 1 + t], initial_state = [x = 3/5, y = 4/5, dot(x) = 0])$"
+
+
+@pytest.fixture(scope="module", params=[SLIDE, SLIDE + SCENE], ids=["without a scene", "near its start"])
+def record(request):
+    return holonom.system(request.param).record
+
+
+def verdicts_of(record):
+    return {found.id: found.verdict for found in check_record(record).verdicts}
+
+
+def test_a_constraint_that_follows_from_two_others_is_named_and_the_rest_is_proved(record):
+    assert record.derivations[0].redundant == ("lambda3",)
+    found = verdicts_of(record)
+    assert found["redundant_constraints"] is Verdict.AGREES
+    assert found["constraint_forces"] is found["accelerations"] is Verdict.PROVED
+
+
+def test_a_constraint_that_does_not_follow_from_the_others_is_found(record):
+    claimed = dataclasses.replace(record.derivations[0], redundant=("lambda2", "lambda3"))
+    found = verdicts_of(dataclasses.replace(record, derivations=(claimed,)))
+    assert found["redundant_constraints"] is not Verdict.AGREES
+    assert found["constraint_forces"] is Verdict.DISAGREES
