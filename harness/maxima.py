@@ -156,7 +156,7 @@ def run_batch(
         return _document(run, printed)
 
 
-def run_rtest(rtest: Path, limits: Limits = DEFAULT_LIMITS) -> int:
+def run_rtest(rtest: Path) -> int:
     """Run a file in Maxima's own test convention, pairs of input and expected result, with the library loaded.
 
     Parameters
@@ -178,7 +178,7 @@ def run_rtest(rtest: Path, limits: Limits = DEFAULT_LIMITS) -> int:
     tests, unpaired = divmod(count_statements(rtest.read_text(encoding="utf-8")), 2)
     if unpaired:
         raise HolonomError(Failure.RTEST_UNPAIRED, rtest)
-    with _new_run(LIBRARY / "holonom.mac", limits, NO_SETTINGS) as run:
+    with _new_run(LIBRARY / "holonom.mac", DEFAULT_LIMITS, NO_SETTINGS) as run:
         shutil.copy(rtest, run.directory)  # for Maxima leaves a list of errors beside the file it tests
         test = quoted(f"(open_namespace(), batch({quoted(rtest.name)}, test))$")
         printed = _run(run, f"run-file {_copy(run)} {test}", test)

@@ -14,7 +14,6 @@ from functools import partial
 from math import e, pi
 from textwrap import indent
 
-from ..failures import Failure, HolonomError
 from . import infix
 from .arithmetic import ELEMENTARY, Arithmetic
 from .infix import Formula
@@ -43,14 +42,14 @@ SOURCE = """\
 {helpers}
 
 /* One point: in and out hold its inputs and outputs. */
-void {name}(const double *in, double *out)
+void motion(const double *in, double *out)
 {{
 {one}
 }}
 
 {lanes}
 /* Many points: in[k*points + i] is input k of point i, out[k*points + i] output k. */
-void {name}_batch(size_t points, const double *in, double *out)
+void motion_batch(size_t points, const double *in, double *out)
 {{
     size_t i = 0;
     for (; i + LANES <= points; i += LANES) {{
@@ -59,7 +58,7 @@ void {name}_batch(size_t points, const double *in, double *out)
     for (; i < points; i++) {{
         double values[{inputs}], results[{outputs}];
         for (size_t k = 0; k < {inputs}; k++) values[k] = in[k*points + i];
-        {name}(values, results);
+        motion(values, results);
         for (size_t k = 0; k < {outputs}; k++) out[k*points + i] = results[k];
     }}
 }}
@@ -105,26 +104,8 @@ class Target:
     arithmetic: Arithmetic[Formula]
 
 
-def c_source(program: Program, name: str = "motion") -> str:
-    """Write a program as C99.
-
-    Parameters
-    ----------
-    name : str
-        Name of the function for one point; the one for many has ``_batch`` after it.
-
-    Returns
-    -------
-    str
-        A translation unit that needs the standard library alone.
-
-    Raises
-    ------
-    HolonomError
-        The name cannot name a C function.
-    """
-    if not IDENTIFIER.fullmatch(name):
-        raise HolonomError(Failure.NOT_AN_IDENTIFIER, detail=name)
+def c_source(program: Program) -> str:
+    """A program as C99, ``motion`` and ``motion_batch``: a translation unit that needs the standard library alone."""
     places = range(len(program.inputs))
     one = scalar_statements(program, [f"in[{place}]" for place in places])
     lanes = [f"lanes_at(in + {place}*points + i)" for place in places]
@@ -134,7 +115,6 @@ def c_source(program: Program, name: str = "motion") -> str:
         title=comment_text(title_of(program)),
         table="\n".join(_table(program)),
         helpers=HELPERS,
-        name=name,
         one=indent("\n".join(one), " " * 4),
         lanes=lanes_support(many),
         many=indent(many, " " * 8),

@@ -8,10 +8,9 @@ from collections.abc import Iterator
 from fractions import Fraction
 from functools import partial
 
-from ..failures import Failure, HolonomError
 from . import infix
 from .arithmetic import ELEMENTARY, Arithmetic
-from .c_source import IDENTIFIER, comment_text, title_of
+from .c_source import comment_text, title_of
 from .infix import Formula, Rank
 from .motion_program import Constant, Operation, Program
 
@@ -34,7 +33,7 @@ OUTPUTS = (
 )
 
 
-def {name}(values, functions=math):
+def motion(values, functions=math):
     """Take the values of INPUTS, return those of OUTPUTS; functions is math, sympy or mpmath."""
     sign = getattr(functions, "sign", lambda x: (x > 0) - (x < 0))
     ({variables}) = values
@@ -43,32 +42,13 @@ def {name}(values, functions=math):
 '''
 
 
-def python_source(program: Program, name: str = "motion") -> str:
-    """Write a program as Python.
-
-    Parameters
-    ----------
-    name : str
-        Name of the function.
-
-    Returns
-    -------
-    str
-        A module that needs the standard library alone.
-
-    Raises
-    ------
-    HolonomError
-        The name cannot name a function.
-    """
-    if not IDENTIFIER.fullmatch(name):
-        raise HolonomError(Failure.NOT_AN_IDENTIFIER, detail=name)
+def python_source(program: Program) -> str:
+    """Write a program as a Python module that needs the standard library alone, with its function ``motion``."""
     variables = {known: infix.atom(f"v{index}") for index, known in enumerate(_names(program))}
     return SOURCE.format(
         title=comment_text(title_of(program)),
         inputs=_listed(program.inputs),
         outputs=_listed(tuple(program.outputs)),
-        name=name,
         variables=" ".join(f"{variables[known].text}," for known in program.inputs),
         body="\n".join(
             f"    {variables[known].text} = {PYTHON.value(expression, variables).text}"

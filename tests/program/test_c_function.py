@@ -37,12 +37,6 @@ def test_names_from_the_program_stay_inside_the_comment():
         ctypes.c_int.in_dll(load_c(c_source(written)), "stolen")
 
 
-def test_the_function_can_be_named():
-    assert "void pendulum(const double *in, double *out)" in c_source(PENDULUM, "pendulum")
-    with pytest.raises(HolonomError, match="cannot name a function"):
-        c_source(PENDULUM, "f(); //")
-
-
 def test_without_gnu_vectors_the_source_is_plain_c99():
     points = np.random.default_rng(1).normal(size=(6, 11))
     plain = load_c(c_source(PENDULUM).replace("#ifdef __GNUC__", "#if 0"))
