@@ -4,8 +4,9 @@ One evaluation takes about a microsecond in double precision, most of it the cal
 take longer than it ever gains at the few states where these are wanted.
 """
 
+import os
 from collections.abc import Callable
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, nullcontext
 from typing import Any
 
 import numpy as np
@@ -102,12 +103,23 @@ def wake_compiler() -> None:
     heyoka.cfunc([heyoka.expression("x")], vars=[heyoka.expression("x")], opt_level=0)
 
 
+def blas_has_one_thread() -> bool:
+    """Whether BLAS was told before it was loaded, as the command line does.
+
+    If not, no other thread may import while it is told: threadpoolctl holds the lock of the dynamic linker while it
+    waits for Python's, and who loads a library does so the other way round.
+    """
+    return os.environ.get("OPENBLAS_NUM_THREADS") == "1"
+
+
 def one_blas_thread() -> AbstractContextManager[object]:
     """Keep BLAS to one thread inside the block.
 
     Matrices here have some dozens of rows. On a busy machine BLAS takes twenty times as long for them with its threads
     as without, as measured.
     """
+    if blas_has_one_thread():
+        return nullcontext()
     from threadpoolctl import threadpool_limits
 
     return threadpool_limits(1, "blas")

@@ -13,9 +13,10 @@ independent, a singular value decomposition where they are not.
 """
 
 from dataclasses import dataclass
+from functools import cache
+from types import ModuleType
 
 import numpy as np
-from scipy.linalg import lapack
 
 from ...failures import Failure, HolonomError
 from ..matrices import Matrix, Vector
@@ -58,11 +59,11 @@ class WeightedConstraints:
 
     def per_root_mass(self, force: Vector) -> Vector:
         """L^-1 h."""
-        return lapack.dtrtrs(self.factor, force, lower=1)[0]
+        return lapack().dtrtrs(self.factor, force, lower=1)[0]
 
     def unweighted(self, z: Vector) -> Vector:
         """L^-T z."""
-        return lapack.dtrtrs(self.factor, z, lower=1, trans=1)[0]
+        return lapack().dtrtrs(self.factor, z, lower=1, trans=1)[0]
 
 
 @dataclass(frozen=True)
@@ -148,7 +149,7 @@ def weighted_constraints(mass: Matrix, jacobian: Matrix) -> WeightedConstraints:
         masses = np.linalg.eigvalsh(mass)
         indefinite = masses[0] < -NEGATIVE * np.max(np.abs(masses))
         raise HolonomError(Failure.MASS_INDEFINITE if indefinite else Failure.MASS_SINGULAR)
-    directions = lapack.dtrtrs(factor, rows.T, lower=1)[0] if rows.size else rows.T
+    directions = lapack().dtrtrs(factor, rows.T, lower=1)[0] if rows.size else rows.T
     lengths = _or_one(np.sqrt(np.einsum("sb,sb->b", directions, directions)))
     return WeightedConstraints(factor, 1 / (peaks * lengths), directions / lengths, stiffening)
 
@@ -208,20 +209,28 @@ def _factored_by_reflections(weighted: WeightedConstraints) -> FactoredConstrain
     if g == 0:
         return FactoredConstraints(weighted, np.empty((n, 0)), np.eye(n), np.empty((0, 0)))
     rows = np.argsort(-np.max(np.abs(weighted.directions), axis=1), kind="stable")
-    reflections, pivots, tau, *_ = lapack.dgeqp3(weighted.directions[rows])
+    reflections, pivots, tau, *_ = lapack().dgeqp3(weighted.directions[rows])
     room = np.zeros((n, n), order="F")
     room[:, :g] = reflections
     q, inverse = np.empty((n, n)), np.empty((g, g))
-    q[rows] = lapack.dorgqr(room, tau, overwrite_a=1)[0]
-    inverse[:, pivots - 1] = lapack.dtrtri(np.triu(reflections[:g]))[0].T
+    q[rows] = lapack().dorgqr(room, tau, overwrite_a=1)[0]
+    inverse[:, pivots - 1] = lapack().dtrtri(np.triu(reflections[:g]))[0].T
     return FactoredConstraints(weighted, q[:, :g], q[:, g:], inverse)
 
 
 def _cholesky(metric: Matrix) -> Matrix | None:
     """L, lower triangular; None where the metric is singular."""
-    factor, failed = lapack.dpotrf(metric, lower=1, clean=1)
+    factor, failed = lapack().dpotrf(metric, lower=1, clean=1)
     regular = not failed and np.all(factor.diagonal() ** 2 > SINGULAR_MASS * metric.diagonal())
     return factor if regular else None
+
+
+@cache
+def lapack() -> ModuleType:
+    """SciPy's LAPACK, imported when it is first wanted: that takes longer than all else that a short motion needs."""
+    from scipy.linalg import lapack
+
+    return lapack
 
 
 def _or_one(lengths: Vector) -> Vector:
