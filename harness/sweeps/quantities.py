@@ -61,6 +61,7 @@ def expressions_of(quantities: Sequence[Expression], known: Known) -> list[Any]:
         scene=None,
         solve=None,
         method="composed",
+        redundant=(),
         operations=0,
         inputs=tuple(sorted(set().union(*map(names_in, quantities)))),
         assignments=tuple(named.items()),
