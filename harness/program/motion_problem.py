@@ -51,12 +51,13 @@ class Sign(NamedTuple):
 class Origin(StrEnum):
     """Where an initial value comes from when the parameters change.
 
-    ``GIVEN``: the scene gives it. ``NEAR``: the constraints fix it, near the scene's guess. ``ONLY``: they fix it,
-    and contain it linearly.
+    ``GIVEN``: the scene gives it. ``NEAR``: the constraints fix it, near the scene's guess. ``FOLLOWED``: they fix it,
+    near the value that it has for the scene's parameters. ``ONLY``: they fix it, and contain it linearly.
     """
 
     GIVEN = "given"
     NEAR = "near"
+    FOLLOWED = "followed"
     ONLY = "only"
 
 

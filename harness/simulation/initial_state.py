@@ -6,7 +6,7 @@ digits that miss a constraint by less than a share of 1e-9 are corrected in the 
 initial_state.mac` does the same to 60 digits for one motion.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from typing import NamedTuple
@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..failures import Failure, HolonomError
-from ..program.motion_problem import MotionProblem, Origin
+from ..program.motion_problem import By, MotionProblem, Origin, computing
+from ..program.sign_pattern import problem_in
 from .diagnostics import scaled_residual
 from .evaluation import Numbers, lane_evaluation
 from .matrices import LaneMatrices
@@ -23,6 +24,7 @@ from .matrices import LaneMatrices
 LIMITED_DIGITS = 1e-9  # share of the largest datum by which data may be corrected, and of coordinates a residual
 ROUNDING = 8 * np.finfo(float).eps  # relative size of a correction that is none
 ITERATIONS = 60  # Newton's method halves the way to a double root
+SOON = 1e-9  # of the first instant, or of a unit: after it, for functions that vanish there
 SETTLED = 1e-12  # relative size of a last correction that rounding may have made
 
 
@@ -150,6 +152,71 @@ class InitialStates:
         return arrived
 
 
+class InitialStatesBySign:
+    """The same of a motion with signs: those that the time decides have at the start the value they have just after it.
+
+    No other sign decides about constraints, or they would jump.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        With open parameters and signs.
+
+    Raises
+    ------
+    HolonomError
+        The start cannot follow the parameters.
+    """
+
+    def __init__(self, problem: MotionProblem) -> None:
+        self._problem, self._start = problem, float(problem.start["t"])
+        self._of: dict[tuple[float, ...], InitialStates] = {}
+        self._in_pattern([1.0] * len(problem.signs))
+        self._clocks = {
+            index: lane_evaluation(problem, computing(problem.switching, {f"switch[{index + 1}]"}))
+            for index, sign in enumerate(problem.signs)
+            if sign.by is By.TIME
+        }
+
+    def __call__(self, values: Numbers) -> Starts:
+        """As `InitialStates`."""
+        signs, k = self._signs(values), values.shape[1]
+        states, found = np.full((len(self._problem.state), k), np.nan), np.zeros(k, dtype=bool)
+        for pattern in np.unique(signs, axis=1).T:
+            here = (signs == pattern[:, None]).all(axis=0)
+            states[:, here], found[here] = self._in_pattern(pattern)(values[:, here])
+        return Starts(states, found)
+
+    def correction(self, values: Numbers, states: Numbers) -> tuple[str, str] | None:
+        """As `InitialStates.correction`."""
+        return self._in_pattern(self._signs(values)[:, 0]).correction(values, states)
+
+    def _in_pattern(self, pattern: Iterable[float]) -> InitialStates:
+        signs = tuple(map(int, pattern))
+        if signs not in self._of:
+            named = {sign.name: value for sign, value in zip(self._problem.signs, signs, strict=True)}
+            self._of[signs] = InitialStates(problem_in(self._problem, named))
+        return self._of[signs]
+
+    def _signs(self, values: Numbers) -> Numbers:
+        """Signs at the start, shape (signs, k), each function after those that it may contain."""
+        k, problem = values.shape[1], self._problem
+        signs, unused = np.ones((len(problem.signs), k)), np.zeros((len(problem.state) + len(problem.multipliers), k))
+        scale = max(1.0, abs(self._start))
+        for index, clock in self._clocks.items():
+            now, soon = (
+                clock(np.concatenate([np.full((1, k), instant), unused, signs, values]))[0]
+                for instant in (self._start, self._start + SOON * scale)
+            )
+            signs[index] = np.where(np.where(np.abs(now) > ROUNDING * scale, now, soon) >= 0, 1.0, -1.0)
+        return signs
+
+
+def initial_states_of(problem: MotionProblem) -> InitialStates | InitialStatesBySign:
+    """The states that a problem's motions start from; raises as these do."""
+    return InitialStatesBySign(problem) if problem.signs else InitialStates(problem)
+
+
 class _Group:
     """Coordinates or velocities: which are given, and which constraints fix the others.
 
@@ -187,11 +254,15 @@ def at_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionP
     Raises
     ------
     HolonomError
-        The start cannot follow the parameters, or there is none for these values.
+        The start cannot follow the parameters, or not to one that is known to be the only one; there is none for these
+        values.
     """
+    if Origin.FOLLOWED in problem.parametric_start.origins.values():
+        reason = "no closed form gives it for all values of the parameters; put near values into initial_guess"
+        raise HolonomError(Failure.START_UNFOLLOWED, problem.scene, reason)
     complete = {name: values.get(name, problem.values.get(name)) for name in problem.parameters}
     numbers = np.array([[float(complete[name])] for name in problem.parameters])
-    initial_states = InitialStates(problem)
+    initial_states = initial_states_of(problem)
     starts = initial_states(numbers)
     if not starts.found[0]:
         raise HolonomError(Failure.START_UNFOLLOWED, problem.scene, "no state satisfies the constraints")

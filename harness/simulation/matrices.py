@@ -88,7 +88,7 @@ class LaneMatrices:
         self._layout, self._g = _Layout(problem), len(problem.multipliers)
         self._evaluate = lane_evaluation(problem, problem.matrices)
 
-    def __call__(self, t: float, states: Numbers, values: Numbers) -> Matrices:
+    def __call__(self, t: float | Numbers, states: Numbers, values: Numbers) -> Matrices:
         """Evaluate the matrices.
 
         Parameters

@@ -65,15 +65,15 @@ def follow(
         The request cannot be met: its precision, tolerance, engine or end; or the motion cannot be followed so far.
     """
     with one_blas_thread():
-        end, ending = _end_of(problem, request)
+        end, ending = end_of(problem, request)
         with doing("compiling the motion"):
             prepared = _Simulation(followable(problem, request), request, take, end, ending)
         with doing("following the motion"):
             return prepared.run(progress)
 
 
-def _end_of(problem: MotionProblem, request: SimulationRequest) -> tuple[Any, Ending | None]:
-    """The last instant of a motion, and whether an event makes it so."""
+def end_of(problem: MotionProblem, request: SimulationRequest) -> tuple[Any, Ending | None]:
+    """The last instant of a motion, and whether an event makes it so; raises as `last_instant` and `first_event`."""
     precision = read_precision(str(request.precision))
     end = last_instant(problem, request.until, precision)
     if not problem.until:

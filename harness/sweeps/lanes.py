@@ -28,13 +28,13 @@ from .extremes import Steps
 from .quantities import along_motion, expressions_of
 
 LANES = 16  # of a batch: what is followed fits into the caches nearest to the processor, and calls are few
-LANES_LOOKED_AT = 64  # where Python is called after each step
+LANES_LOOKED_AT = 32  # where Python is called after each step
 BLOCK = 512  # steps between projections
 MOST_BLOCKS = 64
 ROOM = 64  # steps for which there is room at first
 STRAYED = 1e-8  # relative distance from the constraints after a block that projection alone does not cure
 SMALL = 2.0**-200  # in which what is looked at along the motion is integrated: a power of two loses no digit
-COMPACT_FROM = 300  # operations; heyoka's other mode compiles in their square, and runs a third faster
+COMPACT_FROM = 1600  # operations by lanes; heyoka's other mode compiles in their square, and runs a third faster
 
 Floats = NDArray[np.float64]
 Look = Callable[[list[Steps]], Floats]
@@ -104,7 +104,7 @@ class LaneEngine:
             np.zeros((len(equations), lanes)),
             tol=tol,
             pars=np.zeros((len(problem.parameters), lanes)),
-            compact_mode=problem.motion.operations >= COMPACT_FROM,
+            compact_mode=problem.motion.operations * lanes >= COMPACT_FROM,
         )
         self._state, self._pars, self._time = self._integrator.state, self._integrator.pars, self._integrator.time
         self._moving = self._state[: self._size]
@@ -113,7 +113,7 @@ class LaneEngine:
         if projects and problem.multipliers:
             self._nearest = in_full_vectors(nearest_state(problem, read_precision("double")))
 
-    def follow(self, states: Floats, values: Floats, stops: Sequence[float]) -> Followed:
+    def follow(self, states: Floats, values: Floats, stops: Sequence[float | Floats]) -> Followed:
         """Follow motions from their starts.
 
         Parameters
@@ -121,28 +121,27 @@ class LaneEngine:
         states : ndarray, shape (2n, k)
         values : ndarray, shape (p, k)
             Of the open parameters.
-        stops : sequence of float
-            Instants to stop at, in order; the last is the end.
+        stops : sequence of float or ndarray, shape (k,)
+            Instants to stop at, in order, for all motions or for each; the last is the end.
         """
         k, lanes = states.shape[1], self._lanes
+        instants = np.array([np.broadcast_to(stop, k) for stop in stops])
         found, arrived, seen = np.empty((len(stops), self._size, k)), np.empty(k, dtype=bool), []
         starts = np.concatenate([states, np.zeros((self._along, k))])
         for first in range(0, k, lanes):
             here = slice(first, min(first + lanes, k))
-            found[:, :, here], arrived[here], steps = self._batch(starts[:, here], values[:, here], stops)
+            found[:, :, here], arrived[here], steps = self._batch(starts[:, here], values[:, here], instants[:, here])
             if self._along:
                 seen.append(self._look(steps))
-        found = self._on_constraints(found, values, stops, arrived)
+        found = self._on_constraints(found, values, instants, arrived)
         return Followed(found, arrived, np.concatenate(seen, axis=1) if seen else np.empty((0, k)))
 
-    def _on_constraints(
-        self, states: Floats, values: Floats, stops: Sequence[float], arrived: NDArray[np.bool_]
-    ) -> Floats:
+    def _on_constraints(self, states: Floats, values: Floats, instants: Floats, arrived: NDArray[np.bool_]) -> Floats:
         """States at the stops, projected; a lane that strayed has not arrived."""
         if self._nearest is None or not arrived.any():
             return states
-        for place, stop in enumerate(stops):
-            states[place], strayed = self._projected(np.full((1, states.shape[2]), stop), states[place], values)
+        for place, stop in enumerate(instants):
+            states[place], strayed = self._projected(stop[None], states[place], values)
             arrived &= ~strayed
         return states
 
@@ -150,9 +149,7 @@ class LaneEngine:
         found = self._nearest(np.concatenate([instants, states, values]))
         return found[:-1], ~(found[-1] <= STRAYED**2)
 
-    def _batch(
-        self, starts: Floats, pars: Floats, stops: Sequence[float]
-    ) -> tuple[Floats, NDArray[np.bool_], list[Steps]]:
+    def _batch(self, starts: Floats, pars: Floats, stops: Floats) -> tuple[Floats, NDArray[np.bool_], list[Steps]]:
         """A batch, and again without lanes that fail: shapes (stops, 2n, m), (m,)."""
         count = starts.shape[1]
         if count == self._lanes:
@@ -162,7 +159,7 @@ class LaneEngine:
         chosen, followed = np.arange(self._lanes), np.ones(count, dtype=bool)
         chosen[count:] = 0
         while True:
-            failing, reached, well, steps = self._run(starts[:, chosen], pars[:, chosen], stops)
+            failing, reached, well, steps = self._run(starts[:, chosen], pars[:, chosen], stops[:, chosen])
             if failing is None:
                 return reached[:, :, :count], followed & well[:count], [part.of(slice(count)) for part in steps]
             failed = np.unique(chosen[failing])
@@ -172,7 +169,7 @@ class LaneEngine:
             chosen[np.isin(chosen, failed)] = np.flatnonzero(followed)[0]
 
     def _run(
-        self, starts: Floats, pars: Floats, stops: Sequence[float]
+        self, starts: Floats, pars: Floats, stops: Floats
     ) -> tuple[NDArray[np.bool_] | None, Floats, NDArray[np.bool_], list[Steps]]:
         """Full lanes through all stops: which fail, if any, their states, which went well, what was looked at."""
         integrator, along, options = self._integrator, self._looking, {}

@@ -19,7 +19,8 @@ def require_known(problem: MotionProblem, quantities: Sequence[Expression]) -> N
     HolonomError
         It names the first, and what there is.
     """
-    there = ("t", *problem.state, *solved_names(problem), *problem.parameters, "energy", "power")
+    controls = tuple(problem.controls.outputs) if problem.controls is not None else ()
+    there = ("t", *problem.state, *solved_names(problem), *controls, *problem.parameters, "energy")
     for quantity in quantities:
         if unknown := sorted(names_in(quantity) - set(there)):
             raise HolonomError(
@@ -45,7 +46,9 @@ def along_motion(problem: MotionProblem, known: Known) -> dict[str, Any]:
     """
     inputs = {**known, **zero_multipliers(problem.multipliers, 0.0)}
     solved = {**known, **heyoka_expressions(problem.motion, inputs)}
-    return {**solved, **heyoka_expressions(problem.energy, solved), **heyoka_expressions(problem.matrices, solved)}
+    others = (problem.energy, problem.matrices, problem.controls, problem.events)
+    found = [heyoka_expressions(program, solved) for program in others if program is not None]
+    return solved | {name: value for results in found for name, value in results.items()}
 
 
 def expressions_of(quantities: Sequence[Expression], known: Known) -> list[Any]:

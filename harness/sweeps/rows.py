@@ -13,24 +13,25 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..failures import HolonomError
+from ..failures import Failure, HolonomError
 from ..program.heyoka_function import import_heyoka
-from ..program.motion_problem import MotionProblem
-from ..program.motion_program import Expression
-from ..program.sign_pattern import problem_in
+from ..program.motion_problem import MotionProblem, require_analytic
+from ..program.motion_program import Expression, Name
+from ..program.precision import read_precision
 from ..simulation.diagnostics import scaled_residual
 from ..simulation.evaluation import in_full_vectors
-from ..simulation.initial_state import InitialStates, started
+from ..simulation.initial_state import initial_states_of, started
 from ..simulation.matrices import LaneMatrices
 from ..simulation.request import SimulationRequest, Stabilization
+from ..simulation.simulate import last_instant
 from ..simulation.trust import FINEST, MARGIN, may_hide
 from .axes import Axes
 from .extremes import Steps, first_zero, largest, largest_size
 from .kept import ALONG, Kept, Kind
-from .lanes import LaneEngine
+from .lanes import LaneEngine, Look
 from .quantities import along_motion, constraint_forces, expressions_of, other_forces, require_known
 from .series import lane_radii
-from .single import SingleMotions, end_of
+from .single import SingleMotions
 from .time_watch import TimeWatch
 
 if TYPE_CHECKING:
@@ -39,6 +40,8 @@ if TYPE_CHECKING:
 TOLERANCE = 1e-12  # of a step
 FEW = 10  # steps
 GROUP = 10_000  # rows that are held in memory at a time, whatever the chunk
+
+OWN = ("row", str(Kind.RESIDUAL), "status", "remark")  # columns of every sweep
 
 Floats = NDArray[np.float64]
 
@@ -92,10 +95,11 @@ class RowMaker:
         problem = self._problem = plan.problem
         self.plan, self._n = plan, len(problem.coordinates)
         require_known(problem, [kept.quantity for kept in plan.kept if kept.quantity is not None])
-        self._analytic = problem_in(problem, dict.fromkeys((sign.name for sign in problem.signs), 1))
-        self._starts = InitialStates(self._analytic)  # no sign decides about constraints, or they would jump
+        self._starts, self._start = initial_states_of(problem), float(problem.start["t"])
+        if any(kept.kind is Kind.RADIUS for kept in plan.kept):
+            require_analytic(problem)
         self._moves = any(kept.kind is not Kind.RADIUS for kept in plan.kept)
-        self._end = end_of(problem, plan.until) if self._moves else float(problem.start["t"])
+        self._end = float(last_instant(problem, plan.until, read_precision("double"))) if self._moves else self._start
         self._asked = sorted({self._end, *(self._instant(kept) for kept in plan.kept if kept.kind is Kind.AT)})
         self._points = [kept.quantity for kept in plan.kept if kept.kind is Kind.AT]
         self._looks = [kept for kept in plan.kept if kept.kind in ALONG]
@@ -103,6 +107,10 @@ class RowMaker:
         self._free = (constraint_forces(problem), other_forces(problem)) if free else ([], [])
         self._along: list[Expression] = [*(kept.quantity for kept in self._looks), *self._free[0], *self._free[1]]
         self._hides = may_hide(problem.matrices, problem.parameters)
+        if taken := [name for name in (*plan.axes.names, *self.columns) if name in OWN]:
+            raise HolonomError(
+                Failure.NOT_KEPT, detail=f"{taken[0]} is a column of every sweep; give another name to it"
+            )
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -149,15 +157,15 @@ class RowMaker:
         if len(there) and any(kept.kind is Kind.RADIUS for kept in self.plan.kept):
             name = next(kept.text for kept in self.plan.kept if kept.kind is Kind.RADIUS)
             rows.kept[name][there] = lane_radii(self._problem, starts.states[:, there], rows.values[:, there])
-        if not len(there) or not self._moves:
-            rows.residual[there] = self._residuals(starts.states[:, there], rows.values[:, there], start=True)
+        if not self._moves:
+            rows.residual[there] = self._residuals(self._start, starts.states[:, there], rows.values[:, there])
             return
         for row in self._left_alone(rows, there, starts.states):
             self._by_itself(rows, row, starts.states[:, row])
 
     def _left_alone(self, rows: "_Rows", there: NDArray, states: Floats) -> NDArray:
         """Follow in lanes what can be followed so; the other rows."""
-        if not self._batched:
+        if not self._batched or not len(there):
             return there
         alone, stops = self._watch.look(rows.values[:, there])
         together = there[~alone]
@@ -173,17 +181,27 @@ class RowMaker:
 
     def _together(self, rows: "_Rows", there: NDArray, states: Floats, stops: Sequence[float]) -> NDArray:
         """Follow motions in lanes; those that this does not do for."""
-        values, instants = rows.values[:, there], sorted({*self._asked, *(t for t in stops if t < self._end)})
-        found = self._engine.follow(states, values, instants)
-        residual = self._residuals(found.states[-1], values, start=False)
-        well = found.arrived & (residual <= self._allowed)
+        values = rows.values[:, there]
+        ends, ended = self._ends(states, values)
+        instants = sorted({*self._asked, *(t for t in stops if t < self._end)})
+        found = self._engine.follow(states, values, [np.minimum(instant, ends) for instant in instants])
+        residual = self._residuals(ends, found.states[-1], values)
+        well = ended & found.arrived & (residual <= self._allowed)
         done = there[well]
-        at = {stop: found.states[place] for place, stop in enumerate(instants)}
-        points = {stop: self._at(stop, at[stop], values) for stop in self._asked}
+        at = dict(zip(instants, found.states, strict=True))
+        points = {stop: self._at(np.minimum(stop, ends), at[stop], values)[:, well] for stop in self._asked}
         rows.residual[done] = residual[well]
-        self._keep(rows, done, at[self._end][:, well], {stop: numbers[:, well] for stop, numbers in points.items()})
+        self._keep(rows, done, ends[well], at[self._end][:, well], points)
         self._keep_along(rows, done, found.seen[:, well])
         return there[~well]
+
+    def _ends(self, states: Floats, values: Floats) -> tuple[Floats, NDArray[np.bool_]]:
+        """When motions end, at an event or with their time, and of which that is known."""
+        k = states.shape[1]
+        if not self._problem.until:
+            return np.full(k, self._end), np.ones(k, dtype=bool)
+        found = self._ending_engine.follow(states, values, [self._end])
+        return np.fmin(self._end, np.fmin.reduce(found.seen)), found.arrived
 
     def _by_itself(self, rows: "_Rows", row: int, state: Floats) -> None:
         numbers = {
@@ -195,25 +213,27 @@ class RowMaker:
         except HolonomError as error:
             rows.mark(np.array([row]), Status.BROKEN_OFF, f"{error.failure.value[0].format(detail=error.detail)}")
             return
-        here, end = np.array([row]), found.states[-1][:, None]
-        rows.residual[row] = self._residuals(end, rows.values[:, here], start=False)[0]
+        here, rows.residual[row] = np.array([row]), found.residual
         points = {stop: found.points[place][:, None] for place, stop in enumerate(self._asked)}
-        self._keep(rows, here, end, points)
+        self._keep(rows, here, np.array([found.end]), found.states[-1][:, None], points)
         self._keep_along(rows, here, self._seen(found.steps))
-        if not max(rows.residual[row], found.missed if self._hides else 0.0) <= self._allowed:
+        if not max(found.residual, found.missed) <= self._allowed:
             rows.mark(here, Status.DOUBTFUL, "what it misses is out of proportion to the tolerance")
 
     # ---- what is kept ----
 
-    def _keep(self, rows: "_Rows", there: NDArray, end: Floats, points: Mapping[float, Floats]) -> None:
-        """What is kept at instants."""
+    def _keep(
+        self, rows: "_Rows", there: NDArray, ends: Floats, states: Floats, points: Mapping[float, Floats]
+    ) -> None:
+        """What is kept at the ends, shape (k,), and at instants; at those after them there is nothing."""
         place = 0
         for kept in self.plan.kept:
             if kept.kind is Kind.FINAL:
-                for name, numbers in zip(self._problem.state, end, strict=True):
+                for name, numbers in zip(self._problem.state, states, strict=True):
                     rows.kept[name][there] = numbers
             elif kept.kind is Kind.AT:
-                rows.kept[kept.text][there] = points[self._instant(kept)][place]
+                reached = kept.instant is None or float(kept.instant) <= ends
+                rows.kept[kept.text][there] = np.where(reached, points[self._instant(kept)][place], np.nan)
                 place += 1
 
     def _keep_along(self, rows: "_Rows", there: NDArray, seen: Floats) -> None:
@@ -248,16 +268,29 @@ class RowMaker:
                 return _mean(along)
 
     def _instant(self, kept: Kept) -> float:
-        return self._end if kept.instant is None else float(kept.instant)
+        """When to look at a quantity.
 
-    def _at(self, instant: float, states: Floats, values: Floats) -> Floats:
+        Raises
+        ------
+        HolonomError
+            The motion does not reach there.
+        """
+        instant = self._end if kept.instant is None else float(kept.instant)
+        if not self._start <= instant <= self._end:
+            span = f"{self._start:.10g} to {self._end:.10g}"
+            raise HolonomError(
+                Failure.NOT_KEPT, detail=f"{kept.text} asks for an instant outside of the motion, {span}"
+            )
+        return instant
+
+    def _at(self, instants: Floats, states: Floats, values: Floats) -> Floats:
         """The quantities kept at instants, shape (quantities, k)."""
         if not self._points:
             return np.empty((0, states.shape[1]))
-        return self._evaluate(np.concatenate([np.full((1, states.shape[1]), instant), states, values]))
+        return self._evaluate(np.concatenate([instants[None], states, values]))
 
-    def _residuals(self, states: Floats, values: Floats, start: bool) -> Floats:
-        at = self._lane_matrices(float(self._problem.start["t"]) if start else self._end, states, values)
+    def _residuals(self, instants: Floats | float, states: Floats, values: Floats) -> Floats:
+        at = self._lane_matrices(instants, states, values)
         position = scaled_residual(at.residual, at.jacobian, states[: self._n])
         return np.maximum(position, scaled_residual(at.residual_rate, at.jacobian, states[self._n :]))
 
@@ -270,12 +303,20 @@ class RowMaker:
 
     @cached_property
     def _lane_matrices(self) -> LaneMatrices:
-        return LaneMatrices(self._analytic)
+        return LaneMatrices(self._problem)
 
     @cached_property
     def _engine(self) -> LaneEngine:
+        return self._looking_at(self._along, self._seen)
+
+    @cached_property
+    def _ending_engine(self) -> LaneEngine:
+        events = [Name(f"event[{place}]") for place, _ in enumerate(self._problem.until, start=1)]
+        return self._looking_at(events, lambda steps: np.array([first_zero(along) for along in steps]))
+
+    def _looking_at(self, along: Sequence[Expression], look: Look) -> LaneEngine:
         projects = self.plan.drift is Stabilization.PROJECTION
-        return LaneEngine(self._problem, self.plan.tol, projects, self._along, self._seen, self.plan.lanes)
+        return LaneEngine(self._problem, self.plan.tol, projects, along, look, self.plan.lanes)
 
     @cached_property
     def _evaluate(self) -> "NDArray":

@@ -5,7 +5,7 @@ which a motion ends that cannot be followed to the end.
 """
 
 from collections.abc import Sequence
-from fractions import Fraction
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import polynomial
@@ -15,12 +15,13 @@ from ..program.heyoka_function import import_heyoka
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Expression
 from ..program.precision import read_precision
+from ..simulation.diagnostics import scaled_residual
 from ..simulation.engines.engine import Piece
 from ..simulation.evaluation import in_full_vectors
 from ..simulation.passed_over import StepsHeldAgainstTheEquations
 from ..simulation.piecewise import PiecewiseMotion
 from ..simulation.request import SimulationRequest
-from ..simulation.simulate import followable
+from ..simulation.simulate import end_of, followable
 from .extremes import Steps
 from .quantities import expressions_of, solved_names
 
@@ -57,7 +58,8 @@ class SingleMotions:
         self._solved = len(solved_names(problem))
         fields = [f"h[{s}]" for s in range(1, n + 1)]
         fields += [f"J[{beta},{s}]" for beta in range(1, g + 1) for s in range(1, n + 1)]
-        names = ["t", *problem.state, *solved_names(problem), "energy", *fields, *problem.parameters]
+        controls = problem.controls.outputs if problem.controls is not None else ()
+        names = ["t", *problem.state, *solved_names(problem), "energy", *controls, *fields, *problem.parameters]
         known = {name: heyoka.expression(name) for name in names}
         quantities = expressions_of([*along, *points], known) if along or points else []
         self._quantities = (
@@ -79,10 +81,11 @@ class SingleMotions:
         HolonomError
             The motion cannot be followed to the end.
         """
-        motion = PiecewiseMotion(followable(problem, self._request), self._request, self._precision, stops[-1])
-        held = StepsHeldAgainstTheEquations(motion, stops[-1] - motion.time, self._precision)
+        end = float(end_of(problem, self._request)[0])
+        motion = PiecewiseMotion(followable(problem, self._request), self._request, self._precision, end)
+        held = StepsHeldAgainstTheEquations(motion, end - motion.time, self._precision)
         states, points, taken = [], [], []
-        for stop in stops:
+        for stop in (min(stop, end) for stop in stops):
             for piece in motion.pieces(stop):
                 if self._may_hide:
                     held.take(piece)
@@ -91,7 +94,8 @@ class SingleMotions:
             states.append(motion.state.copy())
             values = self._values(motion, problem, np.array([stop]), motion.state.copy()[:, None])
             points.append(values[self._along :, 0])
-        return SingleMotion(np.array(states), np.array(points), _steps(taken), held.missed)
+        missed = held.missed if self._may_hide else 0.0
+        return SingleMotion(end, np.array(states), np.array(points), _steps(taken), _residual(motion), missed)
 
     def _polynomials(self, motion: PiecewiseMotion, problem: MotionProblem, piece: Piece) -> list[tuple]:
         """The quantities on the parts of a step: middle, half length, coefficients."""
@@ -107,36 +111,45 @@ class SingleMotions:
         if self._quantities is None:
             return np.empty((0, len(instants)))
         solved = np.concatenate(motion.solutions(instants, states))[: self._solved]
-        energy = motion.energy(instants, states)[None]
+        others = np.array([motion.energy(instants, states), *motion.controls(instants, states).values()])
         matrices = [motion.matrices(float(t), state) for t, state in zip(instants, states.T, strict=True)]
         fields = np.array([[*at.force, *at.jacobian.ravel()] for at in matrices]).T
         parameters = np.repeat(np.array(problem.numbers)[:, None], len(instants), axis=1)
-        inputs = [instants[None], states, solved, energy, fields, parameters.reshape(-1, len(instants))]
+        inputs = [instants[None], states, solved, others, fields, parameters.reshape(-1, len(instants))]
         return self._quantities(np.concatenate(inputs))
 
 
-class SingleMotion:
+class SingleMotion(NamedTuple):
     """What came of one motion.
 
     Parameters
     ----------
+    end : float
+        The last instant.
     states : ndarray, shape (stops, 2n)
+        At the instants asked for; after the end, as they are there.
     points : ndarray, shape (stops, quantities)
     steps : list of Steps
         Each quantity along the motion, with one lane.
+    residual : float
+        How far the end is from the constraints.
     missed : float
-        What steps passed over, as `holonom.simulation.passed_over` says.
+        What steps passed over, as `holonom.simulation.passed_over` says; zero where they cannot.
     """
 
-    def __init__(self, states: Floats, points: Floats, steps: list[Steps], missed: float) -> None:
-        self.states, self.points, self.steps, self.missed = states, points, steps, missed
+    end: float
+    states: Floats
+    points: Floats
+    steps: list[Steps]
+    residual: float
+    missed: float
 
 
-def end_of(problem: MotionProblem, until: Fraction | None) -> float:
-    """The instant at which motions end, in double precision; raises as `holonom.simulation.simulate.last_instant`."""
-    from ..simulation.simulate import last_instant
-
-    return float(last_instant(problem, until, read_precision("double")))
+def _residual(motion: PiecewiseMotion) -> float:
+    state = motion.state.copy()
+    at, n = motion.matrices(float(motion.time), state), len(state) // 2
+    position = scaled_residual(at.residual, at.jacobian, state[:n])
+    return float(np.maximum(position, scaled_residual(at.residual_rate, at.jacobian, state[n:])))
 
 
 def _steps(taken: list[tuple]) -> list[Steps]:

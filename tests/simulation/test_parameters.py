@@ -1,5 +1,6 @@
 """Open parameters: one derivation and one compilation for all their values, and a start that follows them."""
 
+from fractions import Fraction
 from pathlib import Path
 
 import heyoka
@@ -15,7 +16,7 @@ from holonom.program.request import Request
 from holonom.program.sign_pattern import with_values_in
 from holonom.simulation import derivations
 from holonom.simulation.engines import taylor
-from holonom.simulation.initial_state import InitialStates, at_values
+from holonom.simulation.initial_state import InitialStates, at_values, initial_states_of
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 HANGING = """load("holonom.mac")$
@@ -32,6 +33,12 @@ CUBIC = """load("holonom.mac")$
 system : holonomic_system(coordinates = [x, y], parameters = [k],
   kinetic_energy = (dot(x)^2 + dot(y)^2)/2, constraints = [y^3 + k*y - x])$
 slide : holonomic_scene(system, parameter_values = [k = 1], initial_state = [x = 2, dot(x) = 1], time_span = [0, 1])$"""
+IN_PARTS = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [m],
+  kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2, constraints = [x^2 + y^2 - u^2])$
+paid_out : holonomic_scene(system, control_law = [u = if t < b then 1 else 1 + t - b],
+  parameter_values = [m = 1, b = 1], initial_state = [x = 3/5, dot(x) = 0],
+  initial_guess = [y = -1, dot(y) = 0], time_span = [0, 2])$"""
 
 
 @pytest.fixture(scope="module")
@@ -93,14 +100,28 @@ def test_data_may_contain_parameters_and_what_is_linear_needs_no_guess(write_sce
     assert starts.states[:, :3] == pytest.approx(np.array([k**2, k**3, 1 / k, np.full(3, 2.0)]), rel=1e-14)
 
 
-def test_a_start_with_more_than_one_solution_elsewhere_is_no_function(write_scene):
+def test_a_start_without_a_guess_is_followed_from_the_scenes_own(write_scene):
     file = write_scene(CUBIC)
     problem = motion_problem(file, Request(), Limits(), open_parameters=("k",))
-    with pytest.raises(HolonomError, match="no closed form gives y"):
-        InitialStates(problem)
-    scene = holonom.load(file)
-    found = scene.simulate(k=3, samples=2)  # Maxima counts the roots for each number
-    assert found["y"][0] ** 3 + 3 * found["y"][0] == pytest.approx(2)
+    k = np.array([[1.0, 3.0, 8.0, -3.0]])
+    starts = InitialStates(problem)(k)
+    assert starts.found.tolist() == [True, True, True, False]  # from y = 1 the slope 3 y^2 + k leads nowhere
+    y = starts.states[1, :3]
+    assert y**3 + k[0, :3] * y == pytest.approx(np.full(3, 2.0), rel=1e-14)
+    with pytest.raises(HolonomError, match="no closed form gives"):
+        at_values(problem, {"k": Fraction(3)})
+    found = holonom.load(file).simulate(k=3, samples=2)  # Maxima counts the roots for each number
+    assert found["y"][0] == pytest.approx(y[1], rel=1e-14)
+
+
+def test_a_law_in_parts_leaves_the_start_its_first_part(write_scene):
+    problem = motion_problem(write_scene(IN_PARTS), Request(), Limits(), open_parameters=("m", "b"))
+    values = np.array([[1.0, 2.0, 1.0], [1.0, 5.0, -1.0]])
+    starts = initial_states_of(problem)(values)
+    assert starts.found.all()
+    assert starts.states[1] == pytest.approx([-0.8, -0.8, -(3.64**0.5)], rel=1e-14)  # u = 1 before b, 2 from it on
+    moved = at_values(problem, {"m": Fraction(2), "b": Fraction(5)})
+    assert float(moved.start["y"]) == pytest.approx(-0.8, rel=1e-14)
 
 
 def test_data_that_contradict_the_constraints_for_other_values_are_refused_with_their_sentence():

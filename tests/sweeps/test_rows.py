@@ -27,6 +27,25 @@ system : holonomic_system(coordinates = [x], parameters = [m, mu],
 braked : holonomic_scene(system, parameter_values = [m = 1, mu = 1],
   initial_state = [x = 0, dot(x) = 1], time_span = [0, 3])$"""
 
+THROWN = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, z], parameters = [g],
+  kinetic_energy = (dot(x)^2 + dot(z)^2)/2, potential_energy = g*z, constraints = [])$
+thrown : holonomic_scene(system, parameter_values = [g = 10],
+  initial_state = [x = 0, z = 0, dot(x) = 1, dot(z) = 5], time_span = [0, 3], until = [z = 0, x = 5/2])$"""
+SKIDDING = FRICTION.replace("time_span = [0, 3]", "time_span = [0, 3], until = [x = 1/4]")
+PUSHED = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x], parameters = [k, m, q],
+  kinetic_energy = m*dot(x)^2/2, potential_energy = k*x^2/2, forces = [push = [if t < q then 1 else 0]],
+  constraints = [])$
+pushed : holonomic_scene(system, parameter_values = [k = 4, m = 1, q = 1],
+  initial_state = [x = 0, dot(x) = 0], time_span = [0, 3])$"""
+NAMES = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x], parameters = [t0, q, h, row],
+  kinetic_energy = q*dot(x)^2/2, potential_energy = h*x^2/2, forces = [drag = [-t0*dot(x)], push = [row]],
+  constraints = [])$
+released : holonomic_scene(system, parameter_values = [t0 = 0, q = 1, h = 4, row = 0],
+  initial_state = [x = 1, dot(x) = 0], time_span = [0, 2])$"""
+
 
 def columns(table: pa.Table) -> dict[str, np.ndarray]:
     return {name: table[name].to_numpy(zero_copy_only=False) for name in table.column_names}
@@ -35,7 +54,15 @@ def columns(table: pa.Table) -> dict[str, np.ndarray]:
 @pytest.fixture(scope="module")
 def scenes(tmp_path_factory):
     folder = tmp_path_factory.mktemp("scenes")
-    for name, text in {"oscillator": OSCILLATOR, "hanging": HANGING, "friction": FRICTION}.items():
+    for name, text in {
+        "oscillator": OSCILLATOR,
+        "hanging": HANGING,
+        "friction": FRICTION,
+        "thrown": THROWN,
+        "skidding": SKIDDING,
+        "pushed": PUSHED,
+        "names": NAMES,
+    }.items():
         (folder / f"{name}.mac").write_text(text)
     return folder
 
@@ -116,6 +143,78 @@ def test_motions_that_switch_are_followed_one_by_one(rows_of, scenes):
     assert found["x"] == pytest.approx(1 / (2 * found["mu"]), rel=1e-10)  # v^2/(2 mu), then it sticks
     assert found["max(x)"] == pytest.approx(found["x"], rel=1e-10)
     assert (found["status"] == Status.OK).all()
+
+
+def test_each_motion_ends_where_its_own_event_is(rows_of, scenes):
+    keep = "t,final,max(z),at(x,2),zero(z-1),mean(z)"
+    found = columns(rows_of(scenes / "thrown.mac", keep, "g=1:10:10").table(0, 10))
+    g, end = found["g"], np.minimum(10 / found["g"], 2.5)
+    crossing = (5 - np.sqrt(25 - 2 * g)) / g
+    truths = {
+        "t": end,
+        "x": end,
+        "z": 5 * end - g * end**2 / 2,
+        "max(z)": np.where(5 / g <= end, 25 / (2 * g), 5 * end - g * end**2 / 2),
+        "at(x,2)": np.where(end >= 2, 2.0, np.nan),
+        "zero(z-1)": crossing,
+        "mean(z)": 5 * end / 2 - g * end**2 / 6,
+    }
+    for name, truth in truths.items():
+        assert found[name] == pytest.approx(truth, rel=1e-11, abs=1e-11, nan_ok=True), name
+    assert (found["status"] == Status.OK).all()
+
+
+def test_a_motion_followed_by_itself_ends_at_its_event_too(rows_of, scenes):
+    found = columns(rows_of(scenes / "skidding.mac", "t,dot(x),at(x,1)", "mu=1/2:3/2:2").table(0, 2))
+    speed = np.sqrt(1 - found["mu"] / 2)  # at x = 1/4
+    assert found["dot(x)"] == pytest.approx(speed, rel=1e-10)
+    assert found["t"] == pytest.approx((1 - speed) / found["mu"], rel=1e-10)
+    assert np.isnan(found["at(x,1)"]).all()
+
+
+def test_a_push_that_ends_at_a_swept_instant_leaves_the_oscillation_of_two_steps(rows_of, scenes):
+    found = columns(rows_of(scenes / "pushed.mac", "x,max(x)", "q=1/2:5/2:2", "k=4:9:2").table(0, 4))
+    q, w = found["q"], np.sqrt(found["k"])
+    assert found["x"] == pytest.approx((np.cos(w * (3 - q)) - np.cos(3 * w)) / found["k"], rel=1e-10)
+    assert (found["status"] == Status.OK).all()
+    assert found["max(x)"][2] == pytest.approx(2 / 4, rel=1e-10)  # it is pushed for more than half a period
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("scene", ["recorded_scene", "pulled_scene"])
+def test_rows_under_a_table_and_a_law_in_parts_are_those_of_single_simulations(rows_of, scene):
+    found = columns(rows_of("hoist.mac", "final,lambda1", "m=1:2:2", scene=scene).table(0, 2))
+    for row, mass in enumerate(found["m"]):
+        motion = holonom.load(EXAMPLES / "hoist.mac", scene=scene).simulate(samples=2, m=mass)
+        for name in ("x", "y", "dot(x)", "dot(y)", "lambda1"):
+            assert found[name][row] == pytest.approx(motion[name][-1], rel=1e-10, abs=1e-10)
+    assert (found["status"] == Status.OK).all()
+
+
+def test_the_tip_of_the_arm_is_on_its_circle_and_the_torques_are_in_proportion_to_the_mass(rows_of):
+    maker = rows_of("arm.mac", "final,tau1,tau2,max(abs(tau1))", "l=9/10:6/5:2", "m=1:2:2", scene="circle_scene")
+    found = columns(maker.table(0, 4))
+    for name, along, end in (("x", np.cos, 1 + np.cos(6) / 4), ("y", np.sin, np.sin(6) / 4)):
+        assert found["l"] * (along(found["a"]) + along(found["b"])) == pytest.approx(end, rel=1e-11), name
+    for torque in ("tau1", "tau2", "max(abs(tau1))"):
+        assert found[torque][1::2] == pytest.approx(2 * found[torque][::2], rel=1e-9)
+        assert (np.abs(found[torque]) > 0.1).all()
+
+
+def test_parameters_may_have_names_that_the_library_uses(rows_of, scenes):
+    found = columns(rows_of(scenes / "names.mac", "x,h", "t0=0:1:2", "q=1:2:2", "h=4:9:2").table(0, 8))
+    t0, q, stiffness = (found[name] for name in ("t0", "q", "h"))
+    decay, w = t0 / (2 * q), np.sqrt(stiffness / q - (t0 / (2 * q)) ** 2)
+    truth = np.exp(-2 * decay) * (np.cos(2 * w) + decay / w * np.sin(2 * w))
+    assert found["x"] == pytest.approx(truth, rel=1e-11)
+    with pytest.raises(HolonomError, match="row is a column of every sweep"):
+        rows_of(scenes / "names.mac", "x", "row=0:1:2")
+
+
+@pytest.mark.parametrize("item", ["at(x,4)", "at(x,-1)"])
+def test_an_instant_outside_of_the_motion_is_refused(rows_of, scenes, item):
+    with pytest.raises(HolonomError, match="outside of the motion, 0 to 3"):
+        rows_of(scenes / "oscillator.mac", item, "k=4:25:22", "m=1:4:4")
 
 
 def test_motions_under_the_exponential_law_are_free_and_others_are_not(rows_of):
