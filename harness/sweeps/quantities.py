@@ -69,7 +69,6 @@ def expressions_of(quantities: Sequence[Expression], known: Known) -> list[Any]:
         inputs=tuple(sorted(set().union(*map(names_in, quantities)))),
         assignments=tuple(named.items()),
         outputs={name: Name(name) for name in named},
-        redundant=(),
     )
     zero = import_heyoka().expression(0.0)
     return [zero + found for found in heyoka_expressions(program, known).values()]
