@@ -161,6 +161,7 @@ def singular(found: Derived, name: str) -> Program:
             "scene": name,
             "solve": "direct",
             "method": "singular instants",
+            "redundant": [],
             "operations": sum(int(part.count_ops()) for part in parts.values()),
             "inputs": inputs,
             "assignments": [[f"w_{part}", from_sympy(value)] for part, value in parts.items()],
