@@ -130,7 +130,6 @@ class Failure(Enum):
         "the Runge-Kutta engine needs the GNU Scientific Library with its headers",
         "install it, for instance the package `libgsl-dev` of your distribution",
     )
-    NO_SUCH_CURE = ("the Runge-Kutta engine has no cure of drift named {detail}", "take --drift projection or none")
     NO_PIVOTS = ("the motion program cannot be solved: {detail}", "take --engine auto or robust")
     RUNGE_KUTTA_IS_DOUBLE = (
         "the Runge-Kutta engine computes in double precision, not {detail}",

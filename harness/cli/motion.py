@@ -86,14 +86,14 @@ FAILED = 1  # exit status of a result that is none
     type=click.Choice(["auto", "taylor", "runge-kutta", "robust"]),
     default="auto",
     show_default=True,
-    help="What follows the motion; auto is taylor, and robust where that fails.",
+    help="What follows the motion; auto is the quicker of taylor and runge-kutta, and robust where that fails.",
 )
 @click.option(
     "--drift",
     type=click.Choice(["projection", "baumgarte", "ggl", "none"]),
     default="projection",
     show_default=True,
-    help="What keeps the constraints; baumgarte and ggl with the Taylor engine.",
+    help="What keeps the constraints; the robust engine always projects.",
 )
 @chooses_solve
 @click.option("--compact/--no-compact", default=None, help="heyoka's compact mode; without it, what pays.")

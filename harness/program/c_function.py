@@ -5,6 +5,7 @@ import os
 import shlex
 import shutil
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -138,6 +139,13 @@ def compile_shared(sources: Sequence[Path], library: Path, *options: str) -> Non
         raise HolonomError(Failure.COMPILER_REFUSED, detail=shown or f"exit status {status}")
     if not library.exists():
         raise HolonomError(Failure.COMPILER_UNUSABLE, detail=f"{command[0]} made no library")
+
+
+def has_compiler() -> bool:
+    """Whether there is a C compiler."""
+    with suppress(HolonomError):
+        return bool(_compiler())
+    return False
 
 
 def _compiler() -> list[str]:

@@ -245,7 +245,8 @@ def report_document(report: Report) -> dict[str, Any]:
     correction = report.correction and dict(zip(("name", "size"), report.correction, strict=True))
     ending = None if report.ending is None else report.ending._asdict()
     attributes = vars(report) | lists | said
-    attributes |= {"trusted": report.trusted, "correction": correction, "ending": ending}
+    choice = None if report.choice is None else vars(report.choice)
+    attributes |= {"trusted": report.trusted, "correction": correction, "ending": ending, "choice": choice}
     return published(Publication.SIMULATION, {k: _published(value, report.digits) for k, value in attributes.items()})
 
 

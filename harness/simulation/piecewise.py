@@ -34,7 +34,8 @@ from .constraints.program_projection import ProgramProjection
 from .constraints.projection import project
 from .constraints.singularity import require_gradient, shortly_before, vanishing_instants
 from .diagnosis import Instant, dependence
-from .diagnostics import EnergyBalance, residuals
+from .diagnostics import POINTS, EnergyBalance, residuals
+from .engines.choice import Between, Choice
 from .engines.engine import Piece, Solutions
 from .engines.switching import Leg, SwitchingEngine
 from .evaluation import Evaluation, Numbers, as_floats, evaluation, zeros
@@ -99,8 +100,10 @@ class Part:
         self.matrices = MotionMatrices(analytic)
         obstacle = analytic.obstacle or dependence(self.matrices, Instant(*start_of(analytic)))
         self.problem = replace(analytic, obstacle=obstacle)
-        self.engine = SwitchingEngine(self.problem, request, precision, end)
         self.balance = EnergyBalance(self.problem, self._multipliers, precision)
+        inner = 0 if self.balance.conservative else len(POINTS)
+        between = None if problem.signs else Between(request.samples or 0, inner)
+        self.engine = SwitchingEngine(self.problem, request, precision, end, between)
         self._start, self._end = float(problem.start["t"]), float(end)
         self.doubtful = vanishing_instants(self.problem, self.matrices, self._end)
         self.by_time = time_dependence(in_numbers(self.problem, self.problem.matrices), self._start, self._end)
@@ -208,6 +211,11 @@ class PiecewiseMotion:
     def code(self) -> str:
         """How heyoka compiled the engine that began."""
         return self.part.engine.code
+
+    @property
+    def choice(self) -> Choice | None:
+        """Why the engine that began was taken; None where there was nothing to weigh."""
+        return self.phases[0].part.engine.choice
 
     @property
     def compile_seconds(self) -> float:

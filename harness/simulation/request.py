@@ -42,7 +42,7 @@ class SimulationRequest:
         ``double``, ``extended``, ``quadruple``, or a number of decimal digits. Only the Taylor engine knows others
         than double.
     drift : Stabilization
-        What the Taylor engine does; the Runge-Kutta engine projects or does nothing, the robust one always projects.
+        What the Taylor and the Runge-Kutta engine do; the robust one always projects.
     until : Fraction or None
         Last instant; None for the end of the scene's time span.
     samples : int or None

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ..failures import missing_package
 from ..shown import Show, Shown
 from .diagnosis import HardCase
+from .engines.choice import Choice
 from .engines.switching import Leg
 from .events import Ending
 from .piecewise import Switching
@@ -58,6 +59,8 @@ class Report:
         Whether an event ended the motion; None where the scene names none.
     controls : mapping of str to number
         Empty where the scene does not observe them.
+    choice : Choice or None
+        Why the engine that began was taken; None where one was asked for, or is the only one.
     relative_degrees : tuple of int
         Of each output that servo-constraints prescribe: which of its rates the controls are in.
     """
@@ -82,6 +85,7 @@ class Report:
     switchings: tuple[Switching, ...]
     doubts: tuple[Doubt, ...]
     ending: Ending | None = None
+    choice: Choice | None = None
     controls: Mapping[str, Any] = field(default_factory=dict)
     relative_degrees: tuple[int, ...] = ()
 

@@ -259,6 +259,7 @@ class _Simulation:
             cases=self._cases(state, as_floats(multipliers)),
             switchings=tuple(self.motion.switchings),
             ending=self.ending,
+            choice=self.motion.choice,
             controls={
                 name: values[-1] for name, values in self.motion.controls(np.array([self.end]), state[:, None]).items()
             },

@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from ...series.power_series import Continuation, MotionSeries, Values
+    from ...simulation.engines.choice import Choice
     from ...sweeps.run import Sweep
 
 
@@ -108,6 +109,8 @@ def _quality(report: "Report") -> Iterator[str]:
     yield f"energy error: {report.energy_error:.1e}"
     steps = f"{report.steps} steps by {engine_text(report.legs)}"
     yield f"{steps}, in {report.precision} precision at tolerance {report.tol:.1e}"
+    if report.choice is not None:
+        yield _choice(report.choice)
     code = f" {report.code} code" if report.code else ""
     yield f"{report.compile_seconds:.3f} s to compile{code}, {report.run_seconds:.3g} s to run"
     yield from remarks(report.legs, report.cases)
@@ -117,6 +120,12 @@ def _quality(report: "Report") -> Iterator[str]:
         yield f"The outputs of the servo-constraints have the relative degrees {degrees}."
     if report.ending is not None:
         yield _ending(report)
+
+
+def _choice(choice: "Choice") -> str:
+    """Why an engine was taken."""
+    seconds = f"{choice.taylor:.2g} s by taylor, {choice.runge_kutta:.2g} s by runge-kutta with the C compiler"
+    return f"{choice.engine} is quicker for {choice.steps} steps of {choice.operations} operations: {seconds}"
 
 
 def _ending(report: "Report") -> str:

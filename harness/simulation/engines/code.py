@@ -29,7 +29,7 @@ class Code(StrEnum):
         return {"compact_mode": self is not Code.UNROLLED} | ({"opt_level": 0} if self is Code.QUICK else {})
 
 
-SAVED = {Code.COMPACT: 0.6, Code.UNROLLED: 0.25}  # share of the running time of the code before it
+LEFT = {Code.COMPACT: 0.4, Code.UNROLLED: 0.75}  # share of the running time of the code before it
 HARDWARE = ("double", "extended")
 
 
@@ -52,5 +52,9 @@ def pays(code: Code, operations: int, seconds: float) -> bool:
     seconds : float
         What is left of the run takes, in the code that it has.
     """
-    compilation = 0.05 + (1.6e-3 * operations if code is Code.COMPACT else 5.5e-5 * operations**2)
-    return SAVED[code] * seconds > compilation
+    return (1 - LEFT[code]) * seconds > compilation(code, operations)
+
+
+def compilation(code: Code, operations: int) -> float:
+    """Seconds that the compilation of a motion program of so many operations takes, in one of the better codes."""
+    return 0.05 + (1.6e-3 * operations if code is Code.COMPACT else 5.5e-5 * operations**2)

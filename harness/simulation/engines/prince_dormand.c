@@ -4,7 +4,10 @@
    puts the number STATE of coordinates and velocities, and the functions of t and the state
 
        accelerations                               and, where the constraints are to be kept,
-       position_corrections, velocity_corrections  with the number PROJECTED of steps after which they are.   */
+       position_corrections, velocity_corrections  with the number PROJECTED of steps after which the state is
+                                                   moved to them, or with Baumgarte's cure or Gear's (GGL), which
+                                                   add to the rates so that what is missed dies out like
+                                                   exp(-GAMMA t).                                              */
 
 #include <float.h>
 #include <gsl/gsl_errno.h>
@@ -40,13 +43,33 @@ static int are_finite(int count, const double *x)
     return !others;
 }
 
+/* d and e of stabilization.py, added to the rates. */
+static void cure_drift(double t, const double *state, double *out)
+{
+#ifdef GAMMA
+    double position[COORDINATES], velocity[COORDINATES];
+    position_corrections(t, state, position);
+    velocity_corrections(t, state, velocity);
+    for (int i = 0; i < COORDINATES; i++) {
+#ifdef BAUMGARTE
+        out[COORDINATES + i] += 2*GAMMA*velocity[i] + GAMMA*GAMMA*position[i];
+#else
+        out[i] += GAMMA*position[i];
+        out[COORDINATES + i] += GAMMA*velocity[i];
+#endif
+    }
+#endif
+    (void)t, (void)state, (void)out;
+}
+
 static int rates(double t, const double *state, double *out, void *unused)
 {
     (void)unused;
     memcpy(out, state + COORDINATES, COORDINATES*sizeof *out);
     accelerations(t, state, out + COORDINATES);
+    cure_drift(t, state, out);
     evaluations++;
-    return are_finite(COORDINATES, out + COORDINATES) ? GSL_SUCCESS : GSL_FAILURE;
+    return are_finite(STATE, out) ? GSL_SUCCESS : GSL_FAILURE;
 }
 
 static const gsl_odeiv2_system motion = { rates, NULL, STATE, NULL };

@@ -27,6 +27,7 @@ from .engine import Obstacle, Piece, Solutions
 
 FIRST_BLOCK = 128  # steps; what surrounds a block, projection above all, takes as long as some small steps
 SHRUNK = 32  # times shorter than the longest: a step that calls for a closer look; 16 occurs in quiet motions
+DECAYS_IN_A_RUN = 50.0  # gamma of Baumgarte's cure and Gear's, times the length of the time span
 SHORTEST = 1e-10  # of the longest: a step that leads nowhere
 
 
@@ -245,3 +246,12 @@ class ProgramEngine:
 
 def _states_of(dense: Dense) -> Callable[[NDArray[Any]], NDArray[Any]]:
     return lambda instants: dense(instants).T.copy()
+
+
+def decay_in(problem: MotionProblem, decay: float | None) -> float:
+    """The rate gamma of Baumgarte's cure and Gear's: what is asked for, or `DECAYS_IN_A_RUN` by the time span's length.
+
+    Where the scene names no time span, a unit of time takes its place.
+    """
+    first, last = map(float, problem.time_span or (0, 1))
+    return DECAYS_IN_A_RUN / (last - first) if decay is None else decay

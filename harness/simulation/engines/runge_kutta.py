@@ -25,7 +25,7 @@ from ...program.motion_problem import MotionProblem, computing
 from ...program.motion_program import Program
 from ...program.precision import read_precision
 from ..request import EngineName, Stabilization
-from .program_engine import ProgramEngine
+from .program_engine import ProgramEngine, decay_in
 
 FINEST, USUAL = 1e-14, 1e-12  # tolerances; below the first, rounding decides about the steps
 PROJECTED = 16  # steps after which the state is projected: to project takes as long as a fifth of a step
@@ -48,31 +48,32 @@ class RungeKuttaEngine(ProgramEngine):
     tol : float or None
         Tolerance of a step, relative and absolute; None for `USUAL`.
     drift : Stabilization
-        ``PROJECTION`` or ``NONE``.
+    decay : float or None
+        gamma of Baumgarte's cure and Gear's, as for `TaylorEngine`.
 
     Raises
     ------
     HolonomError
-        The tolerance is finer than the method holds; there is no such cure of drift; there is no C compiler or no GNU
-        Scientific Library.
+        The tolerance is finer than the method holds; there is no C compiler or no GNU Scientific Library.
     """
 
     name = EngineName.RUNGE_KUTTA
 
     def __init__(
-        self, problem: MotionProblem, tol: float | None = None, drift: Stabilization = Stabilization.PROJECTION
+        self,
+        problem: MotionProblem,
+        tol: float | None = None,
+        drift: Stabilization = Stabilization.PROJECTION,
+        decay: float | None = None,
     ) -> None:
         super().__init__(problem, read_precision("double"), failed=True)
-        if drift not in (Stabilization.PROJECTION, Stabilization.NONE):
-            raise HolonomError(Failure.NO_SUCH_CURE, detail=drift)
         if tol is not None and not FINEST <= tol < 1:
             holds = f"the Runge-Kutta engine holds tolerances from {FINEST:g} to 1, not {tol:g}"
             raise HolonomError(Failure.TOLERANCE_UNHELD, detail=holds)
         self.tol = USUAL if tol is None else tol
         begun = time.perf_counter()
-        self._integrator = PrinceDormand(
-            problem, self.tol, drift is Stabilization.PROJECTION and bool(problem.multipliers)
-        )
+        cure = drift if problem.multipliers else Stabilization.NONE
+        self._integrator = PrinceDormand(problem, self.tol, cure, decay_in(problem, decay))
         self.state = self._integrator.state
         self.compile_seconds = time.perf_counter() - begun
 
@@ -92,8 +93,9 @@ class PrinceDormand(ctypes.Structure):
     ----------
     tol : float
         Relative and absolute.
-    projects : bool
-        Whether it keeps the constraints.
+    drift : Stabilization
+    decay : float
+        gamma.
 
     Attributes
     ----------
@@ -118,10 +120,10 @@ class PrinceDormand(ctypes.Structure):
         *((name, ctypes.c_void_p) for name in ("_instants", "_states")),
     )
 
-    def __init__(self, problem: MotionProblem, tol: float, projects: bool) -> None:
+    def __init__(self, problem: MotionProblem, tol: float, drift: Stabilization, decay: float) -> None:
         self.state, self.tol = np.array([float(problem.start[name]) for name in problem.state]), tol
         super().__init__(float(problem.start["t"]), self.state.ctypes.data)
-        library = load_c("\n".join(_source(problem, projects)), *_options_of_gsl())
+        library = load_c("\n".join(_source(problem, drift, decay)), *_options_of_gsl())
         self._advance, self._go_between = library.advance, library.go_between
         self._advance.argtypes = (ctypes.c_void_p,)
         self._go_between.argtypes = (ctypes.c_double, ctypes.c_double, ctypes.c_void_p)
@@ -195,17 +197,26 @@ class Steps:
         return found
 
 
-def _source(problem: MotionProblem, projects: bool) -> Iterator[str]:
+def _source(problem: MotionProblem, drift: Stabilization, decay: float) -> Iterator[str]:
     places = range(1, len(problem.coordinates) + 1)
     yield from ("#include <math.h>", "#include <stddef.h>", "#include <string.h>", HELPERS)
     yield _function(problem, "accelerations", problem.motion, {f"ddot({name})" for name in problem.coordinates})
-    if projects:
+    if drift is not Stabilization.NONE:
         for kind in ("position", "velocity"):
             outputs = {f"{kind}_correction[{place}]" for place in places}
             yield _function(problem, f"{kind}_corrections", problem.projection, outputs)
-        yield f"#define PROJECTED {PROJECTED}"
+        yield from _keeping(drift, decay)
     yield f"#define STATE {len(problem.state)}"
     yield DRIVER.read_text(encoding="utf-8")
+
+
+def _keeping(drift: Stabilization, decay: float) -> Iterator[str]:
+    """How the constraints are kept."""
+    if drift is Stabilization.PROJECTION:
+        yield f"#define PROJECTED {PROJECTED}"
+    else:
+        yield f"#define {drift.name}"
+        yield f"#define GAMMA {decay!r}"
 
 
 def _function(problem: MotionProblem, name: str, program: Program, outputs: set[str]) -> str:

@@ -1,25 +1,31 @@
 """One motion followed by more engines than one: where the first meets an obstacle, the robust engine leads past it.
 
-The Taylor engine is the first choice, the Runge-Kutta engine one that can be asked for; both take the motion program.
+The Taylor engine is the first choice, or the Runge-Kutta engine where that is quicker; both take the motion program.
 Where constraints are redundant, no order of pivots solves the equations, and the robust engine does all; where the
-configuration nears a singular one, or numbers leave their range, it takes over from the Taylor engine until the
+configuration nears a singular one, or numbers leave their range, it takes over from either until the
 constraints are as independent again as they were when it did.
 """
 
 from collections import deque
 from collections.abc import Callable, Iterator
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ...failures import Failure, HolonomError
 from ...program.motion_problem import MotionProblem
 from ...program.precision import Precision
+from ...program.sign_pattern import with_values_in
 from ..diagnosis import HardCase
 from ..evaluation import Numbers, as_floats
 from ..request import EngineName, SimulationRequest
+from .choice import TRIAL, Between, Choice, comparable, quicker_engine
 from .engine import Engine, Obstacle, Piece, Solutions
+from .program_engine import DECAYS_IN_A_RUN
+
+if TYPE_CHECKING:
+    from .taylor import TaylorEngine
 
 BY_PROGRAM = (EngineName.TAYLOR, EngineName.RUNGE_KUTTA)
 FINE = 1e-13  # tolerance of the robust engine between two legs of a Taylor engine that nobody gave one
@@ -50,9 +56,14 @@ class SwitchingEngine:
     ----------
     end : number
         The last instant.
+    between : Between or None
+        What is wanted between the steps; None where the motion goes on after this one, so that engines cannot be
+        weighed by what is ahead.
 
     Attributes
     ----------
+    choice : Choice or None
+        Why the engine that began was taken; None where there was nothing to weigh.
     legs : list of Leg
         In order, as far as the motion has come.
 
@@ -62,9 +73,17 @@ class SwitchingEngine:
         The engine asked for cannot follow this motion, or not in this precision or to this tolerance.
     """
 
-    def __init__(self, problem: MotionProblem, request: SimulationRequest, precision: Precision, end: Any) -> None:
+    def __init__(
+        self,
+        problem: MotionProblem,
+        request: SimulationRequest,
+        precision: Precision,
+        end: Any,
+        between: Between | None = None,
+    ) -> None:
         self._problem, self._request, self._precision = problem, request, precision
-        self._current = self._first = self._first_engine(end)
+        self.choice: Choice | None = None
+        self._current = self._first = self._first_engine(end, between)
         self._begun, self.legs = float(self.time), []
 
     @property
@@ -130,7 +149,7 @@ class SwitchingEngine:
 
     # ---- engines ----
 
-    def _first_engine(self, end: Any) -> Engine:
+    def _first_engine(self, end: Any, between: Between | None) -> Engine:
         asked, obstacle = self._request.engine, self._problem.obstacle
         if obstacle is not None and asked in BY_PROGRAM:
             raise HolonomError(Failure.NO_PIVOTS, detail=obstacle)
@@ -139,8 +158,22 @@ class SwitchingEngine:
                 raise HolonomError(Failure.ROBUST_IS_DOUBLE, detail=obstacle or "--engine asks for it")
             return _robust(self._problem, self._request)
         if asked is EngineName.RUNGE_KUTTA:
-            return _runge_kutta(self._problem, self._request, self._precision)
-        return _taylor(self._problem, self._request, self._precision, end)
+            return _runge_kutta(self._problem, self._request, self._precision, end)
+        taylor = _taylor(self._problem, self._request, self._precision, end)
+        if between is None or not self._weighs():
+            return taylor
+        steps = taylor.steps_ahead(end, TRIAL)
+        if steps is None:
+            return taylor
+        self.choice = quicker_engine(steps, self._problem.motion.operations, taylor.tol, between)
+        if self.choice.engine is EngineName.TAYLOR:
+            return taylor
+        return _runge_kutta(self._problem, self._request, self._precision, end)
+
+    def _weighs(self) -> bool:
+        """Whether both engines can follow the motion, and nothing asks for one of them."""
+        open_ = self._request.engine is EngineName.AUTO and self._request.compact is None
+        return open_ and self._precision.name == "double" and comparable(self._request.tol)
 
     @cached_property
     def _second(self) -> Engine:
@@ -220,19 +253,25 @@ def _without_pieces(engine: Engine, until: Any) -> Iterator[Piece]:
     yield from ()
 
 
-def _taylor(problem: MotionProblem, request: SimulationRequest, precision: Precision, end: Any) -> Engine:
-    from .taylor import DECAYS_IN_A_RUN, TaylorEngine
+def _taylor(problem: MotionProblem, request: SimulationRequest, precision: Precision, end: Any) -> "TaylorEngine":
+    from .taylor import TaylorEngine
 
-    decay = DECAYS_IN_A_RUN / float(end - precision.number(problem.start["t"]))
+    decay = decay_until(end, problem, precision)
     return TaylorEngine(problem, request.tol, precision, request.drift, request.compact, decay)
 
 
-def _runge_kutta(problem: MotionProblem, request: SimulationRequest, precision: Precision) -> Engine:
+def _runge_kutta(problem: MotionProblem, request: SimulationRequest, precision: Precision, end: Any) -> Engine:
     from .runge_kutta import RungeKuttaEngine
 
     if precision.name != "double":
         raise HolonomError(Failure.RUNGE_KUTTA_IS_DOUBLE, detail=precision.name)
-    return RungeKuttaEngine(problem, request.tol, request.drift)
+    closed = with_values_in(problem)
+    return RungeKuttaEngine(closed, request.tol, request.drift, decay_until(end, problem, precision))
+
+
+def decay_until(end: Any, problem: MotionProblem, precision: Precision) -> float:
+    """The rate gamma of Baumgarte's cure and Gear's for a motion to an instant."""
+    return DECAYS_IN_A_RUN / float(end - precision.number(problem.start["t"]))
 
 
 def _robust(problem: MotionProblem, request: SimulationRequest) -> Engine:

@@ -6,6 +6,7 @@ short.
 
 import time
 from copy import copy
+from math import ceil
 from typing import Any
 
 import numpy as np
@@ -19,13 +20,12 @@ from ..constraints.stabilization import Equations, equations_of_motion, stabiliz
 from ..evaluation import Numbers
 from ..request import EngineName, Stabilization
 from .code import Code, better_code, pays
-from .program_engine import FIRST_BLOCK, ProgramEngine
+from .program_engine import FIRST_BLOCK, ProgramEngine, decay_in
 
 DRIFT = 100  # times what rounding does to a number: how far a state may leave the constraints inside a block
 FINE, FINE_BLOCK = 1e-9, 512  # a tolerance whose steps leave the constraints so slowly that a first block may be long
 LONGEST_BLOCK = 1024  # steps
 GROWTH = 8  # from block to block, at most
-DECAYS_IN_A_RUN = 50.0  # gamma of Baumgarte's cure and Gear's, times the length of the time span
 
 
 class TaylorEngine(ProgramEngine):
@@ -74,6 +74,28 @@ class TaylorEngine(ProgramEngine):
         self.tol = float(self._integrator.tol)
         self._first_block = FINE_BLOCK if self.tol <= FINE else FIRST_BLOCK
         self._allowed = max(DRIFT * 10.0**-self.precision.sure_digits, self.tol)
+
+    def steps_ahead(self, until: Any, trial: int) -> int | None:
+        """About how many steps there are to an instant, by the length of the first ones.
+
+        Parameters
+        ----------
+        until : number
+        trial : int
+            Steps to take, and to take back.
+
+        Returns
+        -------
+        int or None
+            None where so few reach the instant, or do not succeed.
+        """
+        begun, state = self.time, self.state.copy()
+        outcome = self._integrator.propagate_until(until, max_steps=trial)[0]
+        covered = float(self.time - begun)
+        self._integrator.time, self._integrator.state[:] = begun, state
+        if outcome != import_heyoka().taylor_outcome.step_limit:
+            return None
+        return ceil(trial * float(until - begun) / covered)
 
     def _begin(self) -> None:
         self._length = self._first_block
@@ -124,7 +146,7 @@ class TaylorEngine(ProgramEngine):
 
     def _equations_with(self, drift: Stabilization, decay: float | None) -> Equations:
         if drift in (Stabilization.BAUMGARTE, Stabilization.GGL) and self._problem.multipliers:
-            gamma = DECAYS_IN_A_RUN / _length(self._problem) if decay is None else decay
+            gamma = decay_in(self._problem, decay)
             return stabilized_equations(self._problem, self._program, self.precision, drift, gamma)
         return equations_of_motion(self._problem, self._program, self.precision)
 
@@ -163,9 +185,3 @@ def held(tol: float, precision: Precision) -> float:
             detail=f"{precision.name} precision holds tolerances from {finest} to 1, not {tol:g}",
         )
     return tol
-
-
-def _length(problem: MotionProblem) -> float:
-    """Length of the time span; a unit of time where the scene names none."""
-    first, last = map(float, problem.time_span or (0, 1))
-    return last - first

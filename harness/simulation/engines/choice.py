@@ -1,0 +1,107 @@
+"""Which engine is quicker for a motion: the Taylor engine, or the Runge-Kutta engine once the C compiler is done.
+
+The Taylor engine is compiled in a moment and takes a few steps; their average length tells how many more there are.
+What these cost, in whatever code pays for so many, is held against what the other engine costs, the C compiler
+included. All of it follows from counts, of steps and of operations, with fixed costs: measured on one machine, the same
+on all, so that the choice depends neither on the machine nor on what else it does.
+
+Measured on the five motions of `tests/benchmarks/simulation.py`, 18 to 431 operations, tolerances 1e-6 to 1e-12.
+"""
+
+from dataclasses import dataclass
+from math import log
+from shutil import which
+from typing import NamedTuple
+
+from ..request import EngineName
+from .code import LEFT, Code, compilation
+
+TRIAL = 64  # steps of the Taylor engine
+REFERENCE = 1e-9  # the tolerance of the costs below
+OPERATION = 7.5e-8  # seconds a step of the Taylor engine takes for an operation, in quick code
+ORDERS = 1.6  # power of the order that this grows with
+STAGES, STEP = 7.5e-9, 2e-7  # seconds a step of the other takes for an operation, in all its stages, and beside them
+STRIDE = 0.94  # steps of the other for one of the Taylor engine
+ORDER = 8  # of the other: what its steps shrink with
+COMPILER = 0.15, 5e-4  # seconds that the C compiler takes, and for an operation
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Why one engine was taken and not the other.
+
+    Attributes
+    ----------
+    engine : EngineName
+    steps : int
+        That the Taylor engine has ahead, estimated from its first ones.
+    operations : int
+        Of the accelerations.
+    taylor, runge_kutta : float
+        Seconds that each is expected to take for the motion, with what has yet to be compiled.
+    """
+
+    engine: EngineName
+    steps: int
+    operations: int
+    taylor: float
+    runge_kutta: float
+
+
+def comparable(tol: float | None) -> bool:
+    """Whether the Runge-Kutta engine holds the tolerance and can be compiled here."""
+    from ...program.c_function import has_compiler
+    from .runge_kutta import FINEST
+
+    return tol is not None and FINEST <= tol < 1 and has_compiler() and which("gsl-config") is not None
+
+
+class Between(NamedTuple):
+    """How many states are wanted between steps: each takes the Runge-Kutta engine one more step.
+
+    Attributes
+    ----------
+    altogether : int
+    in_each : int
+        In each step.
+    """
+
+    altogether: int
+    in_each: int
+
+
+def quicker_engine(steps: int, operations: int, tol: float, between: Between) -> Choice:
+    """Choose by what both engines are expected to take.
+
+    Parameters
+    ----------
+    steps : int
+        Of the Taylor engine, compiled already, to the end of the motion.
+    operations : int
+        Of the accelerations.
+    tol : float
+        Of a step.
+    between : Between
+    """
+    taylor = _taylor(steps, operations, tol)
+    runge_kutta = _runge_kutta(steps, operations, tol, between)
+    engine = EngineName.RUNGE_KUTTA if runge_kutta < taylor else EngineName.TAYLOR
+    return Choice(engine, steps, operations, taylor, runge_kutta)
+
+
+def _taylor(steps: int, operations: int, tol: float) -> float:
+    quick = steps * OPERATION * operations * (_order(tol) / _order(REFERENCE)) ** ORDERS
+    compact = compilation(Code.COMPACT, operations) + LEFT[Code.COMPACT] * quick
+    last = compact + compilation(Code.UNROLLED, operations) - (1 - LEFT[Code.UNROLLED]) * LEFT[Code.COMPACT] * quick
+    return min(quick, compact, last)
+
+
+def _runge_kutta(steps: int, operations: int, tol: float, between: Between) -> float:
+    taken = STRIDE * steps * (REFERENCE / tol) ** (1 / ORDER) * (1 + between.in_each) + between.altogether
+    begun, each = COMPILER
+    return begun + each * operations + taken * (STEP + STAGES * operations)
+
+
+def _order(tol: float) -> float:
+    """The order that heyoka takes for a tolerance."""
+    return 1 - log(tol) / 2

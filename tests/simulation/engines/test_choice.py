@@ -1,0 +1,83 @@
+"""Which engine ``auto`` takes, and that either is relieved where the configuration is singular."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+from problems import problem
+
+from holonom.simulation.engines import choice, switching
+from holonom.simulation.engines.choice import Between, Choice, quicker_engine
+from holonom.simulation.request import EngineName, SimulationRequest
+from holonom.simulation.simulate import simulate
+
+NOTHING = Between(0, 0)
+LONG, SHORT = Fraction(100_000), Fraction(10)
+
+
+def report(until, **request):
+    wanted = SimulationRequest(until=until, samples=0, **request)
+    return simulate(problem("pendulum.mac", "swing_scene"), wanted).report
+
+
+@pytest.mark.usefixtures("gsl")
+def test_a_long_motion_at_a_coarse_tolerance_goes_to_runge_kutta_and_a_short_one_does_not():
+    long, short = report(LONG, tol=1e-6), report(SHORT, tol=1e-6)
+    assert [leg.engine for leg in long.legs] == [EngineName.RUNGE_KUTTA] == [long.choice.engine]
+    assert long.choice.runge_kutta < long.choice.taylor
+    assert [leg.engine for leg in short.legs] == [EngineName.TAYLOR]
+
+
+@pytest.mark.usefixtures("gsl")
+def test_the_steps_tried_to_choose_leave_no_trace():
+    """Truth: the motion that the Taylor engine follows where it alone is asked, to the last bit."""
+    weighed, asked = report(Fraction(40), tol=1e-9), report(Fraction(40), tol=1e-9, engine=EngineName.TAYLOR)
+    assert weighed.choice.engine is EngineName.TAYLOR
+    assert weighed.coordinates == asked.coordinates
+    assert weighed.steps == asked.steps
+    assert asked.choice is None
+
+
+@pytest.mark.usefixtures("gsl")
+def test_the_number_of_steps_ahead_is_that_of_the_motion():
+    """Truth: the steps that the motion then takes, within a tenth: the pendulum's first steps are like the others."""
+    done = report(Fraction(300), tol=1e-9)
+    assert done.choice.steps == pytest.approx(done.steps, rel=0.1)
+
+
+@pytest.mark.parametrize(("tol", "precision"), [(None, "double"), (1e-16, "double"), (1e-9, "quadruple")])
+def test_what_runge_kutta_cannot_hold_is_not_weighed(tol, precision):
+    assert report(Fraction(1), tol=tol, precision=precision).choice is None
+
+
+def test_without_a_compiler_there_is_no_choice(monkeypatch):
+    monkeypatch.setattr(choice, "which", lambda _: None)
+    assert not choice.comparable(1e-6)
+
+
+def test_states_wanted_between_the_steps_count():
+    """Truth: each takes the Runge-Kutta engine a step of its own, and the other next to nothing."""
+    steps, operations, tol = 50_000, 210, 1e-6
+    assert quicker_engine(steps, operations, tol, NOTHING).engine is EngineName.RUNGE_KUTTA
+    assert quicker_engine(steps, operations, tol, Between(10**6, 0)).engine is EngineName.TAYLOR
+    assert quicker_engine(steps, operations, tol, Between(0, 10)).engine is EngineName.TAYLOR
+
+
+@pytest.mark.usefixtures("gsl")
+def test_runge_kutta_is_relieved_at_dead_centres_like_taylor(monkeypatch):
+    """Truth: the linkage as the Taylor engine follows it through the same dead centres."""
+
+    def of(engine):
+        def chosen(steps, operations, tol, between):
+            return Choice(engine, steps, operations, 0.0, 0.0)
+
+        monkeypatch.setattr(switching, "quicker_engine", chosen)
+        wanted = SimulationRequest(tol=1e-11, samples=0)
+        return simulate(replace(problem("linkage.mac")), wanted).report
+
+    ours, theirs = of(EngineName.RUNGE_KUTTA), of(EngineName.TAYLOR)
+    followed = [leg.engine for leg in ours.legs]
+    assert EngineName.ROBUST in followed
+    assert set(followed) == {EngineName.RUNGE_KUTTA, EngineName.ROBUST}
+    for name, value in theirs.coordinates.items():
+        assert ours.coordinates[name] == pytest.approx(value, abs=1e-7)
