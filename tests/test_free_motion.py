@@ -157,10 +157,6 @@ def test_every_example_gets_a_verdict(example):
     """Also those whose condition is longer than closed_form_size, which were refused."""
     if example.name == "printed.mac":
         pytest.skip("it holds no scene")
-    if "servo_constraints" in (EXAMPLES / example).read_text(encoding="utf-8"):
-        with pytest.raises(HolonomError, match="whose controls follow from its motion, cannot be asked"):
-            asked(str(example.with_suffix("")))
-        return
     found = asked(str(example.with_suffix("")))
     assert (found.condition is None) == (found.left_out is not None)
     motion = found.motion
@@ -268,6 +264,30 @@ def test_a_system_without_constraints_ended_in_an_internal_error(write_scene):
     pushed : holonomic_scene(system, control_law = [u = t], initial_state = [x = 1, dot(x) = 0], time_span = [0, 1])$"""
     found = free_motion(write_scene(text), None, {}, Limits())
     assert (found.motion.verdict, found.universal.verdict) == ("free", "all")
+
+
+PULLED = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y, p], controls = [F], kinetic_energy = (dot(x)^2 + dot(y)^2 + dot(p)^2)/2,
+  forces = [drive = [F, 0, 0], pull = [0, 0, -x]], constraints = [p - y])$
+moved : holonomic_scene(system, servo_constraints = [x - t^5], initial_state = [y = 0, dot(y) = 1])$
+still : holonomic_scene(system, servo_constraints = [x], initial_state = [y = 0, dot(y) = 1])$"""
+
+
+@pytest.mark.parametrize(
+    ("scene", "verdict", "order", "first"),
+    [
+        ("moved", "not free", None, FirstCoefficient("lambda1", 5, "1/2")),  # y'' = -lambda, p'' = lambda - x
+        ("still", "undecided", 40, None),  # it is free, which vanishing coefficients do not prove
+    ],
+)
+def test_scenes_with_servo_constraints_were_refused_a_verdict(write_scene, scene, verdict, order, first):
+    motion = free_motion(write_scene(PULLED), scene, {}, Limits()).motion
+    assert (motion.verdict, motion.order, motion.first) == (verdict, order, first)
+
+
+def test_a_servo_constraint_pushes_nothing():
+    assert asked("arm").motion.verdict is Free.FREE
+    assert "no constraints that could push" in asked("arm").motion.evidence
 
 
 def test_a_truncated_series_was_printed_highest_power_first_and_added_up(write_scene):

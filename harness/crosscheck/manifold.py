@@ -37,11 +37,13 @@ def moved_onto(
     ZeroDivisionError
         The residuals' gradients are dependent on the way.
     """
+    if not residuals:
+        return
     for _ in range(NEWTON_STEPS):
         value = valuation(state)
         right = mp.matrix([value(residual) for residual in residuals])
         size = max(abs(number) for number in state.values())
-        if not residuals or max(map(abs, right)) <= mp.mpf(10) ** -(DIGITS + 10) * max(1, size):
+        if max(map(abs, right)) <= mp.mpf(10) ** -(DIGITS + 10) * max(1, size):
             return
         rows = mp.matrix([[value(entry) for entry in row] for row in jacobian])
         move = rows.T * mp.lu_solve(rows * rows.T, right)
