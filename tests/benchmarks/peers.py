@@ -211,6 +211,7 @@ def _program(method: str, links: int, assignments: Sequence[list]) -> Program:
         "scene": None,
         "solve": "direct",
         "method": method,
+        "redundant": [],
         "operations": 0,
         "inputs": chain.inputs(links),
         "assignments": assignments,
