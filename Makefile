@@ -11,12 +11,12 @@ HARD    := $(shell find examples/hard -name '*.mac')
 
 .DEFAULT_GOAL := paper
 .DELETE_ON_ERROR:
-.PHONY: paper companion book catalog check check-long mutants bench setup install pictures clean help have-programs
+.PHONY: paper companion book catalog check check-long mutants bench setup install pictures clean help have-programs have-chinese-letters
 
 paper: $(RECORDS) build/check.json build/errata.json companion ## Derive and check every scene, compare the paper as printed (the default)
 	@echo "The derivations are in build/examples/, the verdicts in build/check.json, the misprints in build/errata.json, the textbook companion in build/companion/index.html."
 
-companion: build/companion/index.html build/holonom.1 ## Make the textbook companion: build/companion/index.html
+companion: build/companion/index.html build/holonom.1 ## Make the textbook companion: build/companion/index.html, in Chinese build/companion/zh/index.html
 
 build/check.json: $(SCENES) $(SOURCES) | setup
 	$(BIN)/holonom check $(SCENES) --json $@
@@ -25,12 +25,12 @@ build/errata.json: $(PRINTED) $(SCENES) $(SOURCES) | setup
 	$(BIN)/holonom errata --json $@
 
 build/companion/index.html: $(PRINTED) $(SCENES) $(HARD) $(SOURCES) | setup
-	$(BIN)/holonom companion -o $(@D)
+	$(BIN)/holonom companion --language en --language zh -o $(@D)
 
-book: build/book.pdf ## Print the textbook companion, with Chromium: build/book.pdf
+book: build/book.pdf ## Print the textbook companion, with Chromium: build/book.pdf, build/book.zh.pdf
 
-build/book.pdf: $(PRINTED) $(SCENES) $(HARD) $(SOURCES) | setup
-	$(BIN)/holonom companion -o build/companion --pdf $@
+build/book.pdf: $(PRINTED) $(SCENES) $(HARD) $(SOURCES) | setup have-chinese-letters
+	$(BIN)/holonom companion --language en --language zh -o build/companion --pdf $@
 
 catalog: setup ## Collect the messages to be translated: harness/locale/, and say which have no translation yet
 	$(BIN)/python -m holonom.catalog
@@ -91,17 +91,9 @@ build/%.json: %.mac $(SOURCES) | setup
 PYTHON = $(shell for python in python3.11 python3.12 python3.13 python3; do \
   $$python -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$python && break; done)
 
-# Debian's packages of what is missing: Maxima, a C compiler, GSL for the Runge-Kutta engine, bubblewrap, which keeps
-# scene files from your own, and Python's venv. They are installed as root; where that is not to be had, all of them are
-# told at once, and what can be made without them is.
-have-programs:
-	@missing=; python="$(PYTHON)"; \
-	command -v maxima >/dev/null || missing="$$missing maxima"; \
-	command -v cc >/dev/null || missing="$$missing gcc libc6-dev"; \
-	command -v gsl-config >/dev/null || missing="$$missing libgsl-dev"; \
-	command -v bwrap >/dev/null || missing="$$missing bubblewrap"; \
-	if [ -z "$$python" ]; then missing="$$missing python3-venv"; \
-	elif ! $$python -c 'import ensurepip' 2>/dev/null; then missing="$$missing $${python##*/}-venv"; fi; \
+# Debian's packages of what is missing are installed as root; where that is not to be had, all of them are told at once,
+# and what can be made without them is.
+define install-missing
 	[ -n "$$missing" ] || exit 0; \
 	as_root=; \
 	if [ "$$(id -u)" = 0 ]; then as_root=env; \
@@ -112,6 +104,25 @@ have-programs:
 	{ echo "Missing here, and not to be installed without root rights or apt-get:$$missing."; \
 	  echo "The line for an administrator: apt-get update && apt-get install$$missing"; \
 	  echo "make goes on with what is there."; } >&2
+endef
+
+# Maxima, a C compiler, GSL for the Runge-Kutta engine, bubblewrap, which keeps scene files from your own, and Python's
+# venv.
+have-programs:
+	@missing=; python="$(PYTHON)"; \
+	command -v maxima >/dev/null || missing="$$missing maxima"; \
+	command -v cc >/dev/null || missing="$$missing gcc libc6-dev"; \
+	command -v gsl-config >/dev/null || missing="$$missing libgsl-dev"; \
+	command -v bwrap >/dev/null || missing="$$missing bubblewrap"; \
+	if [ -z "$$python" ]; then missing="$$missing python3-venv"; \
+	elif ! $$python -c 'import ensurepip' 2>/dev/null; then missing="$$missing $${python##*/}-venv"; fi; \
+	$(install-missing)
+
+# A font that the printed book in Chinese carries.
+have-chinese-letters:
+	@missing=; \
+	fc-list :lang=zh 2>/dev/null | grep -q . || missing="$$missing fonts-noto-cjk"; \
+	$(install-missing)
 
 $(STAMP): pyproject.toml constraints.txt | have-programs
 	@test -n "$(PYTHON)" || { echo "Holonom needs Python 3.11 or later: please install it." >&2; exit 2; }

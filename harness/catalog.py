@@ -25,7 +25,9 @@ KEYWORDS = {"gettext": None, "ngettext": (1, 2), "translatable": None, "_": None
 STRING = r'"((?:[^"\\]|\\.)*)"'
 IN_MAXIMA = re.compile(
     rf"\b(?:title|source)\s*=\s*{STRING}"  # of a system or a scene
-    rf'|\b(?:equation|printed)\("[^"]*"(?:,\s*"\w+")?,\s*{STRING}'  # names of equations
+    rf'|\bequation\("[^"]*",\s*"\w+",\s*{STRING}'  # names of equations
+    rf'|\bprinted\("[^"]*",\s*{STRING}'
+    rf'|\b(?:then|else) "(inverse[^"]*)"'
     rf'|"((?:Compared|Holds|Printed|What is)[^"]*\.)"'  # remarks on the print
 )
 IN_TOML = re.compile(rf"^(?:meaning|where|comment) = {STRING}$", re.MULTILINE)

@@ -13,7 +13,8 @@ from holonom.cli import holonom
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-BLOCKS = re.findall(r"^```(\w*)\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
+BLOCK = r"^```(\w*)\n(.*?)^```$"
+BLOCKS = re.findall(BLOCK, README, re.MULTILINE | re.DOTALL)
 # Commands that other tests run; here, that they take their arguments.
 LONG = ("companion", "accuracy", "stability", "errata", "sweep")
 
@@ -25,6 +26,16 @@ def blocks(language: str) -> list[str]:
 def commands() -> list[list[str]]:
     lines = "".join(blocks("sh")).splitlines()
     return [words for line in lines if (words := shlex.split(line, comments=True))]
+
+
+def test_the_chinese_readme_says_the_same_to_the_machine():
+    """Its commands and its scene are among those that are run here; what it links to is there."""
+    text = (ROOT / "README.zh.md").read_text(encoding="utf-8")
+    found = re.findall(BLOCK, text, re.MULTILINE | re.DOTALL)
+    lines = [line.partition("#")[0].split() for kind, block in found if kind == "sh" for line in block.splitlines()]
+    assert [line for line in lines if line not in commands()] == []
+    assert [block for kind, block in found if kind == "maxima"] == blocks("maxima")[:1]
+    assert all((ROOT / link).exists() for link in re.findall(r"\]\(([^)]+)\)", text))
 
 
 @pytest.fixture(scope="module")

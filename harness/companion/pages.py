@@ -334,8 +334,11 @@ def _coefficient(text: str) -> str:
 
 
 def _maxima_text(text: str) -> Markup:
-    """A reason in which Maxima names an expression, that expression as code."""
-    return Markup(NAMED_BY_MAXIMA.sub(r"\1<code>\2</code>\3", str(escape(text))))
+    """A reason of Maxima's, an expression that it names as code; in English where the catalog does not know it."""
+    told = translated(text)
+    marked = NAMED_BY_MAXIMA.sub(r"\1<code>\2</code>\3", str(escape(told)))
+    foreign = told == text and spoken() != ENGLISH
+    return Markup(f'<span lang="{ENGLISH}">{marked}</span>' if foreign else marked)
 
 
 def _power_of_ten(value: float) -> Markup:

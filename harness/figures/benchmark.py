@@ -61,7 +61,7 @@ def draw_study(study: "Study", path: Path) -> None:
             axes.set_title(gettext(panel.title, until=float(study.until), instant=_instant_of_series(study)))
         figure.suptitle(gettext("What accuracy costs: %(scene)s", scene=study.scene), x=0.01, ha="left")
         figure.supxlabel(str(study.machine), x=0.01, ha="left", fontsize="small")
-    write_figure(figure, path)
+        write_figure(figure, path)
 
 
 def digits_of(measurement: Measurement) -> float:

@@ -18,6 +18,7 @@ Okabe & Ito, Color Universal Design (2008).
 import io
 import re
 import unicodedata
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -26,6 +27,7 @@ from typing import TYPE_CHECKING
 
 from ..failures import missing_package
 from ..files import write_whole
+from ..language import spoken
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -56,7 +58,6 @@ SETTINGS = {
     "figure.facecolor": "none",
     "axes.facecolor": "none",
     "font.family": "sans-serif",
-    "font.sans-serif": ["DejaVu Sans"],
     "grid.alpha": 0.15,
     "grid.color": INK,
     "legend.frameon": False,
@@ -67,6 +68,9 @@ SETTINGS = {
     "xtick.color": INK,
     "ytick.color": INK,
 }
+LATIN = "DejaVu Sans"
+OPEN_FONTS = {"zh": ("Noto Sans CJK SC", "Source Han Sans SC", "WenQuanYi Micro Hei", "Droid Sans Fallback")}
+"""Open fonts for the letters of a language that the first has not; the first that is installed is taken."""
 WRITING = {"svg.fonttype": "none", "svg.hashsalt": "holonom"}
 INK_RULE = f"svg{{color:{INK}}}@media(prefers-color-scheme:dark){{svg{{color:{INK_ON_DARK}}}}}"
 COLOUR_OF_INK = f"<style>{INK_RULE}</style>"
@@ -82,10 +86,23 @@ def figure_style() -> Iterator[None]:
         Matplotlib is not installed.
     """
     matplotlib = import_matplotlib()
-    with matplotlib.rc_context():
+    with matplotlib.rc_context(), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph .* missing", UserWarning)  # the reader may have the font
         matplotlib.rcParams.update(matplotlib.rcParamsDefault)
-        matplotlib.rcParams.update({**SETTINGS, "axes.prop_cycle": matplotlib.cycler(color=PALETTE)})
+        matplotlib.rcParams.update({**SETTINGS, "font.sans-serif": _fonts()})
+        matplotlib.rcParams["axes.prop_cycle"] = matplotlib.cycler(color=PALETTE)
         yield
+
+
+def _fonts() -> list[str]:
+    """The fonts in which labels are set, in the language spoken."""
+    wanted = OPEN_FONTS.get(spoken(), ())
+    if not wanted:
+        return [LATIN]
+    from matplotlib.font_manager import fontManager
+
+    installed = {font.name for font in fontManager.ttflist}
+    return [LATIN, *[font for font in wanted if font in installed][:1]]
 
 
 def new_figure(width: float, height: float) -> "Figure":

@@ -91,8 +91,8 @@ EXHIBITS = (
         "examples/whirling_bob.mac",
         (
             translatable(
-                "The string is drawn in through the hole in the middle, and the bob whirls faster: of two positions "
-                "that follow each other the later ones are further apart."
+                "The string is drawn in through the hole in the middle, and the bob whirls faster: positions at "
+                "equal intervals of time lie further and further apart."
             ),
             translatable("The length falls evenly, the angle rises ever more steeply, and the pull grows most of all."),
         ),
@@ -162,7 +162,7 @@ EXHIBITS = (
         (
             translatable(
                 "A pendulum in space, with the plumb line under its bob, seen from above by one who turns with the "
-                "hinge. That is shaken and the bob goes through air: the path keeps to no plane."
+                "hinge. The hinge is shaken and the bob goes through air: the path keeps to no plane."
             ),
             translatable("The multiplier swings with the bob, the more the wider that swings."),
         ),
