@@ -32,8 +32,7 @@ def accuracy(
     limits: Limits,
 ) -> int:
     """Measure what accuracy costs in time for the motion of a SCENE, and give plain advice."""
-    from ..benchmark.work_precision.plan import Plan
-    from ..benchmark.work_precision.study import study, study_document
+    from ..benchmark.work_precision.study import Plan, study, study_document
     from .tables.measurements import show_study
     from .tables.progress import progress
 

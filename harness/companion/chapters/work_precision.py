@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ...benchmark.work_precision.measurement import WHOLE_MOTION, Group
-from ...benchmark.work_precision.plan import Plan
-from ...benchmark.work_precision.study import Study, study
+from ...benchmark.work_precision.study import Plan, Study, study
 from ...confined import Limits
 from ...figures.benchmark import draw_study
 from ...figures.curves import draw_drift

@@ -16,7 +16,7 @@ bob : holonomic_system(
   coordinates    = [x, y],
   kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
   constraints    = [{constraints}])$
-slide : holonomic_scene(bob, initial_state = [x = 0, dot(x) = 1]{span})$
+slide : holonomic_scene(bob, initial_state = [x = 0, y = 0, dot(x) = 1, dot(y) = 1]{span})$
 """
 
 
@@ -24,7 +24,7 @@ slide : holonomic_scene(bob, initial_state = [x = 0, dot(x) = 1]{span})$
     ("constraints", "span", "said"),
     [
         ("x - y", "", "slide: the scene has no time span"),
-        ("x - y, x - y", ", time_span = [0, 1]", "constraint 2 depends on the others"),
+        ("(x - y)^2", ", time_span = [0, 1]", "constraint 1 has no gradient"),
     ],
 )
 def test_a_scene_that_cannot_be_measured_is_refused_in_one_sentence(write_scene, tmp_path, constraints, span, said):

@@ -18,11 +18,10 @@ from holonom.benchmark.work_precision.engines import (
     the_two_solves,
 )
 from holonom.benchmark.work_precision.measurement import WORKING_DIGITS, Group, Measurement, relative_error
-from holonom.benchmark.work_precision.plan import Plan
 from holonom.benchmark.work_precision.reference import find_reference
 from holonom.benchmark.work_precision.series import double_series, expansion_of
 from holonom.benchmark.work_precision.solvers import SOLVERS, solver_ladder
-from holonom.benchmark.work_precision.study import study, study_document
+from holonom.benchmark.work_precision.study import Plan, study, study_document
 from holonom.confined import Limits
 from holonom.documents import schema
 from holonom.figures.benchmark import draw_study
