@@ -20,19 +20,21 @@ Guttmann & Joyce, J. Phys. A 5 (1972) L81, for recurrences with corrections in 1
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import reduce
 from itertools import pairwise
 
 import mpmath
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..language import translatable
 
 LAGS = (1, 2, 4)  # singularities that a recurrence knows
 FEWEST = 12  # coefficients below which a series tells nothing about its end
 MOST_CORRECTIONS = 5
+LAST = 4  # coefficients of which the largest is brought to the order of one
 LATER = (0.5, 0.7)  # shares of the orders after which a fit looks
 EQUATIONS_PER_UNKNOWN = 1.2
 # How wrong N orders can be, and the factor of safety, come from expansions to orders 8 to 160 whose end is known: those
@@ -45,6 +47,10 @@ SAFETY = 12.0  # times the difference of two estimates: the uncertainty
 FARTHER = 1.2  # a singularity farther away by this factor still shows, as its power -N, in the last of N coefficients
 FINEST = 1e-12  # relative uncertainty that a fit in double precision can have
 COARSE = 0.1  # relative uncertainty that a fit may have
+SMALLEST = 1e-290  # with its reciprocal: sizes between which double precision has all its digits
+DEPENDENT = 1e-13  # of the largest pivot: columns that rounding alone tells apart
+
+Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -88,7 +94,30 @@ def estimate_radius(series: Iterable[Sequence[mpmath.mpf]]) -> Radius:
     Radius
         The most certain estimate among those of the series that end first.
     """
-    found = [_radius_of(coefficients) for coefficients in series]
+    return _first_end([_radius_of(coefficients) for coefficients in series])
+
+
+def estimate_radii(series: Floats) -> list[Radius]:
+    """Estimate the radii of convergence of many motions, as `estimate_radius` does, many at a time.
+
+    Parameters
+    ----------
+    series : ndarray, shape (series, orders, motions)
+        Finite coefficients.
+
+    Returns
+    -------
+    list of Radius
+        What comes out for a motion does not hang on the others.
+    """
+    each, orders, motions = series.shape
+    flat = np.ascontiguousarray(np.moveaxis(series, 2, 0).reshape(motions * each, orders))
+    with np.errstate(all="ignore"):
+        found = _radii_of_floats(flat)
+    return [_first_end(found[first : first + each]) for first in range(0, motions * each, each)]
+
+
+def _first_end(found: Sequence[Radius]) -> Radius:
     finite = [radius for radius in found if radius.estimate is not None]
     if finite:
         first_end = min(radius.estimate + radius.uncertainty for radius in finite)
@@ -123,109 +152,193 @@ def truncation_error(coefficients: Sequence[mpmath.mpf], radius: Radius, time: f
 
 
 def _radius_of(coefficients: Sequence[mpmath.mpf]) -> Radius:
-    if not any(coefficients[len(coefficients) // 2 :]):
-        return POLYNOMIAL if len(coefficients) > FEWEST else TOO_FEW
-    if len(coefficients) < FEWEST:
-        return TOO_FEW
-    scale, balanced = _balanced(coefficients)
+    with np.errstate(all="ignore"):
+        floats = np.array([float(c) for c in coefficients])
+        if all(c == 0 or SMALLEST < abs(x) < 1 / SMALLEST for c, x in zip(coefficients, floats, strict=True)):
+            return _radii_of_floats(floats[None])[0]
+        if not any(coefficients[len(coefficients) // 2 :]):
+            return POLYNOMIAL if len(coefficients) > FEWEST else TOO_FEW
+        if len(coefficients) < FEWEST:
+            return TOO_FEW
+        if not any(coefficients[-LAST:]):
+            return UNDECIDED
+        scale = mpmath.power(max(abs(c) for c in coefficients[-LAST:]), mpmath.mpf(-1) / (len(coefficients) - 1))
+        balanced = np.array([float(c * scale**n) for n, c in enumerate(coefficients)])
+        return _radii_of_balanced(np.array([float(scale)]), balanced[None])[0]
+
+
+def _radii_of_floats(series: Floats) -> list[Radius]:
+    """Radii of series in double precision, shape (m, orders)."""
+    orders = series.shape[1]
+    if orders < FEWEST:
+        return [TOO_FEW] * len(series)
+    found = np.full(len(series), POLYNOMIAL if orders > FEWEST else TOO_FEW, dtype=object)
+    found[series[:, orders // 2 :].any(axis=1)] = UNDECIDED
+    going = np.flatnonzero(series[:, -LAST:].any(axis=1))
+    scale = np.max(np.abs(series[going, -LAST:]), axis=1) ** (-1.0 / (orders - 1))
+    mantissa, exponent = np.frexp(scale)  # so that no power leaves the range of the numbers
+    n = np.arange(orders)
+    balanced = np.ldexp(series[going] * mantissa[:, None] ** n, exponent[:, None] * n)
+    found[going] = _radii_of_balanced(scale, balanced)
+    return list(found)
+
+
+def _radii_of_balanced(scale: Floats, balanced: Floats) -> list[Radius]:
+    """Radii of series by the time in units of a scale, shape (m,), that makes their last coefficients of order one.
+
+    Parameters
+    ----------
+    balanced : ndarray, shape (m, orders)
+    """
+    found = np.empty(len(balanced), dtype=object)
     first, stride = _powers(balanced)
-    strided = balanced[first::stride]
-    if len(strided) < FEWEST:
-        return TOO_FEW
-    growth, last = _growth(strided), len(strided) - 1
-    if growth > ENTIRE_GROWTH + GROWTH_ERROR / last:
-        return ENTIRE
-    by_roots, fitted = _root_test(strided, stride, scale), _fitted_radius(strided, stride, scale)
-    if fitted is not None and fitted.uncertainty <= COARSE * fitted.estimate and _agree(fitted, by_roots):
-        return fitted
-    return by_roots if growth < FINITE_GROWTH / last and by_roots.uncertainty < by_roots.estimate else UNDECIDED
+    for powers in sorted(set(zip(first.tolist(), stride.tolist(), strict=True))):
+        here = np.flatnonzero((first == powers[0]) & (stride == powers[1]))
+        found[here] = _radii_of_strided(
+            scale[here], np.ascontiguousarray(balanced[here, powers[0] :: powers[1]]), powers[1]
+        )
+    return list(found)
 
 
-def _balanced(coefficients: Sequence[mpmath.mpf]) -> tuple[float, NDArray[np.float64]]:
-    """Coefficients by the time in units of the scale, so chosen that the last are of the order of one."""
-    last = len(coefficients) - 1
-    scale = mpmath.power(max(abs(c) for c in coefficients[-4:]), mpmath.mpf(-1) / last)
-    return float(scale), np.array([float(c * scale**n) for n, c in enumerate(coefficients)])
+def _radii_of_strided(scale: Floats, balanced: Floats, stride: int) -> list[Radius]:
+    """Radii of series none of whose powers are missing, shape (m, orders), in the stride-th power of the time."""
+    last = balanced.shape[1] - 1
+    if last + 1 < FEWEST:
+        return [TOO_FEW] * len(balanced)
+    envelope = _envelope(balanced)
+    growth = _growth(*envelope)
+    by_roots, fitted = _root_tests(*envelope, stride, scale), _fitted_radii(balanced, stride, scale)
+    found = []
+    for g, roots, fit in zip(growth, by_roots, fitted, strict=True):
+        if g > ENTIRE_GROWTH + GROWTH_ERROR / last:
+            found.append(ENTIRE)
+        elif fit is not None and fit.uncertainty <= COARSE * fit.estimate and _agree(fit, roots):
+            found.append(fit)
+        else:
+            found.append(roots if g < FINITE_GROWTH / last and roots.uncertainty < roots.estimate else UNDECIDED)
+    return found
 
 
-def _powers(balanced: NDArray[np.float64]) -> tuple[int, int]:
+def _powers(balanced: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """First power and distance of the powers that occur: (0, 1), or (0, 2) for even and (1, 2) for odd ones."""
-    later = np.abs(balanced[2:])
-    even, odd = later[::2].max(), later[1::2].max()
-    if odd <= NEGLIGIBLE * even:
-        return 0, 2
-    if even <= NEGLIGIBLE * odd:
-        return 1, 2
-    return 0, 1
+    later = np.abs(balanced[:, 2:])
+    even, odd = later[:, ::2].max(axis=1), later[:, 1::2].max(axis=1)
+    only_even, only_odd = odd <= NEGLIGIBLE * even, even <= NEGLIGIBLE * odd
+    return np.where(only_odd & ~only_even, 1, 0), np.where(only_even | only_odd, 2, 1)
 
 
-def _growth(balanced: NDArray[np.float64]) -> float:
+def _envelope(balanced: Floats) -> tuple[NDArray[np.int64], Floats]:
+    """Later orders, shape (k,), and log|c_n| there of the largest of three neighbours each, shape (m, k)."""
+    n = np.arange((balanced.shape[1] - 1) // 3 + 2, balanced.shape[1])
+    return n, np.log(np.max([np.abs(balanced[:, n - shift]) for shift in range(3)], axis=0))
+
+
+def _growth(n: NDArray[np.int64], logarithms: Floats) -> Floats:
     """Exponent a in |c_n|^(-1/n) ~ (n/e)^a: zero at a finite radius, 1/rho for an entire function of order rho."""
-    n, logarithms = _envelope(balanced)
-    factorials = np.array([math.lgamma(order + 1) for order in n])
-    return -float(_slopes(logarithms, factorials, n)[0])
+    return -_slopes(n, logarithms, lambda n: [[math.lgamma(order + 1) for order in n], n])
 
 
-def _envelope(balanced: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Later orders, and log|c_n| there of the largest of three neighbours each."""
-    n = np.arange((len(balanced) - 1) // 3 + 2, len(balanced))
-    sizes = np.max([np.abs(balanced[n - shift]) for shift in range(3)], axis=0)
-    return n[sizes > 0], np.log(sizes[sizes > 0])
+def _slopes(
+    n: NDArray[np.int64], logarithms: Floats, columns: Callable[[NDArray[np.int64]], list[ArrayLike]]
+) -> Floats:
+    """Coefficients of the first of the columns, fitted to logarithms together with the others and a constant."""
+    slopes = np.empty(len(logarithms))
+    there = np.isfinite(logarithms)  # where not, three coefficients in a row are zero
+    for kept in np.unique(there, axis=0):
+        here = (there == kept).all(axis=1)
+        weights = np.linalg.pinv(np.column_stack([*columns(n[kept]), np.ones(kept.sum())]))[0]
+        slopes[here] = reduce(np.add, weights[:, None] * logarithms[np.ix_(here, kept)].T, 0.0)
+    return slopes
 
 
-def _slopes(values: NDArray[np.float64], *columns: NDArray) -> NDArray[np.float64]:
-    """Coefficients of the columns, fitted to the values together with a constant."""
-    solution, *_ = np.linalg.lstsq(np.column_stack([*columns, np.ones(len(values))]), values, rcond=None)
-    return solution[:-1]
+def _root_tests(n: NDArray[np.int64], logarithms: Floats, stride: int, scale: Floats) -> list[Radius]:
+    """log|c_n| = -n log R + b, and with a term a log n more: what that changes is uncertain."""
+    slope = _slopes(n, logarithms, lambda n: [n])
+    with_power = _slopes(n, logarithms, lambda n: [n, np.log(n)])
+    error = np.maximum(ROOT_TEST_ERROR / n[-1], SAFETY * np.abs(slope - with_power)) / stride
+    estimate = np.exp(-slope / stride) * scale
+    remark = "by the root test: the orders do not tell the nearest singularities apart"
+    return [
+        Radius(r, u, (), remark) for r, u in zip(estimate.tolist(), (estimate * np.expm1(error)).tolist(), strict=True)
+    ]
 
 
-def _fitted_radius(balanced: NDArray[np.float64], stride: int, scale: float) -> Radius | None:
-    """The estimate of the recurrence whose corrections agree best with fewer and with other orders."""
+def _fitted_radii(balanced: Floats, stride: int, scale: Floats) -> list[Radius | None]:
+    """The estimates of the recurrences whose corrections agree best with fewer and with other orders."""
     choices = [choice for lags in LAGS for choice in _compared_fits(balanced, lags)]
     if not choices:
-        return None
-    difference, roots = min(choices, key=lambda choice: choice[0])
-    nearest = float(abs(roots[0]))
-    unseen = FARTHER ** (stride * (1 - len(balanced)))
-    spread = (SAFETY * difference / nearest + unseen + FINEST) / stride
-    singularities = [_in_time(root, stride, scale) for root in roots if abs(root) <= nearest * (1 + spread)]
-    return _radius(nearest ** (1 / stride) * scale, spread, [z for group in singularities for z in group])
+        return [None] * len(balanced)
+    differences = np.array([difference for difference, _ in choices])
+    best = np.argmin(np.where(np.isnan(differences), np.inf, differences), axis=0)
+    unseen = FARTHER ** (stride * (1 - balanced.shape[1]))
+    found = []
+    for row, choice in enumerate(best.tolist()):
+        roots, difference = choices[choice][1][row], float(differences[choice, row])
+        nearest = float(abs(roots[0]))
+        spread = (SAFETY * difference / nearest + unseen + FINEST) / stride
+        singularities = [_in_time(root, stride, scale[row]) for root in roots if abs(root) <= nearest * (1 + spread)]
+        found.append(
+            _radius(nearest ** (1 / stride) * float(scale[row]), spread, [z for group in singularities for z in group])
+        )
+    return found
 
 
-def _compared_fits(balanced: NDArray[np.float64], lags: int) -> list[tuple[float, NDArray[np.complex128]]]:
-    """For each number of corrections: how far its estimates and those with one less lie apart, and its roots."""
-    fits = []
-    for corrections in range(MOST_CORRECTIONS + 1):
-        roots = [_recurrence_roots(balanced, lags, corrections, later) for later in LATER]
-        if any(len(found) == 0 for found in roots):
-            break
-        fits.append(roots)
+def _compared_fits(balanced: Floats, lags: int) -> list[tuple[Floats, NDArray[np.complex128]]]:
+    """For each number of corrections: how far its estimates and those with one less lie apart, and its roots.
+
+    Returns
+    -------
+    list of (ndarray, shape (m,), ndarray, shape (m, lags))
+    """
+    last = balanced.shape[1] - 1
+    orders = [np.arange(max(lags, int(last * later)), last + 1) for later in LATER]
+    most = min(MOST_CORRECTIONS, int(min(map(len, orders)) / (EQUATIONS_PER_UNKNOWN * lags)) - 1)
+    if most < 0:
+        return []
+    fits = [_recurrence_roots(balanced, lags, n, most) for n in orders]
+    nearest = [[np.abs(roots[:, 0]) for roots in each] for each in zip(*fits, strict=True)]
     return [
-        (float(np.ptp([abs(found[0]) for found in (*fewer, *these)])), these[-1]) for fewer, these in pairwise(fits)
+        (np.ptp([*fewer, *these], axis=0), fits[-1][corrections])
+        for corrections, (fewer, these) in enumerate(pairwise(nearest), start=1)
     ]
 
 
 def _radius(estimate: float, spread: float, singularities: Sequence[complex]) -> Radius:
-    paired = any(abs(z.imag) > spread * abs(z) for z in singularities)
-    pair, real = (
-        translatable("the nearest singularity is a complex pair"),
-        translatable("the nearest singularity is a real instant"),
-    )
-    return Radius(estimate, estimate * spread, tuple(singularities), pair if paired else real)
+    kind = "a complex pair" if any(abs(z.imag) > spread * abs(z) for z in singularities) else "a real instant"
+    return Radius(estimate, estimate * spread, tuple(singularities), f"the nearest singularity is {kind}")
 
 
-def _recurrence_roots(
-    balanced: NDArray[np.float64], lags: int, corrections: int, later: float
-) -> NDArray[np.complex128]:
-    """Roots of the characteristic equation, the nearest first; empty where there are too few equations."""
-    last = len(balanced) - 1
-    n = np.arange(max(lags, int(last * later)), last + 1)
-    if len(n) < EQUATIONS_PER_UNKNOWN * lags * (corrections + 1):
-        return np.empty(0, dtype=complex)
-    columns = [balanced[n - lag] * (last / n) ** j for j in range(corrections + 1) for lag in range(1, lags + 1)]
-    solution, *_ = np.linalg.lstsq(np.column_stack(columns), -balanced[n], rcond=None)
-    roots = np.roots([*solution[:lags][::-1], 1.0])
-    return roots[np.argsort(np.abs(roots))]
+def _recurrence_roots(balanced: Floats, lags: int, n: NDArray[np.int64], most: int) -> list[NDArray[np.complex128]]:
+    """Roots of the characteristic equations, the nearest first, for each number of corrections, shape (m, lags).
+
+    The columns of fewer corrections are the first of those of more: one factorisation serves them all.
+    """
+    columns = [balanced[:, n - lag] * (n[-1] / n) ** j for j in range(most + 1) for lag in range(1, lags + 1)]
+    matrices, right = np.stack(columns, axis=2), -balanced[:, n]
+    q, r = np.linalg.qr(matrices)
+    diagonal = np.abs(np.diagonal(r, axis1=1, axis2=2))
+    regular = np.minimum.accumulate(diagonal, axis=1) > DEPENDENT * np.maximum.accumulate(diagonal, axis=1)
+    whole = regular.all(axis=1)
+    inverse = np.linalg.inv(np.where(whole[:, None, None], r, np.eye(r.shape[1])))
+    projected = np.matmul(right[:, None], q)[:, 0]
+    found = []
+    for size in range(lags, len(columns) + 1, lags):
+        solution = np.matmul(inverse[:, :lags, :size], projected[:, :size, None])[:, :, 0]
+        for row in np.flatnonzero(~whole):
+            solution[row] = np.linalg.lstsq(matrices[row, :, :size], right[row], rcond=None)[0][:lags]
+        found.append(_roots(solution))
+    return found
+
+
+def _roots(recurrences: Floats) -> NDArray[np.complex128]:
+    """Where 1 + p_1 z + p_2 z^2 + ... is zero, the nearest first, shape (m, lags): the reciprocals of eigenvalues."""
+    lags = recurrences.shape[1]
+    companions = np.zeros((len(recurrences), lags, lags))
+    companions[:, 0] = -np.where(np.isfinite(recurrences), recurrences, 0.0)
+    companions[:, range(1, lags), range(lags - 1)] = 1.0
+    roots = 1.0 / np.linalg.eigvals(companions).astype(complex)
+    roots[~np.isfinite(recurrences).all(axis=1)] = np.nan
+    return np.take_along_axis(roots, np.argsort(np.abs(roots), axis=1, kind="stable"), axis=1)
 
 
 def _in_time(root: complex, stride: int, scale: float) -> list[complex]:
@@ -234,16 +347,6 @@ def _in_time(root: complex, stride: int, scale: float) -> list[complex]:
         return [complex(root) * scale]
     z = complex(np.sqrt(complex(root))) * scale
     return [z, -z]
-
-
-def _root_test(balanced: NDArray[np.float64], stride: int, scale: float) -> Radius:
-    """log|c_n| = -n log R + b, and with a term a log n more: what that changes is uncertain."""
-    n, logarithms = _envelope(balanced)
-    slope, slope_with_power = (_slopes(logarithms, *columns)[0] for columns in ((n,), (n, np.log(n))))
-    error = max(ROOT_TEST_ERROR / n[-1], SAFETY * abs(slope - slope_with_power)) / stride
-    estimate = math.exp(-slope / stride) * scale
-    remark = translatable("by the root test: the orders do not tell the nearest singularities apart")
-    return Radius(estimate, estimate * math.expm1(error), (), remark)
 
 
 def _agree(one: Radius, other: Radius) -> bool:

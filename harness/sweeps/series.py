@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ..program.heyoka_function import dynamics, heyoka_expressions, import_heyoka, zero_multipliers
 from ..program.motion_problem import MotionProblem
-from ..series.radius import estimate_radius
+from ..series.radius import ENTIRE, POLYNOMIAL, Radius, estimate_radii
 
 ORDER = 40
 LANES = 8
@@ -32,7 +32,9 @@ def lane_radii(problem: MotionProblem, states: Floats, values: Floats) -> Floats
         Infinite for an entire motion, nan where the orders do not tell.
     """
     series = expanded(problem, states, values)
-    return np.array([_radius(series[:, :, lane]) for lane in range(states.shape[1])])
+    finite, radii = np.isfinite(series).all(axis=(0, 1)), np.full(states.shape[1], np.nan)
+    radii[finite] = [_number(found) for found in estimate_radii(series[:, :, finite])]
+    return radii
 
 
 def expanded(problem: MotionProblem, states: Floats, values: Floats) -> Floats:
@@ -71,11 +73,7 @@ def _expanding(problem: MotionProblem) -> Any:
     )
 
 
-def _radius(series: Floats) -> float:
-    """The radius of one motion, shape (series, orders)."""
-    if not np.isfinite(series).all():
-        return np.nan
-    found = estimate_radius(series)
+def _number(found: Radius) -> float:
     if found.estimate is not None:
         return found.estimate
-    return np.inf if found.remark.startswith("infinite") else np.nan
+    return np.inf if found in (ENTIRE, POLYNOMIAL) else np.nan

@@ -3,10 +3,11 @@
 import math
 
 import mpmath
+import numpy as np
 import pytest
 from paper_series import paper_by_hand
 
-from holonom.series.radius import estimate_radius
+from holonom.series.radius import estimate_radii, estimate_radius
 
 ORDERS = (*range(8, 30), 32, 36, 40, 45, 50, 60, 80, 100, 120, 160)
 HIGHEST = max(ORDERS)
@@ -138,3 +139,22 @@ def test_where_there_is_no_radius_words_say_why(row, said):
     radius = estimate_radius([row])
     assert radius.estimate is None
     assert said in radius.remark
+
+
+def test_many_series_at_once_have_the_radii_of_each_to_the_last_bit():
+    n = np.arange(41)
+    kinds = [
+        lambda z: z**-n,  # a pole
+        lambda z: np.cos(n * z) * 1.5**-n,  # a complex pair
+        lambda z: (n % 2) * z**-n,  # odd powers alone
+        lambda z: np.array([z**k / math.factorial(k) for k in n]),  # entire
+        lambda z: np.where(n < 5, z, 0.0),  # a polynomial
+        lambda z: np.where(n % 7 == 5, z**-n, 0.0),  # gaps as wide as no recurrence knows
+        lambda z: 1e-100 * z ** -(8 * n),
+    ]
+    motions = np.array([[kind(z), z**-n / (n + 1)] for kind in kinds for z in (0.7, 1.3, 2.1)])
+    found = estimate_radii(np.moveaxis(motions, 0, 2))
+    assert found == [estimate_radius([list(map(mpmath.mpf, row)) for row in motion]) for motion in motions]
+    assert found[1].estimate == pytest.approx(1.3, rel=1e-9)
+    alone = np.moveaxis(motions[:, :1], 0, 2)
+    assert [radius.estimate is None for radius in estimate_radii(alone)[9:15]] == [True] * 6
