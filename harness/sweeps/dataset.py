@@ -157,7 +157,8 @@ def part_of(table: "pyarrow.Table") -> bytes:
     import pyarrow.parquet
 
     buffer = BytesIO()
-    pyarrow.parquet.write_table(table.replace_schema_metadata({"holonom": "sweep"}), buffer)
+    words = [field.name for field in table.schema if pyarrow.types.is_string(field.type)]  # numbers hardly come twice
+    pyarrow.parquet.write_table(table.replace_schema_metadata({"holonom": "sweep"}), buffer, use_dictionary=words)
     return buffer.getvalue()
 
 

@@ -37,6 +37,7 @@ SMALL = 2.0**-200  # in which what is looked at along the motion is integrated: 
 COMPACT_FROM = 1600  # operations by lanes; heyoka's other mode compiles in their square, and runs a third faster
 
 Floats = NDArray[np.float64]
+Stops = Sequence[float | Floats]  # one for all lanes, which heyoka takes faster, or one for each
 Look = Callable[[list[Steps]], Floats]
 
 
@@ -113,7 +114,7 @@ class LaneEngine:
         if projects and problem.multipliers:
             self._nearest = in_full_vectors(nearest_state(problem, read_precision("double")))
 
-    def follow(self, states: Floats, values: Floats, stops: Sequence[float | Floats]) -> Followed:
+    def follow(self, states: Floats, values: Floats, stops: Stops) -> Followed:
         """Follow motions from their starts.
 
         Parameters
@@ -125,23 +126,23 @@ class LaneEngine:
             Instants to stop at, in order, for all motions or for each; the last is the end.
         """
         k, lanes = states.shape[1], self._lanes
-        instants = np.array([np.broadcast_to(stop, k) for stop in stops])
         found, arrived, seen = np.empty((len(stops), self._size, k)), np.empty(k, dtype=bool), []
         starts = np.concatenate([states, np.zeros((self._along, k))])
         for first in range(0, k, lanes):
             here = slice(first, min(first + lanes, k))
-            found[:, :, here], arrived[here], steps = self._batch(starts[:, here], values[:, here], instants[:, here])
+            found[:, :, here], arrived[here], steps = self._batch(starts[:, here], values[:, here], _of(stops, here))
             if self._along:
                 seen.append(self._look(steps))
-        found = self._on_constraints(found, values, instants, arrived)
+        found = self._on_constraints(found, values, stops, arrived)
         return Followed(found, arrived, np.concatenate(seen, axis=1) if seen else np.empty((0, k)))
 
-    def _on_constraints(self, states: Floats, values: Floats, instants: Floats, arrived: NDArray[np.bool_]) -> Floats:
+    def _on_constraints(self, states: Floats, values: Floats, stops: Stops, arrived: NDArray[np.bool_]) -> Floats:
         """States at the stops, projected; a lane that strayed has not arrived."""
         if self._nearest is None or not arrived.any():
             return states
-        for place, stop in enumerate(instants):
-            states[place], strayed = self._projected(stop[None], states[place], values)
+        for place, stop in enumerate(stops):
+            instants = np.broadcast_to(stop, (1, states.shape[2]))
+            states[place], strayed = self._projected(instants, states[place], values)
             arrived &= ~strayed
         return states
 
@@ -149,7 +150,7 @@ class LaneEngine:
         found = self._nearest(np.concatenate([instants, states, values]))
         return found[:-1], ~(found[-1] <= STRAYED**2)
 
-    def _batch(self, starts: Floats, pars: Floats, stops: Floats) -> tuple[Floats, NDArray[np.bool_], list[Steps]]:
+    def _batch(self, starts: Floats, pars: Floats, stops: Stops) -> tuple[Floats, NDArray[np.bool_], list[Steps]]:
         """A batch, and again without lanes that fail: shapes (stops, 2n, m), (m,)."""
         count = starts.shape[1]
         if count == self._lanes:
@@ -159,7 +160,7 @@ class LaneEngine:
         chosen, followed = np.arange(self._lanes), np.ones(count, dtype=bool)
         chosen[count:] = 0
         while True:
-            failing, reached, well, steps = self._run(starts[:, chosen], pars[:, chosen], stops[:, chosen])
+            failing, reached, well, steps = self._run(starts[:, chosen], pars[:, chosen], _of(stops, chosen))
             if failing is None:
                 return reached[:, :, :count], followed & well[:count], [part.of(slice(count)) for part in steps]
             failed = np.unique(chosen[failing])
@@ -169,7 +170,7 @@ class LaneEngine:
             chosen[np.isin(chosen, failed)] = np.flatnonzero(followed)[0]
 
     def _run(
-        self, starts: Floats, pars: Floats, stops: Floats
+        self, starts: Floats, pars: Floats, stops: Stops
     ) -> tuple[NDArray[np.bool_] | None, Floats, NDArray[np.bool_], list[Steps]]:
         """Full lanes through all stops: which fail, if any, their states, which went well, what was looked at."""
         integrator, along, options = self._integrator, self._looking, {}
@@ -210,6 +211,11 @@ class LaneEngine:
     def _nothing(self, count: int) -> list[Steps]:
         empty = np.full((2, 1, count), np.nan)
         return [Steps(empty, empty[0], empty[0], 0.0) for _ in range(self._along)]
+
+
+def _of(stops: Stops, lanes: Any) -> Stops:
+    """The stops of some of the lanes."""
+    return [stop if isinstance(stop, float) else stop[lanes] for stop in stops]
 
 
 class _Along:

@@ -184,7 +184,8 @@ class RowMaker:
         values = rows.values[:, there]
         ends, ended = self._ends(states, values)
         instants = sorted({*self._asked, *(t for t in stops if t < self._end)})
-        found = self._engine.follow(states, values, [np.minimum(instant, ends) for instant in instants])
+        stops = [np.minimum(instant, ends) for instant in instants] if self._problem.until else instants
+        found = self._engine.follow(states, values, stops)
         residual = self._residuals(ends, found.states[-1], values)
         well = ended & found.arrived & (residual <= self._allowed)
         done = there[well]

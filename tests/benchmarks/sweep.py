@@ -1,4 +1,4 @@
-"""Sweeps against heyoka's batch integrator used by hand, each figure a ratio in one run.
+"""Sweeps against heyoka's batch integrator used by hand, each figure a ratio in one run, beside the bar for it.
 
     python tests/benchmarks/sweep.py DIRECTORY [SHARE]
 
@@ -8,21 +8,28 @@ quiet.
 """
 
 import os
+import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
+from fractions import Fraction
+from functools import cache
 from itertools import starmap
 from pathlib import Path
+from typing import NamedTuple
 
 import heyoka
 import numpy as np
 
-from holonom.cli import holonom
 from holonom.confined import Limits
-from holonom.program.motion_problem import motion_problem
+from holonom.program.motion_problem import MotionProblem, motion_problem
+from holonom.program.precision import read_precision
 from holonom.program.request import Request
-from holonom.simulation.request import Stabilization
+from holonom.simulation.initial_state import at_values
+from holonom.simulation.piecewise import PiecewiseMotion
+from holonom.simulation.request import EngineName, SimulationRequest, Stabilization
+from holonom.simulation.simulate import followable
 from holonom.sweeps.axes import read_axes
 from holonom.sweeps.kept import read_kept
 from holonom.sweeps.rows import Plan, RowMaker
@@ -35,8 +42,8 @@ DEPTHS, REPEATS = 4, 12
 MILLION = 1_000_000
 
 
-def by_hand() -> Callable[[], np.ndarray]:
-    """The crane of examples/crane.mac, written down in heyoka, its masses and its brake runtime parameters."""
+def crane_by_hand(lanes: int) -> tuple[list, np.ndarray]:
+    """The crane of examples/crane.mac, written down in heyoka, with its load and its brake open; and its start."""
     s, x, y, vs, vx, vy = heyoka.make_vars("s", "x", "y", "vs", "vx", "vy")
     t, m, c, mass = heyoka.time, heyoka.par[0], heyoka.par[1], 200.0
     u, du, ddu = 3.0 + 0.3 * heyoka.sin(t), 0.3 * heyoka.cos(t), -0.3 * heyoka.sin(t)
@@ -49,9 +56,14 @@ def by_hand() -> Callable[[], np.ndarray]:
         (s, vs), (x, vx), (y, vy),
         (vs, free_s - 2.0 * dx * pull / mass), (vx, 2.0 * dx * pull / m), (vy, free_y + 2.0 * y * pull / m),
     ]  # fmt: skip
+    return equations, np.repeat(np.array([[0.0], [0.0], [-3.0], [0.0], [0.0], [-0.3]]), lanes, axis=1)
+
+
+def by_hand() -> Callable[[], np.ndarray]:
+    """heyoka's batch integrator, as its manual shows it."""
     lanes = heyoka.recommended_simd_size()
-    integrator = heyoka.taylor_adaptive_batch(equations, np.zeros((6, lanes)), tol=TOLERANCE, pars=np.zeros((2, lanes)))
-    start = np.array([[0.0], [0.0], [-3.0], [0.0], [0.0], [-0.3]])
+    equations, start = crane_by_hand(lanes)
+    integrator = heyoka.taylor_adaptive_batch(equations, start, tol=TOLERANCE, pars=np.zeros((2, lanes)))
     values = read_axes(GRID, [], [], None, None).numbers(0, MOTIONS)
 
     def run() -> np.ndarray:
@@ -68,10 +80,16 @@ def by_hand() -> Callable[[], np.ndarray]:
     return run
 
 
+@cache
+def crane(open_parameters: tuple[str, ...]) -> MotionProblem:
+    """Its motion, as Maxima derives it."""
+    return motion_problem(CRANE, Request(), Limits(), open_parameters=open_parameters)
+
+
 def by_sweep(keep: str, drift: Stabilization) -> Callable[[], np.ndarray]:
     """The same rows by the rows of a sweep."""
     axes = read_axes(GRID, [], [], None, None)
-    problem = motion_problem(CRANE, Request(), Limits(), open_parameters=axes.names)
+    problem = crane(axes.names)
     maker = RowMaker(Plan(problem, axes, read_kept([keep]), TOLERANCE, drift=drift))
 
     def run() -> np.ndarray:
@@ -104,19 +122,57 @@ def _processor(function: Callable[[], object]) -> float:
     return time.process_time() - begun
 
 
+def bar(name: str, found: float, least: float | None = None, most: float | None = None, unit: str = "") -> str:
+    """A figure beside its bar, and whether it keeps it."""
+    kept = found >= least if least is not None else found <= most
+    asked = f"at least {least:g}" if least is not None else f"at most {most:g}"
+    return f"  {name:44s} {found:8.2f}{unit}, {asked}: {'kept' if kept else 'MISSED'}"
+
+
 def rows_of_one_core() -> Iterator[str]:
     hand, plain = by_hand(), by_sweep("final", Stabilization.NONE)
-    kept, looked = (
-        by_sweep("final", Stabilization.PROJECTION),
-        by_sweep("final,max(abs(lambda1))", Stabilization.PROJECTION),
-    )
+    kept = by_sweep("final", Stabilization.PROJECTION)
+    looked = by_sweep("final,max(abs(lambda1))", Stabilization.PROJECTION)
     apart = np.abs(hand() - plain()).max()
     base, *others = seconds(hand, plain, kept, looked)
     yield f"crane, {MOTIONS} motions, tolerance {TOLERANCE:g}, one core; final states agree to {apart:.0e}"
-    yield f"  by hand                              {base / MOTIONS * 1e6:6.1f} us a motion"
-    names = ("sweep without projection", "sweep with projection", "sweep with max(abs(lambda1))")
-    for name, taken in zip(names, others, strict=True):
-        yield f"  {name:36s} {taken / MOTIONS * 1e6:6.1f} us a motion, {taken / base:.2f} times"
+    yield f"  by hand {base / MOTIONS * 1e6:.1f} us a motion; the sweep, in terms of that:"
+    yield bar("without projection", others[0] / base, most=1.3)
+    yield bar("with projection", others[1] / base, most=1.6)
+    yield f"  with max(abs(lambda1)), too                  {others[2] / base:8.2f}"
+    yield from rows_of_other_engines(base / MOTIONS)
+
+
+def rows_of_other_engines(base: float) -> Iterator[str]:
+    """What motions take that are followed one by one, by the engine's steps alone, and in an ensemble of batches."""
+    problem = at_values(crane(("m", "c")), {"m": Fraction(100), "c": Fraction(10)})
+    for engine in (EngineName.TAYLOR, EngineName.RUNGE_KUTTA):
+        request = SimulationRequest(engine=engine, tol=TOLERANCE, drift=Stabilization.NONE)
+        taken = min(engine_seconds(problem, request) for _ in range(REPEATS))
+        yield f"  one by one, {engine:32s} {taken / base:8.2f}"
+    yield f"  heyoka's ensemble of batches                 {ensemble() / base:8.2f}"
+
+
+def engine_seconds(problem: MotionProblem, request: SimulationRequest) -> float:
+    precision = read_precision("double")
+    motion = PiecewiseMotion(followable(problem, request), request, precision, precision.number("10"))
+    return _processor(lambda: motion.part.engine.advance(10.0))
+
+
+def ensemble() -> float:
+    """Seconds a motion, with 16 lanes a batch; times of all threads."""
+    lanes, batches = 16, 64
+    integrator = heyoka.taylor_adaptive_batch(*crane_by_hand(lanes), tol=TOLERANCE, pars=np.zeros((2, lanes)))
+    values = read_axes(GRID, [], [], None, None).numbers(0, lanes * batches)
+
+    def begin(integrator: heyoka.taylor_adaptive_batch, place: int) -> heyoka.taylor_adaptive_batch:
+        integrator.pars[:] = values[:, place * lanes : (place + 1) * lanes]
+        return integrator
+
+    def run() -> None:
+        heyoka.ensemble_propagate_until_batch(integrator, 10.0, batches, begin)
+
+    return seconds(run)[0] / (lanes * batches)
 
 
 def rows_of_radius() -> Iterator[str]:
@@ -124,30 +180,55 @@ def rows_of_radius() -> Iterator[str]:
     problem = motion_problem(PAPER, Request("initial_motion_scene"), Limits(), open_parameters=axes.names)
     maker = RowMaker(Plan(problem, axes, read_kept(["radius"])))
     maker.table(0, 8)
-    begun = time.process_time()
+    taken = min(_processor(lambda: maker.table(0, 2001)) for _ in range(3))
     table = maker.table(0, 2001)
-    taken = time.process_time() - begun
     u0, radius = table["u0"].to_numpy(), table["radius"].to_numpy(zero_copy_only=False)
     missed = np.nanmax(np.abs(radius / np.sqrt(u0**2 + 0.5) - 1))
-    yield f"radius over 2001 values of u0, once compiled: {taken:.2f} s on one core, relative errors up to {missed:.0e}"
+    yield f"radius over 2001 values of u0, once compiled, on one core; relative errors up to {missed:.0e}"
+    yield bar("time", taken, most=2, unit=" s")
 
 
-def rows_of_workers(share: float) -> Iterator[str]:
-    side = round((MILLION * share) ** 0.5)
+class Run(NamedTuple):
+    """A command that has run."""
+
+    rows: int
+    seconds: float
+    megabytes: float
+
+
+def command(rows: float, workers: int) -> Run:
+    """The command from its start to its end, with at most so many rows."""
+    side = round(rows**0.5)
     grid = ["--grid", f"m=50:500:{side}", "--grid", f"c=0:40:{side}"]
-    taken = {}
-    for workers in (1, 2):
-        with tempfile.TemporaryDirectory() as folder:
-            command = ["sweep", str(CRANE), *grid, "-o", f"{folder}/runs", "--workers", str(workers)]
-            begun = time.perf_counter()
-            holonom(command, standalone_mode=False)
-            taken[workers] = time.perf_counter() - begun
-    yield f"{side**2} crane motions with start-up, on {os.cpu_count()} cores: {taken[1]:.1f} s by this process alone, "
-    yield f"  {taken[2]:.1f} s by two workers, {taken[1] / taken[2]:.2f} times as fast"
+    with tempfile.TemporaryDirectory() as folder:
+        asked = [sys.executable, "-m", "holonom", "sweep", str(CRANE), *grid, "-o", f"{folder}/runs"]
+        begun = time.perf_counter()
+        process = subprocess.Popen([*asked, "--workers", str(workers)], stdout=subprocess.DEVNULL)
+        _, status, usage = os.wait4(process.pid, 0)
+        taken = time.perf_counter() - begun
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode:
+        raise RuntimeError(f"the sweep ended with {process.returncode}")
+    return Run(side**2, taken, usage.ru_maxrss / 1024)
+
+
+def rows_of_commands(share: float) -> Iterator[str]:
+    million = MILLION * share
+    alone = [command(million * part, 1) for part in (0.01, 0.1, 1)]
+    both = [command(million * part, 2) for part in (0.1, 1)]
+    rates = [(last.rows - first.rows) / (last.seconds - first.seconds) for first, last in (alone[1:], both)]
+    yield f"{both[1].rows} crane motions by the command, on {os.cpu_count()} cores; with start-up"
+    yield f"  by this process alone {alone[2].seconds:.1f} s, by two workers {both[1].seconds:.1f} s"
+    yield bar("two workers, with start-up", both[1].seconds, most=30, unit=" s")
+    yield bar("two workers against one, without start-up", rates[1] / rates[0], least=1.8)
+    yield f"  two workers against one, with start-up       {alone[2].seconds / both[1].seconds:8.2f}"
+    sizes = ", ".join(f"{run.megabytes:.0f} MiB for {run.rows}" for run in alone)
+    yield f"  largest memory by this process alone: {sizes} motions"
+    yield bar("the last in terms of the one before", alone[2].megabytes / alone[1].megabytes, most=1.1)
 
 
 def main(directory: Path, share: float) -> None:
-    lines = [*rows_of_one_core(), *rows_of_radius(), *rows_of_workers(share)]
+    lines = [*rows_of_one_core(), *rows_of_radius(), *rows_of_commands(share)]
     directory.mkdir(parents=True, exist_ok=True)
     (directory / "sweep.txt").write_text("\n".join(lines) + "\n", encoding="utf-8")
     print("\n".join(lines))
