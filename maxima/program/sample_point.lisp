@@ -1,7 +1,8 @@
 ;;; Terms of the expression graph in numbers, at a point; and ranks of sparse matrices of them
 ;;;
 ;;; Values are rationals, rounded to 80 digits once they are longer. A sum is zero where its terms
-;;; cancel to a share of 10^-20: sin(x)^2 + cos(x)^2 - 1 is, x + 10^-15 is not, in whatever units.
+;;; cancel to a share of 10^-20: sin(x)^2 + cos(x)^2 - 1 is, x + 10^-15 is not, in whatever units. A cosine is zero
+;;; where its argument would have to change by such a share.
 ;;; No number is compared with a fixed size, so that scaling a row or a column changes no rank.
 ;;;
 ;;; The rank is found by elimination, a row at a time, with the pivot in the column that fewest
@@ -30,6 +31,8 @@
 (defvar *impatience* 40 "Corrections after which each must be smaller than the one before.")
 
 (defvar *smallest-coordinate* (expt 10 -70))
+
+(defvar *functions-with-zeros* '(%sin %cos %tan %cot %log) "With slope 1 or -1 at their zeros, but for signs and 1/x.")
 
 (defvar *least-gain* 1000 "By how much a correction in floating point must lessen the residuals.")
 
@@ -82,11 +85,15 @@
   (expt number exponent))
 
 (defun value-of-call (operator numbers)
-  (let ((arguments (mapcar #'maxima-number numbers)))
-    (number-from-maxima
-     (if (eq operator '%exp)
-         (list '(mexpt) '$%e (car arguments))
-         (cons (list operator) arguments)))))
+  (let* ((arguments (mapcar #'maxima-number numbers))
+         (value (number-from-maxima
+                 (if (eq operator '%exp)
+                     (list '(mexpt) '$%e (car arguments))
+                     (cons (list operator) arguments)))))
+    (if (and (member operator *functions-with-zeros*)
+             (< (abs value) (* *zero-share* (abs (car numbers)))))
+        0
+        value)))
 
 (defun number-from-maxima (e)
   (if *floating* (float-from-maxima e) (exact-from-maxima e)))
