@@ -119,7 +119,8 @@ def casadi(links: int, seconds: float) -> Program:
     diagonal, factor, order = ca.ldl(jacobian @ jacobian.T)
     multipliers = ca.ldl_solve(-(curvature + jacobian @ applied), diagonal, factor, order)
     results = ca.vertcat(applied + jacobian.T @ multipliers, multipliers)
-    return _instructions(ca.Function("chain", [ca.vertcat(t, q, v, controls)], [results]), links)
+    function = ca.Function("chain", [ca.vertcat(t, q, v, controls)], [results])
+    return _program("CasADi", links, instructions(function, chain.inputs(links)))
 
 
 def maxima_invert(links: int, seconds: float) -> Program:
@@ -161,8 +162,15 @@ def _real(expression: object) -> sp.Expr:
     return converted.xreplace({symbol: sp.Symbol(symbol.name, real=True) for symbol in converted.free_symbols})
 
 
-def _instructions(function: object, links: int) -> Program:
-    """The program of a CasADi function, instruction by instruction."""
+def instructions(function: object, names: Sequence[str]) -> list[list]:
+    """The assignments of a CasADi function of one vector to one vector, instruction by instruction.
+
+    Parameters
+    ----------
+    function : casadi.Function
+    names : sequence of str
+        Of the numbers that it takes; those that it gives are out0, out1, ...
+    """
     import casadi as ca
 
     heads = {
@@ -175,7 +183,7 @@ def _instructions(function: object, links: int) -> Program:
         ca.OP_TWICE: lambda a: ["Multiply", 2, a],
         ca.OP_INV: lambda a: ["Divide", 1, a],
     }
-    names, assignments = chain.inputs(links), []
+    assignments: list[list] = []
     work: dict[int, object] = {}
     results: dict[int, object] = {}
     for index in range(function.n_instructions()):
@@ -190,8 +198,7 @@ def _instructions(function: object, links: int) -> Program:
         else:
             assignments.append([f"w{index}", heads[operation](*(work[register] for register in source))])
             work[target[0]] = f"w{index}"
-    assignments += [[f"out{index}", results[index]] for index in sorted(results)]
-    return _program("CasADi", links, assignments)
+    return assignments + [[f"out{index}", results[index]] for index in sorted(results)]
 
 
 def _plain_maxima(method: str, links: int, seconds: float, solve: str) -> Program:

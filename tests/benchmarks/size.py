@@ -20,6 +20,7 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "chain.mac"
 LINKS = (64, 128, 256, 512, 1024, 2048)
 RUNS = 2
 FROM, TO = 128, 1024  # between which the exponent is taken
+SECONDS, GROWTH, MEBIBYTES, OPERATIONS = {512: 5.0, 1024: 10.0}, 1.15, 2048, 1.25  # bars
 HOLONOM = (sys.executable, "-m", "holonom")
 
 
@@ -63,6 +64,13 @@ def report(rows: list[Row]) -> str:
         lines.append("  ".join((f"{row.links:<5}", *cells, f"{by_hand:.2f}")))
     chosen = {row.links: row for row in rows}
     lines.append(f"from {FROM} to {TO} links the time grows as N^{_exponent(chosen[FROM], chosen[TO]):.2f}")
+    bars = (
+        *((f"processor seconds at {links} links", chosen[links].seconds, bar) for links, bar in SECONDS.items()),
+        ("that exponent", _exponent(chosen[FROM], chosen[TO]), GROWTH),
+        (f"MiB at {TO} links", chosen[TO].mebibytes, MEBIBYTES),
+        ("operations to those by hand", max(row.operations / (23 * row.links - 9) for row in rows), OPERATIONS),
+    )
+    lines += [f"{what}: {value:.3g}; bar {bar}: {'holds' if value <= bar else 'FAILS'}" for what, value, bar in bars]
     return "\n".join(lines) + "\n"
 
 
