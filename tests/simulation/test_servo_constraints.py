@@ -1,6 +1,7 @@
 """Controls in forces that hold outputs to a course, against inverse dynamics, flatness and conservation laws."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import sympy as sp
 import holonom
 from holonom.failures import HolonomError
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 ENGINES = {"taylor": 1e-12, "runge-kutta": 1e-10, "robust": 1e-8}
 
 ARM = """
@@ -21,17 +23,6 @@ circle : holonomic_scene(system,
   parameter_values = [m = 2, l = 1, g = 981/100], initial_state = [],
   initial_guess = [a = -1, b = 1, dot(a) = 0, dot(b) = 0], time_span = [0, 3],
   observe = [trajectory, residuals, energy])$
-"""
-CRANE = """
-system : holonomic_system(
-  coordinates = [x, l, phi], controls = [F, W], parameters = [M, m, g],
-  kinetic_energy = M*dot(x)^2/2 + m*((dot(x) + dot(l)*sin(phi) + l*cos(phi)*dot(phi))^2
-    + (dot(l)*cos(phi) - l*sin(phi)*dot(phi))^2)/2,
-  potential_energy = -m*g*l*cos(phi), forces = [motors = [F, W, 0]])$
-line : holonomic_scene(system,
-  servo_constraints = [x + l*sin(phi) = (1 - cos(t))/2, l*cos(phi) = 2 - t/5],
-  parameter_values = [M = 2, m = 1, g = 981/100], initial_state = [],
-  initial_guess = [x = 0, l = 2, phi = 0, dot(x) = 0, dot(l) = 0, dot(phi) = 0], time_span = [0, 4])$
 """
 ROD = """
 system : holonomic_system(
@@ -71,7 +62,7 @@ def test_a_two_link_arm_whose_tip_follows_a_circle_needs_the_torques_of_inverse_
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_crane_whose_load_follows_a_line_is_flat(engine, gsl):
     """The rope points along the load's acceleration less gravity, which gives angle, tension and both forces."""
-    motion = holonom.system(CRANE).simulate(samples=6, engine=engine)
+    motion = holonom.load(EXAMPLES / "overhead_crane.mac").simulate(samples=6, engine=engine)
     t = sp.Symbol("t")
     across, below = (1 - sp.cos(t)) / 2, 2 - t / 5
     pull = sp.diff(across, t, 2), sp.Rational(981, 100) - sp.diff(below, t, 2)

@@ -133,6 +133,16 @@ EXHIBITS = (
         scene="circle_scene",
     ),
     Exhibit(
+        "overhead-crane",
+        "examples/overhead_crane.mac",
+        (
+            translatable("The load of an overhead crane is carried to and fro while it is let down."),
+            translatable(
+                "Where the load is to go says where the rope points, and so what the trolley and the winch do."
+            ),
+        ),
+    ),
+    Exhibit(
         "lift",
         "examples/weightless_cabin.mac",
         (
