@@ -111,23 +111,23 @@ class Program:
         Name of the scene it was written for; None for a system alone.
     method : str
         Which factorisation the solve uses, for instance ``bordered`` or ``schur``.
-    redundant : tuple of str
-        Multipliers that were put to zero, for their constraints follow from the others near the start: accelerations
-        and constraint forces are unique, multipliers are not.
     operations : int
         What it costs, as Maxima counted.
     assignments : tuple of (str, Expression)
         In the order in which they can be computed.
+    redundant : tuple of str
+        Multipliers that were put to zero, for their constraints follow from the others near the start: accelerations
+        and constraint forces are unique, multipliers are not.
     """
 
     scene: str | None
     solve: Solve
     method: str
-    redundant: tuple[str, ...]
     operations: int
     inputs: tuple[str, ...]
     assignments: tuple[tuple[str, Expression], ...]
     outputs: Mapping[str, Atom]
+    redundant: tuple[str, ...] = ()
 
 
 def read_program(text: str) -> Program:

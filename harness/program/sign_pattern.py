@@ -5,13 +5,13 @@ While they stay the same it is an analytic motion like any other: its problem is
 A sign that holds the motion on its surface is a value along the way, -drive(0)/grip.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
 
 from .drawing import Drawing
 from .motion_problem import MotionProblem, computing
-from .motion_program import Call, Constant, Expression, Name, Operation, Program, count_operations, names_in
+from .motion_program import Call, Constant, Expression, Name, Operation, Program, count_operations
 
 ZERO, ONE = Fraction(0), Fraction(1)
 HELD = "held"  # stands in a pattern for the sign that keeps the motion on its surface
@@ -105,6 +105,72 @@ def with_values_in(problem: MotionProblem) -> MotionProblem:
         values={},
         parametric_start=None,
     )
+
+
+def sharing_programs(problem: MotionProblem, known: dict[Hashable, MotionProblem]) -> MotionProblem:
+    """A motion with the numbers of its laws as values of parameters.
+
+    The pieces of a law, of a table above all, differ in their numbers alone: motions that do so are given the same
+    programs, and what is compiled of them is compiled once.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        Without signs.
+    known : dict
+        The motions given so far; changed in place.
+    """
+    numbers: dict[str, Fraction] = {}
+    assigned = {name for name, _ in problem.matrices.assignments}
+    laws = {
+        dots.format(name) for name in assigned if f"dot({name})" in assigned for dots in ("{}", "dot({})", "ddot({})")
+    }
+    letters = _untaken("piece", {letter.rstrip("0123456789") for letter in {*assigned, *problem.matrices.inputs}})
+
+    def opened(program: Program) -> Program:
+        assignments = []
+        for name, expression in program.assignments:
+            if name in laws:
+                start = f"{letters}_{sorted(laws).index(name)}_"
+                expression = _with_names_for_numbers(expression, start, numbers)
+            assignments.append((name, expression))
+        return replace(program, assignments=tuple(assignments))
+
+    def taking(program: Program) -> Program:
+        return replace(program, inputs=(*program.inputs, *numbers))
+
+    shared = _with_programs(_with_programs(problem, opened), taking)
+    shared = replace(shared, parameters=(*problem.parameters, *numbers), values={**problem.values, **numbers})
+    template = known.setdefault(_text(shared), shared)
+    return replace(template, values=shared.values, start=shared.start)
+
+
+def _with_names_for_numbers(expression: Expression, start: str, numbers: dict[str, Fraction]) -> Expression:
+    """The expression with a name for each of its numbers, exponents apart; the numbers are put under these names."""
+    count = 0
+
+    def named(part: Expression) -> Expression:
+        nonlocal count
+        match part:
+            case Fraction():
+                name, count = f"{start}{count}", count + 1
+                numbers[name] = part
+                return Name(name)
+            case Call(Operation.POWER, (base, exponent)):
+                return Call(Operation.POWER, (named(base), exponent))
+            case Call(operation, arguments):
+                return Call(operation, tuple(map(named, arguments)))
+            case _:
+                return part
+
+    return named(expression)
+
+
+def _text(problem: MotionProblem) -> Hashable:
+    """What two motions have in common that differ in values and start alone."""
+    programs: list[Program | None] = []
+    _with_programs(problem, lambda program: programs.append(program) or program)
+    return tuple((each.inputs, each.assignments, tuple(each.outputs.items())) for each in programs)
 
 
 def drive(problem: MotionProblem, name: str, sign: int, pattern: Pattern) -> Program:
@@ -202,10 +268,31 @@ def _substituted(expression: Expression, known: Mapping[str, Expression]) -> Exp
     match expression:
         case Name(text):
             return known.get(text, expression)
-        case Call(operation, arguments) if not names_in(expression).isdisjoint(known):
+        case Call(Operation.MULTIPLY, arguments) if _vanishing_weight(arguments, known):
+            return ZERO
+        case Call(operation, arguments) if any(name in known for name in _names_met(expression)):
             return _folded(operation, [_substituted(argument, known) for argument in arguments])
         case _:
             return expression
+
+
+def _vanishing_weight(arguments: tuple[Expression, ...], known: Mapping[str, Expression]) -> bool:
+    """Whether a factor made of signs alone is zero: of a law in many pieces all terms but one are told by it."""
+    for each in arguments:
+        of_signs = isinstance(each, Call) and all(name in known for name in _names_met(each))
+        if of_signs and _substituted(each, known) == ZERO:
+            return True
+    return False
+
+
+def _names_met(expression: Expression) -> Iterator[str]:
+    """Names in an expression one after another: whoever has seen enough stops here."""
+    match expression:
+        case Name(text):
+            yield text
+        case Call(_, arguments):
+            for argument in arguments:
+                yield from _names_met(argument)
 
 
 def _folded(operation: Operation, arguments: list[Expression]) -> Expression:

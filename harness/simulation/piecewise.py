@@ -15,7 +15,7 @@ state, an impulse of a surface whose law of impact nobody has given.
 
 from bisect import bisect_left, bisect_right
 from collections import deque
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from enum import StrEnum
 from fractions import Fraction
@@ -28,7 +28,16 @@ import numpy as np
 from ..failures import Failure, HolonomError
 from ..program.motion_problem import By, MotionProblem, Sign, computing
 from ..program.precision import Precision
-from ..program.sign_pattern import HELD, Pattern, drive, holdable, in_numbers, problem_in, program_in
+from ..program.sign_pattern import (
+    HELD,
+    Pattern,
+    drive,
+    holdable,
+    in_numbers,
+    problem_in,
+    program_in,
+    sharing_programs,
+)
 from .clock import Tick, ticks
 from .constraints.program_projection import ProgramProjection
 from .constraints.projection import project
@@ -84,6 +93,8 @@ class Part:
         The signs that the time alone decides.
     request, precision, end
         As for `PiecewiseMotion`.
+    known : dict
+        The analytic motions of other parts, as `sharing_programs` keeps them.
     """
 
     def __init__(
@@ -94,9 +105,12 @@ class Part:
         request: SimulationRequest,
         precision: Precision,
         end: Any,
+        known: dict[Hashable, MotionProblem],
     ) -> None:
         self._whole, self.pattern, self._precision, self._clock = problem, pattern, precision, clock
         analytic = problem_in(problem, pattern)
+        if any(sign.by is By.TIME for sign in problem.signs):
+            analytic = sharing_programs(analytic, known)
         self.matrices = MotionMatrices(analytic)
         obstacle = analytic.obstacle or dependence(self.matrices, Instant(*start_of(analytic)))
         self.problem = replace(analytic, obstacle=obstacle)
@@ -174,6 +188,7 @@ class PiecewiseMotion:
         self._clock = ticks(problem)
         self._to_come = deque(sorted({tick.t for tick in self._clock.values()}))
         self._parts: dict[tuple[Any, ...], Part] = {}
+        self._known: dict[Hashable, MotionProblem] = {}
         self._span = float(end) - float(problem.start["t"])
         self._left: tuple[str, ...] = ()
         self._jump = precision.number("0")
@@ -484,7 +499,9 @@ class PiecewiseMotion:
     def _part(self, pattern: Pattern, problem: MotionProblem) -> Part:
         key = tuple(pattern.values())
         if key not in self._parts:
-            self._parts[key] = Part(problem, pattern, self._clock, self._request, self._precision, self._end)
+            self._parts[key] = Part(
+                problem, pattern, self._clock, self._request, self._precision, self._end, self._known
+            )
         return self._parts[key]
 
     def _started_at(self, t: Any, state: Numbers) -> MotionProblem:

@@ -9,10 +9,13 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 import holonom
+from holonom.confined import Limits
 from holonom.failures import HolonomError
 from holonom.program.model import scene_model
+from holonom.program.motion_problem import motion_problem
 from holonom.program.numpy_function import NumpyFunction
 from holonom.program.request import Request
+from holonom.program.sign_pattern import problem_in, sharing_programs
 from holonom.series.power_series import values_at
 from holonom.simulation.clock import ticks
 
@@ -151,3 +154,22 @@ def test_a_library_takes_the_law_in_all_its_parts(driven, law):
     spline = CubicSpline(*np.array(POINTS, dtype=float).T, bc_type="natural")
     truth = spline(instants) if law.startswith("table") else [0.04, 1.21, 5, 7.5]
     assert found["u"] == pytest.approx(truth, rel=1e-14)
+
+
+def test_the_pieces_of_a_table_share_what_is_compiled(write_scene):
+    # each of hundreds of pieces was compiled anew
+    file = write_scene("""load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  constraints = [y - u*x])$
+pushed : holonomic_scene(system, control_law = [u = table([[0, 0], [1, 2], [2, 1], [3, 5], [4, 1]])],
+  initial_state = [x = 1, dot(x) = 0], time_span = [0, 4])$""")
+    problem, known = motion_problem(file, Request(), Limits()), {}
+    order = sorted(problem.signs, key=lambda sign: float(sign.of.removeprefix("t-")))
+    pieces = [
+        sharing_programs(
+            problem_in(problem, {sign.name: 1 if place < passed else -1 for place, sign in enumerate(order)}), known
+        )
+        for passed in range(4)
+    ]
+    assert pieces[1].motion is pieces[2].motion  # at the ends of a natural spline coefficients are zero
+    assert len({tuple(piece.values.items()) for piece in pieces}) == 4
