@@ -9,19 +9,17 @@ compiler with the same options, and compared at a random point before they are t
 """
 
 import json
-import os
-import subprocess
 import sys
 import time
 from dataclasses import dataclass
 from itertools import pairwise
 from math import log
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import casadi as ca
 import numpy as np
 from peers import instructions
+from timing import program_of_command
 
 from holonom.program.c_function import compile_c
 from holonom.program.motion_program import Program, count_operations, read_program
@@ -33,7 +31,6 @@ LARGEST_COMPILED = 16  # bodies; the C compiler takes minutes for the next
 GROWTH, OPERATIONS, EVALUATION = 1.3, 1.0, 1.1  # bars
 INERTIA = (0.1, 0.05, 0.1)
 TOLERANCE = 1e-8
-HOLONOM = (sys.executable, "-m", "holonom")
 
 
 @dataclass(frozen=True)
@@ -61,15 +58,8 @@ def measured(bodies: int) -> Row:
 
 def our_program(bodies: int) -> tuple[float, Program]:
     """Processor seconds of the whole command, and the program."""
-    with TemporaryDirectory() as directory:
-        written = Path(directory, "program.json")
-        command = [*HOLONOM, "program", str(EXAMPLE), "--set", f"N={bodies}", "-o", str(written)]
-        process = subprocess.Popen(command)
-        _, status, usage = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-        if process.returncode != 0:
-            raise subprocess.CalledProcessError(process.returncode, command)
-        return usage.ru_utime + usage.ru_stime, read_program(written.read_text(encoding="utf-8"))
+    text, seconds, _ = program_of_command(EXAMPLE, f"N={bodies}")
+    return seconds, read_program(text)
 
 
 def casadi_program(bodies: int, inputs: tuple[str, ...], outputs: list[str]) -> Program:

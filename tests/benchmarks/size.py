@@ -7,21 +7,19 @@ least of a few runs.
 """
 
 import json
-import os
-import subprocess
 import sys
 from dataclasses import dataclass
 from itertools import pairwise
 from math import log
 from pathlib import Path
-from tempfile import TemporaryDirectory
+
+from timing import program_of_command
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "chain.mac"
 LINKS = (64, 128, 256, 512, 1024, 2048)
 RUNS = 2
 FROM, TO = 128, 1024  # between which the exponent is taken
 SECONDS, GROWTH, MEBIBYTES, OPERATIONS = {512: 5.0, 1024: 10.0}, 1.15, 2048, 1.25  # bars
-HOLONOM = (sys.executable, "-m", "holonom")
 
 
 @dataclass(frozen=True)
@@ -42,16 +40,8 @@ def measured(links: int) -> Row:
 
 def one_run(links: int) -> Row:
     """One run of the command, a process of its own."""
-    with TemporaryDirectory() as directory:
-        written = Path(directory, "program.json")
-        command = [*HOLONOM, "program", str(EXAMPLE), "--set", f"N={links}", "-o", str(written)]
-        process = subprocess.Popen(command)
-        _, status, usage = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-        if process.returncode != 0:
-            raise subprocess.CalledProcessError(process.returncode, command)
-        operations = json.loads(written.read_text(encoding="utf-8"))["operations"]
-    return Row(links, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024, operations)
+    text, seconds, mebibytes = program_of_command(EXAMPLE, f"N={links}")
+    return Row(links, seconds, mebibytes, json.loads(text)["operations"])
 
 
 def report(rows: list[Row]) -> str:

@@ -1,9 +1,14 @@
 """Times: of work that may take too long, and of functions over arrays of points."""
 
+import os
 import signal
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import FrameType
 
 import numpy as np
@@ -30,6 +35,22 @@ def time_limit(seconds: float) -> Iterator[None]:
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, previous)
+
+
+def program_of_command(scene: Path, setting: str) -> tuple[str, float, float]:
+    """The JSON that `holonom program` writes of a scene, with the processor seconds and the MiB that it takes.
+
+    They are those of the whole command and of all that it starts; the memory is that of the largest process.
+    """
+    with TemporaryDirectory() as directory:
+        written = Path(directory, "program.json")
+        command = [sys.executable, "-m", "holonom", "program", str(scene), "--set", setting, "-o", str(written)]
+        process = subprocess.Popen(command)
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        if process.returncode != 0:
+            raise subprocess.CalledProcessError(process.returncode, command)
+        return written.read_text(encoding="utf-8"), usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
 
 
 def many_points(evaluate: Callable[[NDArray[np.float64]], object], points: NDArray[np.float64]) -> float:
