@@ -8,7 +8,9 @@
     radius              radius of convergence of the initial motion
     residual            how far the end is from the constraints; it is kept in any case
 
-EXPR is made of t, coordinates, dot(x), ddot(x), multipliers, Lambda[s], energy and the parameters. It becomes an
+The end is where the scene's `until` ends the motion, or else its time span; at an instant after it there is nothing.
+EXPR is made of t, coordinates, dot(x), ddot(x), multipliers, Lambda[s] and controls where the scene observes them,
+energy and the parameters. It becomes an
 expression of the motion program; nothing of it is run as code.
 """
 

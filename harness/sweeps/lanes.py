@@ -7,6 +7,10 @@ that fails would end the steps of the others, so its batch is followed again wit
 Quantities that are looked at along the motion are integrated with it, so small that they decide about no step: the
 polynomial of each step tells their values, and the last state their means.
 
+Nothing else that there is follows many motions as fast, as `tests/benchmarks/sweep.py` measures: one by one, the
+Runge-Kutta engine in C takes tens of times as long, and heyoka's single integrator, too; heyoka's ensembles copy an
+integrator for each batch, which takes longer than to follow it.
+
 After a block of steps the states are projected onto the constraints. A lane whose steps shrink suddenly, that leaves
 the constraints too far inside a block, or that takes too many steps, is left to `holonom.sweeps.single`.
 """

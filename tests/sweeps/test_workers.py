@@ -13,8 +13,8 @@ import pyarrow.dataset
 import pytest
 
 CRANE = Path(__file__).parents[2] / "examples" / "crane.mac"
-SWEEP = [sys.executable, "-m", "holonom", "sweep", str(CRANE), "--grid", "m=50:500:200", "--grid", "c=0:40:200"]
-ASKED = [*SWEEP, "--chunk", "400", "--keep", "final,max(abs(lambda1))"]
+SWEEP = [sys.executable, "-m", "holonom", "sweep", str(CRANE), "--grid", "m=50:500:400", "--grid", "c=0:40:400"]
+ASKED = [*SWEEP, "--chunk", "1600", "--keep", "final,max(abs(lambda1))"]
 
 pytestmark = pytest.mark.long
 
