@@ -116,6 +116,10 @@ class Failure(Enum):
     NOTHING_TO_RESUME = ("there is no sweep to resume", "leave --resume out to begin one")
     WORKERS_LOST = ("the workers are gone: {detail}", "run the same command again; what is finished stays")
     NO_END = ("the scene has no time span", "give it one, or the last instant with --until")
+    NO_COMMON_END = (
+        "the scene ends where an expression of its until vanishes, and methods are compared at one instant",
+        "say which with --until",
+    )
     NOT_AFTER_START = ("the last instant is not after the start: {detail}", "give a later one with --until")
     NO_EVENT_VALUE = (
         "an expression in 'until' has no real, finite value: {detail}",

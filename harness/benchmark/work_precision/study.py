@@ -170,6 +170,8 @@ def _problems(file: Path, request: Request, limits: Limits, plan: Plan) -> tuple
 def _end_of(problem: MotionProblem, plan: Plan) -> Fraction:
     """The last instant, exactly; refused where a simulation refuses it."""
     last_instant(problem, plan.until, read_precision("double"))
+    if problem.until and plan.until is None:
+        raise HolonomError(Failure.NO_COMMON_END, problem.scene)
     return Fraction(problem.time_span[1]) if plan.until is None else plan.until
 
 

@@ -24,6 +24,7 @@ from holonom.benchmark.work_precision.solvers import SOLVERS, solver_ladder
 from holonom.benchmark.work_precision.study import Plan, study, study_document
 from holonom.confined import Limits
 from holonom.documents import schema
+from holonom.failures import HolonomError
 from holonom.figures.benchmark import draw_study
 from holonom.program.motion_problem import motion_problem
 from holonom.program.motion_program import Solve
@@ -147,3 +148,13 @@ def test_precisions_whose_reference_would_take_too_long_are_left_out_with_the_re
     assert "reference would take" in left_out.reason
     assert done.until == UNTIL
     assert {m.method for m in done.measurements if m.group is Group.TAYLOR} == {"Taylor, double"}
+
+
+def test_a_scene_that_ends_by_an_event_is_asked_for_an_instant(tmp_path):
+    # its until was passed over in silence
+    file = tmp_path / "falling.mac"
+    file.write_text("""load("holonom.mac")$
+system : holonomic_system(coordinates = [y], kinetic_energy = dot(y)^2/2, potential_energy = 10*y)$
+fall : holonomic_scene(system, initial_state = [y = 1, dot(y) = 0], time_span = [0, 2], until = [y])$""")
+    with pytest.raises(HolonomError, match="say which with until"):
+        study(file, Request(), Limits(), Plan())
