@@ -38,6 +38,7 @@ WATCHED = (
     '(read -r _ <&4; kill -KILL 0) >/dev/null 2>&1 & exec "$@" 4<&-'
 )
 SYSTEM = ("/bin", "/sbin", "/lib", "/lib32", "/lib64", "/usr", "/etc/alternatives", "/etc/ld.so.cache")
+OWN_PROCESSES = ("--proc", "/proc")  # newer versions of GCL read there how much memory there is, and how theirs lies
 SHARED_BY_PROGRAMS = ("bin", "lib", "lib64", "libexec", "share")  # what lies beside a program that is not in /usr
 
 
@@ -163,7 +164,7 @@ def bubblewrap() -> str | None:
     """The path of bubblewrap; None where it is missing or forbidden."""
     if (found := shutil.which("bwrap")) is None:
         return None
-    command = [found, "--unshare-all", "--die-with-parent", "--ro-bind", "/", "/", "/bin/sh", "-c", ":"]
+    command = [found, "--unshare-all", "--die-with-parent", "--ro-bind", "/", "/", *OWN_PROCESSES, "/bin/sh", "-c", ":"]
     try:
         tried = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, timeout=PROBE_TIME, check=False)
     except (OSError, subprocess.TimeoutExpired):
@@ -180,6 +181,7 @@ def _walls(confinement: Confinement, program: Path) -> list[str]:
         "--die-with-parent",
         "--cap-drop",
         "ALL",
+        *OWN_PROCESSES,
         "--dev",
         "/dev",
         "--tmpfs",

@@ -15,7 +15,8 @@ working directory."
   (mapc #'load jobs)
   (ignore-errors (load-compiled (functions-of library jobs)))
   (setq *maxima-started* nil *asked-for* nil)
-  #+gcl (si::save-system "image")
+  ; An image of GCL 2.7 takes errors of syntax for the end of the file, and does not start with little memory.
+  #+gcl (if (search "GCL 2.6" (lisp-implementation-version)) (si::save-system "image"))
   (quit))
 
 (defun functions-of (library jobs)

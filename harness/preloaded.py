@@ -6,7 +6,7 @@ the library's text, this file. It is used only where it belongs to the user, is 
 checksum that it was made with; where there is none, or none can be made, a run loads the library, and finds the same.
 The checksum of so large a file takes as long as Maxima does: it is taken when the machine was started since, or the
 file is another, or was written to.
-Only GCL, on which Debian's Maxima runs, makes them here.
+Only GCL 2.6, on which Maxima of Debian 12 runs, makes them here.
 """
 
 import os
