@@ -13,6 +13,7 @@ from holonom import language
 from holonom.benchmark.machine import this_machine
 from holonom.cli import holonom
 from holonom.companion import book
+from holonom.companion import pages as companion_pages
 from holonom.companion.chapters import further_reading, gallery
 from holonom.companion.paper import REPOSITORY, book_of_the_paper
 from holonom.files import write_whole_directory
@@ -75,8 +76,10 @@ def bracketed(results, tmp_path_factory):
     with pytest.MonkeyPatch.context() as changed:
         changed.setattr(language, "_catalog", lambda name: Bracketing() if name == "zh" else known(name))
         changed.setattr(gallery, "figures_of", lambda shown: {})
+        companion_pages._environment.cache_clear()  # in which the words of templates are kept, in proper Chinese
         with speaking("zh"):
             write_whole_directory(directory, book.pages(book_of_the_paper(), results))
+        companion_pages._environment.cache_clear()
     return directory
 
 
@@ -102,7 +105,9 @@ def outside(text: str) -> str:
 def names() -> set[str]:
     """Words that are the same in every language: of authors, works, machines, effects and options."""
     data = tomllib.loads(further_reading.DATA.read_text())
-    texts = [text for work in data["work"] for text in work.values()] + [word["english"] for word in data["word"]]
+    texts = [text for work in data["work"] for text in work.values()] + [
+        word[tongue] for word in data["word"] for tongue in ("english", "chinese")
+    ]
     texts += [str(this_machine()), *Stabilization, "spring damping English DOI"]
     return {word for text in texts for word in WORD.findall(text)}
 
