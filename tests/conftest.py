@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import signal
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
@@ -14,6 +15,10 @@ from holonom.documents import Document, ask
 # As the command line has it, and every process that the tests start: with threads of its own in each of the tests'
 # processes, BLAS takes ten times as long. NumPy reads this when it is first imported, which is later.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+# A shell that starts the tests in the background has them ignore SIGINT, and the commands that they start as well.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 ScenesWriter = Callable[[str], Path]
 COMPANION = Path(__file__).with_name("companion")

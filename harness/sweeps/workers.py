@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     from distributed import Client
 
 AHEAD = 3  # chunks that wait at each worker
+KEPT_MEMORY = (
+    2**29
+)  # bytes that a worker does not give back at once; Dask's 64 KiB are given back and fetched each step
+LARGEST_PIECE = 2**25  # bytes of the largest piece of what is kept
 ATTEMPTS = 10  # workers that a chunk may outlive
 PATIENCE = 20  # seconds that a scheduler may take to answer
 
@@ -110,6 +114,8 @@ def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
         "distributed.scheduler.allowed-failures": ATTEMPTS,
         "distributed.comm.timeouts.connect": PATIENCE,
         "distributed.admin.system-monitor.gil.enabled": False,
+        "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": KEPT_MEMORY,
+        "distributed.nanny.pre-spawn-environ.MALLOC_MMAP_THRESHOLD_": LARGEST_PIECE,
     }
     with dask.config.set(settings):
         if scheduler is not None:
