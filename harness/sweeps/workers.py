@@ -114,6 +114,7 @@ def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
         "distributed.scheduler.allowed-failures": ATTEMPTS,
         "distributed.comm.timeouts.connect": PATIENCE,
         "distributed.admin.system-monitor.gil.enabled": False,
+        "distributed.worker.profile.enabled": False,  # which looks at each worker a hundred times a second
         "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": KEPT_MEMORY,
         "distributed.nanny.pre-spawn-environ.MALLOC_MMAP_THRESHOLD_": LARGEST_PIECE,
     }
@@ -127,7 +128,7 @@ def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
             threads_per_worker=1,
             host="127.0.0.1",
             security=True,  # other users of this machine reach its address, too
-            dashboard_address=None,
+            dashboard_address="127.0.0.1:0",  # any port that is free, for another sweep may run
             memory_limit=0,
             silence_logs=logging.CRITICAL,
         )

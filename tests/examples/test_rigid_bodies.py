@@ -154,7 +154,7 @@ def test_every_question_is_answered_of_bricards_linkage():
     assert not report.disagreements
     assert [found.verdict for found in report.verdicts if found.id == "redundant_constraints"] == [Verdict.AGREES]
     assert scene.free().motion.verdict == "not free"
-    assert scene.program().redundant == ("lambda24",)
+    assert scene.program().program.redundant == ("lambda24",)
 
 
 def test_what_neither_forces_nor_constraints_decide_is_refused_with_its_direction():
