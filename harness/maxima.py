@@ -125,6 +125,8 @@ def ask_scene(
         printed = _run(run, f"run-scene {_copy(run)} {quoted(run.leaves('description').name)}", writer)
         description = _left_behind(run, "description", printed)
     rest = replace(limits, seconds=limits.seconds - (time.monotonic() - began))
+    if rest.seconds <= 0:
+        raise HolonomError(Failure.TOO_LONG, scene, detail=f"{limits.seconds:g} s")
     with doing("deriving with Maxima"), _new_run(scene, rest, settings) as run:
         (run.directory / "description").write_bytes(description)
         printed = _run(run, f'run-description "description" {_call(writer, run)}', writer)

@@ -16,9 +16,10 @@ from holonom.documents import Document, ask
 # processes, BLAS takes ten times as long. NumPy reads this when it is first imported, which is later.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-# A shell that starts the tests in the background has them ignore SIGINT, and the commands that they start as well.
-if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
-    signal.signal(signal.SIGINT, signal.default_int_handler)
+# What starts the tests in the background has them ignore these signals, and the commands that they start as well.
+for number, handler in ((signal.SIGINT, signal.default_int_handler), (signal.SIGHUP, signal.SIG_DFL)):
+    if signal.getsignal(number) is signal.SIG_IGN:
+        signal.signal(number, handler)
 
 ScenesWriter = Callable[[str], Path]
 COMPANION = Path(__file__).with_name("companion")
