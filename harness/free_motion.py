@@ -32,138 +32,70 @@ class Free(StrEnum):
 
 @dataclass(frozen=True)
 class FirstCoefficient:
-    """The first coefficient of a multiplier's power series that is not zero.
-
-    Attributes
-    ----------
-    order : int
-        The power of t - t0.
-    value : str
-        ``p/q`` where the data are exact, else a decimal number of 30 digits.
-    """
+    """The first coefficient of a multiplier's power series that is not zero."""
 
     multiplier: str
-    order: int
-    value: str
+    order: int  # the power of t - t0
+    value: str  # ``p/q`` where the data are exact, else a decimal number of 30 digits
 
 
 @dataclass(frozen=True)
 class MotionVerdict:
-    """Whether the motion of the scene is free.
+    """Whether the motion of the scene is free."""
 
-    Attributes
-    ----------
-    verdict : Free
-        Free only where that is proved.
-    states : str
-        ``all states``, where every motion under the scene's law is free, or ``this state``.
-    evidence : str
-        What shows it, or what is in the way of a proof: one sentence.
-    order : int or None
-        Where undecided, the order to which all coefficients of the multipliers vanish; None where there are none.
-    first : FirstCoefficient or None
-        What shows that the motion is not free.
-    """
-
-    verdict: Free
-    states: str
-    evidence: str
+    verdict: Free  # free only where that is proved
+    states: str  # ``all states``, where every motion under the scene's law is free, or ``this state``
+    evidence: str  # what shows it, or what is in the way of a proof: one sentence
+    # where undecided, the order to which all coefficients of the multipliers vanish; None where there are none
     order: int | None
-    first: FirstCoefficient | None
+    first: FirstCoefficient | None  # what shows that the motion is not free
 
 
 @dataclass(frozen=True)
 class UniversalLaw:
-    """A law under which every motion is free, or a family of them.
+    """A law under which every motion is free, or a family of them."""
 
-    Attributes
-    ----------
-    controls : Law
-        By control; in the time, the constants and the free controls.
-    constants : tuple of str
-        Constants of integration: any numbers.
-    free : tuple of str
-        Controls that stay free functions of the time.
-    positive : tuple of Expr
-        What must be positive where the law holds; empty where it always holds.
-    check : Judgement
-        What SymPy found when it tried the law on the equations of motion.
-    """
-
-    controls: Law
-    constants: tuple[str, ...]
-    free: tuple[str, ...]
-    positive: tuple[Expr, ...]
-    check: Judgement
+    controls: Law  # by control; in the time, the constants and the free controls
+    constants: tuple[str, ...]  # constants of integration: any numbers
+    free: tuple[str, ...]  # controls that stay free functions of the time
+    positive: tuple[Expr, ...]  # what must be positive where the law holds; empty where it always holds
+    check: Judgement  # what SymPy found when it tried the law on the equations of motion
 
 
 @dataclass(frozen=True)
 class ControlCondition:
-    """What must vanish if every motion is to be free.
+    """What must vanish if every motion is to be free."""
 
-    Attributes
-    ----------
-    expression : Expr
-        In the time, the controls and their rates.
-    place : Expr
-        The function of the state that it is the coefficient of in (10).
-    effects : tuple of str
-        The terms of the system that it comes from; ``inertia`` for kinetic energy and constraints.
-    """
-
-    expression: Expr
-    place: Expr
+    expression: Expr  # in the time, the controls and their rates
+    place: Expr  # the function of the state that it is the coefficient of in (10)
+    # the terms of the system that it comes from; ``inertia`` for kinetic energy and constraints
     effects: tuple[str, ...]
 
 
 @dataclass(frozen=True)
 class UniversalControls:
-    """The laws under which every motion is free.
+    """The laws under which every motion is free."""
 
-    Attributes
-    ----------
-    verdict : str
-        ``all`` (these laws are all there are), ``some``, ``none`` (there are none) or ``undecided``.
-    conditions : tuple of ControlCondition
-        Shortest first.
-    generic : bool
-        Parameters were left open, and the answer is that for generic values.
-    """
-
-    verdict: str
+    verdict: str  # ``all`` (these laws are all there are), ``some``, ``none`` (there are none) or ``undecided``
     laws: tuple[UniversalLaw, ...]
-    conditions: tuple[ControlCondition, ...]
-    generic: bool
+    conditions: tuple[ControlCondition, ...]  # shortest first
+    generic: bool  # parameters were left open, and the answer is that for generic values
     reason: str
 
 
 @dataclass(frozen=True)
 class TrajectoryControl:
-    """The control under which one motion is free.
+    """The control under which one motion is free."""
 
-    Attributes
-    ----------
-    kind : str
-        ``closed form`` (in letters, the initial data q1_0, dot(q1)_0, or in the scene's numbers), ``numeric`` (with the
-        scene's numbers, along its time span), ``series`` (with the scene's numbers, at the initial instant), ``any
-        control``, ``none`` (there is none) or ``not determined``.
-    law : Law
-        By control; where there is an order a truncated series, an unevaluated sum, lowest power first.
-    free : tuple of str
-        Controls that stay free functions of the time; a closed form may contain them.
-    order : int or None
-        To which the law is a series; None where it is closed.
-    motion : Law
-        The free motion by coordinate, where its closed form is known.
-    samples : tuple of tuple of float
-        Instants of the scene's time span with the values of the controls, as far as there are such controls.
-    """
-
+    # ``closed form`` (in letters, the initial data q1_0, dot(q1)_0, or in the scene's numbers), ``numeric`` (with the
+    # scene's numbers, along its time span), ``series`` (with the scene's numbers, at the initial instant), ``any
+    # control``, ``none`` (there is none) or ``not determined``
     kind: str
-    law: Law
-    free: tuple[str, ...]
-    order: int | None
-    motion: Law
+    law: Law  # by control; where there is an order a truncated series, an unevaluated sum, lowest power first
+    free: tuple[str, ...]  # controls that stay free functions of the time; a closed form may contain them
+    order: int | None  # to which the law is a series; None where it is closed
+    motion: Law  # the free motion by coordinate, where its closed form is known
+    # instants of the scene's time span with the values of the controls, as far as there are such controls
     samples: tuple[tuple[float, ...], ...]
     reason: str
 
@@ -178,21 +110,12 @@ class PrescribedReactions:
 
 @dataclass(frozen=True)
 class OpenAccelerations:
-    """What the forces leave open where the mass matrix is singular.
+    """What the forces leave open where the mass matrix is singular."""
 
-    Attributes
-    ----------
-    rank : int
-        Of the mass matrix.
-    directions : tuple of Law
-        Directions that it turns into zero, each by the accelerations in it; empty where they were not worked out.
-    deciding : tuple of int
-        Numbers of the constraints that decide, from 1.
-    """
-
-    rank: int
+    rank: int  # of the mass matrix
+    # directions that it turns into zero, each by the accelerations in it; empty where they were not worked out
     directions: tuple[Law, ...]
-    deciding: tuple[int, ...]
+    deciding: tuple[int, ...]  # numbers of the constraints that decide, from 1
 
 
 @dataclass(frozen=True, repr=False)

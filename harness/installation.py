@@ -34,25 +34,13 @@ NEEDED = "maxima"
 
 @dataclass(frozen=True)
 class Component:
-    """Something that Holonom uses.
-
-    Attributes
-    ----------
-    version : str or None
-        None where it is missing; empty where it does not tell.
-    purpose : str
-        What it serves.
-    needed : bool
-        Nothing works without it.
-    remedy : str
-        The command that installs it.
-    """
+    """Something that Holonom uses."""
 
     name: str
-    version: str | None
-    purpose: str
-    needed: bool
-    remedy: str
+    version: str | None  # None where it is missing; empty where it does not tell
+    purpose: str  # what it serves
+    needed: bool  # nothing works without it
+    remedy: str  # the command that installs it
 
 
 def components() -> Iterator[Component]:

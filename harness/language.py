@@ -28,18 +28,10 @@ _spoken: ContextVar[str] = ContextVar("spoken", default=ENGLISH)
 
 
 class Message(str):
-    """A message in English that remembers what it was made of, so that it can still be translated.
+    """A message in English that remembers what it was made of, so that it can still be translated."""
 
-    Attributes
-    ----------
-    pattern : str
-        The message with its named placeholders, ``%(name)s``.
-    values : dict of str to object
-        What stands in their places; messages among them are translated with it.
-    """
-
-    pattern: str
-    values: dict[str, Any]
+    pattern: str  # the message with its named placeholders, ``%(name)s``
+    values: dict[str, Any]  # what stands in their places; messages among them are translated with it
 
     def __new__(cls, pattern: str, **values: Any) -> Message:
         """The English message, and what it was made of."""

@@ -69,21 +69,13 @@ class Ending:
 
 @dataclass(frozen=True)
 class Run:
-    """One run of Maxima, in a directory of its own.
+    """One run of Maxima, in a directory of its own."""
 
-    Attributes
-    ----------
-    file : Path
-        The file that it is about.
-    mark : str
-        What only this run can know: the names of what it leaves behind end in it, and the outcome holds it.
-    """
-
-    file: Path
+    file: Path  # the file that it is about
     directory: Path
     limits: Limits
     settings: Mapping[str, str]
-    mark: str
+    mark: str  # what only this run can know: the names of what it leaves behind end in it, and the outcome holds it
 
     def leaves(self, what: str) -> Path:
         """The file that the run is to leave behind."""

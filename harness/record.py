@@ -133,17 +133,10 @@ class System:
 
 
 class LeftOut(NamedTuple):
-    """Equations that were not made.
+    """Equations that were not made."""
 
-    Attributes
-    ----------
-    numbers : tuple of str
-        The paper's.
-    size, limit : int
-        How long their closed forms were predicted to be, and the `closed_form_size` that this is beyond.
-    """
-
-    numbers: tuple[str, ...]
+    numbers: tuple[str, ...]  # the paper's
+    # size, limit: how long their closed forms were predicted to be, and the `closed_form_size` that this is beyond
     size: int
     limit: int
 

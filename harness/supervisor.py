@@ -38,18 +38,10 @@ _board: mmap.mmap | None = None
 
 @dataclass(frozen=True)
 class Ending:
-    """How a command ended.
+    """How a command ended."""
 
-    Attributes
-    ----------
-    status : int
-        Its exit status; 128 + n where a signal n ended it; 2 where its time was over; 3 where it crashed.
-    sentence : str
-        What is to be told; empty where it told all by itself.
-    """
-
-    status: int
-    sentence: str = ""
+    status: int  # its exit status; 128 + n where a signal n ended it; 2 where its time was over; 3 where it crashed
+    sentence: str = ""  # what is to be told; empty where it told all by itself
 
 
 class _Interrupted(BaseException):

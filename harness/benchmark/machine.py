@@ -14,23 +14,13 @@ PACKAGES = ("heyoka", "numpy", "scipy", "scikit-sundae", "mpmath")
 
 @dataclass(frozen=True)
 class Machine:
-    """A machine on a day.
-
-    Attributes
-    ----------
-    cores : int
-        That this process may use.
-    versions : mapping of str to str
-        Of Python and of the packages that were measured.
-    date : str
-        ISO 8601.
-    """
+    """A machine on a day."""
 
     processor: str
-    cores: int
+    cores: int  # that this process may use
     system: str
-    versions: Mapping[str, str]
-    date: str
+    versions: Mapping[str, str]  # of Python and of the packages that were measured
+    date: str  # ISO 8601
 
     def __str__(self) -> str:
         versions = ", ".join(f"{name} {number}" for name, number in self.versions.items())

@@ -35,28 +35,15 @@ APPENDICES = translatable("Appendices")  # title of the part whose chapters have
 
 @dataclass(frozen=True)
 class Book:
-    """Chapters, in parts.
-
-    Attributes
-    ----------
-    foreword : str
-        Template of what the first page says before the contents.
-    command : str
-        The command that makes the book.
-    root : Path
-        What the names of source files are relative to.
-    parts : tuple of (str, tuple of Chapter)
-        Title and chapters of each part.
-    sessions : mapping of str to Session
-        The Maxima session of each chapter that has one, by the chapter's slug.
-    """
+    """Chapters, in parts."""
 
     title: str
     subtitle: str
-    foreword: str
-    command: str
-    root: Path
-    parts: tuple[tuple[str, tuple[Chapter, ...]], ...]
+    foreword: str  # template of what the first page says before the contents
+    command: str  # the command that makes the book
+    root: Path  # what the names of source files are relative to
+    parts: tuple[tuple[str, tuple[Chapter, ...]], ...]  # title and chapters of each part
+    # the Maxima session of each chapter that has one, by the chapter's slug
     sessions: Mapping[str, Session] = field(default_factory=dict)
 
     @property

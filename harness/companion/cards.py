@@ -17,51 +17,27 @@ from .steps import step
 
 @dataclass(frozen=True)
 class Instance:
-    """An equation as derived for one system.
+    """An equation as derived for one system."""
 
-    Attributes
-    ----------
-    title : str
-        The system, or the scene of it.
-    verdicts : tuple of EquationVerdict
-        What the cross-check says of it; a third opinion is one more.
-    """
-
-    title: str
+    title: str  # the system, or the scene of it
     equation: Equation
-    verdicts: tuple[EquationVerdict, ...]
+    verdicts: tuple[EquationVerdict, ...]  # what the cross-check says of it; a third opinion is one more
 
 
 @dataclass(frozen=True)
 class Card:
-    """All that a reader is told about one equation.
+    """All that a reader is told about one equation."""
 
-    Attributes
-    ----------
-    anchor : str
-        Where the card is, on its page.
-    number, name : str
-        The paper's number and what the equation is.
-    id : str
-        Of the equation in a record; empty where only the paper has it. Its plain words are under it in a template.
-    controlled : bool
-        Whether its system has controls to speak of.
-    printed : tuple of PrintedEquation
-        As the paper prints it; empty where there is no print to compare with.
-    instances : tuple of Instance
-        As derived: the first is shown, the others on request.
-    lines : tuple of Excerpt
-        The Maxima lines that derive it.
-    """
-
-    anchor: str
+    anchor: str  # where the card is, on its page
+    # number, name: the paper's number and what the equation is
     number: str
     name: str
+    # of the equation in a record; empty where only the paper has it. Its plain words are under it in a template.
     id: str
-    controlled: bool
-    printed: tuple[PrintedEquation, ...]
-    instances: tuple[Instance, ...]
-    lines: tuple[Excerpt, ...]
+    controlled: bool  # whether its system has controls to speak of
+    printed: tuple[PrintedEquation, ...]  # as the paper prints it; empty where there is no print to compare with
+    instances: tuple[Instance, ...]  # as derived: the first is shown, the others on request
+    lines: tuple[Excerpt, ...]  # the Maxima lines that derive it
 
 
 def derivation_cards(

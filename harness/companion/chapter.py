@@ -9,66 +9,31 @@ from ..reference.topics import Topic
 
 @dataclass(frozen=True)
 class Run:
-    """A computation that chapters can share: two that are equal are done once.
+    """A computation that chapters can share: two that are equal are done once."""
 
-    Attributes
-    ----------
-    compute : callable
-        A function of a module, for it may be called in another process.
-    arguments : tuple
-        What it is given; hashable.
-    """
-
-    compute: Callable[..., Any]
-    arguments: tuple[Any, ...] = ()
+    compute: Callable[..., Any]  # a function of a module, for it may be called in another process
+    arguments: tuple[Any, ...] = ()  # what it is given; hashable
 
 
 @dataclass(frozen=True)
 class Page:
-    """What a chapter's template is given, and the files that go beside the page.
+    """What a chapter's template is given, and the files that go beside the page."""
 
-    Attributes
-    ----------
-    content : mapping of str to object
-        The template's variables.
-    figures : mapping of str to str
-        Text of each SVG file, by its name.
-    sources : tuple of str
-        Maxima files that the page refers to, relative to the book's root; each becomes a page of its own.
-    topics : tuple of Topic
-        Pages of the reference that the page leads to.
-    files : mapping of str to str
-        Text of other files beside the page, by name.
-    """
-
-    content: Mapping[str, Any]
-    figures: Mapping[str, str] = field(default_factory=dict)
+    content: Mapping[str, Any]  # the template's variables
+    figures: Mapping[str, str] = field(default_factory=dict)  # text of each SVG file, by its name
+    # Maxima files that the page refers to, relative to the book's root; each becomes a page of its own
     sources: tuple[str, ...] = ()
-    topics: tuple[Topic, ...] = ()
-    files: Mapping[str, str] = field(default_factory=dict)
+    topics: tuple[Topic, ...] = ()  # pages of the reference that the page leads to
+    files: Mapping[str, str] = field(default_factory=dict)  # text of other files beside the page, by name
 
 
 @dataclass(frozen=True, eq=False)
 class Chapter:
-    """One page of the companion.
+    """One page of the companion."""
 
-    Attributes
-    ----------
-    slug : str
-        Name of the page's file, without its ending.
-    aim : str
-        What the chapter is about, in one line of the contents.
-    template : str
-        File in the directory of the templates.
-    runs : mapping of str to Run
-        What it needs, by the name that `page` knows it by.
-    page : callable
-        Makes the page of the runs' results.
-    """
-
-    slug: str
+    slug: str  # name of the page's file, without its ending
     title: str
-    aim: str
-    template: str
-    runs: Mapping[str, Run]
-    page: Callable[[Mapping[str, Any]], Page]
+    aim: str  # what the chapter is about, in one line of the contents
+    template: str  # file in the directory of the templates
+    runs: Mapping[str, Run]  # what it needs, by the name that `page` knows it by
+    page: Callable[[Mapping[str, Any]], Page]  # makes the page of the runs' results

@@ -10,21 +10,11 @@ from ..maxima import statement_ends
 
 @dataclass(frozen=True)
 class Excerpt:
-    """A definition in a Maxima file, with the comment just above it.
+    """A definition in a Maxima file, with the comment just above it."""
 
-    Attributes
-    ----------
-    file : str
-        Path of the file, relative to the root that it was asked of.
-    name : str
-        What is defined.
-    first_line : int
-        Line of the file that the excerpt starts in, from 1.
-    """
-
-    file: str
-    name: str
-    first_line: int
+    file: str  # path of the file, relative to the root that it was asked of
+    name: str  # what is defined
+    first_line: int  # line of the file that the excerpt starts in, from 1
     text: str
 
 

@@ -77,18 +77,10 @@ def symbol(name: str) -> Markup:
 
 @dataclass(frozen=True)
 class Typeset:
-    """An equation as it is shown.
+    """An equation as it is shown."""
 
-    Attributes
-    ----------
-    formula : Markup
-        Empty where it has no relations.
-    lines : int
-        How many it takes on a desk.
-    """
-
-    formula: Markup
-    lines: int
+    formula: Markup  # empty where it has no relations
+    lines: int  # how many it takes on a desk
 
     @property
     def is_tall(self) -> bool:

@@ -24,23 +24,14 @@ SHOWN = ("trajectory", "multipliers")
 
 @dataclass(frozen=True)
 class Motion:
-    """A scene's motion, of which pictures are made.
+    """A scene's motion, of which pictures are made."""
 
-    Attributes
-    ----------
-    system, source, title : str
-        Title of the system, where it comes from, and title of the scene.
-    film : Film or None
-        None where the system does not say how it looks.
-    simulation : Simulation
-        Coordinates and multipliers.
-    """
-
+    # of the system, where that comes from, and of the scene
     system: str
     source: str
     title: str
-    film: Film | None
-    simulation: Simulation
+    film: Film | None  # None where the system does not say how it looks
+    simulation: Simulation  # coordinates and multipliers
 
     @property
     def report(self) -> Report:

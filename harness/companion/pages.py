@@ -35,15 +35,9 @@ WHITESPACE = {"trim_blocks": True, "lstrip_blocks": True, "keep_trailing_newline
 
 @dataclass(frozen=True)
 class Entry:
-    """A chapter's line in the contents.
+    """A chapter's line in the contents."""
 
-    Attributes
-    ----------
-    label : str
-        Its number, or the letter of an appendix.
-    """
-
-    label: str
+    label: str  # its number, or the letter of an appendix
     slug: str
     title: str
     aim: str
@@ -59,16 +53,10 @@ class Part:
 
 @dataclass(frozen=True)
 class Twin:
-    """The same book in another language: page by page the same names of files, in another directory.
-
-    Attributes
-    ----------
-    directory : str
-        From this book's own, with a slash at its end.
-    """
+    """The same book in another language: page by page the same names of files, in another directory."""
 
     language: str
-    directory: str
+    directory: str  # from this book's own, with a slash at its end
 
     @property
     def name(self) -> str:
@@ -78,33 +66,17 @@ class Twin:
 
 @dataclass(frozen=True)
 class Contents:
-    """What every page knows about the book.
-
-    Attributes
-    ----------
-    foreword : str
-        Template of what the first page says before the contents.
-    command : str
-        The command that makes the book.
-    maxima : str
-        Version of Maxima that derived it.
-    sessions : frozenset of str
-        Slugs of the chapters that have a session of Maxima.
-    language : str
-        That it is written in.
-    twins : tuple of Twin
-        The same book in other languages.
-    """
+    """What every page knows about the book."""
 
     title: str
     subtitle: str
-    foreword: str
-    command: str
-    maxima: str
+    foreword: str  # template of what the first page says before the contents
+    command: str  # the command that makes the book
+    maxima: str  # version of Maxima that derived it
     parts: tuple[Part, ...]
-    sessions: frozenset[str] = frozenset()
-    language: str = ENGLISH
-    twins: tuple["Twin", ...] = ()
+    sessions: frozenset[str] = frozenset()  # slugs of the chapters that have a session of Maxima
+    language: str = ENGLISH  # that it is written in
+    twins: tuple["Twin", ...] = ()  # the same book in other languages
 
     @property
     def entries(self) -> list[Entry]:

@@ -18,20 +18,11 @@ from .expressions import under
 
 @dataclass(frozen=True)
 class EnergyBalance:
-    """Where the kinetic energy of a motion comes from; arrays of shape (k,) at its instants.
+    """Where the kinetic energy of a motion comes from; arrays of shape (k,) at its instants."""
 
-    Attributes
-    ----------
-    power : ndarray
-        Of the reactions, -lambda (df/dt + du/dt df/du).
-    gained : ndarray
-        Kinetic energy since the start.
-    by_forces, by_knob : ndarray
-        Work of the forces and of the reactions since then.
-    """
-
-    power: NDArray[np.float64]
-    gained: NDArray[np.float64]
+    power: NDArray[np.float64]  # of the reactions, -lambda (df/dt + du/dt df/du)
+    gained: NDArray[np.float64]  # kinetic energy since the start
+    # by_forces, by_knob: work of the forces and of the reactions since then
     by_forces: NDArray[np.float64]
     by_knob: NDArray[np.float64]
 

@@ -55,18 +55,11 @@ class FileAnswers:
     """Answers about one scene file; where mathematics refuses one, the reason is the answer.
 
     A scene that prescribes reactions is not in the record, but it has its free motion and its series.
-
-    Attributes
-    ----------
-    free : mapping of str to FreeMotion or Refusal
-        By scene.
-    series : mapping of str to MotionSeries or Refusal
-        By scene.
     """
 
     derived: Derived
-    free: Mapping[str, FreeMotion | Refusal]
-    series: Mapping[str, MotionSeries | Refusal]
+    free: Mapping[str, FreeMotion | Refusal]  # by scene
+    series: Mapping[str, MotionSeries | Refusal]  # by scene
 
     @property
     def record(self) -> Record:

@@ -17,25 +17,14 @@ PRINTING = re.compile(r"^(print_derivation\(.*\)\$|if holonom_print then\n(.+\n)
 
 @dataclass(frozen=True)
 class Session:
-    """What is asked of Maxima about an example.
+    """What is asked of Maxima about an example."""
 
-    Attributes
-    ----------
-    slug, title : str
-        Of the chapter.
-    example : str
-        The text of the example's file, the library loaded by its name.
-    comment : str
-        What the questions are about.
-    questions : str
-        Lines of Maxima.
-    """
-
+    # slug, title: of the chapter
     slug: str
     title: str
-    example: str
-    comment: str
-    questions: str
+    example: str  # the text of the example's file, the library loaded by its name
+    comment: str  # what the questions are about
+    questions: str  # lines of Maxima
 
 
 def sessions(root: Path, chapters: Iterable[Chapter]) -> dict[str, Session]:

@@ -26,19 +26,10 @@ ClosedForm = Mapping[sp.Symbol, sp.Expr]
 
 @dataclass(frozen=True)
 class DerivationClaims:
-    """A derivation of the record beside the independent evaluation of its system.
+    """A derivation of the record beside the independent evaluation of its system."""
 
-    Attributes
-    ----------
-    stated : IndependentEquations
-        Of the system as it is described.
-    known : IndependentEquations
-        Of its independent constraints: what is solved.
-    equations : tuple of Equation
-    """
-
-    stated: IndependentEquations
-    known: IndependentEquations
+    stated: IndependentEquations  # of the system as it is described
+    known: IndependentEquations  # of its independent constraints: what is solved
     equations: tuple[Equation, ...]
 
     @property

@@ -30,16 +30,11 @@ from .system import MechanicalSystem
 
 @dataclass(frozen=True)
 class IndependentEquations:
-    """The equations of motion of one system, as residuals that vanish on every motion.
-
-    Attributes
-    ----------
-    supported : bool
-        Whether J^T times the constraint accelerations is added where accelerations are solved for: for a mass matrix
-        that is singular, and regular together with the constraints.
-    """
+    """The equations of motion of one system, as residuals that vanish on every motion."""
 
     system: MechanicalSystem
+    # whether J^T times the constraint accelerations is added where accelerations are solved for: for a mass matrix that
+    # is singular, and regular together with the constraints
     supported: bool = False
 
     @cached_property

@@ -12,13 +12,7 @@ from mpmath import mp
 
 @dataclass(frozen=True)
 class LinearEquations:
-    """As many residuals, linear in the unknowns, as there are unknowns.
-
-    Attributes
-    ----------
-    unknowns : tuple of m Symbols
-    residuals : tuple of m Exprs, each zero at the solution
-    """
+    """As many residuals, linear in the unknowns, as there are unknowns."""
 
     unknowns: tuple[sp.Symbol, ...]
     residuals: tuple[sp.Expr, ...]

@@ -29,37 +29,23 @@ class Verdict(StrEnum):
 
 @dataclass(frozen=True)
 class EquationVerdict:
-    """The verdict on one equation of the record.
+    """The verdict on one equation of the record."""
 
-    Attributes
-    ----------
-    id, number, name : str
-        The equation's id, empty where it was not made; its number in the paper; the record's name for it.
-    derivation : int
-        The derivation that it belongs to: its place in the record, from 0.
-    scene : str or None
-        Name of the scene the equation belongs to; None for an equation of a derivation.
-    digits, points : int or None
-        Significant digits demanded and random points compared; None where nothing was evaluated.
-    detail : str
-        For a disagreement the relation, the difference and the point; for what is undecided the reason; else empty.
-    held : bool
-        Whether the record holds the equation.
-    left_out : LeftOut or None
-        Why the equation was not made.
-    """
-
+    # id, number, name: the equation's id, empty where it was not made; its number in the paper; the record's name for
+    # it
     id: str
     number: str
     name: str
-    derivation: int
-    scene: str | None
+    derivation: int  # the derivation that it belongs to: its place in the record, from 0
+    scene: str | None  # name of the scene the equation belongs to; None for an equation of a derivation
     verdict: Verdict
+    # digits, points: significant digits demanded and random points compared; None where nothing was evaluated
     digits: int | None
     points: int | None
+    # for a disagreement the relation, the difference and the point; for what is undecided the reason; else empty
     detail: str
-    held: bool = True
-    left_out: LeftOut | None = None
+    held: bool = True  # whether the record holds the equation
+    left_out: LeftOut | None = None  # why the equation was not made
 
 
 @dataclass(frozen=True, repr=False)

@@ -30,18 +30,7 @@ def initial(symbol: sp.Symbol) -> sp.Symbol:
 
 @dataclass(frozen=True)
 class MechanicalSystem:
-    """A holonomic system with redundant coordinates and controls, as described by its scene file.
-
-    Attributes
-    ----------
-    time : Symbol
-    coordinates : tuple of n Symbols
-    controls : tuple of alpha Symbols
-    multipliers : tuple of g Symbols
-    kinetic_energy, potential_energy : Expr
-    forces : tuple of n Exprs
-    constraints : tuple of g Exprs, each zero on every motion
-    """
+    """A holonomic system with redundant coordinates and controls, as described by its scene file."""
 
     time: sp.Symbol
     coordinates: tuple[sp.Symbol, ...]

@@ -28,18 +28,10 @@ DRAWS = 40
 
 @dataclass(frozen=True)
 class LawOfControls:
-    """A law for the controls.
+    """A law for the controls."""
 
-    Attributes
-    ----------
-    controls : mapping of Symbol to Expr
-        By control, in the time, in constants and in controls that stay free.
-    positive : tuple of Expr
-        What must be positive where the law holds.
-    """
-
-    controls: Mapping[sp.Symbol, sp.Expr]
-    positive: tuple[sp.Expr, ...] = ()
+    controls: Mapping[sp.Symbol, sp.Expr]  # by control, in the time, in constants and in controls that stay free
+    positive: tuple[sp.Expr, ...] = ()  # what must be positive where the law holds
 
 
 def judge_law(system: MechanicalSystem, values: Mapping[sp.Symbol, sp.Expr], law: LawOfControls) -> Judgement:

@@ -49,21 +49,14 @@ class Pair(NamedTuple):
 
 @dataclass(frozen=True)
 class Comparison:
-    """Pairs that have to be equal identically.
-
-    Attributes
-    ----------
-    given : mapping of Symbol to Expr
-        Symbols with a meaning, such as u under a control law; each may use the ones before it.
-    solves : tuple of LinearEquations
-        Equations whose unknowns occur in the pairs; each may use the solutions before it.
-    certificate : mapping of Symbol to Expr, or None
-        Claimed closed forms of all these unknowns; None where there are none.
-    """
+    """Pairs that have to be equal identically."""
 
     pairs: tuple[Pair, ...]
+    # symbols with a meaning, such as u under a control law; each may use the ones before it
     given: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    # equations whose unknowns occur in the pairs; each may use the solutions before it
     solves: tuple[LinearEquations, ...] = ()
+    # claimed closed forms of all these unknowns; None where there are none
     certificate: Mapping[sp.Symbol, sp.Expr] | None = None
 
 

@@ -17,21 +17,11 @@ WIDTH, HEIGHT_OF_PANEL = 6.0, 2.6  # inches
 
 @dataclass(frozen=True)
 class Panel:
-    """One panel.
+    """One panel."""
 
-    Attributes
-    ----------
-    ylabel : str
-        What is drawn, with its unit.
-    curves : mapping of str to (ndarray, ndarray)
-        Instants and values, by what the legend calls them.
-    scale : str
-        Of the values.
-    """
-
-    ylabel: str
-    curves: Mapping[str, tuple[NDArray, NDArray]]
-    scale: Literal["linear", "log"] = "linear"
+    ylabel: str  # what is drawn, with its unit
+    curves: Mapping[str, tuple[NDArray, NDArray]]  # instants and values, by what the legend calls them
+    scale: Literal["linear", "log"] = "linear"  # of the values
 
 
 def draw_curves(panels: Sequence[Panel], xlabel: str) -> str:

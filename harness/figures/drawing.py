@@ -44,19 +44,12 @@ STYLE = (
 
 @dataclass(frozen=True)
 class Film:
-    """What a drawing looks like along a motion.
-
-    Attributes
-    ----------
-    instants : ndarray, shape (k,)
-        Equidistant.
-    numbers : tuple of ndarray, shape (k, numbers of the shape)
-        x and y of a shape's places in their order, then, of a circle, the radius.
-    """
+    """What a drawing looks like along a motion."""
 
     title: str
-    instants: NDArray[np.float64]
+    instants: NDArray[np.float64]  # shape (k,): equidistant
     shapes: tuple[Shape, ...]
+    # shape (k, numbers of the shape): x and y of a shape's places in their order, then, of a circle, the radius
     numbers: tuple[NDArray[np.float64], ...]
 
     @property

@@ -36,21 +36,12 @@ ELEMENTARY = {
 
 @dataclass(frozen=True)
 class Arithmetic(Generic[Value]):
-    """What the parts of an expression become.
+    """What the parts of an expression become."""
 
-    Attributes
-    ----------
-    number : callable
-        Takes a Fraction.
-    power : callable
-        Takes the base's value and a rational exponent.
-    operations : mapping of Operation to callable
-        Each takes the values of the arguments. ``POWER`` is the one with an exponent that is no number.
-    """
-
-    number: Callable[[Fraction], Value]
+    number: Callable[[Fraction], Value]  # takes a Fraction
     constants: Mapping[Constant, Value]
-    power: Callable[[Value, Fraction], Value]
+    power: Callable[[Value, Fraction], Value]  # takes the base's value and a rational exponent
+    # each takes the values of the arguments. ``POWER`` is the one with an exponent that is no number.
     operations: Mapping[Operation, Callable[..., Value]]
 
     def value(self, expression: Expression, names: Mapping[str, Value]) -> Value:

@@ -25,15 +25,10 @@ class Shape(StrEnum):
 
 @dataclass(frozen=True)
 class Drawing:
-    """How a system looks.
-
-    Attributes
-    ----------
-    program : Program
-        Of t, the coordinates and more; ``drawing[i,k]`` is the k-th number of the i-th shape, indices from 1.
-    """
+    """How a system looks."""
 
     shapes: tuple[Shape, ...]
+    # of t, the coordinates and more; ``drawing[i,k]`` is the k-th number of the i-th shape, indices from 1
     program: Program
 
     def numbers(self, instants: NDArray, coordinates: Mapping[str, NDArray]) -> list[NDArray[np.float64]]:

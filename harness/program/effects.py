@@ -46,33 +46,20 @@ class Measure(StrEnum):
 
 @dataclass(frozen=True)
 class TermProgram:
-    """A term of one of the paper's equations.
-
-    Attributes
-    ----------
-    program : Program or None
-        It computes the term for every s, or beta; None where the term is identically zero.
-    """
+    """A term of one of the paper's equations."""
 
     equation: str
     name: str
-    program: Program | None
+    program: Program | None  # it computes the term for every s, or beta; None where the term is identically zero
 
 
 @dataclass(frozen=True)
 class EffectProgram:
-    """An effect of the system.
-
-    Attributes
-    ----------
-    called : bool
-        Whether the scene calls for it.
-    otherwise : Program or None
-        The program of the scene that differs in this effect alone; None where that scene cannot be solved.
-    """
+    """An effect of the system."""
 
     name: str
-    called: bool
+    called: bool  # whether the scene calls for it
+    # the program of the scene that differs in this effect alone; None where that scene cannot be solved
     otherwise: Program | None
 
 

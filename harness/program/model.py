@@ -16,42 +16,29 @@ from .request import Request
 
 @dataclass(frozen=True)
 class Model:
-    """A scene whose controls, and some of whose parameters, are inputs.
-
-    Attributes
-    ----------
-    coordinates, multipliers, controls, parameters : tuple of str
-        Their names: n, g, alpha and those of the parameters that are inputs.
-    values : mapping of str to str
-        What the scene gives to these parameters, as decimal digits; some may be missing.
-    start : mapping of str to str, or None
-        The time, coordinates and velocities at the start, as decimal digits; None where they depend on a parameter
-        without value.
-    law : Program or None
-        u, ``dot(u)``, ``ddot(u)`` of (t, parameters), of the controls that have a law; None without one.
-    motion : Program
-        ``ddot(q)`` and the multipliers by name. This and the next two take (t, q, dot q, u, dot u, ddot u, parameters).
-    constraints : Program or None
-        ``residual[beta]``, ``residual_rate[beta]`` and those ``J[beta,s]`` that are not zero by structure; None without
-        a constraint.
-    projection : Program
-        ``position_correction[s]``, ``velocity_correction[s]``.
-    """
+    """A scene whose controls, and some of whose parameters, are inputs."""
 
     system: str
     source: str
     scene: str
     title: str
+    # names of n coordinates, of g multipliers, of the controls, and of the parameters that are inputs
     coordinates: tuple[str, ...]
     multipliers: tuple[str, ...]
     controls: tuple[str, ...]
     parameters: tuple[str, ...]
-    values: Mapping[str, str]
+    values: Mapping[str, str]  # what the scene gives to these parameters, as decimal digits; some may be missing
+    # the time, coordinates and velocities at the start, as decimal digits; None where they depend on a parameter
+    # without value
     start: Mapping[str, str] | None
+    # u, ``dot(u)``, ``ddot(u)`` of (t, parameters), of the controls that have a law; None without one
     law: Program | None
+    # ``ddot(q)`` and the multipliers by name. This and the next two take (t, q, dot q, u, dot u, ddot u, parameters).
     motion: Program
+    # ``residual[beta]``, ``residual_rate[beta]`` and those ``J[beta,s]`` that are not zero by structure; None without a
+    # constraint
     constraints: Program | None
-    projection: Program
+    projection: Program  # ``position_correction[s]``, ``velocity_correction[s]``
 
     @property
     def under_law(self) -> tuple[str, ...]:

@@ -33,18 +33,10 @@ class By(StrEnum):
 
 
 class Sign(NamedTuple):
-    """A sign that a motion depends on.
+    """A sign that a motion depends on."""
 
-    Attributes
-    ----------
-    name : str
-        The input of the programs that stands for it.
-    of : str
-        The switching function whose sign it is, as Maxima prints it.
-    """
-
-    name: str
-    of: str
+    name: str  # the input of the programs that stands for it
+    of: str  # the switching function whose sign it is, as Maxima prints it
     by: By
 
 
@@ -63,19 +55,12 @@ class Origin(StrEnum):
 
 @dataclass(frozen=True)
 class ParametricStart:
-    """The start of a motion as a function of its open parameters.
+    """The start of a motion as a function of its open parameters."""
 
-    Attributes
-    ----------
-    program : Program or None
-        Of the open parameters: each coordinate and velocity, or what the search for it begins with.
-    obstacle : str or None
-        Why the start cannot follow the parameters; there is a program where it can.
-    """
-
+    # of the open parameters: each coordinate and velocity, or what the search for it begins with
     program: Program | None
     origins: Mapping[str, Origin]
-    obstacle: str | None
+    obstacle: str | None  # why the start cannot follow the parameters; there is a program where it can
 
 
 @dataclass(frozen=True)
@@ -84,89 +69,52 @@ class MotionProblem:
 
     Every program takes t, the coordinates, the velocities, the multipliers, the signs and the open parameters, in this
     order.
-
-    Attributes
-    ----------
-    system, source : str
-        Title of the system, and where it comes from.
-    time_span : (str, str) or None
-        First and last instant, as decimal digits; None where the scene names none.
-    observe : tuple of str
-        What the scene observes: trajectory, multipliers, constraint_forces, energy, residuals.
-    coordinates, multipliers : tuple of str
-        Their names: n and g of them.
-    start : mapping of str to str
-        The time, coordinates and velocities at the start, as decimal digits; the time alone where a parameter without
-        a value decides about the others.
-    correction : (str, str) or None
-        The given value that missed the constraints in its last digits and was corrected most, and by how much.
-    obstacle : str or None
-        Why no order of pivots solves the equations of motion; None where one does.
-    motion : Program or None
-        ``ddot(q)``, the multipliers by name and, where the scene observes them, ``Lambda[s]``; None with an obstacle.
-    projection : Program or None
-        ``position_correction[s]`` and ``velocity_correction[s]``: to the nearest state, in the mass metric, that
-        keeps the constraints, up to second order in the residuals; None with an obstacle.
-    matrices : Program
-        ``A[s,k]`` and ``J[beta,s]`` where they are not zero by structure, ``h[s]``, ``c[beta]``,
-        ``residual[beta]``, ``residual_rate[beta]``, indices from 1: A a - J^T lambda = h, J a = -c.
-    energy : Program
-        ``energy``, the energy function, and ``power``, its rate along the motion; they need the multipliers.
-    drawing : Drawing or None
-        How the system looks; None where it does not say.
-    law_end : str or None
-        The last instant at which the control law has values, where tables give it.
-    controls : Program or None
-        The controls, by name; None where the scene does not observe them.
-    servo : int
-        How many of the constraints, the last ones, controls in forces keep, so that their multipliers are zero.
-    relative_degrees : tuple of int
-        Of each output that servo-constraints prescribe: which of its rates the controls are in.
-    until : tuple of str
-        Expressions whose first zero crossing ends the motion, as Maxima prints them; empty where the time span alone
-        does.
-    events : Program or None
-        ``event[i]``, their values; they may need the multipliers. None without `until`.
-    signs : tuple of Sign
-        Of the functions whose changes of sign switch the motion; empty where it is analytic.
-    switching : Program or None
-        ``switch[i]``, the functions, with what decides how the motion passes their zeros, ``switch_rate[i]``,
-        ``drive[i]`` and ``grip[i]``, and ``momentum[s]``; None without signs.
-    parameters : tuple of str
-        Those that stay open.
-    values : mapping of str to Fraction
-        Their values in this motion; some may be missing where none is followed.
-    parametric_start : ParametricStart or None
-        None without open parameters.
     """
 
+    # system, source: title of the system, and where it comes from
     system: str
     source: str
     scene: str
     title: str
-    time_span: tuple[str, str] | None
-    observe: tuple[str, ...]
+    time_span: tuple[str, str] | None  # first and last instant, as decimal digits; None where the scene names none
+    observe: tuple[str, ...]  # what the scene observes: trajectory, multipliers, constraint_forces, energy, residuals
+    # coordinates, multipliers: names, n and g of them
     coordinates: tuple[str, ...]
     multipliers: tuple[str, ...]
+    # the time, coordinates and velocities at the start, as decimal digits; the time alone where a parameter without a
+    # value decides about the others
     start: Mapping[str, str]
+    # the given value that missed the constraints in its last digits and was corrected most, and by how much
     correction: tuple[str, str] | None
-    obstacle: str | None
+    obstacle: str | None  # why no order of pivots solves the equations of motion; None where one does
+    # ``ddot(q)``, the multipliers by name and, where the scene observes them, ``Lambda[s]``; None with an obstacle
     motion: Program | None
+    # ``position_correction[s]`` and ``velocity_correction[s]``: to the nearest state, in the mass metric, that keeps
+    # the constraints, up to second order in the residuals; None with an obstacle
     projection: Program | None
+    # ``A[s,k]`` and ``J[beta,s]`` where they are not zero by structure, ``h[s]``, ``c[beta]``, ``residual[beta]``,
+    # ``residual_rate[beta]``, indices from 1: A a - J^T lambda = h, J a = -c
     matrices: Program
+    # ``energy``, the energy function, and ``power``, its rate along the motion; they need the multipliers
     energy: Program
-    drawing: "Drawing | None"
-    law_end: str | None = None
-    controls: Program | None = None
+    drawing: "Drawing | None"  # how the system looks; None where it does not say
+    law_end: str | None = None  # the last instant at which the control law has values, where tables give it
+    controls: Program | None = None  # the controls, by name; None where the scene does not observe them
+    # how many of the constraints, the last ones, controls in forces keep, so that their multipliers are zero
     servo: int = 0
+    # of each output that servo-constraints prescribe: which of its rates the controls are in
     relative_degrees: tuple[int, ...] = ()
+    # expressions whose first zero crossing ends the motion, as Maxima prints them; empty where the time span alone does
     until: tuple[str, ...] = ()
-    events: Program | None = None
-    signs: tuple[Sign, ...] = ()
+    events: Program | None = None  # ``event[i]``, their values; they may need the multipliers. None without `until`.
+    signs: tuple[Sign, ...] = ()  # of the functions whose changes of sign switch the motion; empty where it is analytic
+    # ``switch[i]``, the functions, with what decides how the motion passes their zeros, ``switch_rate[i]``,
+    # ``drive[i]`` and ``grip[i]``, and ``momentum[s]``; None without signs
     switching: Program | None = None
-    parameters: tuple[str, ...] = ()
+    parameters: tuple[str, ...] = ()  # those that stay open
+    # their values in this motion; some may be missing where none is followed
     values: Mapping[str, Fraction] = field(default_factory=dict)
-    parametric_start: ParametricStart | None = None
+    parametric_start: ParametricStart | None = None  # None without open parameters
     _compiled: dict[Hashable, tuple[object, Any]] = field(default_factory=dict, compare=False, repr=False)
 
     def once(self, what: Hashable, program: Program, build: "Callable[[], Built]") -> "Built":

@@ -103,30 +103,17 @@ Expression = Atom | Call
 
 @dataclass(frozen=True)
 class Program:
-    """A motion program.
+    """A motion program."""
 
-    Attributes
-    ----------
-    scene : str or None
-        Name of the scene it was written for; None for a system alone.
-    method : str
-        Which factorisation the solve uses, for instance ``bordered`` or ``schur``.
-    operations : int
-        What it costs, as Maxima counted.
-    assignments : tuple of (str, Expression)
-        In the order in which they can be computed.
-    redundant : tuple of str
-        Multipliers that were put to zero, for their constraints follow from the others near the start: accelerations
-        and constraint forces are unique, multipliers are not.
-    """
-
-    scene: str | None
+    scene: str | None  # name of the scene it was written for; None for a system alone
     solve: Solve
-    method: str
-    operations: int
+    method: str  # which factorisation the solve uses, for instance ``bordered`` or ``schur``
+    operations: int  # what it costs, as Maxima counted
     inputs: tuple[str, ...]
-    assignments: tuple[tuple[str, Expression], ...]
+    assignments: tuple[tuple[str, Expression], ...]  # in the order in which they can be computed
     outputs: Mapping[str, Atom]
+    # multipliers that were put to zero, for their constraints follow from the others near the start: accelerations and
+    # constraint forces are unique, multipliers are not
     redundant: tuple[str, ...] = ()
 
 

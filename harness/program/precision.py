@@ -21,33 +21,15 @@ LEAST_BITS = 64  # what heyoka makes of an integer, whatever it computes with
 
 @dataclass(frozen=True)
 class Precision:
-    """Floating-point numbers of one size.
+    """Floating-point numbers of one size."""
 
-    Attributes
-    ----------
-    name : str
-        ``double``, ``extended``, ``quadruple`` or ``heyoka(D)``.
-    digits : int
-        Decimal digits that a number is written with.
-    sure_digits : int
-        Decimal digits that a rounded number keeps.
-    highest_order : int
-        Of an expansion: its tolerance, exp(-2*order), is one of the numbers.
-    number : callable
-        From decimal digits to a number.
-    text : callable
-        From a number to decimal digits.
-    options : mapping of str to object
-        What heyoka's integrators are told about the numbers.
-    """
-
-    name: str
-    digits: int
-    sure_digits: int
-    highest_order: int
-    number: Callable[[str], Any]
-    text: Callable[[Any], str]
-    options: Mapping[str, Any]
+    name: str  # ``double``, ``extended``, ``quadruple`` or ``heyoka(D)``
+    digits: int  # decimal digits that a number is written with
+    sure_digits: int  # decimal digits that a rounded number keeps
+    highest_order: int  # of an expansion: its tolerance, exp(-2*order), is one of the numbers
+    number: Callable[[str], Any]  # from decimal digits to a number
+    text: Callable[[Any], str]  # from a number to decimal digits
+    options: Mapping[str, Any]  # what heyoka's integrators are told about the numbers
 
     def ratio(self, value: Fraction) -> Any:
         """The number nearest to a rational one."""

@@ -21,15 +21,7 @@ class Refusal:
 
 @dataclass(frozen=True)
 class EntryText:
-    """What there is to know about an entry.
-
-    Attributes
-    ----------
-    also : tuple of str
-        Entries that the example needs beside it.
-    system : tuple of str
-        Entries of the system that the example needs in the place of those of the same names.
-    """
+    """What there is to know about an entry."""
 
     function: str
     name: str
@@ -37,25 +29,19 @@ class EntryText:
     default: str
     text: str
     example: str
-    also: tuple[str, ...]
+    also: tuple[str, ...]  # entries that the example needs beside it
     refused: tuple[Refusal, ...]
-    system: tuple[str, ...] = ()
+    system: tuple[str, ...] = ()  # entries of the system that the example needs in the place of those of the same names
 
 
 @dataclass(frozen=True)
 class FunctionText:
-    """What there is to know about a function of the description.
-
-    Attributes
-    ----------
-    context : tuple of str
-        Entries of a complete example.
-    """
+    """What there is to know about a function of the description."""
 
     name: str
     summary: str
     call: str
-    context: tuple[str, ...]
+    context: tuple[str, ...]  # entries of a complete example
     entries: tuple[EntryText, ...]
 
     def with_entries(self, *replacing: str) -> str:
@@ -71,19 +57,13 @@ class FunctionText:
 
 @dataclass(frozen=True)
 class PartText:
-    """What there is to know about a function that writes entries for a body, a joint or a load.
-
-    Attributes
-    ----------
-    context : tuple of str
-        The bodies that the example uses, as statements.
-    """
+    """What there is to know about a function that writes entries for a body, a joint or a load."""
 
     name: str
     call: str
     text: str
     example: str
-    context: tuple[str, ...]
+    context: tuple[str, ...]  # the bodies that the example uses, as statements
     refused: tuple[Refusal, ...]
 
 

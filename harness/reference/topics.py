@@ -47,14 +47,9 @@ class Code:
 
 @dataclass(frozen=True)
 class Topic:
-    """A page of the reference.
+    """A page of the reference."""
 
-    Attributes
-    ----------
-    group, slug, title, summary : str
-        The slug is unique in the whole reference.
-    """
-
+    # group, slug, title, summary: the slug is unique in the whole reference
     group: str
     slug: str
     title: str

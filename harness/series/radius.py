@@ -55,22 +55,12 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Radius:
-    """Radius of convergence about the initial instant.
+    """Radius of convergence about the initial instant."""
 
-    Attributes
-    ----------
-    estimate : float or None
-        None where there is none to state; the remark says why.
-    singularities : tuple of complex
-        The nearest ones, as t - t0.
-    remark : str
-        What was found, in words.
-    """
-
-    estimate: float | None
+    estimate: float | None  # None where there is none to state; the remark says why
     uncertainty: float | None
-    singularities: tuple[complex, ...]
-    remark: str
+    singularities: tuple[complex, ...]  # the nearest ones, as t - t0
+    remark: str  # what was found, in words
 
 
 POLYNOMIAL = Radius(None, None, (), translatable("infinite: the motion is a polynomial of the time"))

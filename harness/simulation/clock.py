@@ -16,16 +16,10 @@ from ..program.motion_program import Constant, Operation, Program
 
 
 class Tick(NamedTuple):
-    """The zero of a switching function of the time.
-
-    Attributes
-    ----------
-    to : int
-        The function's sign from then on; before, it is the opposite.
-    """
+    """The zero of a switching function of the time."""
 
     t: Fraction
-    to: int
+    to: int  # the function's sign from then on; before, it is the opposite
 
 
 class Affine(NamedTuple):

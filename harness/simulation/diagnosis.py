@@ -85,15 +85,10 @@ ADVICE = {
 
 
 class Instant(NamedTuple):
-    """A state of a motion.
-
-    Attributes
-    ----------
-    state : ndarray, shape (2n,)
-    """
+    """A state of a motion."""
 
     t: float
-    state: Vector
+    state: Vector  # shape (2n,)
 
 
 def hard_cases(

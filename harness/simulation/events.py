@@ -22,17 +22,10 @@ ZERO = 1e-12  # of an expression at the start, beside what it is in the first st
 
 
 class Ending(NamedTuple):
-    """What the scene lets a motion end at.
+    """What the scene lets a motion end at."""
 
-    Attributes
-    ----------
-    of : tuple of str
-        The expressions whose first zero crossing ends the motion, as Maxima prints them.
-    crossed : str or None
-        The one that crossed zero at the last instant; None where none did before the time span was over.
-    """
-
-    of: tuple[str, ...]
+    of: tuple[str, ...]  # the expressions whose first zero crossing ends the motion, as Maxima prints them
+    # the one that crossed zero at the last instant; None where none did before the time span was over
     crossed: str | None
 
 

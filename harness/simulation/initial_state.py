@@ -29,18 +29,10 @@ SETTLED = 1e-12  # relative size of a last correction that rounding may have mad
 
 
 class Starts(NamedTuple):
-    """States that motions start from.
+    """States that motions start from."""
 
-    Attributes
-    ----------
-    states : ndarray, shape (2n, k)
-        Coordinates, then velocities.
-    found : ndarray of bool, shape (k,)
-        Whether they keep the constraints; the other states mean nothing.
-    """
-
-    states: Numbers
-    found: NDArray[np.bool_]
+    states: Numbers  # shape (2n, k): coordinates, then velocities
+    found: NDArray[np.bool_]  # shape (k,): whether they keep the constraints; the other states mean nothing
 
 
 class InitialStates:

@@ -21,31 +21,16 @@ INDEXED = re.compile(r"(\w+)\[(\d+)(?:,(\d+))?\]")
 
 
 class Matrices(NamedTuple):
-    """The equations of motion at one state of n coordinates under g constraints.
+    """The equations of motion at one state of n coordinates under g constraints."""
 
-    Attributes
-    ----------
-    mass : ndarray, shape (n, n)
-        A, symmetric.
-    force : ndarray, shape (n,)
-        h.
-    jacobian : ndarray, shape (g, n)
-        J; its rows may be dependent.
-    curvature : ndarray, shape (g,)
-        c.
-    residual, residual_rate : ndarray, shape (g,)
-        f and df/dt.
-    finite : bool or ndarray of bool
-        Whether all of them are numbers, none infinite.
-    """
-
-    mass: Matrix
-    force: Vector
-    jacobian: Matrix
-    curvature: Vector
+    mass: Matrix  # shape (n, n): A, symmetric
+    force: Vector  # shape (n,): h
+    jacobian: Matrix  # shape (g, n): J; its rows may be dependent
+    curvature: Vector  # shape (g,): c
+    # residual, residual_rate: shape (g,): f and df/dt
     residual: Vector
     residual_rate: Vector
-    finite: bool | NDArray[np.bool_]
+    finite: bool | NDArray[np.bool_]  # whether all of them are numbers, none infinite
 
     def under(self, constraints: Sequence[int]) -> "Matrices":
         """The same under some of the constraints alone, counted from 0."""

@@ -69,16 +69,10 @@ class Passage(StrEnum):
 
 
 class Switching(NamedTuple):
-    """An instant at which a motion is not analytic.
-
-    Attributes
-    ----------
-    function : str
-        What changes its sign there, as Maxima prints it.
-    """
+    """An instant at which a motion is not analytic."""
 
     t: float
-    function: str
+    function: str  # what changes its sign there, as Maxima prints it
     passage: Passage
 
 

@@ -21,19 +21,11 @@ PORTION = 2**10
 
 
 class Stretch(NamedTuple):
-    """Consecutive samples of a motion.
+    """Consecutive samples of a motion."""
 
-    Attributes
-    ----------
-    instants : ndarray, shape (k,)
-    states : ndarray, shape (2n, k)
-    works : ndarray, shape (k,)
-        Work done until each instant.
-    """
-
-    instants: Numbers
-    states: Numbers
-    works: Numbers
+    instants: Numbers  # shape (k,)
+    states: Numbers  # shape (2n, k)
+    works: Numbers  # shape (k,): work done until each instant
 
 
 class Recording:

@@ -97,22 +97,17 @@ class Report:
 
 @dataclass(frozen=True, repr=False)
 class Sampled:
-    """Samples of a motion, all or some that follow one another.
+    """Samples of a motion, all or some that follow one another."""
 
-    Attributes
-    ----------
-    instants : ndarray, shape (k,)
-    coordinates, velocities, multipliers, constraint_forces, controls : mapping of str to ndarray of shape (k,)
-        At the instants; empty where the scene does not observe them.
-    energy, residuals : mapping of str to ndarray of shape (k,)
-        ``energy`` and ``energy_error``; ``position``, ``velocity`` and ``acceleration``. Empty likewise.
-    """
-
-    instants: NDArray[Any]
+    instants: NDArray[Any]  # shape (k,)
+    # coordinates, velocities, multipliers, constraint_forces, controls: shape (k,): at the instants; empty where the
+    # scene does not observe them
     coordinates: Samples
     velocities: Samples
     multipliers: Samples
     constraint_forces: Samples
+    # energy, residuals: shape (k,): ``energy`` and ``energy_error``; ``position``, ``velocity`` and ``acceleration``.
+    # Empty likewise.
     energy: Samples
     residuals: Samples
     controls: Samples = field(default_factory=dict)

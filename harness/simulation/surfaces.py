@@ -30,19 +30,11 @@ CORRECTIONS = 4  # of a minimum, by Newton's method
 
 
 class Crossing(NamedTuple):
-    """An instant at which a motion reaches the end of its pattern of signs.
-
-    Attributes
-    ----------
-    name : str
-        The sign that changes.
-    to : int
-        Its value then.
-    """
+    """An instant at which a motion reaches the end of its pattern of signs."""
 
     t: Any
-    name: str
-    to: int
+    name: str  # the sign that changes
+    to: int  # its value then
 
 
 class SignedFunctions(ABC):

@@ -41,21 +41,12 @@ TO_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(NODES, DEGREE))
 
 
 class TimeDependence(NamedTuple):
-    """How a motion depends on the time by itself.
+    """How a motion depends on the time by itself."""
 
-    Attributes
-    ----------
-    stops : tuple of float
-        Instants at which steps are to end, in order.
-    end : float or None
-        The first instant at which an expression of the time has no value, no bound, or jumps; None where there is none.
-    reason : str
-        A clause about that instant.
-    """
-
-    stops: tuple[float, ...] = ()
+    stops: tuple[float, ...] = ()  # instants at which steps are to end, in order
+    # the first instant at which an expression of the time has no value, no bound, or jumps; None where there is none
     end: float | None = None
-    reason: str = ""
+    reason: str = ""  # a clause about that instant
 
 
 def time_dependence(program: Program, start: float, end: float) -> TimeDependence:

@@ -23,17 +23,11 @@ FINEST = 1e-15  # relative error of a step, however fine its tolerance: residual
 
 
 class Doubt(NamedTuple):
-    """A quantity that is out of proportion.
+    """A quantity that is out of proportion."""
 
-    Attributes
-    ----------
-    quantity : str
-        ``position``, ``velocity``, ``energy``, or ``acceleration``: of the equations of motion within a step.
-    missed, expected : float
-        Relative: what was found, and the most that the tolerance lets expect.
-    """
-
+    # ``position``, ``velocity``, ``energy``, or ``acceleration``: of the equations of motion within a step
     quantity: str
+    # missed, expected: relative: what was found, and the most that the tolerance lets expect
     missed: float
     expected: float
 

@@ -35,19 +35,13 @@ class Distribution(StrEnum):
 
 @dataclass(frozen=True)
 class Grid:
-    """Equidistant numbers.
-
-    Attributes
-    ----------
-    text : str
-        How they were asked for.
-    """
+    """Equidistant numbers."""
 
     name: str
     first: float
     last: float
     count: int
-    text: str
+    text: str  # how they were asked for
 
     def at(self, places: NDArray[np.intp]) -> NDArray[np.float64]:
         """The numbers at some places, from zero."""
@@ -57,17 +51,11 @@ class Grid:
 
 @dataclass(frozen=True)
 class Listed:
-    """Numbers one after the other.
-
-    Attributes
-    ----------
-    text : str
-        How they were asked for.
-    """
+    """Numbers one after the other."""
 
     name: str
     numbers: tuple[float, ...]
-    text: str
+    text: str  # how they were asked for
 
     @property
     def count(self) -> int:
@@ -84,19 +72,13 @@ Values = Grid | Listed
 
 @dataclass(frozen=True)
 class Sample:
-    """Numbers that a parameter takes at random.
-
-    Attributes
-    ----------
-    text : str
-        How they were asked for.
-    """
+    """Numbers that a parameter takes at random."""
 
     name: str
     distribution: Distribution
     first: float
     second: float
-    text: str
+    text: str  # how they were asked for
 
     def draw(self, generator: np.random.Generator, count: int) -> NDArray[np.float64]:
         """So many numbers."""
@@ -111,17 +93,11 @@ class Sample:
 
 @dataclass(frozen=True)
 class Axes:
-    """What a sweep varies.
-
-    Attributes
-    ----------
-    size : int
-        Members of the sample; one without samples.
-    """
+    """What a sweep varies."""
 
     values: tuple[Values, ...]
     samples: tuple[Sample, ...]
-    size: int
+    size: int  # members of the sample; one without samples
     seed: int
 
     @property

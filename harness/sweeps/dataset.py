@@ -27,14 +27,9 @@ UNCOMPARED = ("file",)  # what a sweep may be called from and is still the same
 
 @dataclass(frozen=True)
 class Chunk:
-    """Rows that one file holds.
+    """Rows that one file holds."""
 
-    Attributes
-    ----------
-    index, first, last : int
-        The last row is not among them.
-    """
-
+    # index, first, last: the last row is not among them
     index: int
     first: int
     last: int

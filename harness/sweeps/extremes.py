@@ -23,22 +23,13 @@ Floats = NDArray[np.float64]
 
 
 class Steps(NamedTuple):
-    """A quantity along motions, step by step.
+    """A quantity along motions, step by step."""
 
-    Attributes
-    ----------
-    coefficients : ndarray, shape (powers, steps, lanes)
-        In powers of x.
-    middle, length : ndarray, shape (steps, lanes)
-        The time is middle + x length.
-    least : float
-        x runs from this, 0 or -1, to 1.
-    """
-
-    coefficients: Floats
+    coefficients: Floats  # shape (powers, steps, lanes): in powers of x
+    # middle, length: shape (steps, lanes): the time is middle + x length
     middle: Floats
     length: Floats
-    least: float
+    least: float  # x runs from this, 0 or -1, to 1
 
     def negative(self) -> "Steps":
         """The quantity with the opposite sign."""

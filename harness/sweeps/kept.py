@@ -61,22 +61,12 @@ WHOLE = {kind.value: kind for kind in (Kind.FINAL, Kind.FREE, Kind.RADIUS, Kind.
 
 @dataclass(frozen=True)
 class Kept:
-    """One thing that is kept.
+    """One thing that is kept."""
 
-    Attributes
-    ----------
-    text : str
-        As it was asked for, without blanks: the name of its column.
-    quantity : Expression or None
-        None where the whole motion is meant.
-    instant : Fraction or None
-        Of `Kind.AT`; None for the end.
-    """
-
-    text: str
+    text: str  # as it was asked for, without blanks: the name of its column
     kind: Kind
-    quantity: Expression | None = None
-    instant: Fraction | None = None
+    quantity: Expression | None = None  # None where the whole motion is meant
+    instant: Fraction | None = None  # of `Kind.AT`; None for the end
 
 
 def read_kept(texts: Iterable[str]) -> tuple[Kept, ...]:

@@ -46,21 +46,11 @@ Look = Callable[[list[Steps]], Floats]
 
 
 class Followed(NamedTuple):
-    """Motions as far as they were followed.
+    """Motions as far as they were followed."""
 
-    Attributes
-    ----------
-    states : ndarray, shape (stops, 2n, k)
-        At each instant asked for; the last is the end.
-    arrived : ndarray of bool, shape (k,)
-        Where the states mean something.
-    seen : ndarray, shape (numbers, k)
-        What was made of the quantities along the motions.
-    """
-
-    states: Floats
-    arrived: NDArray[np.bool_]
-    seen: Floats
+    states: Floats  # shape (stops, 2n, k): at each instant asked for; the last is the end
+    arrived: NDArray[np.bool_]  # shape (k,): where the states mean something
+    seen: Floats  # shape (numbers, k): what was made of the quantities along the motions
 
 
 class LaneEngine:

@@ -57,29 +57,15 @@ class Status(StrEnum):
 
 @dataclass(frozen=True)
 class Plan:
-    """A sweep as its workers get it.
+    """A sweep as its workers get it."""
 
-    Attributes
-    ----------
-    problem : MotionProblem
-        Its open parameters are those that vary.
-    tol : float
-        Tolerance of a step.
-    until : Fraction or None
-        The last instant; None for the end of the scene's time span.
-    drift : Stabilization
-        ``PROJECTION`` or ``NONE``.
-    lanes : int or None
-        That are followed at once; None for as many as are followed fastest.
-    """
-
-    problem: MotionProblem
+    problem: MotionProblem  # its open parameters are those that vary
     axes: Axes
     kept: tuple[Kept, ...]
-    tol: float = TOLERANCE
-    until: Fraction | None = None
-    drift: Stabilization = Stabilization.PROJECTION
-    lanes: int | None = None
+    tol: float = TOLERANCE  # tolerance of a step
+    until: Fraction | None = None  # the last instant; None for the end of the scene's time span
+    drift: Stabilization = Stabilization.PROJECTION  # ``PROJECTION`` or ``NONE``
+    lanes: int | None = None  # that are followed at once; None for as many as are followed fastest
 
 
 class RowMaker:

@@ -32,30 +32,16 @@ EVALUATIONS = 1_000_000  # after them it counts as stuck
 
 
 class Arrived(NamedTuple):
-    """Where a simulated motion ends, and what the engine says of it.
+    """Where a simulated motion ends, and what the engine says of it."""
 
-    Attributes
-    ----------
-    engine : str
-        Those that followed it, each once.
-    state : ndarray, shape (2n,)
-        Coordinates, then velocities.
-    coordinates, constraint_forces : ndarray, shape (n,)
-        No constraint forces where the scene does not observe them.
-    multipliers : ndarray, shape (g,)
-    residual : float
-        Of the constraints.
-    energy_error : float
-        Its size.
-    """
-
-    engine: str
-    state: Vector
+    engine: str  # those that followed it, each once
+    state: Vector  # shape (2n,): coordinates, then velocities
+    # coordinates, constraint_forces: shape (n,): no constraint forces where the scene does not observe them
     coordinates: Vector
     constraint_forces: Vector
-    multipliers: Vector
-    residual: float
-    energy_error: float
+    multipliers: Vector  # shape (g,)
+    residual: float  # of the constraints
+    energy_error: float  # its size
     cases: tuple[HardCase, ...]
 
 

@@ -24,18 +24,11 @@ class Advice:
 
 @dataclass(frozen=True)
 class Price:
-    """What one more digit costs.
-
-    Attributes
-    ----------
-    factor : float
-        By which the time grows.
-    first_digits, last_digits : float
-        Between which that was found.
-    """
+    """What one more digit costs."""
 
     method: str
-    factor: float
+    factor: float  # by which the time grows
+    # first_digits, last_digits: between which that was found
     first_digits: float
     last_digits: float
 

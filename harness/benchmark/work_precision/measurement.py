@@ -66,65 +66,36 @@ WHOLE_MOTION = (Group.TAYLOR, Group.RUNGE_KUTTA, Group.SOLVER)  # from the start
 
 @dataclass(frozen=True)
 class Prepared:
-    """A method ready to run.
+    """A method ready to run."""
 
-    Attributes
-    ----------
-    run : callable
-        Follows the motion once, from its start.
-    state : callable
-        From what it returns to coordinates and velocities.
-    operations : callable
-        Arithmetic operations of a run, once it is done.
-    """
-
-    run: Callable[[], Any]
-    state: Callable[[Any], State]
-    operations: Callable[[], int]
+    run: Callable[[], Any]  # follows the motion once, from its start
+    state: Callable[[Any], State]  # from what it returns to coordinates and velocities
+    operations: Callable[[], int]  # arithmetic operations of a run, once it is done
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """A method at a setting.
-
-    Attributes
-    ----------
-    method, setting : str
-        For instance ``Taylor, double`` and ``tol 1e-12``.
-    instant : Fraction
-        To which the motion is followed.
-    prepare : callable
-        Compiles what has to be compiled.
-    """
+    """A method at a setting."""
 
     group: Group
+    # method, setting: for instance ``Taylor, double`` and ``tol 1e-12``
     method: str
     setting: str
-    instant: Fraction
-    prepare: Callable[[], Prepared]
+    instant: Fraction  # to which the motion is followed
+    prepare: Callable[[], Prepared]  # compiles what has to be compiled
 
 
 @dataclass(frozen=True)
 class Measurement:
-    """What a candidate achieved.
-
-    Attributes
-    ----------
-    error : float
-        As `holonom.benchmark.work_precision.errors.relative_error` defines it.
-    seconds : float
-        Of the shortest run.
-    preparation_seconds : float or None
-        Compiling and the like; None where nothing is prepared apart.
-    """
+    """What a candidate achieved."""
 
     group: Group
     method: str
     setting: str
     instant: Fraction
-    error: float
-    seconds: float
-    preparation_seconds: float | None
+    error: float  # as `holonom.benchmark.work_precision.errors.relative_error` defines it
+    seconds: float  # of the shortest run
+    preparation_seconds: float | None  # compiling and the like; None where nothing is prepared apart
     operations: int
 
 

@@ -27,26 +27,16 @@ SURER = 10  # times an error must exceed what the two runs differ by
 
 @dataclass(frozen=True)
 class Reference:
-    """States of the motion, known to many digits.
+    """States of the motion, known to many digits."""
 
-    Attributes
-    ----------
-    states : mapping of Fraction to sequence of mpf
-        Coordinates and velocities at each instant asked for.
-    digits, confirming_digits : int
-        Of the two runs.
-    order, confirming_order : int
-        Of their expansions.
-    difference : float
-        The largest relative difference of the two.
-    """
-
-    states: Mapping[Fraction, State]
+    states: Mapping[Fraction, State]  # coordinates and velocities at each instant asked for
+    # digits, confirming_digits: of the two runs
     digits: int
     confirming_digits: int
+    # order, confirming_order: of their expansions
     order: int
     confirming_order: int
-    difference: float
+    difference: float  # the largest relative difference of the two
 
     def can_tell(self, error: float) -> bool:
         """Whether an error is larger than what the reference may be wrong by."""

@@ -37,15 +37,9 @@ ENTIRE = 1  # unit of time: where they are added up if no radius is known
 
 @dataclass(frozen=True)
 class Expansion:
-    """What is expanded, and where it is added up.
+    """What is expanded, and where it is added up."""
 
-    Attributes
-    ----------
-    problem : MotionProblem
-        Its motion program computes the accelerations alone.
-    """
-
-    problem: MotionProblem
+    problem: MotionProblem  # its motion program computes the accelerations alone
     instant: Fraction
 
 

@@ -39,27 +39,10 @@ from .solvers import SOLVERS, solver_ladder
 
 @dataclass(frozen=True)
 class Plan:
-    """What is measured.
+    """What is measured."""
 
-    Attributes
-    ----------
-    until : Fraction or None
-        End of the motion; None for that of the scene's time span.
-    tolerances : mapping of str to sequence of float
-        Of the Taylor engine, by precision, least demanding first; precisions ascend.
-    solver_tolerances : sequence of float
-        Of the Runge-Kutta engine, too.
-    orders : sequence of int
-        Of a single series.
-    series_digits : int
-        Of rounded coefficients.
-    compared_tolerance : float
-        At which cures of drift and solves are compared.
-    longest_reference : float
-        Seconds that a run for the reference may be expected to take.
-    """
-
-    until: Fraction | None = None
+    until: Fraction | None = None  # end of the motion; None for that of the scene's time span
+    # of the Taylor engine, by precision, least demanding first; precisions ascend
     tolerances: Mapping[str, Sequence[float]] = field(
         default_factory=lambda: {
             "double": (1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14, 1e-16),
@@ -69,11 +52,11 @@ class Plan:
             "100": (1e-40, 1e-60, 1e-80, 1e-100),
         }
     )
-    solver_tolerances: Sequence[float] = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-13)
-    orders: Sequence[int] = (10, 20, 30, 40, 60, 80)
-    series_digits: int = 30
-    compared_tolerance: float = 1e-10
-    longest_reference: float = 15.0
+    solver_tolerances: Sequence[float] = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-13)  # of the Runge-Kutta engine, too
+    orders: Sequence[int] = (10, 20, 30, 40, 60, 80)  # of a single series
+    series_digits: int = 30  # of rounded coefficients
+    compared_tolerance: float = 1e-10  # at which cures of drift and solves are compared
+    longest_reference: float = 15.0  # seconds that a run for the reference may be expected to take
 
     @property
     def most_digits(self) -> int:
@@ -93,17 +76,11 @@ SECONDS_OF_MANY_DIGITS = 5e-8  # of an operation on numbers of 50 to 130 digits,
 
 @dataclass(frozen=True)
 class Study:
-    """What accuracy costs for one scene.
-
-    Attributes
-    ----------
-    until : Fraction
-        End of the motion.
-    """
+    """What accuracy costs for one scene."""
 
     scene: str
     title: str
-    until: Fraction
+    until: Fraction  # end of the motion
     machine: Machine
     reference: Reference
     measurements: tuple[Measurement, ...]

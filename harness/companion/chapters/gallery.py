@@ -12,27 +12,13 @@ from ..motions import Motion, figures_of, motion
 
 @dataclass(frozen=True)
 class Exhibit:
-    """A scene that is shown.
+    """A scene that is shown."""
 
-    Attributes
-    ----------
-    name : str
-        What the names of its figures begin with.
-    file : str
-        Relative to the root.
-    to_see : (str, str)
-        What to look at in the drawing, and what in the curves.
-    scene : str or None
-        Without a name, the last one of the file.
-    until : Fraction or None
-        Where the film ends, if not with the scene.
-    """
-
-    name: str
-    file: str
-    to_see: tuple[str, str]
-    scene: str | None = None
-    until: Fraction | None = None
+    name: str  # what the names of its figures begin with
+    file: str  # relative to the root
+    to_see: tuple[str, str]  # what to look at in the drawing, and what in the curves
+    scene: str | None = None  # without a name, the last one of the file
+    until: Fraction | None = None  # where the film ends, if not with the scene
 
 
 EXHIBITS = (

@@ -15,25 +15,13 @@ NOTATION_FILE = "maxima/notation.mac"
 
 @dataclass(frozen=True)
 class Symbol:
-    """A symbol of the paper and its names.
+    """A symbol of the paper and its names."""
 
-    Attributes
-    ----------
-    paper : str
-        TeX.
-    scene : str
-        As it is written in a scene file and printed by Maxima.
-    maxima : str
-        The function of the library that gives it; empty where the description does.
-    python : str
-        Where the record has it.
-    """
-
-    paper: str
+    paper: str  # TeX
     meaning: str
-    scene: str
-    maxima: str
-    python: str
+    scene: str  # as it is written in a scene file and printed by Maxima
+    maxima: str  # the function of the library that gives it; empty where the description does
+    python: str  # where the record has it
 
 
 DATA = TEMPLATES / "notation.toml"

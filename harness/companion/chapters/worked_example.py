@@ -33,21 +33,11 @@ RATES = ("{}".format, "dot({})".format, "ddot({})".format)  # names of a quantit
 
 @dataclass(frozen=True)
 class Counterpart:
-    """What stands in the record against a printed equation of the example.
+    """What stands in the record against a printed equation of the example."""
 
-    Attributes
-    ----------
-    equation : str
-        The record's name for it.
-    place : int
-        Which of its relations.
-    scene : str or None
-        The scene that it belongs to; None for an equation of the derivation.
-    """
-
-    equation: str
-    place: int = 0
-    scene: str | None = None
+    equation: str  # the record's name for it
+    place: int = 0  # which of its relations
+    scene: str | None = None  # the scene that it belongs to; None for an equation of the derivation
 
 
 COUNTERPARTS = {

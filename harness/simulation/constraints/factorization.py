@@ -30,24 +30,12 @@ SINGULAR_MASS = 64 * EPSILON  # what elimination may leave of a diagonal entry o
 
 @dataclass(frozen=True)
 class WeightedConstraints:
-    """The constraints' directions in the mass metric.
+    """The constraints' directions in the mass metric."""
 
-    Attributes
-    ----------
-    factor : ndarray, shape (n, n)
-        L, the Cholesky factor of the metric.
-    scale : ndarray, shape (g,)
-        D, the factors that bring the columns of W to length one.
-    directions : ndarray, shape (n, g)
-        W = L^-1 J^T D.
-    stiffening : ndarray, shape (n, g), or None
-        rho J^T where A is not positive definite.
-    """
-
-    factor: Matrix
-    scale: Vector
-    directions: Matrix
-    stiffening: Matrix | None
+    factor: Matrix  # shape (n, n): L, the Cholesky factor of the metric
+    scale: Vector  # shape (g,): D, the factors that bring the columns of W to length one
+    directions: Matrix  # shape (n, g): W = L^-1 J^T D
+    stiffening: Matrix | None  # shape (n, g): rho J^T where A is not positive definite
 
     def singular_values(self) -> Vector:
         """Singular values of W, the largest first."""
@@ -72,21 +60,12 @@ class FactoredConstraints:
 
     Methods take and return forces and accelerations of shape (n,); residuals, curvatures c and multipliers are of
     shape (g,).
-
-    Attributes
-    ----------
-    basis : ndarray, shape (n, r)
-        Q; r is the rank that counts.
-    complement : ndarray, shape (n, n - r)
-        An orthonormal basis of the directions that are free.
-    inverse : ndarray, shape (r, g)
-        Transposed pseudo-inverse of C.
     """
 
     weighted: WeightedConstraints
-    basis: Matrix
-    complement: Matrix
-    inverse: Matrix
+    basis: Matrix  # shape (n, r): Q; r is the rank that counts
+    complement: Matrix  # shape (n, n - r): an orthonormal basis of the directions that are free
+    inverse: Matrix  # shape (r, g): transposed pseudo-inverse of C
 
     def correction(self, residual: Vector) -> Vector:
         """The change d, least in the mass metric, with J d = -residual."""

@@ -28,22 +28,12 @@ COMPILER = 0.15, 5e-4  # seconds that the C compiler takes, and for an operation
 
 @dataclass(frozen=True)
 class Choice:
-    """Why one engine was taken and not the other.
-
-    Attributes
-    ----------
-    engine : EngineName
-    steps : int
-        That the Taylor engine has ahead, estimated from its first ones.
-    operations : int
-        Of the accelerations.
-    taylor, runge_kutta : float
-        Seconds that each is expected to take for the motion, with what has yet to be compiled.
-    """
+    """Why one engine was taken and not the other."""
 
     engine: EngineName
-    steps: int
-    operations: int
+    steps: int  # that the Taylor engine has ahead, estimated from its first ones
+    operations: int  # of the accelerations
+    # taylor, runge_kutta: seconds that each is expected to take for the motion, with what has yet to be compiled
     taylor: float
     runge_kutta: float
 
@@ -57,17 +47,10 @@ def comparable(tol: float | None) -> bool:
 
 
 class Between(NamedTuple):
-    """How many states are wanted between steps: each takes the Runge-Kutta engine one more step.
-
-    Attributes
-    ----------
-    altogether : int
-    in_each : int
-        In each step.
-    """
+    """How many states are wanted between steps: each takes the Runge-Kutta engine one more step."""
 
     altogether: int
-    in_each: int
+    in_each: int  # in each step
 
 
 def quicker_engine(steps: int, operations: int, tol: float, between: Between) -> Choice:

@@ -12,34 +12,22 @@ from ..request import EngineName
 
 
 class Piece(NamedTuple):
-    """A step of the motion with its dense output.
-
-    Attributes
-    ----------
-    states : callable
-        Takes instants of the step, shape (k,), to states, shape (2n, k): coordinates, then velocities.
-    """
+    """A step of the motion with its dense output."""
 
     start: Any
     end: Any
+    # takes instants of the step, shape (k,), to states, shape (2n, k): coordinates, then velocities
     states: Callable[[NDArray[Any]], NDArray[Any]]
 
 
 class Solutions(NamedTuple):
-    """What the equations of motion determine at k states.
+    """What the equations of motion determine at k states."""
 
-    Attributes
-    ----------
-    accelerations : ndarray, shape (n, k)
-    multipliers : ndarray, shape (g, k)
-        Zero for the constraints that the program leaves out as redundant; where dependent ones are left, the least of
-        all that give the constraint forces.
-    constraint_forces : ndarray, shape (n, k)
-        J^T lambda, unique; of shape (0, k) where the scene does not observe them.
-    """
-
-    accelerations: Numbers
+    accelerations: Numbers  # shape (n, k)
+    # shape (g, k): zero for the constraints that the program leaves out as redundant; where dependent ones are left,
+    # the least of all that give the constraint forces
     multipliers: Numbers
+    # shape (n, k): J^T lambda, unique; of shape (0, k) where the scene does not observe them
     constraint_forces: Numbers
 
 
@@ -62,32 +50,16 @@ class Obstacle(HolonomError):
 
 
 class Engine(Protocol):
-    """What follows a motion.
-
-    Attributes
-    ----------
-    time : number
-        The instant that is reached.
-    state : ndarray, shape (2n,)
-        Coordinates, then velocities, at that instant.
-    steps : int
-        Taken so far.
-    tol : float
-        Tolerance of a step.
-    code : str
-        How heyoka compiled it; empty where it did not.
-    amid_passage : bool
-        Whether a singular configuration is so near that only this engine can go on.
-    """
+    """What follows a motion."""
 
     name: EngineName
-    time: Any
-    state: Numbers
-    steps: int
-    tol: float
-    code: str
+    time: Any  # the instant that is reached
+    state: Numbers  # shape (2n,): coordinates, then velocities, at that instant
+    steps: int  # taken so far
+    tol: float  # tolerance of a step
+    code: str  # how heyoka compiled it; empty where it did not
     compile_seconds: float
-    amid_passage: bool
+    amid_passage: bool  # whether a singular configuration is so near that only this engine can go on
 
     def restart(self, instant: Any, state: Numbers) -> None:
         """Go on from another instant and state, shape (2n,)."""

@@ -41,19 +41,12 @@ class Dense(Protocol):
 
 
 class Integrator(Protocol):
-    """What takes the steps, as heyoka's integrators do.
+    """What takes the steps, as heyoka's integrators do."""
 
-    Attributes
-    ----------
-    time, last_h : number
-        The instant that is reached; the length of the last step.
-    state : ndarray, shape (2n,)
-        At that instant, in place.
-    """
-
+    # time, last_h: the instant that is reached; the length of the last step
     time: Any
     last_h: Any
-    state: Numbers
+    state: Numbers  # shape (2n,): at that instant, in place
     tol: Any
 
     def propagate_until(

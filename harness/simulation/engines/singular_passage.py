@@ -35,16 +35,11 @@ Accelerations = Callable[[float, Vector], Vector]
 
 @dataclass(frozen=True)
 class Arc:
-    """A polynomial motion between two instants.
-
-    Attributes
-    ----------
-    coordinates, velocities : ndarray, shapes (NODES + 2, n) and (NODES + 1, n)
-        Coefficients of Legendre's polynomials over the arc.
-    """
+    """A polynomial motion between two instants."""
 
     start: float
     end: float
+    # coordinates, velocities: coefficients of Legendre's polynomials over the arc
     coordinates: Matrix
     velocities: Matrix
 

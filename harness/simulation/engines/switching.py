@@ -32,21 +32,13 @@ FINE = 1e-13  # tolerance of the robust engine between two legs of a Taylor engi
 
 
 class Leg(NamedTuple):
-    """A part of the motion that one engine follows.
-
-    Attributes
-    ----------
-    case : HardCase or None
-        What the robust engine was called for; None where nobody called it.
-    reason : str
-        Why it was called, a clause.
-    """
+    """A part of the motion that one engine follows."""
 
     engine: EngineName
     start: float
     end: float
-    case: HardCase | None = None
-    reason: str = ""
+    case: HardCase | None = None  # what the robust engine was called for; None where nobody called it
+    reason: str = ""  # why it was called, a clause
 
 
 class SwitchingEngine:
