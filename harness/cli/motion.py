@@ -221,18 +221,10 @@ def _import_what_follows(own_process: bool) -> None:
             _import_heyoka_alone()
 
         from ..simulation import simulate  # noqa: F401
-        from ..simulation.evaluation import blas_has_one_thread, wake_compiler
+        from ..simulation.constraints.factorization import lapack
+        from ..simulation.evaluation import wake_compiler
 
         wake_compiler()
-        if blas_has_one_thread():
-            Thread(target=_import_what_ends_it).start()
-
-
-def _import_what_ends_it() -> None:
-    """Import what the report needs, while the motion is compiled and followed."""
-    with suppress(ImportError, HolonomError):
-        from ..simulation.constraints.factorization import lapack
-
         lapack()
 
 

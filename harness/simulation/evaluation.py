@@ -103,22 +103,13 @@ def wake_compiler() -> None:
     heyoka.cfunc([heyoka.expression("x")], vars=[heyoka.expression("x")], opt_level=0)
 
 
-def blas_has_one_thread() -> bool:
-    """Whether BLAS was told before it was loaded, as the command line does.
-
-    If not, no other thread may import while it is told: threadpoolctl holds the lock of the dynamic linker while it
-    waits for Python's, and who loads a library does so the other way round.
-    """
-    return os.environ.get("OPENBLAS_NUM_THREADS") == "1"
-
-
 def one_blas_thread() -> AbstractContextManager[object]:
     """Keep BLAS to one thread inside the block.
 
     Matrices here have some dozens of rows. On a busy machine BLAS takes twenty times as long for them with its threads
     as without, as measured.
     """
-    if blas_has_one_thread():
+    if os.environ.get("OPENBLAS_NUM_THREADS") == "1":  # told before it was loaded, as the command line does
         return nullcontext()
     from threadpoolctl import threadpool_limits
 
