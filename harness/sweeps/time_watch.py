@@ -38,7 +38,8 @@ class TimeWatch:
 
     def __init__(self, problem: MotionProblem, end: float) -> None:
         self._problem, self._start, self._end = problem, float(problem.start["t"]), end
-        degrees, self._involved = _in_time(problem)
+        degrees, involved = _in_time(problem)
+        self._involved = [problem.parameters.index(name) for name in involved]
         self._smooth = all(degree <= LOW for degree in degrees)
         self._known: dict[tuple[float, ...], tuple[bool, tuple[float, ...]]] = {}
 
@@ -59,19 +60,14 @@ class TimeWatch:
         if not self._involved:
             alone, stops = self._of(values[:, 0])
             return np.full(values.shape[1], alone), stops
-        places = [self._problem.parameters.index(name) for name in self._involved]
-        chosen, which = np.unique(values[places], axis=1, return_inverse=True)
-        row = values[:, 0].copy()
-        alone = []
-        for column in chosen.T:
-            row[places] = column
-            apart, stops = self._of(row)
-            alone.append(apart or bool(stops))
-        return np.array(alone)[which.ravel()], ()
+        chosen, first, which = np.unique(values[self._involved], axis=1, return_index=True, return_inverse=True)
+        found = [self._of(values[:, place]) for place in first]
+        alone = np.array([apart or bool(stops) for apart, stops in found])
+        return alone[which.ravel()], ()
 
     def _of(self, row: Floats) -> tuple[bool, tuple[float, ...]]:
         """Whether a motion is to be followed by itself, and where it is to stop otherwise."""
-        key = tuple(row)
+        key = tuple(row[self._involved])
         if key not in self._known:
             numbers = {name: Fraction(float(x)) for name, x in zip(self._problem.parameters, row, strict=True)}
             by_time = self._dependence(numbers)

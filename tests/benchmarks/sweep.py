@@ -4,7 +4,8 @@
 
 writes sweep.txt there; SHARE, 1 without it, is how much of the million motions is run. Times of one core are those that
 the process was given; where several cores are compared, those of the clock on the wall, for which the machine must be
-quiet.
+quiet. What a command does without its start-up is measured from when each worker has sent its first chunks, by the
+times at which the files were written.
 """
 
 import os
@@ -33,12 +34,14 @@ from holonom.simulation.simulate import followable
 from holonom.sweeps.axes import read_axes
 from holonom.sweeps.kept import read_kept
 from holonom.sweeps.rows import Plan, RowMaker
+from holonom.sweeps.run import CHUNK
 
 ROOT = Path(__file__).parents[2]
 CRANE, PAPER = ROOT / "examples" / "crane.mac", ROOT / "examples" / "paper" / "paper.mac"
 GRID = ("m=50:500:100", "c=0:40:100")
 MOTIONS, TOLERANCE = 10_000, 1e-12  # a chunk
 DEPTHS, REPEATS = 4, 12
+FIRST = 6  # chunks: of each of two workers those that it is given at once
 MILLION = 1_000_000
 
 
@@ -193,6 +196,7 @@ class Run(NamedTuple):
 
     rows: int
     seconds: float
+    rate: float  # rows a second, once all workers have begun
     megabytes: float
 
 
@@ -206,22 +210,27 @@ def command(rows: float, workers: int) -> Run:
         process = subprocess.Popen([*asked, "--workers", str(workers)], stdout=subprocess.DEVNULL)
         _, status, usage = os.wait4(process.pid, 0)
         taken = time.perf_counter() - begun
-    process.returncode = os.waitstatus_to_exitcode(status)
-    if process.returncode:
-        raise RuntimeError(f"the sweep ended with {process.returncode}")
-    return Run(side**2, taken, usage.ru_maxrss / 1024)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        if process.returncode:
+            raise RuntimeError(f"the sweep ended with {process.returncode}")
+        return Run(side**2, taken, _rate(Path(folder, "runs")), usage.ru_maxrss / 1024)
+
+
+def _rate(folder: Path) -> float:
+    """Rows a second of the chunks between the first ones and the last, which may be a short one."""
+    times = sorted(part.stat().st_mtime for part in folder.glob("*.parquet"))[FIRST:-1]
+    return CHUNK * (len(times) - 1) / (times[-1] - times[0])
 
 
 def rows_of_commands(share: float) -> Iterator[str]:
     million = MILLION * share
-    alone = [command(million * part, 1) for part in (0.01, 0.1, 1)]
-    both = [command(million * part, 2) for part in (0.1, 1)]
-    rates = [(last.rows - first.rows) / (last.seconds - first.seconds) for first, last in (alone[1:], both)]
-    yield f"{both[1].rows} crane motions by the command, on {os.cpu_count()} cores; with start-up"
-    yield f"  by this process alone {alone[2].seconds:.1f} s, by two workers {both[1].seconds:.1f} s"
-    yield bar("two workers, with start-up", both[1].seconds, most=30, unit=" s")
-    yield bar("two workers against one, without start-up", rates[1] / rates[0], least=1.8)
-    yield f"  two workers against one, with start-up       {alone[2].seconds / both[1].seconds:8.2f}"
+    alone = [command(million * part, 1) for part in (0.1, 0.2, 1)]
+    both = command(million, 2)
+    yield f"{both.rows} crane motions by the command, on {os.cpu_count()} cores; with start-up"
+    yield f"  by this process alone {alone[2].seconds:.1f} s, by two workers {both.seconds:.1f} s"
+    yield bar("two workers, with start-up", both.seconds, most=30, unit=" s")
+    yield bar("two workers against one, without start-up", both.rate / alone[2].rate, least=1.8)
+    yield f"  two workers against one, with start-up       {alone[2].seconds / both.seconds:8.2f}"
     sizes = ", ".join(f"{run.megabytes:.0f} MiB for {run.rows}" for run in alone)
     yield f"  largest memory by this process alone: {sizes} motions"
     yield bar("the last in terms of the one before", alone[2].megabytes / alone[1].megabytes, most=1.1)

@@ -9,6 +9,8 @@ import pytest
 import holonom
 from holonom.failures import HolonomError
 from holonom.simulation.request import Stabilization
+from holonom.simulation.time_dependence import time_dependence
+from holonom.sweeps import time_watch
 from holonom.sweeps.rows import Status
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -39,6 +41,7 @@ system : holonomic_system(coordinates = [x], parameters = [k, m, q],
   constraints = [])$
 pushed : holonomic_scene(system, parameter_values = [k = 4, m = 1, q = 1],
   initial_state = [x = 0, dot(x) = 0], time_span = [0, 3])$"""
+DRIVEN = OSCILLATOR.replace("constraints", "forces = [drive = [sin(k*t)]], constraints")
 NAMES = """load("holonom.mac")$
 system : holonomic_system(coordinates = [x], parameters = [t0, q, h, row],
   kinetic_energy = q*dot(x)^2/2, potential_energy = h*x^2/2, forces = [drag = [-t0*dot(x)], push = [row]],
@@ -62,6 +65,7 @@ def scenes(tmp_path_factory):
         "skidding": SKIDDING,
         "pushed": PUSHED,
         "names": NAMES,
+        "driven": DRIVEN,
     }.items():
         (folder / f"{name}.mac").write_text(text)
     return folder
@@ -94,6 +98,20 @@ def test_rows_are_the_same_to_the_last_bit_however_they_are_cut(rows_of):
         maker = rows_of(*asked, lanes=lanes)
         assert pa.concat_tables([maker.table(0, 5), maker.table(5, 40), maker.table(40, 77)]).equals(whole)
     assert rows_of(*asked[:1], "final", *asked[2:]).table(30, 31)["x"][0] == whole["x"][30]
+
+
+def test_the_time_is_scanned_once_for_each_set_of_parameters_in_it(rows_of, scenes, monkeypatch):
+    scanned = []
+    monkeypatch.setattr(time_watch, "time_dependence", lambda *asked: scanned.append(asked) or time_dependence(*asked))
+    for file, axes, times in (
+        (EXAMPLES / "crane.mac", ("m=50:500:3", "c=0:40:4"), 1),
+        (scenes / "driven.mac", ("m=1:2:3", "k=1:2:4"), 4),
+    ):
+        maker = rows_of(file, "x", *axes)
+        for first in range(0, 12, 3):
+            maker.table(first, first + 3)
+        assert len(scanned) == times
+        scanned.clear()
 
 
 def test_rows_are_those_of_single_simulations(rows_of):
