@@ -9,6 +9,7 @@ import pickle
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import lru_cache
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from ..failures import Failure, HolonomError
@@ -19,7 +20,8 @@ from .rows import Plan, RowMaker
 if TYPE_CHECKING:
     from distributed import Client
 
-AHEAD = 3  # chunks that wait at each worker
+AHEAD = 3  # tasks that wait at each worker
+TOGETHER = 4  # chunks of a task at most: to hand one out and to fetch it takes a tenth of what a quick chunk takes
 KEPT_MEMORY = (
     2**29
 )  # bytes that a worker does not give back at once; Dask's 64 KiB are given back and fetched each step
@@ -57,7 +59,7 @@ def compute(plan: Plan, chunks: Sequence[Chunk], take: Take, workers: int, sched
         _compute_by(client, plan, chunks, take)
 
 
-def make_part(plan: bytes, chunk: Chunk) -> bytes:
+def make_parts(plan: bytes, chunks: Sequence[Chunk]) -> list[bytes]:
     """What a worker does.
 
     Parameters
@@ -67,11 +69,11 @@ def make_part(plan: bytes, chunk: Chunk) -> bytes:
 
     Returns
     -------
-    bytes
-        Of the chunk's file.
+    list of bytes
+        Of each chunk's file.
     """
     with one_blas_thread():
-        return part_of(_maker(plan).table(chunk.first, chunk.last))
+        return [part_of(_maker(plan).table(chunk.first, chunk.last)) for chunk in chunks]
 
 
 @lru_cache(maxsize=2)
@@ -83,22 +85,32 @@ def _compute_by(client: "Client", plan: Plan, chunks: Sequence[Chunk], take: Tak
     """Keep all workers busy, and few chunks on their way."""
     from distributed import as_completed
 
-    written, waiting = pickle.dumps(plan), iter(chunks)
+    written = pickle.dumps(plan)
     with _told_when_lost():
-        ahead = AHEAD * max(1, len(client.scheduler_info(n_workers=-1)["workers"]))
-        doing = {_submitted(client, written, chunk): chunk for _, chunk in zip(range(ahead), waiting, strict=False)}
+        workers = max(1, len(client.scheduler_info(n_workers=-1)["workers"]))
+        waiting = _tasks(chunks, workers)
+        doing = {_submitted(client, written, task): task for task in islice(waiting, AHEAD * workers)}
         arriving = as_completed(list(doing), with_results=False)
         for future in arriving:
-            take(doing.pop(future), future.result())
-            for chunk in waiting:
-                following = _submitted(client, written, chunk)
-                doing[following] = chunk
+            for chunk, content in zip(doing.pop(future), future.result(), strict=True):
+                take(chunk, content)
+            for task in islice(waiting, 1):
+                following = _submitted(client, written, task)
+                doing[following] = task
                 arriving.add(following)
-                break
 
 
-def _submitted(client: "Client", plan: bytes, chunk: Chunk) -> Any:
-    return client.submit(make_part, plan, chunk, pure=False)
+def _tasks(chunks: Sequence[Chunk], workers: int) -> Iterator[Sequence[Chunk]]:
+    """Chunks to be computed together, fewer towards the end, so that all workers end at about the same time."""
+    first = 0
+    while first < len(chunks):
+        last = first + max(1, min(TOGETHER, (len(chunks) - first) // (2 * AHEAD * workers)))
+        yield chunks[first:last]
+        first = last
+
+
+def _submitted(client: "Client", plan: bytes, chunks: Sequence[Chunk]) -> Any:
+    return client.submit(make_parts, plan, chunks, pure=False)
 
 
 @contextmanager

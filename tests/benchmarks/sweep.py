@@ -41,7 +41,7 @@ CRANE, PAPER = ROOT / "examples" / "crane.mac", ROOT / "examples" / "paper" / "p
 GRID = ("m=50:500:100", "c=0:40:100")
 MOTIONS, TOLERANCE = 10_000, 1e-12  # a chunk
 DEPTHS, REPEATS = 4, 12
-FIRST = 6  # chunks: of each of two workers those that it is given at once
+FIRST = 24  # chunks: those that two workers are given at once
 MILLION = 1_000_000
 
 
@@ -196,8 +196,14 @@ class Run(NamedTuple):
 
     rows: int
     seconds: float
-    rate: float  # rows a second, once all workers have begun
+    written: tuple[float, ...]  # when each file was
     megabytes: float
+
+    @property
+    def rate(self) -> float:
+        """Rows a second, between the first chunks and the last, which may be a short one."""
+        times = self.written[FIRST:-1]
+        return CHUNK * (len(times) - 1) / (times[-1] - times[0])
 
 
 def command(rows: float, workers: int) -> Run:
@@ -213,13 +219,8 @@ def command(rows: float, workers: int) -> Run:
         process.returncode = os.waitstatus_to_exitcode(status)
         if process.returncode:
             raise RuntimeError(f"the sweep ended with {process.returncode}")
-        return Run(side**2, taken, _rate(Path(folder, "runs")), usage.ru_maxrss / 1024)
-
-
-def _rate(folder: Path) -> float:
-    """Rows a second of the chunks between the first ones and the last, which may be a short one."""
-    times = sorted(part.stat().st_mtime for part in folder.glob("*.parquet"))[FIRST:-1]
-    return CHUNK * (len(times) - 1) / (times[-1] - times[0])
+        written = sorted(part.stat().st_mtime for part in Path(folder, "runs").glob("*.parquet"))
+    return Run(side**2, taken, tuple(written), usage.ru_maxrss / 1024)
 
 
 def rows_of_commands(share: float) -> Iterator[str]:
@@ -229,7 +230,8 @@ def rows_of_commands(share: float) -> Iterator[str]:
     yield f"{both.rows} crane motions by the command, on {os.cpu_count()} cores; with start-up"
     yield f"  by this process alone {alone[2].seconds:.1f} s, by two workers {both.seconds:.1f} s"
     yield bar("two workers, with start-up", both.seconds, most=30, unit=" s")
-    yield bar("two workers against one, without start-up", both.rate / alone[2].rate, least=1.8)
+    if len(both.written) > 2 * FIRST:
+        yield bar("two workers against one, without start-up", both.rate / alone[2].rate, least=1.8)
     yield f"  two workers against one, with start-up       {alone[2].seconds / both.seconds:8.2f}"
     sizes = ", ".join(f"{run.megabytes:.0f} MiB for {run.rows}" for run in alone)
     yield f"  largest memory by this process alone: {sizes} motions"
