@@ -31,7 +31,7 @@
 (defvar *read-names* (make-hash-table :test 'eq) "What each name of the library is read as.")
 
 (defvar *namespace-open* nil "Whether everything is read as the library's files are.")
-(defvar *loaded-from* nil "The directory of the library, once it is loaded.")
+(defvar *loaded-from* nil "The lists of files that are loaded, the latest first, each with its directory: (files . directory).")
 (defvar *asked-for* nil "Whether a file has loaded the library: it may be there before, in an image.")
 
 (defun note (name table kind)
@@ -262,9 +262,9 @@
 ;;; The library stays out of Maxima's lists of what the user has made:  values,  functions,  and what
 ;;; kill(all)  kills.
 (defun $load_library (directory files)
-  (unless (equal directory *loaded-from*)
+  (unless (equal directory (cdr (assoc (cdr files) *loaded-from* :test #'equal)))
     (read-library (mapcar #'(lambda (file) (concatenate 'string directory file)) (cdr files)))
-    (setq *loaded-from* directory))
+    (push (cons (cdr files) directory) *loaded-from*))
   (setq *asked-for* t)
   '$done)
 

@@ -44,6 +44,17 @@
         ((specrepp e) ($contains_floats (specdisrep e)))
         (t (some #'$contains_floats (cdr e)))))
 
+(defun $contains_root (e)
+  "Whether a power in it has a fraction for its exponent."
+  (cond ((atom e) nil)
+        ((specrepp e) ($contains_root (specdisrep e)))
+        (t (or (and (eq (caar e) 'mexpt) (ratnump (third e)))
+               (some #'$contains_root (cdr e))))))
+
+(defun $expression_size (e)
+  "Number of symbols, numbers and operations, as they are displayed."
+  (if ($mapatom e) 1 (reduce #'+ (mapcar #'$expression_size (cdr (format1 e))) :initial-value 1)))
+
 (defun $substituted (values e)
   "The expression with  name = value  put in for its symbols, all at once."
   (let ((table (make-hash-table)))

@@ -3,7 +3,7 @@
 import re
 from collections import Counter
 
-from holonom.maxima import LIBRARY
+from holonom.maxima import LIBRARY, run_batch
 
 DEFINITION = re.compile(r"^(\w+)\([^()]*\)\s*:=", re.MULTILINE)
 LISP_DEFINITION = re.compile(r"^\(def(?:un|macro) (\S+)", re.MULTILINE)
@@ -14,3 +14,17 @@ def test_no_function_is_defined_twice():
     lisp = "\n".join(file.read_text() for file in LIBRARY.rglob("*.lisp"))
     names = [*DEFINITION.findall(maxima), *(name.lstrip("$") for name in LISP_DEFINITION.findall(lisp))]
     assert [name for name, times in Counter(names).items() if times > 1] == []
+
+
+def test_the_files_of_the_paper_do_not_have_the_library_read_anew(tmp_path):
+    job = tmp_path / "job.mac"
+    job.write_text(f"""
+        load("{LIBRARY}/holonom.mac")$
+        load("{LIBRARY}/paper/errata.mac")$
+        open_namespace()$
+        simplest(expr) := "known by its mark"$
+        load("{LIBRARY}/holonom.mac")$
+        load("{LIBRARY}/paper/errata.mac")$
+        write_marked(file) := write_json(json_list(lambda([x], x), [simplest(0)]), file)$
+    """)
+    assert "known by its mark" in run_batch(job, "write_marked")
