@@ -375,11 +375,11 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
 (defun landed (coordinate)
   (if (< (abs coordinate) *small-coordinate*) 0 coordinate))
 
-(defun $moved_point (point coordinates)
-  "A point close by, its coordinates moved in a direction without symmetry."
+(defun $moved_point (point names)
+  "A point close by, moved in these names in a direction without symmetry."
   (let ((moved (converted-point point #'identity)) (column 0))
-    (dolist (q (cdr coordinates) moved)
-      (incf (gethash q (sample-point-symbols moved))
+    (dolist (name (cdr names) moved)
+      (incf (gethash name (sample-point-symbols moved))
             (/ (1+ (mod (* 7 (incf column)) 11)) 10007)))))
 
 (defun converted-point (point conversion)
