@@ -4,13 +4,11 @@ import errno
 import fcntl
 import os
 import re
-import secrets
 import shutil
 import tempfile
 import weakref
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
-from difflib import get_close_matches
 from pathlib import Path
 from typing import BinaryIO
 
@@ -121,7 +119,7 @@ def draft_of(target: Path) -> Iterator[Path]:
     """
     draft = target.with_name(f".{target.name}.{os.getpid()}.new")
     home = Path(tempfile.gettempdir())
-    link = home / f"{DRAFT}{secrets.token_hex(8)}" if PRIVATE_NAME.fullmatch(home.name) else None
+    link = home / f"{DRAFT}{os.urandom(8).hex()}" if PRIVATE_NAME.fullmatch(home.name) else None
     if link is not None:
         link.symlink_to(draft)
     try:
@@ -158,6 +156,8 @@ def near_file(missing: Path) -> str:
         names = [file.name for file in missing.parent.iterdir()]
     except OSError:
         return ""
+    from difflib import get_close_matches
+
     near = get_close_matches(missing.name, names, n=1)
     return f", but there is {missing.with_name(near[0])}" if near else ""
 

@@ -1,7 +1,6 @@
 """The commands that measure: accuracy, stability."""
 
 from dataclasses import asdict
-from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +12,8 @@ from .options import asks_one_scene, present, read_instant, runs_scenes, writes_
 from .outputs import OutputFile
 
 if TYPE_CHECKING:
+    from fractions import Fraction
+
     from ..benchmark.hard_cases.case import CaseReport
     from ..program.request import Request
 
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 def accuracy(
     scene_file: Path,
     request: "Request",
-    until: Fraction | None,
+    until: "Fraction | None",
     plot_file: Path | None,
     json_file: Path | None,
     limits: Limits,

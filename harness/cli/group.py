@@ -3,9 +3,7 @@
 import io
 import os
 import sys
-import traceback
 from collections.abc import Collection
-from difflib import get_close_matches
 from typing import Any
 
 import click
@@ -52,6 +50,8 @@ class Commands(click.Group):
         try:
             return super().resolve_command(ctx, args)
         except click.UsageError as error:
+            from difflib import get_close_matches
+
             near = get_close_matches(args[0], self.list_commands(ctx))
             if near and "Did you mean" not in error.message:  # newer versions of Click say it themselves
                 error.message += f" Did you mean {' or '.join(near)}?"
@@ -173,5 +173,7 @@ def _internal_error(error: Exception, verbose: bool) -> int:
     what = " ".join(f"{type(error).__name__}: {error}".split())
     _told(f"an internal error, {what}; please report it with the output of `holonom -v ...`.", INTERNAL_ERROR)
     if verbose:
+        import traceback
+
         traceback.print_exception(error)
     return INTERNAL_ERROR

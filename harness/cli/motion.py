@@ -3,7 +3,6 @@
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from fractions import Fraction
 from pathlib import Path
 from threading import Thread
 from typing import TYPE_CHECKING
@@ -17,6 +16,8 @@ from .options import asks_one_scene, chooses_solve, json_text, present, publish,
 from .outputs import STANDARD_OUTPUT, OutputFile
 
 if TYPE_CHECKING:
+    from fractions import Fraction
+
     from ..program.request import Request
 
 
@@ -41,8 +42,8 @@ def series(
     exact: bool,
     digits: int | None,
     precision: str | None,
-    at: Fraction | None,
-    until: Fraction | None,
+    at: "Fraction | None",
+    until: "Fraction | None",
     json_file: Path | None,
     limits: Limits,
 ) -> int:
@@ -121,7 +122,7 @@ def simulate(
     engine: str,
     drift: str,
     compact: bool | None,
-    until: Fraction | None,
+    until: "Fraction | None",
     max_step: float | None,
     samples: int | None,
     final: bool,
@@ -220,8 +221,9 @@ def _import_what_follows(own_process: bool) -> None:
         if own_process:
             _import_heyoka_alone()
 
-        from ..simulation import simulate  # noqa: F401
+        from ..simulation import output, simulate  # noqa: F401
         from ..simulation.constraints.factorization import lapack
+        from ..simulation.engines import taylor  # noqa: F401
         from ..simulation.evaluation import wake_compiler
 
         wake_compiler()

@@ -3,9 +3,8 @@
 import functools
 import json
 from collections.abc import Callable
-from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -13,6 +12,9 @@ from ..confined import Limits, Sandbox, bubblewrap
 from ..failures import Failure, HolonomError
 from ..supervisor import limit_time
 from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile
+
+if TYPE_CHECKING:
+    from fractions import Fraction
 
 DISAGREEMENT = 1  # exit status where SymPy contradicts Maxima
 SHOWN = 40  # letters of an option that is refused
@@ -129,8 +131,10 @@ def _sandbox(trust: bool, sandbox: bool) -> Sandbox:
     return Sandbox.REQUIRED if sandbox else Sandbox.WHERE_POSSIBLE
 
 
-def read_instant(ctx: click.Context, parameter: click.Parameter, text: str | None) -> Fraction | None:
+def read_instant(ctx: click.Context, parameter: click.Parameter, text: str | None) -> "Fraction | None":
     """Read an instant: an integer, a decimal or a quotient of integers."""
+    from fractions import Fraction
+
     from ..program.request import within_reach
 
     if text is None:

@@ -1,7 +1,6 @@
 """The command about many motions: sweep."""
 
 from collections.abc import Sequence
-from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +12,8 @@ from .options import asks_one_scene, chooses_solve, present, read_instant, runs_
 from .outputs import OutputFile
 
 if TYPE_CHECKING:
+    from fractions import Fraction
+
     from ..program.request import Request
 
 FAILED = 1  # exit status of a sweep none of whose rows came about
@@ -78,7 +79,7 @@ def sweep(
     keep: Sequence[str],
     output: Path,
     tol: float,
-    until: Fraction | None,
+    until: "Fraction | None",
     drift: str,
     chunk: int,
     workers: int | None,

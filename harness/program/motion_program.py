@@ -12,17 +12,14 @@ terms: its operations are what the program costs, and their order decides the la
 """
 
 import re
-from collections.abc import Mapping, Set
+from collections.abc import Iterator, Mapping, Set
 from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..documents import Document, read, require
 from ..failures import Failure, HolonomError
-
-if TYPE_CHECKING:
-    pass
 
 DEEPEST = 100  # levels of an expression: Maxima names what is deeper, and Python's recursion limit stays far away
 LONGEST_NUMBER = 4000  # characters of a number's digits; Python reads 4300
@@ -187,6 +184,14 @@ def names_in(expression: Expression) -> Set[str]:
             return set().union(*map(names_in, arguments))
         case _:
             return set()
+
+
+def calls_in(expression: Expression) -> Iterator[Call]:
+    """Yield the operations in an expression, each before those in its arguments."""
+    if isinstance(expression, Call):
+        yield expression
+        for argument in expression.arguments:
+            yield from calls_in(argument)
 
 
 def _expression(tree: object, levels: int) -> Expression:

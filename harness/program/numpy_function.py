@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .arithmetic import ELEMENTARY, Arithmetic
-from .motion_program import Constant, Name, Operation, Program, names_in
+from .motion_program import Constant, Name, Operation, Program, calls_in, names_in
 
 BLOCK = 4096  # points carried through the program at a time; the fastest of 256, 1024, 4096 and 16384 as measured
 
@@ -52,14 +52,31 @@ class NumpyFunction:
             Where the program's pivots vanish, infinities and nans.
         """
         arrays = np.broadcast_arrays(*(np.asarray(values, dtype=float) for values in inputs))
-        result = np.empty((len(self.outputs), *arrays[0].shape))
-        points, columns = [array.reshape(-1) for array in arrays], result.reshape(len(self.outputs), -1)
+        return self.at_points([array.reshape(-1) for array in arrays]).reshape(len(self.outputs), *arrays[0].shape)
+
+    def at_points(self, inputs: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
+        """Evaluate the program at k points.
+
+        Parameters
+        ----------
+        inputs : sequence of ndarray, each of shape (k,)
+
+        Returns
+        -------
+        ndarray, shape (outputs, k)
+        """
+        result = np.empty((len(self.outputs), len(inputs[0])))
         with np.errstate(all="ignore"):
-            for start in range(0, columns.shape[1], BLOCK):
+            for start in range(0, result.shape[1], BLOCK):
                 block = slice(start, start + BLOCK)
-                for row, values in zip(columns, self._run([array[block] for array in points]), strict=True):
+                for row, values in zip(result, self._run([array[block] for array in inputs]), strict=True):
                     row[block] = values
         return result
+
+
+def needs_scipy(program: Program) -> bool:
+    """Whether a program calls functions that NumPy does not have."""
+    return any(call.operation in OF_SCIPY for _, expression in program.assignments for call in calls_in(expression))
 
 
 def _compiled(program: Program) -> Callable[[Sequence[NDArray[np.float64]]], tuple[ArrayLike, ...]]:

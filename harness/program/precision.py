@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-import mpmath
 import numpy as np
 
 from ..failures import Failure, HolonomError
@@ -75,6 +74,8 @@ def _quadruple() -> Precision:
 
 
 def _of_digits(digits: int) -> Precision:
+    import mpmath
+
     heyoka = import_heyoka()
     bits = max(LEAST_BITS, _bits(digits + GUARD_DIGITS))
     sys.set_int_max_str_digits(max(sys.get_int_max_str_digits(), 2 * (digits + GUARD_DIGITS)))

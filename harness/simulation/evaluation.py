@@ -1,7 +1,8 @@
-"""Programs as functions in the numbers of a run: compiled by heyoka in a few milliseconds, and not to the utmost.
+"""Programs as functions in the numbers of a run: compiled by heyoka in some milliseconds, and not to the utmost.
 
 One evaluation takes about a microsecond in double precision, most of it the call; the compilation's optimiser would
-take longer than it ever gains at the few states where these are wanted.
+take longer than it ever gains at the few states where these are wanted. At very few of them NumPy is done before
+heyoka has compiled.
 """
 
 import os
@@ -15,7 +16,11 @@ from numpy.typing import NDArray
 from ..program.heyoka_function import COMPACT_FROM, heyoka_expressions, import_heyoka
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Program
+from ..program.numpy_function import NumpyFunction, needs_scipy
 from ..program.precision import Precision
+
+COMPILED, COMPILED_OPERATION = 1.2e-2, 6e-5  # seconds that heyoka takes to compile a function, and for an operation
+CALLED, OPERATION, OPERATION_AT_POINT = 1e-5, 3.5e-7, 1.5e-9  # seconds that NumPy takes for a call, and in it
 
 Numbers = NDArray[Any]  # floats in double precision, heyoka's own numbers beyond
 Evaluation = Callable[[Numbers], Numbers]
@@ -47,8 +52,64 @@ def evaluation(program: Program, precision: Precision) -> Evaluation:
 
 
 def evaluation_once(problem: MotionProblem, program: Program, precision: Precision) -> Evaluation:
-    """Compile a program of a problem, once for all values of its open parameters."""
-    return problem.once(("evaluation", precision.name), program, lambda: evaluation(program, precision))
+    """A program of a problem as a function, compiled once for all values of its open parameters.
+
+    Where there are none, it is compiled when that pays.
+    """
+    what = ("evaluation", precision.name)
+    return problem.once(what, program, lambda: _evaluation_of(problem, program, precision))
+
+
+def _evaluation_of(problem: MotionProblem, program: Program, precision: Precision) -> Evaluation:
+    if not may_wait(problem, program, precision):
+        return evaluation(program, precision)
+    return CompiledIfItPays(lambda: _by_numpy(program), lambda: evaluation(program, precision), program.operations)
+
+
+def may_wait(problem: MotionProblem, program: Program, precision: Precision) -> bool:
+    """Whether NumPy can carry a program out until compiling it pays.
+
+    It has no numbers but doubles; and what is kept for motions to come would have them hang on those before, in their
+    last bits.
+    """
+    return precision.name == "double" and not problem.parameters and not needs_scipy(program)
+
+
+def _by_numpy(program: Program) -> Evaluation:
+    function = NumpyFunction(program)
+
+    def evaluate(inputs: Numbers) -> Numbers:
+        return function.at_points(inputs) if inputs.ndim > 1 else function.at_points(inputs[:, None])[:, 0]
+
+    return evaluate
+
+
+class CompiledIfItPays:
+    """A function in double precision that is compiled once carrying it out by NumPy has taken as long as that.
+
+    What takes how long is counted, not measured, so that the same calls have the same results everywhere: measured on
+    programs of 17 to 434 operations.
+
+    Parameters
+    ----------
+    by_numpy, compiled : callable
+        Make the function.
+    operations : int
+        Of what it computes.
+    """
+
+    def __init__(self, by_numpy: Callable[[], Evaluation], compiled: Callable[[], Evaluation], operations: int) -> None:
+        self._evaluate, self._compiled, self._operations = by_numpy(), compiled, operations
+        self._left = COMPILED + COMPILED_OPERATION * operations
+
+    def __call__(self, inputs: Numbers) -> Numbers:
+        """Evaluate the function at inputs of shape (inputs,) or (inputs, points)."""
+        if self._left > 0:
+            points = inputs.shape[1] if inputs.ndim > 1 else 1
+            self._left -= CALLED + self._operations * (OPERATION + OPERATION_AT_POINT * points)
+            if self._left <= 0:
+                self._evaluate = self._compiled()
+        return self._evaluate(inputs)
 
 
 def lane_evaluation(problem: MotionProblem, program: Program) -> Evaluation:

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..program.motion_program import Call, Expression, Operation, Program, names_in
+from ..program.motion_program import Call, Operation, Program, calls_in, names_in
 from .matrices import Matrices, Vector
 
 MARGIN = 1e4
@@ -73,18 +73,11 @@ def may_hide(program: Program, parameters: Collection[str] = ()) -> bool:
     """
     moving = set(program.inputs) - {"t", *parameters}
     for name, expression in program.assignments:
-        if any(_is_faint(call) and names_in(call) & moving for call in _calls(expression)):
+        if any(_is_faint(call) and names_in(call) & moving for call in calls_in(expression)):
             return True
         if names_in(expression) & moving:
             moving.add(name)
     return False
-
-
-def _calls(expression: Expression) -> Iterator[Call]:
-    if isinstance(expression, Call):
-        yield expression
-        for argument in expression.arguments:
-            yield from _calls(argument)
 
 
 def _is_faint(call: Call) -> bool:

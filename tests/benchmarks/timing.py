@@ -45,12 +45,17 @@ def program_of_command(scene: Path, setting: str) -> tuple[str, float, float]:
     with TemporaryDirectory() as directory:
         written = Path(directory, "program.json")
         command = [sys.executable, "-m", "holonom", "program", str(scene), "--set", setting, "-o", str(written)]
-        process = subprocess.Popen(command)
+        process = subprocess.Popen(command, env=as_installed())
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
         if process.returncode != 0:
             raise subprocess.CalledProcessError(process.returncode, command)
         return written.read_text(encoding="utf-8"), usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
+
+
+def as_installed() -> dict[str, str]:
+    """The environment for a whole command: Python keeps what it compiles, as it does for an installed package."""
+    return {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
 
 
 def many_points(evaluate: Callable[[NDArray[np.float64]], object], points: NDArray[np.float64]) -> float:

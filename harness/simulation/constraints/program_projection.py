@@ -1,15 +1,18 @@
 """The projection program at work: the nearest state that keeps the constraints, and how far away it is.
 
-One step of Newton's method for the position, then one for the velocity at the new position, compiled into one function:
-what is left of the residuals is of second order in them.
+One step of Newton's method for the position, then one for the velocity at the new position, in one function: what is
+left of the residuals is of second order in them.
 """
 
 from typing import Any
 
+import numpy as np
+
 from ...program.heyoka_function import COMPACT_FROM, heyoka_expressions, import_heyoka
 from ...program.motion_problem import MotionProblem, computing
+from ...program.numpy_function import NumpyFunction
 from ...program.precision import Precision
-from ..evaluation import Numbers, zeros
+from ..evaluation import CompiledIfItPays, Evaluation, Numbers, may_wait, zeros
 
 
 class ProgramProjection:
@@ -17,14 +20,12 @@ class ProgramProjection:
 
     def __init__(self, problem: MotionProblem, precision: Precision) -> None:
         self._nearest = problem.once(
-            ("projection", precision.name), problem.projection, lambda: nearest_state(problem, precision, opt_level=0)
+            ("projection", precision.name), problem.projection, lambda: _function(problem, precision)
         )
         self._inputs = zeros(precision, 1 + len(problem.state) + len(problem.parameters))
         self._moving = slice(1, 1 + len(problem.state))
         for place, name in enumerate(problem.parameters, start=1 + len(problem.state)):
             self._inputs[place] = precision.ratio(problem.values[name])
-        self._found = zeros(precision, len(problem.state) + 1)
-        self._projected = self._found[:-1]
 
     def project(self, instant: Any, state: Numbers) -> float:
         """Move a state, in place, to the nearest one that keeps the constraints.
@@ -40,9 +41,39 @@ class ProgramProjection:
         """
         self._inputs[0] = instant
         self._inputs[self._moving] = state
-        self._nearest(self._inputs, self._found)
-        state[:] = self._projected
-        return float(self._found[-1]) ** 0.5
+        found = self._nearest(self._inputs)
+        state[:] = found[:-1]
+        return float(found[-1]) ** 0.5
+
+
+def _function(problem: MotionProblem, precision: Precision) -> Evaluation:
+    """From t, the state and the open parameters to what `nearest_state` says."""
+    if not may_wait(problem, problem.projection, precision):
+        return nearest_state(problem, precision, opt_level=0)
+    return CompiledIfItPays(
+        lambda: _nearest_by_numpy(problem),
+        lambda: nearest_state(problem, precision, opt_level=0),
+        2 * problem.projection.operations,
+    )
+
+
+def _nearest_by_numpy(problem: MotionProblem) -> Evaluation:
+    function, n = NumpyFunction(problem.projection), len(problem.coordinates)
+    unused = np.zeros(len(problem.multipliers))
+    rows = {name: row for row, name in enumerate(function.outputs)}
+    position, velocity = (
+        [rows[f"{kind}_correction[{index}]"] for index in range(1, n + 1)] for kind in ("position", "velocity")
+    )
+
+    def nearest(inputs: Numbers) -> Numbers:
+        given = np.concatenate([inputs, unused])[:, None]
+        moved = given.copy()
+        moved[1 : 1 + n] += function.at_points(given)[position]
+        moved[1 + n : 1 + 2 * n] += function.at_points(moved)[velocity]
+        state, before = moved[1 : 1 + 2 * n, 0], given[1 : 1 + 2 * n, 0]
+        return np.append(state, np.sum((state - before) ** 2 / (1 + before**2)))
+
+    return nearest
 
 
 def nearest_state(problem: MotionProblem, precision: Precision, **options: Any) -> Any:

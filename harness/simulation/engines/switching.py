@@ -152,20 +152,21 @@ class SwitchingEngine:
         if asked is EngineName.RUNGE_KUTTA:
             return _runge_kutta(self._problem, self._request, self._precision, end)
         taylor = _taylor(self._problem, self._request, self._precision, end)
-        if between is None or not self._weighs():
+        if between is None or not self._either:
             return taylor
         steps = taylor.steps_ahead(end, TRIAL)
-        if steps is None:
+        if steps is None or not comparable(self._request.tol):
             return taylor
         self.choice = quicker_engine(steps, self._problem.motion.operations, taylor.tol, between)
         if self.choice.engine is EngineName.TAYLOR:
             return taylor
         return _runge_kutta(self._problem, self._request, self._precision, end)
 
-    def _weighs(self) -> bool:
-        """Whether both engines can follow the motion, and nothing asks for one of them."""
+    @property
+    def _either(self) -> bool:
+        """Whether nothing asks for one of the engines that take the motion program."""
         open_ = self._request.engine is EngineName.AUTO and self._request.compact is None
-        return open_ and self._precision.name == "double" and comparable(self._request.tol)
+        return open_ and self._precision.name == "double"
 
     @cached_property
     def _second(self) -> Engine:
