@@ -6,16 +6,18 @@ the library's text, this file. It is used only where it belongs to the user, is 
 checksum that it was made with; where there is none, or none can be made, a run loads the library, and finds the same.
 The checksum of so large a file takes as long as Maxima does: it is taken when the machine was started since, or the
 file is another, or was written to.
+A process holds the image that it uses by a lock, from before it looks at it to its own end; every other one removes
+what nobody has used for long, or what is too many, and nothing that is held.
 Only GCL 2.6, on which Maxima of Debian 12 runs, makes them here.
 """
 
+import fcntl
 import os
 import shutil
 import stat
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
-from functools import cache
+from contextlib import contextmanager, suppress
 from hashlib import file_digest, sha256
 from pathlib import Path
 from secrets import token_hex
@@ -30,17 +32,26 @@ ARGUMENTS = ("-eval", "(cl-user::run)", "-f", "--")
 QUIET = ("--init=/dev/null", "--very-quiet")
 
 KEPT = 3  # images, of so many versions or installations; more while they are in use
-IN_USE = 3600.0  # seconds after its last use in which an image is not removed
+MOST = 8  # images, whenever they were last used: a gigabyte
+IN_USE = 3600.0  # seconds after its last use for which an image is one of these
 DAY = 86400.0  # seconds
+UNUSED = 7 * DAY  # after which the last one goes, too
 FREE_SPACE = 1024 * MIB  # on a fuller disk none is made
-MAKING = Limits(seconds=40.0, sandbox=Sandbox.TRUSTED)  # the library alone is run
+MAKING = Limits(seconds=100.0, sandbox=Sandbox.TRUSTED)  # the library alone is run
 BOOT = Path("/proc/sys/kernel/random/boot_id")  # Linux names there each start of the machine
 PRELOAD = Path(__file__).with_name("preload.lisp")
 JOBS = tuple(Path(__file__).with_name(f"{name}.lisp") for name in ("headless", "description"))  # what runs are made of
 COMPILED = ("functions.lisp", "functions.o")  # all Lisp functions, and what they were compiled to
 
 
-@cache
+_held: list[int] = []
+_known: dict[tuple[str, Path, frozenset], Path | None] = {}
+
+
+class _MadeElsewhere(Exception):
+    """Another process is making an image."""
+
+
 def preloaded_image(maxima: str, library: Path, environment: frozenset[tuple[str, str]]) -> Path | None:
     """The program that is Maxima with the library loaded.
 
@@ -54,14 +65,28 @@ def preloaded_image(maxima: str, library: Path, environment: frozenset[tuple[str
     Returns
     -------
     Path or None
-        It takes `ARGUMENTS` before Maxima's own; None where there is none and none can be made.
+        It takes `ARGUMENTS` before Maxima's own; None where there is none and none can be made, or it was taken away,
+        or while another process makes one.
     """
-    with suppress(OSError, RuntimeError, LimitExceeded):  # RuntimeError: there is no home directory
+    asked = (maxima, library, environment)
+    if asked not in _known:
+        with suppress(_MadeElsewhere):
+            _known[asked] = _image(*asked)
+    image = _known.get(asked)
+    return image if image is not None and image.exists() else None
+
+
+def _image(maxima: str, library: Path, environment: frozenset[tuple[str, str]]) -> Path | None:
+    with suppress(OSError, RuntimeError):  # RuntimeError: there is no home directory
         folder = _own_folder()
         image = folder / f"{_name(maxima, library, environment)}.image"
-        if not (_is_as_seen(image) or _is_whole(image)) or _is_to_be_tried_again(image):
-            _make(image, maxima, library, dict(environment))
-            _remove_older_ones(folder)
+        if not _is_sound(image):
+            with _alone_in(folder):
+                if not _is_sound(image):
+                    _make(image, maxima, library, dict(environment))
+                _hold(image)
+        with suppress(OSError):  # another process removes them
+            _remove_unused_ones(folder)
         if image.stat().st_size:
             _note(image)
             return image
@@ -92,6 +117,26 @@ def _name(maxima: str, library: Path, environment: frozenset[tuple[str, str]]) -
 
 def _texts(library: Path) -> Iterator[Path]:
     return (file for file in library.rglob("*") if file.suffix in (".mac", ".lisp"))
+
+
+@contextmanager
+def _alone_in(folder: Path) -> Iterator[None]:
+    """See that one process at a time makes an image; several would make the same, each the slower for the others."""
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        with suppress(OSError):  # a file system without locks
+            try:
+                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                raise _MadeElsewhere from None
+        yield
+    finally:
+        os.close(descriptor)
+
+
+def _is_sound(image: Path) -> bool:
+    """Whether there is an image, held from now on, and as it was made, or no need to try again to make one."""
+    return _hold(image) and (_is_as_seen(image) or _is_whole(image)) and not _is_to_be_tried_again(image)
 
 
 def _is_whole(*files: Path) -> bool:
@@ -153,8 +198,11 @@ def _make(image: Path, maxima: str, library: Path, environment: Mapping[str, str
         inside = {"HOME": str(directory), "TMPDIR": str(directory), "MAXIMA_USERDIR": str(directory), "LC_ALL": "C"}
         confinement = Confinement(directory, {**environment, **ENVIRONMENT, **inside}, (), MAKING)
         _take_along(kept, directory)
-        _save(draft, maxima, library, confinement)
-        if not _runs(draft, confinement):
+        runs = False
+        with suppress(LimitExceeded):
+            _save(draft, maxima, library, confinement)
+            runs = _runs(draft, confinement)
+        if not runs:
             draft.unlink(missing_ok=True)
             draft.touch()
         _keep([directory / name for name in COMPILED], kept)
@@ -198,13 +246,35 @@ def _keep(made: Sequence[Path], kept: Sequence[Path]) -> None:
         _checksum_file(kept).write_text(checksum, encoding="ascii")
 
 
-def _remove_older_ones(folder: Path) -> None:
-    last_used = {image: _last_used(image) for image in folder.glob("*.image")}
-    for image in sorted(last_used, key=last_used.__getitem__, reverse=True)[KEPT:]:
-        if last_used[image] < time.time() - IN_USE:
-            image.unlink(missing_ok=True)
-            _checksum_file([image]).unlink(missing_ok=True)
-            _sight_file(image).unlink(missing_ok=True)
+def _hold(image: Path) -> bool:
+    """Have an image stay until this process ends; whether it is there."""
+    try:
+        descriptor = os.open(image, os.O_RDONLY)
+    except FileNotFoundError:
+        return False
+    with suppress(OSError):  # a file system without locks, on which nothing is removed either
+        fcntl.flock(descriptor, fcntl.LOCK_SH)
+    _held.append(descriptor)
+    return image.exists()  # and was not removed before it was locked
+
+
+def _remove_unused_ones(folder: Path) -> None:
+    now = time.time()
+    idle = {image: now - _last_used(image) for image in folder.glob("*.image")}
+    images = sorted((each for each in idle if each.stat().st_size), key=idle.__getitem__)
+    stay = {each for each in images[:MOST] if idle[each] < IN_USE}
+    stay |= {each for each in images[:KEPT] if idle[each] < UNUSED}
+    stay |= {each for each in idle if each not in images and idle[each] < DAY}  # they say that none can be made
+    for each in idle.keys() - stay:
+        _remove(each)
+
+
+def _remove(image: Path) -> None:
+    """Remove an image and what is noted of it, unless a process holds it."""
+    with suppress(OSError), image.open("rb") as file:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        for each in (image, _checksum_file([image]), _sight_file(image)):
+            each.unlink(missing_ok=True)
 
 
 def _last_used(image: Path) -> float:

@@ -2,15 +2,17 @@
 
 import os
 import shutil
+import time
 from pathlib import Path
 
 import pytest
 
 from holonom import maxima, preloaded
+from holonom.confined import Limits, Sandbox
 from holonom.documents import Document, ask
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
-make_image = preloaded.preloaded_image.__wrapped__
+make_image = preloaded._image
 
 
 def image(library: Path = maxima.LIBRARY) -> Path | None:
@@ -108,15 +110,80 @@ def test_a_maxima_that_cannot_save_itself_is_asked_once_a_day(cache, tmp_path, m
     assert (tmp_path / "asked").read_text() == "asked\nasked\n"
 
 
-@pytest.mark.parametrize(("in_use", "left"), [(3600.0, 2), (-1.0, 1)])
-def test_another_text_of_the_library_has_another_image_and_unused_ones_go(made, tmp_path, monkeypatch, in_use, left):
-    monkeypatch.setattr(preloaded, "KEPT", 1)
-    monkeypatch.setattr(preloaded, "IN_USE", in_use)
+def test_another_text_of_the_library_has_another_image(made, tmp_path):
     library = shutil.copytree(maxima.LIBRARY, tmp_path / "library")
     second = image(library)
-    assert second in (kept := list(made.parent.glob("*.image")))
     assert second != made
-    assert len(kept) == left
+    assert {*made.parent.glob("*.image")} == {made, second}
+
+
+def test_an_image_that_is_taken_away_is_done_without(made, monkeypatch):
+    asked = (shutil.which("maxima"), maxima.LIBRARY, frozenset({("PATH", "/usr/bin:/bin")}))
+    monkeypatch.setattr(preloaded, "_known", {})
+    assert preloaded.preloaded_image(*asked) == made
+    made.unlink()
+    assert preloaded.preloaded_image(*asked) is None
+
+
+def test_while_one_process_makes_an_image_others_do_without_and_ask_again(made, tmp_path, monkeypatch):
+    asked = (shutil.which("maxima"), maxima.LIBRARY, frozenset({("PATH", "/usr/bin:/bin")}))
+    monkeypatch.setattr(preloaded, "_known", {})
+    made.rename(tmp_path / "finished")
+    with preloaded._alone_in(made.parent):
+        assert preloaded.preloaded_image(*asked) is None
+        (tmp_path / "finished").rename(made)
+    assert preloaded.preloaded_image(*asked) == made
+
+
+def test_a_maxima_that_takes_too_long_to_save_itself_is_not_waited_for_twice(cache, tmp_path, monkeypatch):
+    slow = tmp_path / "maxima"
+    slow.write_text(f"#!/bin/sh\necho asked >> {tmp_path}/asked\nexec sleep 60\n")
+    slow.chmod(0o755)
+    monkeypatch.setattr(preloaded, "MAKING", Limits(seconds=0.2, sandbox=Sandbox.TRUSTED))
+    for _ in range(2):
+        assert make_image(str(slow), maxima.LIBRARY, frozenset()) is None
+    assert (tmp_path / "asked").read_text() == "asked\n"
+
+
+@pytest.fixture
+def images(tmp_path):
+    """Ten images, each last used so many seconds before the one before it, the first one just now."""
+
+    def used(step: float, content: str = "an image") -> list[Path]:
+        files = [tmp_path / f"{i}.image" for i in range(10)]
+        for i, file in enumerate(files):
+            for each in (file, preloaded._sight_file(file), preloaded._checksum_file([file])):
+                each.write_text(content if each == file else "")
+                os.utime(each, (time.time() - i * step,) * 2)
+        return files
+
+    return used
+
+
+@pytest.mark.parametrize(
+    ("step", "left"),
+    [(60.0, preloaded.MOST), (1000.0, 4), (preloaded.IN_USE + 1.0, preloaded.KEPT), (6 * preloaded.DAY, 2)],
+)
+def test_images_that_nobody_uses_go(images, step, left):
+    files = images(step)
+    preloaded._remove_unused_ones(files[0].parent)
+    assert {each.stem for each in files[0].parent.iterdir()} == {file.stem for file in files[:left]}
+
+
+def test_what_says_that_no_image_can_be_made_goes_after_a_day_and_keeps_no_place(images):
+    files = images(preloaded.DAY / 4 + 1.0, "")
+    preloaded._remove_unused_ones(files[0].parent)
+    assert [file.exists() for file in files] == [i < 4 for i in range(10)]
+
+
+def test_an_image_that_a_process_uses_stays(images):
+    files = images(preloaded.UNUSED)
+    assert preloaded._hold(files[9])
+    preloaded._remove_unused_ones(files[0].parent)
+    assert [file.exists() for file in files] == [i in (0, 9) for i in range(10)]
+    os.close(preloaded._held.pop())
+    preloaded._remove_unused_ones(files[0].parent)
+    assert not files[9].exists()
 
 
 def test_compiled_functions_serve_until_they_are_torn_or_changed(made, tmp_path):
