@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 MAKEFILE = Path(__file__).resolve().parents[1] / "Makefile"
+CI = MAKEFILE.parent / ".ci" / "run"
 TOOLS = ("sh", "env", "find", "sort", "mkdir", "dirname", "touch", "id", "sed", "expand", "nice", "true")
 HOLONOM = """#!/bin/sh
 echo "$1" >> calls
@@ -139,3 +140,24 @@ def test_no_python_that_is_new_enough_is_one_sentence(make):
     assert done.returncode == 2
     assert "Holonom needs Python 3.11 or later: please install it." in done.stderr
     assert "apt-get install python3-venv" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("check", "check_long", "at_hand", "status", "told"),
+    [
+        ("exit 0", "exit 0", "3600", 0, ""),
+        ("exit 2", "echo must not run >&2", "3600", 2, ""),
+        ("exit 0", "exit 2", "3600", 2, ""),
+        ("exit 0", "sleep 60", "2", 0, "no time left"),
+        ("exit 0", "echo must not run >&2", "0", 0, "no time left"),
+    ],
+)
+def test_ci_runs_the_long_tests_only_while_there_is_time(check, check_long, at_hand, status, told, tmp_path):
+    for name in ("chromium", "chromedriver", "pdflatex"):
+        program(tmp_path / name, "#!/bin/sh\n")
+    program(tmp_path / "make", f"#!/bin/sh\ncase $1 in check) {check} ;; check-long) {check_long} ;; esac\n")
+    environment = os.environ | {"PATH": f"{tmp_path}:{os.environ['PATH']}", "SECONDS_AT_HAND": at_hand}
+    done = subprocess.run([CI], env=environment, capture_output=True, text=True, check=False, timeout=30)
+    assert done.returncode == status, done.stderr
+    assert told in done.stderr
+    assert bool(told) == bool(done.stderr)
