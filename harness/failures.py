@@ -78,6 +78,11 @@ class Failure(Enum):
     NO_SUCH_SCENE = ("there is no scene {detail}", "")
     TOO_MANY_SAMPLES = ("{detail}", "ask for fewer, for a file in CSV or Parquet alone, or raise --memory-limit")
     DISK_TOO_SMALL = ("{detail}", "ask for fewer, or write to another disk")
+    TIME_TOO_SHORT = (
+        "{detail}",
+        "ask for fewer digits, a lower order or an earlier end, or allow it the time with --time-limit",
+    )
+    MEMORY_TOO_SMALL = ("{detail}", "ask for fewer digits or a lower order")
     SETTING_TOO_LARGE = ("{detail} is beyond what a double holds", "set a smaller number, or one less close to zero")
     NOT_A_SCENE_NAME = ("{detail} cannot be the name of a scene", "give the name that the scene is assigned to")
     NOT_A_PROGRAM = ("this is not a motion program: {detail}", "write it anew with `holonom program`")

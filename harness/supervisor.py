@@ -27,6 +27,7 @@ OUT_OF_TIME = 2
 CRASHED = 3
 ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 QUIET_ENDS = (*ENDING_SIGNALS, signal.SIGPIPE)
+EXPECTED = 120.0  # seconds: what surely takes longer is to be asked for with a time limit
 TICK = 0.1  # seconds between two looks at the clock
 ROUNDS = 500  # attempts to end all that a command started, a hundredth of a second each
 CLOCK = struct.Struct("dd")  # seconds that the command may take, and the instant at which they are over
@@ -88,6 +89,14 @@ def limit_time(seconds: float) -> None:
     """Say how much time the command has from now on; without supervision it is not limited."""
     if _board is not None:
         CLOCK.pack_into(_board, 0, seconds, time.monotonic() + seconds)
+
+
+def time_left() -> float:
+    """Seconds that the command has left, `EXPECTED` where nothing limits it; infinite without supervision."""
+    if _board is None:
+        return math.inf
+    seconds, deadline = CLOCK.unpack_from(_board, 0)
+    return deadline - time.monotonic() if math.isfinite(seconds) else EXPECTED
 
 
 @contextmanager

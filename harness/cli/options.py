@@ -10,7 +10,7 @@ import click
 
 from ..confined import Limits, Sandbox, bubblewrap
 from ..failures import Failure, HolonomError
-from ..supervisor import limit_time
+from ..supervisor import EXPECTED, limit_time
 from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile
 
 if TYPE_CHECKING:
@@ -90,7 +90,8 @@ def runs_scenes(command: Callable[..., int]) -> Callable[..., int]:
         metavar="SECONDS",
         type=float,
         callback=_read_seconds,
-        help=f"Time for the whole command; without it, {defaults.seconds:g} s for each run of Maxima.",
+        help=f"Time for the whole command; without it, {defaults.seconds:g} s for each run of Maxima, and nothing in "
+        f"many digits that takes longer than {EXPECTED:g} s.",
     )
     @click.option(
         "--memory-limit",

@@ -19,6 +19,7 @@ import numpy as np
 
 from ..confined import Limits
 from ..failures import Failure, HolonomError
+from ..program.expense import order_for, require_means
 from ..program.heyoka_function import dynamics, heyoka_expressions, import_heyoka, zero_multipliers
 from ..program.motion_problem import MotionProblem, motion_problem
 from ..program.precision import GUARD_DIGITS, Precision, read_precision
@@ -66,6 +67,7 @@ def expand(problem: MotionProblem, order: int, precision: Precision) -> MotionSe
     HolonomError
         heyoka is not installed; the order is too high, or a coefficient is too large for the numbers.
     """
+    require_means(problem, precision, order)
     integrator = expanding_integrator(problem, order, precision)
     integrator.step(write_tc=True)
     coefficients = integrator.tc
@@ -101,8 +103,10 @@ def continue_motion(problem: MotionProblem, until: Fraction, precision: Precisio
     HolonomError
         heyoka is not installed; the steps shrink to nothing, or there are more than `MOST_STEPS`.
     """
+    last = precision.ratio(until)
+    require_means(problem, precision, order_for(precision.digits + GUARD_DIGITS), last)
     integrator = continuing_integrator(problem, precision)
-    last, states = precision.ratio(until), [(integrator.time, integrator.state.copy())]
+    states = [(integrator.time, integrator.state.copy())]
     shortest = abs(last - integrator.time) * precision.number(f"1e-{precision.sure_digits}")
 
     def keep_state(following: Any) -> bool:

@@ -86,7 +86,7 @@ def leaving(what: str, command: str) -> Callable[[Path], object]:
 
 
 FINISHED = "printf '%s\\nFINISHED\\n-\\n0\\n\\n%s\\n' ${{mark#outcome-}} ${{mark#outcome-}} > $mark"
-OTHER_MAXIMA = {"PATH": "{here}/bin:" + os.environ["PATH"]}
+OTHER_MAXIMA = {"PATH": "{here}/bin:" + os.environ["PATH"], "XDG_CACHE_HOME": "{here}/../cache"}
 NO_PROGRAMS = {"PATH": "{here}"}
 DERIVE = "derive scene.mac --json out.json"
 
@@ -362,6 +362,19 @@ WORK = [
     Fault("more samples than a disk holds", f"simulate scene.mac --until 1 --samples {10**15} -o x.csv", "MiB of disk"),
     Fault("a billion orders", "series scene.mac --order 1000000000", "MiB of memory", long=True),
     Fault("a billion digits", "series scene.mac --order 4 --digits 1000000000", "MiB of memory", long=True),
+    Fault(
+        "a thousand digits",
+        "simulate swing.mac --until 10 --precision 1000",
+        "to order 1164 in 1000 digits",
+        prepare=holding("swing.mac", SWING),
+        long=True,
+    ),
+    Fault(
+        "an order of a million",
+        "series scene.mac --order 1000000 --precision 50",
+        "1 expansion to order 1000000",
+        long=True,
+    ),
     Fault("a tolerance of nan", "simulate scene.mac --until 1 --tol nan", "tolerances", long=True),
     Fault("a tolerance of zero", "simulate scene.mac --until 1 --tol 0", "tolerances", long=True),
     Fault("an end before the start", "simulate scene.mac --until -1", "not after the start", long=True),

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...language import translatable
+from ...program.expense import order_for
 from ...program.motion_problem import MotionProblem
 from ...program.motion_program import Solve
 from ...program.precision import Precision, read_precision
@@ -98,12 +99,7 @@ class Repeated:
 
 def operations_of_a_step(problem: MotionProblem, tol: float) -> int:
     """Operations of the expansion that a step takes; the cures of drift are not counted."""
-    return expansion_operations(acceleration_program(problem), order_of_step(tol))
-
-
-def order_of_step(tol: float) -> int:
-    """Order to which heyoka expands for a tolerance (Jorba & Zou, Experimental Mathematics 14 (2005) 99)."""
-    return math.ceil(1 - math.log(tol) / 2)
+    return expansion_operations(acceleration_program(problem), order_for(-math.log10(tol)))
 
 
 def state_of(numbers: Precision, values: Any) -> State:

@@ -11,10 +11,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from ...program.expense import order_for
 from ...program.precision import read_precision
 from ...simulation.engines.taylor import TaylorEngine
 from ...simulation.request import Stabilization
-from .engines import order_of_step, state_of
+from .engines import state_of
 from .measurement import State, relative_error
 
 if TYPE_CHECKING:
@@ -66,8 +67,8 @@ def find_reference(problem: MotionProblem, instants: Sequence[Fraction], digits:
         states=states,
         digits=fine,
         confirming_digits=coarse,
-        order=order_of_step(_tolerance(fine)),
-        confirming_order=order_of_step(_tolerance(coarse)),
+        order=order_for(fine),
+        confirming_order=order_for(coarse),
         difference=max(relative_error(confirming[instant], states[instant]) for instant in instants),
     )
 

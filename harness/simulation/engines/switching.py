@@ -9,13 +9,14 @@ constraints are as independent again as they were when it did.
 from collections import deque
 from collections.abc import Callable, Iterator
 from functools import cached_property
+from math import log10
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ...failures import Failure, HolonomError
 from ...program.motion_problem import MotionProblem
-from ...program.precision import Precision
+from ...program.precision import GUARD_DIGITS, Precision
 from ...program.sign_pattern import with_values_in
 from ..diagnosis import HardCase
 from ..evaluation import Numbers, as_floats
@@ -247,8 +248,11 @@ def _without_pieces(engine: Engine, until: Any) -> Iterator[Piece]:
 
 
 def _taylor(problem: MotionProblem, request: SimulationRequest, precision: Precision, end: Any) -> "TaylorEngine":
+    from ...program.expense import order_for, require_means
     from .taylor import TaylorEngine
 
+    digits = precision.digits + GUARD_DIGITS if request.tol is None else -log10(request.tol)
+    require_means(problem, precision, order_for(digits), end)
     decay = decay_until(end, problem, precision)
     return TaylorEngine(problem, request.tol, precision, request.drift, request.compact, decay)
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ...failures import Failure, HolonomError
+from ...program.expense import HIGH_ORDER
 from ...program.heyoka_function import import_heyoka
 from ...program.motion_problem import MotionProblem, computing
 from ...program.precision import Precision, read_precision
@@ -73,6 +74,9 @@ class TaylorEngine(ProgramEngine):
         self.compile_seconds = time.perf_counter() - begun
         self.tol = float(self._integrator.tol)
         self._first_block = FINE_BLOCK if self.tol <= FINE else FIRST_BLOCK
+        self._longest_block = LONGEST_BLOCK
+        if self._integrator.order > HIGH_ORDER:  # one step is long enough to tell of
+            self._first_block = self._longest_block = 1
         self._allowed = max(DRIFT * 10.0**-self.precision.sure_digits, self.tol)
 
     def steps_ahead(self, until: Any, trial: int) -> int | None:
@@ -105,10 +109,10 @@ class TaylorEngine(ProgramEngine):
     def _prepare_next(self, until: Any) -> None:
         """Project, choose the next block's length, and compile better code where that pays."""
         if self._keeper is None:
-            self._length = LONGEST_BLOCK
+            self._length = self._longest_block
         else:
             drift = self._keeper.project(self.time, self.state)
-            self._length = block_within(self._allowed, self._length, drift)
+            self._length = min(block_within(self._allowed, self._length, drift), self._longest_block)
         self._compile_if_it_pays(until)
 
     def _keep_constraints(self) -> None:
