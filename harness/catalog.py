@@ -30,7 +30,7 @@ IN_MAXIMA = re.compile(
     rf'|\b(?:then|else) "(inverse[^"]*)"'
     rf'|"((?:Compared|Holds|Printed|What is)[^"]*\.)"'  # remarks on the print
 )
-IN_TOML = re.compile(rf"^(?:meaning|where|comment) = {STRING}$", re.MULTILINE)
+IN_TOML = re.compile(rf"^(?:meaning|where|comment|heading|aim|drawing|curves) = {STRING}$", re.MULTILINE)
 KEPT = {
     "placeholders": re.compile(r"%(?:\(\w+\)[.\d]*[a-z]|%)"),
     "marks": re.compile(r"<[^>]+>"),

@@ -3,3 +3,14 @@
 A chapter says which runs it needs and what it makes of their results; a template turns that into a page. Numbers,
 equations and verdicts on the pages come from the runs, and the Maxima lines from the source files, at every build.
 """
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+TEMPLATES = Path(__file__).with_name("templates")
+
+
+def table(name: str) -> dict[str, Any]:
+    """What the pages are told beside the runs: the table of that name, which lies with the templates."""
+    return tomllib.loads((TEMPLATES / f"{name}.toml").read_text(encoding="utf-8"))

@@ -10,9 +10,8 @@ from ..crosscheck.lagranges_method import OPINION
 from ..errata import PrintedEquation
 from ..language import translatable
 from ..record import Equation, Scene
-from .excerpts import Excerpt
+from .excerpts import Excerpt, step
 from .runs import Derived
-from .steps import step
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,9 @@ from pathlib import Path
 
 from ..failures import Failure, HolonomError
 from ..maxima import statement_ends
+from . import table
+
+STEPS = table("steps")
 
 
 @dataclass(frozen=True)
@@ -38,6 +41,17 @@ def excerpt(root: Path, file: str, name: str) -> Excerpt:
     start = _with_comment(text, found.start())
     end = next(statement_ends(text, found.start()), len(text))
     return Excerpt(file, name, text.count("\n", 0, start) + 1, text[start:end])
+
+
+def step(root: Path, name: str) -> tuple[Excerpt, ...]:
+    """The Maxima lines that derive an equation, given its id.
+
+    Raises
+    ------
+    HolonomError
+        A function that should be there is not.
+    """
+    return tuple(excerpt(root, file, function) for file, functions in STEPS[name].items() for function in functions)
 
 
 def _with_comment(text: str, start: int) -> int:

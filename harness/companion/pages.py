@@ -4,7 +4,6 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
@@ -18,13 +17,12 @@ from ..mathjson import number
 from ..record import Scene
 from ..reference.topics import Topic
 from ..simulation.diagnosis import engine_text, remarks
-from . import mathematics
+from . import TEMPLATES, mathematics
 from .chapter import Chapter
 from .excerpts import Excerpt
 from .finish import Place
 from .finish import terms as terms_in
 
-TEMPLATES = Path(__file__).with_name("templates")
 LONGEST_COEFFICIENT = 12  # characters of an exact number in a table
 NAMED_BY_MAXIMA = re.compile(r"(no control can make )(.+)( vanish)")
 CODE_IN_TEXT = re.compile(r"`([^`]+)`")

@@ -1,62 +1,25 @@
-"""The book of the paper: its chapters and their order."""
+"""The book of the paper: its chapters and their order, which `contents.toml` has."""
 
+from functools import partial
+from importlib import import_module
 from pathlib import Path
 
 from ..files import shared
 from ..language import translatable
-from .book import APPENDICES, Book
-from .chapters import (
-    effects,
-    equations_of_motion,
-    free_motion,
-    further_reading,
-    gallery,
-    hard_cases,
-    initial_motion,
-    misprints,
-    notation,
-    prescribed_reactions,
-    radius_of_convergence,
-    reference,
-    the_system,
-    trajectory_control,
-    turn_the_knob,
-    universal_controls,
-    worked_example,
-    your_own_system,
-)
-from .chapters import (
-    work_precision as accuracy,
-)
+from . import table
+from .book import Book
+from .chapter import Chapter, Page
 from .sessions import sessions
 
 REPOSITORY = shared("maxima").parent
 
-CHAPTERS = {
-    translatable("The paper"): (the_system, equations_of_motion, free_motion, initial_motion, worked_example),
-    translatable("What the paper left open"): (
-        universal_controls,
-        trajectory_control,
-        prescribed_reactions,
-        radius_of_convergence,
-        turn_the_knob,
-        accuracy,
-        hard_cases,
-        effects,
-    ),
-    APPENDICES: (misprints, notation, your_own_system, gallery, reference, further_reading),
-}
-
 
 def book_of_the_paper(root: Path = REPOSITORY) -> Book:
-    """The companion of the paper.
-
-    Parameters
-    ----------
-    root : Path
-        The repository whose examples and Maxima files it shows.
-    """
-    parts = tuple((title, tuple(each.chapter(root) for each in chapters)) for title, chapters in CHAPTERS.items())
+    """The companion of the paper, with the examples and Maxima files of a repository."""
+    parts = tuple(
+        (part["heading"], tuple(_chapter(root, **each) for each in part["chapter"]))
+        for part in table("contents")["part"]
+    )
     return Book(
         title=translatable("Free motion and initial motion"),
         subtitle=translatable(
@@ -69,3 +32,18 @@ def book_of_the_paper(root: Path = REPOSITORY) -> Book:
         parts=parts,
         sessions=sessions(root, (chapter for _, chapters in parts for chapter in chapters)),
     )
+
+
+def chapter_of_the_paper(name: str, root: Path = REPOSITORY) -> Chapter:
+    """A chapter of that book by the name of its template."""
+    return next(each for each in book_of_the_paper(root).chapters if each.template == f"{name}.html")
+
+
+def _chapter(root: Path, name: str, heading: str, aim: str, data: bool = False) -> Chapter:
+    """A chapter that computes, or one whose page is made of a table alone; both bear their template's name."""
+    about = (name.replace("_", "-"), heading, aim, f"{name}.html")
+    if data:
+        content = table(name)
+        return Chapter(*about, runs={}, page=lambda results: Page(content, sources=tuple(content.get("sources", ()))))
+    module = import_module(f".chapters.{name}", __package__)
+    return Chapter(*about, runs=module.runs(root), page=partial(module.page, root))

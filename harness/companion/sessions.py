@@ -1,16 +1,14 @@
 """The Maxima session of each chapter, to be downloaded: an example, and what the chapter asks of it."""
 
 import re
-import tomllib
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
 from ..language import gettext, translated
+from . import table
 from .chapter import Chapter
-from .pages import TEMPLATES
 
-DATA = TEMPLATES / "sessions.toml"
 LOADING = re.compile(r"^load\(.*\)\$$", re.MULTILINE)
 PRINTING = re.compile(r"^(print_derivation\(.*\)\$|if holonom_print then\n(.+\n)*?.*\)\)\$)$", re.MULTILINE)
 
@@ -29,7 +27,7 @@ class Session:
 
 def sessions(root: Path, chapters: Iterable[Chapter]) -> dict[str, Session]:
     """The sessions, by the slugs of those chapters that have one."""
-    known = tomllib.loads(DATA.read_text(encoding="utf-8"))
+    known = table("sessions")
     return {
         chapter.slug: Session(
             chapter.slug,

@@ -11,7 +11,7 @@ from sympy import Symbol, sin
 from holonom.companion import runs
 from holonom.companion.book import APPENDICES
 from holonom.companion.cards import named_equations, scene_named
-from holonom.companion.examples import BEAD, INITIAL_SCENE, PAPER
+from holonom.companion.chapters import BEAD, INITIAL_SCENE, PAPER
 from holonom.companion.paper import REPOSITORY, book_of_the_paper
 
 CARDS = {

@@ -2,9 +2,8 @@
 
 import pytest
 
-from holonom.companion.excerpts import excerpt
+from holonom.companion.excerpts import STEPS, excerpt, step
 from holonom.companion.paper import REPOSITORY
-from holonom.companion.steps import STEPS, step
 from holonom.failures import Failure, HolonomError
 
 TEXT = """/* The head. */

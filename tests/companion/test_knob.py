@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from holonom.companion.chapters.turn_the_knob import LAWS, chapter
+from holonom.companion.chapters.turn_the_knob import LAWS, runs
 from holonom.companion.paper import REPOSITORY
 from holonom.program.numpy_function import NumpyFunction
 
 NODE = shutil.which("node")
 pytestmark = pytest.mark.skipif(NODE is None, reason="no script was run: node is not installed")
 SETTINGS = {"u0": 0.7, "omega": 2.0, "c": 1.2, "q1": 1.0, "q2": -0.4, "dot(q1)": 0.5, "dot(q2)": 1.0}
-RUNS = chapter(REPOSITORY).runs
+RUNS = runs(REPOSITORY)
 UNTIL, SAMPLES = 2.0, 21
 RUN = """
 const knob = require(process.argv[1]);

@@ -1,7 +1,6 @@
 """The pages in other languages: all their prose goes through the catalog, and each has its twin."""
 
 import re
-import tomllib
 from gettext import NullTranslations
 from xml.etree.ElementTree import Element
 
@@ -12,9 +11,9 @@ from click.testing import CliRunner
 from holonom import language
 from holonom.benchmark.machine import this_machine
 from holonom.cli import holonom
-from holonom.companion import book
+from holonom.companion import book, table
 from holonom.companion import pages as companion_pages
-from holonom.companion.chapters import further_reading, gallery
+from holonom.companion.chapters import gallery
 from holonom.companion.paper import REPOSITORY, book_of_the_paper
 from holonom.files import write_whole_directory
 from holonom.language import speaking
@@ -104,9 +103,9 @@ def outside(text: str) -> str:
 
 def names() -> set[str]:
     """Words that are the same in every language: of authors, works, machines, effects and options."""
-    data = tomllib.loads(further_reading.DATA.read_text())
-    texts = [text for work in data["work"] for text in work.values()] + [
-        word[tongue] for word in data["word"] for tongue in ("english", "chinese")
+    data = table("further_reading")
+    texts = [text for work in data["works"].values() for text in work.values()] + [
+        word[tongue] for word in data["words"] for tongue in ("english", "chinese")
     ]
     texts += [str(this_machine()), *Stabilization, "spring damping English DOI"]
     return {word for text in texts for word in WORD.findall(text)}

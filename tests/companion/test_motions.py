@@ -29,12 +29,12 @@ def own_pages(tmp_path, drawing: str):
 
 
 def test_every_example_is_in_the_gallery():
-    shown = {exhibit.file for exhibit in EXHIBITS}
+    shown = {exhibit["file"] for exhibit in EXHIBITS}
     examples = {str(file.relative_to(REPOSITORY)) for file in (REPOSITORY / "examples").rglob("*.mac")}
     assert shown == examples - {"examples/paper/printed.mac"}
 
 
-@pytest.mark.parametrize("name", [exhibit.name for exhibit in EXHIBITS])
+@pytest.mark.parametrize("name", [exhibit["name"] for exhibit in EXHIBITS])
 def test_every_exhibit_moves_stands_still_and_has_its_curves(companion, name):
     loaded = set(pages.references(companion / "gallery.html"))
     assert {f"figures/{name}-{kind}.svg" for kind in ("moving", "still", "curves")} <= loaded

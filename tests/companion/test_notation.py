@@ -4,21 +4,22 @@ from dataclasses import fields
 
 import pytest
 
-from holonom.companion.chapters.notation import SYMBOLS
+from holonom.companion import table
+from holonom.companion.excerpts import STEPS
 from holonom.companion.paper import REPOSITORY
-from holonom.companion.steps import STEPS
 from holonom.record import Scene, System
 
+SYMBOLS = table("notation")["symbols"]
 RECORD = {"system": {each.name for each in fields(System)}, "scene": {each.name for each in fields(Scene)}}
 FILES = [path.relative_to(REPOSITORY) for path in sorted((REPOSITORY / "maxima").rglob("*.mac"))]
 
 
-@pytest.mark.parametrize("function", [each.maxima for each in SYMBOLS if each.maxima])
+@pytest.mark.parametrize("function", [each["maxima"] for each in SYMBOLS if each["maxima"]])
 def test_maxima_functions_are_defined(function):
     assert any(f"\n{function}(" in (REPOSITORY / file).read_text() for file in FILES)
 
 
-@pytest.mark.parametrize("path", [each.python for each in SYMBOLS])
+@pytest.mark.parametrize("path", [each["python"] for each in SYMBOLS])
 def test_python_names_are_in_the_record(path):
     if path.startswith("equations["):
         assert path.split('"')[1] in STEPS

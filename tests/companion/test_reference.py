@@ -7,14 +7,14 @@ import pages
 import pytest
 
 from holonom.companion.book import STYLE
-from holonom.companion.chapters import reference
 from holonom.companion.pages import Contents, Entry, Part, chapter_page, index_page, topic_page
+from holonom.companion.paper import chapter_of_the_paper
 
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory) -> Path:
     """A companion whose one chapter is the reference."""
-    directory, chapter = tmp_path_factory.mktemp("reference"), reference.chapter(Path())
+    directory, chapter = tmp_path_factory.mktemp("reference"), chapter_of_the_paper("reference")
     parts = (Part("", (Entry("A", chapter.slug, chapter.title, chapter.aim),)),)
     contents = Contents("Reference", "", "own_foreword.html", "make companion", "5", parts)
     page = chapter.page({})

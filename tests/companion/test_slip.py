@@ -5,8 +5,7 @@ import shutil
 import pytest
 
 from holonom import maxima
-from holonom.companion.chapters import equations_of_motion
-from holonom.companion.paper import REPOSITORY
+from holonom.companion.paper import REPOSITORY, chapter_of_the_paper
 
 RIGHT = '"2 d^2f/dq_s du_r dot(q_s) dot(u_r)" = 2*inner(v,'
 WRONG = RIGHT.replace("= 2*", "= -2*")
@@ -21,7 +20,7 @@ def cards(tmp_path_factory):
     text = file.read_text()
     assert RIGHT in text
     file.write_text(text.replace(RIGHT, WRONG))
-    chapter = equations_of_motion.chapter(root)
+    chapter = chapter_of_the_paper("equations_of_motion", root)
     derivations = {name: run for name, run in chapter.runs.items() if name != "printed"}
     printed = chapter.runs["printed"].compute()
     with pytest.MonkeyPatch.context() as patch:

@@ -22,7 +22,7 @@ from holonom.companion.chapters import (
     universal_controls,
     worked_example,
 )
-from holonom.companion.paper import REPOSITORY
+from holonom.companion.paper import chapter_of_the_paper
 from holonom.free_motion import Free
 from holonom.series.radius import ENTIRE
 
@@ -156,7 +156,7 @@ def contents(results):
     """Results of the runs and content of the page, of each chapter that states something."""
     made = {}
     for module in {statement.chapter for statement in STATEMENTS}:
-        chapter = module.chapter(REPOSITORY)
+        chapter = chapter_of_the_paper(module.__name__.rpartition(".")[2])
         found = {name: results[run] for name, run in chapter.runs.items()}
         made[module] = (chapter.slug, found, chapter.page(found).content)
     return made

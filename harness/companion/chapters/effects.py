@@ -9,60 +9,53 @@ import numpy as np
 from ...benchmark.machine import this_machine
 from ...confined import Limits
 from ...figures.motion import draw_with_and_without
-from ...language import translatable
 from ...program.effects import MeasuredCosts, scene_costs
 from ...program.request import Request
 from ...record import Record
 from ...simulation.result import Simulation
-from ..chapter import Chapter, Page, Run
-from ..examples import SPHERICAL_PENDULUM
+from ..chapter import Page, Run
 from ..excerpts import excerpt
 from ..runs import derived, simulation
+from . import SPHERICAL_PENDULUM
 
 SPARING, LAVISH = "swinging_scene", "shaken_scene"
 TURNING, STILL = "foucault_scene", "still_scene"
 SAMPLES = 1801
 
 
-def chapter(root: Path) -> Chapter:
-    """The chapter, with the systems under a root."""
+def runs(root: Path) -> dict[str, Run]:
+    """What the chapter needs."""
     file = root / SPHERICAL_PENDULUM
+    return {
+        "pendulum": derived(file),
+        "sparing": Run(costs, (file, SPARING)),
+        "lavish": Run(costs, (file, LAVISH)),
+        "turning": simulation(file, TURNING, None, SAMPLES),
+        "still": simulation(file, STILL, None, SAMPLES),
+    }
 
-    def page(results: Mapping[str, Any]) -> Page:
-        turning, still = results["turning"], results["still"]
-        return Page(
-            {
-                "system": results["pendulum"].record.system,
-                "sparing": results["sparing"],
-                "lavish": results["lavish"],
-                "titles": titles(results["pendulum"].record),
-                "called": {name: called(results["pendulum"].record, name) for name in (SPARING, LAVISH)},
-                "machine": this_machine(()),
-                "turning": turning,
-                "still": still,
-                "turned": (instant := turning_point(turning))[1],
-                "expected": -float(rate_of_the_frame(results["pendulum"].record)) * instant[0],
-                "instant": instant[0],
-                "system_lines": excerpt(root, SPHERICAL_PENDULUM, "system"),
-                "scene_lines": excerpt(root, SPHERICAL_PENDULUM, SPARING),
-            },
-            figures={"foucault": draw_with_and_without(turning, still, "x", "y")},
-            sources=(SPHERICAL_PENDULUM,),
-        )
 
-    return Chapter(
-        slug="effects",
-        title=translatable("Effects"),
-        aim=translatable("Gravity, drag, a turning frame, each on and off by its name; what is off costs nothing."),
-        template="effects.html",
-        runs={
-            "pendulum": derived(file),
-            "sparing": Run(costs, (file, SPARING)),
-            "lavish": Run(costs, (file, LAVISH)),
-            "turning": simulation(file, TURNING, None, SAMPLES),
-            "still": simulation(file, STILL, None, SAMPLES),
+def page(root: Path, results: Mapping[str, Any]) -> Page:
+    """The page that results make."""
+    turning, still = results["turning"], results["still"]
+    return Page(
+        {
+            "system": results["pendulum"].record.system,
+            "sparing": results["sparing"],
+            "lavish": results["lavish"],
+            "titles": titles(results["pendulum"].record),
+            "called": {name: called(results["pendulum"].record, name) for name in (SPARING, LAVISH)},
+            "machine": this_machine(()),
+            "turning": turning,
+            "still": still,
+            "turned": (instant := turning_point(turning))[1],
+            "expected": -float(rate_of_the_frame(results["pendulum"].record)) * instant[0],
+            "instant": instant[0],
+            "system_lines": excerpt(root, SPHERICAL_PENDULUM, "system"),
+            "scene_lines": excerpt(root, SPHERICAL_PENDULUM, SPARING),
         },
-        page=page,
+        figures={"foucault": draw_with_and_without(turning, still, "x", "y")},
+        sources=(SPHERICAL_PENDULUM,),
     )
 
 

@@ -8,55 +8,47 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...figures.curves import Panel, draw_curves
-from ...language import gettext, translatable
+from ...language import gettext
 from ...simulation.result import Simulation
 from ..cards import derivation_cards, files_of, missing, named_equations, printed_card
-from ..chapter import Chapter, Page
-from ..examples import BEAD, BOB, BOB_SCENE, PAPER, PENDULUM
+from ..chapter import Page, Run
 from ..runs import derived, printed, simulation
+from . import BEAD, BOB, BOB_SCENE, PAPER, PENDULUM
 
 CONDITIONS = ("condition on the kinetic energy", "condition on the mass matrix", "condition on the constraints")
 SAMPLES = 201
 NUMBERS = ("2", "3a", "3", "4", "5", "6", "7", "8", "9")
 
 
-def chapter(root: Path) -> Chapter:
-    """The chapter, with the systems under a root."""
+def runs(root: Path) -> dict[str, Run]:
+    """What the chapter needs."""
+    return {
+        "paper": derived(root / PAPER),
+        "bob": derived(root / BOB),
+        "bead": derived(root / BEAD),
+        "pendulum": derived(root / PENDULUM),
+        "printed": printed(),
+        "motion": simulation(root / BOB, BOB_SCENE, None, SAMPLES),
+    }
 
-    def page(results: Mapping[str, Any]) -> Page:
-        paper = results["paper"]
-        cards = derivation_cards(NUMBERS, [results["bob"], paper], results["printed"], root)
-        conditions = [printed_card(results["printed"], name) for name in CONDITIONS]
-        return Page(
-            {
-                "cards": {card.anchor: card for card in (*cards, *conditions)},
-                "missing": [*missing(results["bob"]), *missing(paper)],
-                "momentum": float(momentum(results["motion"])[0]),
-                "bob": results["bob"].record,
-                "bead": named_equations(results["bead"]),
-                "bob_equations": named_equations(results["bob"]),
-                "pendulum": named_equations(results["pendulum"]),
-            },
-            figures={"bob": draw_curves(panels(results["motion"]), gettext("t (units of the scene)"))},
-            sources=files_of(cards),
-        )
 
-    return Chapter(
-        slug="equations-of-motion",
-        title=translatable("Equations of motion"),
-        aim=translatable(
-            "From the kinetic energy to the accelerations, the multipliers and the constraint forces: (2) to (9)."
-        ),
-        template="equations_of_motion.html",
-        runs={
-            "paper": derived(root / PAPER),
-            "bob": derived(root / BOB),
-            "bead": derived(root / BEAD),
-            "pendulum": derived(root / PENDULUM),
-            "printed": printed(),
-            "motion": simulation(root / BOB, BOB_SCENE, None, SAMPLES),
+def page(root: Path, results: Mapping[str, Any]) -> Page:
+    """The page that results make."""
+    paper = results["paper"]
+    cards = derivation_cards(NUMBERS, [results["bob"], paper], results["printed"], root)
+    conditions = [printed_card(results["printed"], name) for name in CONDITIONS]
+    return Page(
+        {
+            "cards": {card.anchor: card for card in (*cards, *conditions)},
+            "missing": [*missing(results["bob"]), *missing(paper)],
+            "momentum": float(momentum(results["motion"])[0]),
+            "bob": results["bob"].record,
+            "bead": named_equations(results["bead"]),
+            "bob_equations": named_equations(results["bob"]),
+            "pendulum": named_equations(results["pendulum"]),
         },
-        page=page,
+        figures={"bob": draw_curves(panels(results["motion"]), gettext("t (units of the scene)"))},
+        sources=files_of(cards),
     )
 
 

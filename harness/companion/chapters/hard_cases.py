@@ -6,32 +6,25 @@ from pathlib import Path
 from ...benchmark.hard_cases.case import CaseReport, Extent, examined
 from ...benchmark.hard_cases.register import REGISTER
 from ...figures.benchmark import draw_stability
-from ...language import translatable
-from ..chapter import Chapter, Page, Run
+from ..chapter import Page, Run
 from ..runs import drawn
 
 
-def chapter(root: Path) -> Chapter:
-    """The chapter; the register takes its scenes from the repository's own examples, whatever the root."""
+def runs(root: Path) -> dict[str, Run]:
+    """What the chapter needs."""
+    return {case.name: Run(examined, (case, Extent.SHORT)) for case in REGISTER}
 
-    def page(results: Mapping[str, CaseReport]) -> Page:
-        reports = list(results.values())
-        return Page(
-            {
-                "reports": reports,
-                "best": best_gain(reports),
-                "sweeps": [each for each in reports if each.sweep],
-            },
-            figures={"hard-cases": drawn(lambda file: draw_stability(reports, file))},
-        )
 
-    return Chapter(
-        slug="hard-cases",
-        title=translatable("Hard cases"),
-        aim=translatable("Where a plain method loses its digits, what keeps them, and what to do."),
-        template="hard_cases.html",
-        runs={case.name: Run(examined, (case, Extent.SHORT)) for case in REGISTER},
-        page=page,
+def page(root: Path, results: Mapping[str, CaseReport]) -> Page:
+    """The page that results make."""
+    reports = list(results.values())
+    return Page(
+        {
+            "reports": reports,
+            "best": best_gain(reports),
+            "sweeps": [each for each in reports if each.sweep],
+        },
+        figures={"hard-cases": drawn(lambda file: draw_stability(reports, file))},
     )
 
 

@@ -11,58 +11,50 @@ from sympy import Expr, Symbol
 
 from ...figures.curves import Panel, draw_curves
 from ...figures.style import lettered
-from ...language import gettext, translatable
+from ...language import gettext
 from ...mathjson import number, numbers
 from ...record import Equation, Scene
 from ...series.power_series import MotionSeries, NumberTexts
 from ..cards import derivation_cards, files_of, named_equations, scene_cards, scene_named
-from ..chapter import Chapter, Page
-from ..examples import BOB, BOB_SCENE, INITIAL_SCENE, PAPER
+from ..chapter import Page, Run
 from ..runs import derived, printed, series
+from . import BOB, BOB_SCENE, INITIAL_SCENE, PAPER
 
 LOW_ORDER, HIGH_ORDER = 3, 40
 INSTANT, LAST = Fraction(1, 10), Fraction(1, 2)
 SHOWN = "q1"  # the coordinate that is drawn
 
 
-def chapter(root: Path) -> Chapter:
-    """The chapter, with the systems under a root."""
+def runs(root: Path) -> dict[str, Run]:
+    """What the chapter needs."""
+    return {
+        "paper": derived(root / PAPER),
+        "bob": derived(root / BOB),
+        "printed": printed(),
+        "expanded": series(root / PAPER, INITIAL_SCENE, HIGH_ORDER),
+    }
 
-    def page(results: Mapping[str, Any]) -> Page:
-        paper, bob = results["paper"], results["bob"]
-        eliminated = derivation_cards(["11"], [paper, bob], results["printed"], root)
-        cards = scene_cards(
-            ["12", "19", "13", "18"], [(paper, INITIAL_SCENE), (bob, BOB_SCENE)], results["printed"], root
-        )
-        bob_equations, bob_scene = named_equations(bob, BOB_SCENE), scene_named(bob, BOB_SCENE)
-        return Page(
-            {
-                "eliminated": eliminated,
-                "cards": {card.anchor: card for card in cards},
-                "scene": scene_named(paper, INITIAL_SCENE),
-                "fixed": named_equations(paper, INITIAL_SCENE)["determined_initial_values"],
-                "bob_accelerations": bob_equations["initial_accelerations"],
-                "bob_numbers": values_in_numbers(bob_equations["initial_accelerations"], bob_scene),
-                "instant": INSTANT,
-                "orders": (LOW_ORDER, HIGH_ORDER),
-                "compared": compared(results["expanded"]),
-            },
-            figures={"first-instants": draw_curves([beginning(results["expanded"])], gettext("t (dimensionless)"))},
-            sources=files_of([*eliminated, *cards]),
-        )
 
-    return Chapter(
-        slug="initial-motion",
-        title=translatable("Initial motion"),
-        aim=translatable("What the system does in the first instants: (11) to (13), (18) and (19)."),
-        template="initial_motion.html",
-        runs={
-            "paper": derived(root / PAPER),
-            "bob": derived(root / BOB),
-            "printed": printed(),
-            "expanded": series(root / PAPER, INITIAL_SCENE, HIGH_ORDER),
+def page(root: Path, results: Mapping[str, Any]) -> Page:
+    """The page that results make."""
+    paper, bob = results["paper"], results["bob"]
+    eliminated = derivation_cards(["11"], [paper, bob], results["printed"], root)
+    cards = scene_cards(["12", "19", "13", "18"], [(paper, INITIAL_SCENE), (bob, BOB_SCENE)], results["printed"], root)
+    bob_equations, bob_scene = named_equations(bob, BOB_SCENE), scene_named(bob, BOB_SCENE)
+    return Page(
+        {
+            "eliminated": eliminated,
+            "cards": {card.anchor: card for card in cards},
+            "scene": scene_named(paper, INITIAL_SCENE),
+            "fixed": named_equations(paper, INITIAL_SCENE)["determined_initial_values"],
+            "bob_accelerations": bob_equations["initial_accelerations"],
+            "bob_numbers": values_in_numbers(bob_equations["initial_accelerations"], bob_scene),
+            "instant": INSTANT,
+            "orders": (LOW_ORDER, HIGH_ORDER),
+            "compared": compared(results["expanded"]),
         },
-        page=page,
+        figures={"first-instants": draw_curves([beginning(results["expanded"])], gettext("t (dimensionless)"))},
+        sources=files_of([*eliminated, *cards]),
     )
 
 

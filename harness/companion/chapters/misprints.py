@@ -5,9 +5,8 @@ from itertools import takewhile
 from pathlib import Path
 
 from ...errata import PrintedEquation
-from ...language import translatable
 from ..cards import anchor, anchors
-from ..chapter import Chapter, Page
+from ..chapter import Page, Run
 from ..runs import printed
 
 PAGES = {
@@ -20,27 +19,21 @@ TRANSCRIPTION = "examples/paper/printed.mac"
 EXAMPLE, FIRST_OF_EXAMPLE = "worked-example", "14"
 
 
-def chapter(root: Path) -> Chapter:
-    """The chapter; it does not depend on a root."""
+def runs(root: Path) -> dict[str, Run]:
+    """What the chapter needs."""
+    return {"printed": printed()}
 
-    def page(results: Mapping[str, tuple[PrintedEquation, ...]]) -> Page:
-        equations = results["printed"]
-        return Page(
-            {
-                "rows": rows(equations),
-                "misprints": [each for each in equations if not each.agrees],
-                "transcription": TRANSCRIPTION,
-            },
-            sources=(TRANSCRIPTION,),
-        )
 
-    return Chapter(
-        slug="misprints",
-        title=translatable("Misprints"),
-        aim=translatable("Every equation that the paper prints, as our copy has it, compared with the derived one."),
-        template="misprints.html",
-        runs={"printed": printed()},
-        page=page,
+def page(root: Path, results: Mapping[str, tuple[PrintedEquation, ...]]) -> Page:
+    """The page that results make."""
+    equations = results["printed"]
+    return Page(
+        {
+            "rows": rows(equations),
+            "misprints": [each for each in equations if not each.agrees],
+            "transcription": TRANSCRIPTION,
+        },
+        sources=(TRANSCRIPTION,),
     )
 
 

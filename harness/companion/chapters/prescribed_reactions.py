@@ -6,13 +6,13 @@ from pathlib import Path
 from typing import Any
 
 from ...figures.curves import Panel, draw_curves
-from ...language import gettext, translatable
+from ...language import gettext
 from ...simulation.result import Simulation
-from ..chapter import Chapter, Page
-from ..examples import PRESCRIBED_TENSION
+from ..chapter import Page, Run
 from ..excerpts import excerpt
 from ..mathematics import description
 from ..runs import derived, free, series, simulation
+from . import PRESCRIBED_TENSION
 
 SOURCE = "maxima/free_motion/prescribed_reactions.mac"
 FUNCTIONS = ("released_system", "controls_under_reactions")
@@ -21,35 +21,31 @@ ORDER = 40
 UNTIL, SAMPLES = Fraction(2), 201
 
 
-def chapter(root: Path) -> Chapter:
-    """The chapter, with the systems under a root."""
+def runs(root: Path) -> dict[str, Run]:
+    """What the chapter needs."""
     file = root / PRESCRIBED_TENSION
-
-    def page(results: Mapping[str, Any]) -> Page:
-        system = results["tension"].record.system
-        return Page(
-            {
-                "system": system,
-                "description": description(system),
-                "scene_lines": excerpt(root, PRESCRIBED_TENSION, SCENES[1]),
-                "answers": {name: results[f"{name} free"] for name in SCENES},
-                "series": {name: results[f"{name} series"] for name in SCENES},
-                "excerpts": [excerpt(root, SOURCE, name) for name in FUNCTIONS],
-            },
-            figures={"winch": draw_curves(panels(results), gettext("t (units of the scene)"))},
-            sources=(SOURCE, PRESCRIBED_TENSION),
-        )
-
-    return Chapter(
-        slug="prescribed-reactions",
-        title=translatable("Prescribed reactions"),
-        aim=translatable("Free motion asks for reactions that are zero; one may as well ask for any other."),
-        template="prescribed_reactions.html",
-        runs={"tension": derived(file)}
+    return (
+        {"tension": derived(file)}
         | {f"{name} motion": simulation(file, name, UNTIL, SAMPLES) for name in SCENES[1:]}
         | {f"{name} free": free(file, name) for name in SCENES}
-        | {f"{name} series": series(file, name, ORDER) for name in SCENES},
-        page=page,
+        | {f"{name} series": series(file, name, ORDER) for name in SCENES}
+    )
+
+
+def page(root: Path, results: Mapping[str, Any]) -> Page:
+    """The page that results make."""
+    system = results["tension"].record.system
+    return Page(
+        {
+            "system": system,
+            "description": description(system),
+            "scene_lines": excerpt(root, PRESCRIBED_TENSION, SCENES[1]),
+            "answers": {name: results[f"{name} free"] for name in SCENES},
+            "series": {name: results[f"{name} series"] for name in SCENES},
+            "excerpts": [excerpt(root, SOURCE, name) for name in FUNCTIONS],
+        },
+        figures={"winch": draw_curves(panels(results), gettext("t (units of the scene)"))},
+        sources=(SOURCE, PRESCRIBED_TENSION),
     )
 
 

@@ -11,15 +11,14 @@ import sympy
 from sympy import Expr, Symbol
 
 from ...figures.convergence import draw_partial_sums, draw_radius, find_radii
-from ...language import translatable
 from ...mathjson import number, numbers
 from ...series.power_series import MotionSeries
 from ...simulation.result import Simulation
 from ..cards import named_equations, scene_named
-from ..chapter import Chapter, Page, Run
-from ..examples import FREE_SCENE, INITIAL_SCENE, PAPER, PENDULUM
+from ..chapter import Page, Run
 from ..expressions import zeros
 from ..runs import Derived, derived, drawn, series, simulation
+from . import FREE_SCENE, INITIAL_SCENE, PAPER, PENDULUM
 
 ORDER = 80
 ORDERS, INSTANTS = (5, 10, 20, 40, 80), (0.5, 1.0)  # within the radius and beyond it
@@ -28,53 +27,43 @@ UNTIL, SAMPLES = Fraction(3, 2), 301
 SWING = "swing_scene"
 
 
-def chapter(root: Path) -> Chapter:
-    """The chapter, with the systems under a root."""
+def runs(root: Path) -> dict[str, Run]:
+    """What the chapter needs."""
+    return {
+        "paper": derived(root / PAPER),
+        "initial": series(root / PAPER, INITIAL_SCENE, ORDER),
+        "free": series(root / PAPER, FREE_SCENE, ORDER),
+        "pendulum": series(root / PENDULUM, SWING, ORDER),
+        "motion": simulation(root / PAPER, INITIAL_SCENE, UNTIL, SAMPLES),
+        "radius": Run(find_radii),
+    }
 
-    def page(results: Mapping[str, Any]) -> Page:
-        paper = results["paper"]
-        scene = scene_named(paper, INITIAL_SCENE)
-        exact = singular_instants(paper, INITIAL_SCENE)
-        start = scene.time_span[0]
-        return Page(
-            {
-                "scene": scene,
-                "order": ORDER,
-                "series": results["initial"],
-                "entire": results["free"].radius,
-                "pendulum": results["pendulum"],
-                "denominator": denominator(paper),
-                "exact": exact,
-                "exact_radius": min(sympy.Abs(instant - start) for instant in exact),
-                "coordinate": COORDINATE,
-                "confronted": confronted(results["initial"], results["motion"]),
-                "orders": ORDERS,
-                "instants": [
-                    float(instant) for instant in (results["motion"].instants[0], results["motion"].instants[-1])
-                ],
-            },
-            figures={
-                "partial-sums": partial_sums(results["initial"], results["motion"]),
-                "radius": drawn(partial(draw_radius, results["radius"])),
-            },
-        )
 
-    return Chapter(
-        slug="radius-of-convergence",
-        title=translatable("Radius of convergence and the global trajectory"),
-        aim=translatable(
-            "How far the series of the initial motion holds, what sets the limit, and how to go beyond it."
-        ),
-        template="radius_of_convergence.html",
-        runs={
-            "paper": derived(root / PAPER),
-            "initial": series(root / PAPER, INITIAL_SCENE, ORDER),
-            "free": series(root / PAPER, FREE_SCENE, ORDER),
-            "pendulum": series(root / PENDULUM, SWING, ORDER),
-            "motion": simulation(root / PAPER, INITIAL_SCENE, UNTIL, SAMPLES),
-            "radius": Run(find_radii),
+def page(root: Path, results: Mapping[str, Any]) -> Page:
+    """The page that results make."""
+    paper = results["paper"]
+    scene = scene_named(paper, INITIAL_SCENE)
+    exact = singular_instants(paper, INITIAL_SCENE)
+    start = scene.time_span[0]
+    return Page(
+        {
+            "scene": scene,
+            "order": ORDER,
+            "series": results["initial"],
+            "entire": results["free"].radius,
+            "pendulum": results["pendulum"],
+            "denominator": denominator(paper),
+            "exact": exact,
+            "exact_radius": min(sympy.Abs(instant - start) for instant in exact),
+            "coordinate": COORDINATE,
+            "confronted": confronted(results["initial"], results["motion"]),
+            "orders": ORDERS,
+            "instants": [float(instant) for instant in (results["motion"].instants[0], results["motion"].instants[-1])],
         },
-        page=page,
+        figures={
+            "partial-sums": partial_sums(results["initial"], results["motion"]),
+            "radius": drawn(partial(draw_radius, results["radius"])),
+        },
     )
 
 

@@ -8,11 +8,11 @@ import numpy as np
 
 from ...figures.curves import Panel, draw_curves
 from ...free_motion import FreeMotion
-from ...language import gettext, translatable
-from ..chapter import Chapter, Page
-from ..examples import BEAD, BOB, CABIN, INITIAL_SCENE, PAPER, PENDULUM, SPHERICAL_PENDULUM
+from ...language import gettext
+from ..chapter import Page, Run
 from ..excerpts import excerpt
 from ..runs import derived, free
+from . import BEAD, BOB, CABIN, INITIAL_SCENE, PAPER, PENDULUM, SPHERICAL_PENDULUM
 
 SOURCE = "maxima/free_motion/trajectory.mac"
 FUNCTIONS = ("trajectory_control", "law_along", "solved_along", "freed_scene")
@@ -28,28 +28,23 @@ FILES = {
 SCENES = {"paper": INITIAL_SCENE}  # of other files, the last
 
 
-def chapter(root: Path) -> Chapter:
-    """The chapter, with the systems under a root."""
+def runs(root: Path) -> dict[str, Run]:
+    """What the chapter needs."""
+    return {name: derived(root / file) for name, file in FILES.items()} | {
+        f"{name} free": free(root / file, SCENES.get(name)) for name, file in FILES.items()
+    }
 
-    def page(results: Mapping[str, Any]) -> Page:
-        return Page(
-            {
-                "answers": {name: results[f"{name} free"].trajectory for name in FILES},
-                "titles": {name: results[name].record.system.title for name in FILES},
-                "excerpts": [excerpt(root, SOURCE, name) for name in FUNCTIONS],
-            },
-            figures={"strings": draw_curves([lengths(results)], gettext("t (units of the scene)"))},
-            sources=(SOURCE,),
-        )
 
-    return Chapter(
-        slug="trajectory-control",
-        title=translatable("The control for one trajectory"),
-        aim=translatable("Where no law serves every motion, one may still serve this motion."),
-        template="trajectory_control.html",
-        runs={name: derived(root / file) for name, file in FILES.items()}
-        | {f"{name} free": free(root / file, SCENES.get(name)) for name, file in FILES.items()},
-        page=page,
+def page(root: Path, results: Mapping[str, Any]) -> Page:
+    """The page that results make."""
+    return Page(
+        {
+            "answers": {name: results[f"{name} free"].trajectory for name in FILES},
+            "titles": {name: results[name].record.system.title for name in FILES},
+            "excerpts": [excerpt(root, SOURCE, name) for name in FUNCTIONS],
+        },
+        figures={"strings": draw_curves([lengths(results)], gettext("t (units of the scene)"))},
+        sources=(SOURCE,),
     )
 
 

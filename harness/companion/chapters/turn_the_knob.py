@@ -17,7 +17,7 @@ from ...confined import Limits
 from ...figures.curves import Panel, draw_curves
 from ...figures.style import lettered_text
 from ...free_motion import Free, FreeMotion
-from ...language import gettext, translatable
+from ...language import gettext
 from ...mathjson import from_sympy
 from ...program.javascript_source import javascript_source
 from ...program.model import Model, scene_model
@@ -25,12 +25,12 @@ from ...program.motion_problem import motion_problem
 from ...program.motion_program import Program, program_of
 from ...program.request import Request
 from ...record import Scene
+from .. import TEMPLATES
 from ..cards import scene_named
-from ..chapter import Chapter, Page, Run
-from ..examples import KNOB
-from ..pages import TEMPLATES
+from ..chapter import Page, Run
 from ..power import energy_balance
 from ..runs import Derived, derived, free, simulation
+from . import KNOB
 from .radius_of_convergence import denominator
 
 LAWS = {"linear": "linear_scene", "exponential": "exponential_scene", "swinging": "swinging_scene"}
@@ -39,61 +39,53 @@ UNTIL, SAMPLES = Fraction(4), 201
 UNDAMPED = (("c", "1"),)  # a damping other than the paper's
 
 
-def chapter(root: Path) -> Chapter:
-    """The chapter, with the systems under a root."""
+def runs(root: Path) -> dict[str, Run]:
+    """What the chapter needs."""
     file = root / KNOB
+    return {
+        "knob": derived(file),
+        "models": Run(models, (file,)),
+        "drawing": Run(drawing_of, (file, LAWS["linear"])),
+        "free": free(file, LAWS["exponential"]),
+        "other": free(file, LAWS["exponential"], UNDAMPED),
+        **{law: simulation(file, scene, UNTIL, SAMPLES) for law, scene in LAWS.items()},
+    }
 
-    def page(results: Mapping[str, Any]) -> Page:
-        found = results["knob"]
-        motions = {law: results[law] for law in LAWS}
-        balances = {
-            law: energy_balance(found.record.system, scene_named(found, LAWS[law]), motion)
-            for law, motion in motions.items()
-        }
-        shown = {law: motion.instants for law, motion in motions.items()}
-        titles = {law: lettered_text(motion.title.rpartition(", ")[2]) for law, motion in motions.items()}
-        multipliers = {titles[law]: (shown[law], motion.multipliers["lambda1"]) for law, motion in motions.items()}
-        powers = {titles[law]: (shown[law], balance.power) for law, balance in balances.items()}
-        return Page(
-            {
-                "scene": scene_named(found, LAWS["linear"]),
-                "values": results["models"]["swinging"].values,
-                "until": UNTIL,
-                "samples": SAMPLES,
-                "spent": {law: float(balance.by_knob[-1]) for law, balance in balances.items()},
-                "paper": results["free"],
-                "other": results["other"],
-                "other_damping": dict(UNDAMPED)["c"],
-            },
-            figures={
-                "knob": draw_curves(
-                    [
-                        Panel(gettext("multiplier λ₁\n(dimensionless)"), multipliers),
-                        Panel(gettext("power at the knob\n(dimensionless)"), powers),
-                    ],
-                    gettext("t (dimensionless)"),
-                )
-            },
-            sources=(KNOB,),
-            files={"knob.js": script(found, results["models"], results["drawing"], results["free"])},
-        )
 
-    return Chapter(
-        slug="turn-the-knob",
-        title=translatable("Turn the knob"),
-        aim=translatable(
-            "Choose the law, the damping and the start, and see what the reaction does, and what it costs."
-        ),
-        template="turn_the_knob.html",
-        runs={
-            "knob": derived(file),
-            "models": Run(models, (file,)),
-            "drawing": Run(drawing_of, (file, LAWS["linear"])),
-            "free": free(file, LAWS["exponential"]),
-            "other": free(file, LAWS["exponential"], UNDAMPED),
-            **{law: simulation(file, scene, UNTIL, SAMPLES) for law, scene in LAWS.items()},
+def page(root: Path, results: Mapping[str, Any]) -> Page:
+    """The page that results make."""
+    found = results["knob"]
+    motions = {law: results[law] for law in LAWS}
+    balances = {
+        law: energy_balance(found.record.system, scene_named(found, LAWS[law]), motion)
+        for law, motion in motions.items()
+    }
+    shown = {law: motion.instants for law, motion in motions.items()}
+    titles = {law: lettered_text(motion.title.rpartition(", ")[2]) for law, motion in motions.items()}
+    multipliers = {titles[law]: (shown[law], motion.multipliers["lambda1"]) for law, motion in motions.items()}
+    powers = {titles[law]: (shown[law], balance.power) for law, balance in balances.items()}
+    return Page(
+        {
+            "scene": scene_named(found, LAWS["linear"]),
+            "values": results["models"]["swinging"].values,
+            "until": UNTIL,
+            "samples": SAMPLES,
+            "spent": {law: float(balance.by_knob[-1]) for law, balance in balances.items()},
+            "paper": results["free"],
+            "other": results["other"],
+            "other_damping": dict(UNDAMPED)["c"],
         },
-        page=page,
+        figures={
+            "knob": draw_curves(
+                [
+                    Panel(gettext("multiplier λ₁\n(dimensionless)"), multipliers),
+                    Panel(gettext("power at the knob\n(dimensionless)"), powers),
+                ],
+                gettext("t (dimensionless)"),
+            )
+        },
+        sources=(KNOB,),
+        files={"knob.js": script(found, results["models"], results["drawing"], results["free"])},
     )
 
 

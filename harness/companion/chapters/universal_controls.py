@@ -7,12 +7,12 @@ from typing import Any
 
 from ...figures.curves import Panel, draw_curves
 from ...free_motion import FreeMotion
-from ...language import gettext, translatable
+from ...language import gettext
 from ...simulation.result import Simulation
-from ..chapter import Chapter, Page
-from ..examples import BEAD, CABIN, INITIAL_SCENE, KNOB, PAPER, PENDULUM, SPHERICAL_PENDULUM
+from ..chapter import Page, Run
 from ..excerpts import excerpt
 from ..runs import derived, free, simulation
+from . import BEAD, CABIN, INITIAL_SCENE, KNOB, PAPER, PENDULUM, SPHERICAL_PENDULUM
 
 SOURCE = "maxima/free_motion/universal.mac"
 FUNCTIONS = ("universal_controls", "laws_of_condition", "laws_under", "solved_conditions")
@@ -23,32 +23,28 @@ UNTIL, SAMPLES = Fraction(4), 201
 SCENES = {"paper": INITIAL_SCENE}  # of other files, the last
 
 
-def chapter(root: Path) -> Chapter:
-    """The chapter, with the systems under a root."""
-
-    def page(results: Mapping[str, Any]) -> Page:
-        answers: dict[str, FreeMotion] = {name: results[f"{name} free"] for name in ("paper", *OTHERS)}
-        return Page(
-            {
-                "answers": answers,
-                "titles": {name: results[name].record.system.title for name in answers},
-                "others": tuple(OTHERS),
-                "excerpts": [excerpt(root, SOURCE, name) for name in FUNCTIONS],
-            },
-            figures={"dampings": draw_curves([under_dampings(results)], gettext("t (dimensionless)"))},
-            sources=(SOURCE,),
-        )
-
+def runs(root: Path) -> dict[str, Run]:
+    """What the chapter needs."""
     files = {"paper": PAPER, **OTHERS}
-    return Chapter(
-        slug="universal-controls",
-        title=translatable("Which controls make every motion free"),
-        aim=translatable("The condition (10) for all states at once is a differential equation for the control."),
-        template="universal_controls.html",
-        runs={name: derived(root / file) for name, file in files.items()}
+    return (
+        {name: derived(root / file) for name, file in files.items()}
         | {f"c = {c}": simulation(root / KNOB, EXPONENTIAL, UNTIL, SAMPLES, (("c", c),)) for c in DAMPINGS}
-        | {f"{name} free": free(root / file, SCENES.get(name)) for name, file in files.items()},
-        page=page,
+        | {f"{name} free": free(root / file, SCENES.get(name)) for name, file in files.items()}
+    )
+
+
+def page(root: Path, results: Mapping[str, Any]) -> Page:
+    """The page that results make."""
+    answers: dict[str, FreeMotion] = {name: results[f"{name} free"] for name in ("paper", *OTHERS)}
+    return Page(
+        {
+            "answers": answers,
+            "titles": {name: results[name].record.system.title for name in answers},
+            "others": tuple(OTHERS),
+            "excerpts": [excerpt(root, SOURCE, name) for name in FUNCTIONS],
+        },
+        figures={"dampings": draw_curves([under_dampings(results)], gettext("t (dimensionless)"))},
+        sources=(SOURCE,),
     )
 
 

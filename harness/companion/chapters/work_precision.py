@@ -11,15 +11,14 @@ from ...benchmark.work_precision.study import Plan, Study, study
 from ...confined import Limits
 from ...figures.benchmark import draw_study
 from ...figures.curves import draw_drift
-from ...language import translatable
 from ...program.motion_problem import motion_problem
 from ...program.request import Request
 from ...simulation.request import SimulationRequest, Stabilization
 from ...simulation.result import Simulation
 from ...simulation.simulate import simulate
-from ..chapter import Chapter, Page, Run
-from ..examples import INITIAL_SCENE, PAPER, PENDULUM
+from ..chapter import Page, Run
 from ..runs import drawn
+from . import INITIAL_SCENE, PAPER, PENDULUM
 
 SHORT_PLAN = {
     "tolerances": {
@@ -33,45 +32,37 @@ SHORT_PLAN = {
 SWING, TOLERANCE, UNTIL, SAMPLES = "swing_scene", 1e-6, Fraction(100), 401
 
 
-def chapter(root: Path) -> Chapter:
-    """The chapter, with the systems under a root."""
+def runs(root: Path) -> dict[str, Run]:
+    """What the chapter needs."""
+    return {
+        "study": Run(short_study, (root / PAPER, INITIAL_SCENE)),
+        "drift": Run(drifting, (root / PENDULUM, SWING)),
+    }
 
-    def page(results: Mapping[str, Any]) -> Page:
-        measured, motions = results["study"], results["drift"]
-        return Page(
-            {
-                "study": measured,
-                "rows": [each for each in measured.measurements if each.group in WHOLE_MOTION],
-                "series": [each for each in measured.measurements if each.group is Group.SERIES],
-                "solves": [each for each in measured.measurements if each.group is Group.SOLVE],
-                "tolerance": TOLERANCE,
-                "worst": {
-                    cure: {
-                        "constraints": max(found.residuals["position"]),
-                        "energy": max(abs(found.energy["energy_error"])),
-                    }
-                    for cure, found in motions.items()
-                },
-                "pendulum": motions[Stabilization.NONE],
-            },
-            figures={
-                "accuracy": drawn(lambda file: draw_study(measured, file)),
-                "drift": draw_drift(motions),
-            },
-        )
 
-    return Chapter(
-        slug="accuracy",
-        title=translatable("What accuracy costs in time"),
-        aim=translatable(
-            "How many digits which method keeps, what each further one takes, and how constraints are kept."
-        ),
-        template="accuracy.html",
-        runs={
-            "study": Run(short_study, (root / PAPER, INITIAL_SCENE)),
-            "drift": Run(drifting, (root / PENDULUM, SWING)),
+def page(root: Path, results: Mapping[str, Any]) -> Page:
+    """The page that results make."""
+    measured, motions = results["study"], results["drift"]
+    return Page(
+        {
+            "study": measured,
+            "rows": [each for each in measured.measurements if each.group in WHOLE_MOTION],
+            "series": [each for each in measured.measurements if each.group is Group.SERIES],
+            "solves": [each for each in measured.measurements if each.group is Group.SOLVE],
+            "tolerance": TOLERANCE,
+            "worst": {
+                cure: {
+                    "constraints": max(found.residuals["position"]),
+                    "energy": max(abs(found.energy["energy_error"])),
+                }
+                for cure, found in motions.items()
+            },
+            "pendulum": motions[Stabilization.NONE],
         },
-        page=page,
+        figures={
+            "accuracy": drawn(lambda file: draw_study(measured, file)),
+            "drift": draw_drift(motions),
+        },
     )
 
 

@@ -18,13 +18,12 @@ from ...mathjson import from_sympy
 from ...record import Equation, Relation
 from ...simulation.result import Simulation
 from ..cards import Card, Instance, anchors, files_of, named_equations, scene_named, verdicts_on
-from ..chapter import Chapter, Page
-from ..examples import FREE_SCENE, INITIAL_SCENE, PAPER
-from ..excerpts import excerpt
+from ..chapter import Page, Run
+from ..excerpts import excerpt, step
 from ..expressions import right_side, under, zeros
 from ..power import values_along
 from ..runs import Derived, derived, free, printed, simulation
-from ..steps import step
+from . import FREE_SCENE, INITIAL_SCENE, PAPER
 
 FIRST_NUMBER = "14"
 UNTIL, SAMPLES = Fraction(3), 2001
@@ -67,54 +66,48 @@ SECTIONS = {
 """Titles of the chapter's sections, by the number or name of the equation that each begins with."""
 
 
-def chapter(root: Path) -> Chapter:
-    """The chapter, with the systems under a root."""
+def runs(root: Path) -> dict[str, Run]:
+    """What the chapter needs."""
+    return {
+        "paper": derived(root / PAPER),
+        "printed": printed(),
+        "free": free(root / PAPER, INITIAL_SCENE),
+        "pushed": simulation(root / PAPER, INITIAL_SCENE, UNTIL, SAMPLES),
+    }
 
-    def page(results: Mapping[str, Any]) -> Page:
-        paper = results["paper"]
-        example = list(dropwhile(lambda each: each.number != FIRST_NUMBER, results["printed"]))
-        cards = _cards(example, paper, results["free"].universal.laws, root)
-        derived_multiplier = named_equations(paper)["multipliers"].relations[0].right
-        printed_multiplier = right_side(next(each for each in example if each.name == "multiplier").printed_tree)
-        laws = {name: scene_named(paper, name).control_law for name in (FREE_SCENE, INITIAL_SCENE)}
-        pencil = worked(paper, results["free"], results["pushed"])
-        return Page(
-            {
-                **pencil,
-                "scene": scene_named(paper, INITIAL_SCENE),
-                "steps": named_equations(paper),
-                "sections": _sections(cards),
-                "equations": len(example),
-                "misprints": [each for each in example if not each.agrees],
-                "initial": [each for each in example if each.number == "17"],
-                "multiplier": named_equations(paper)["multipliers"],
-                "anchors": {(card.number, card.name): card.anchor for card in cards},
-                "roots": (roots := zeros(sympy.fraction(derived_multiplier)[1])),
-                "real": any(each.is_real for each in roots),
-                "derived_under_law": under(laws[FREE_SCENE], derived_multiplier),
-                "printed_under_law": under(laws[FREE_SCENE], printed_multiplier),
-                "difference": under(laws[INITIAL_SCENE], derived_multiplier - printed_multiplier),
-            },
-            figures={
-                "misprint": draw_curves(
-                    [printed_and_derived(paper, printed_multiplier, results["pushed"])], gettext("t (dimensionless)")
-                )
-            },
-            sources=files_of(cards),
-        )
 
-    return Chapter(
-        slug="worked-example",
-        title=translatable("The worked example"),
-        aim=translatable("Section 4 of the paper, equation by equation: as printed, and as derived."),
-        template="worked_example.html",
-        runs={
-            "paper": derived(root / PAPER),
-            "printed": printed(),
-            "free": free(root / PAPER, INITIAL_SCENE),
-            "pushed": simulation(root / PAPER, INITIAL_SCENE, UNTIL, SAMPLES),
+def page(root: Path, results: Mapping[str, Any]) -> Page:
+    """The page that results make."""
+    paper = results["paper"]
+    example = list(dropwhile(lambda each: each.number != FIRST_NUMBER, results["printed"]))
+    cards = _cards(example, paper, results["free"].universal.laws, root)
+    derived_multiplier = named_equations(paper)["multipliers"].relations[0].right
+    printed_multiplier = right_side(next(each for each in example if each.name == "multiplier").printed_tree)
+    laws = {name: scene_named(paper, name).control_law for name in (FREE_SCENE, INITIAL_SCENE)}
+    pencil = worked(paper, results["free"], results["pushed"])
+    return Page(
+        {
+            **pencil,
+            "scene": scene_named(paper, INITIAL_SCENE),
+            "steps": named_equations(paper),
+            "sections": _sections(cards),
+            "equations": len(example),
+            "misprints": [each for each in example if not each.agrees],
+            "initial": [each for each in example if each.number == "17"],
+            "multiplier": named_equations(paper)["multipliers"],
+            "anchors": {(card.number, card.name): card.anchor for card in cards},
+            "roots": (roots := zeros(sympy.fraction(derived_multiplier)[1])),
+            "real": any(each.is_real for each in roots),
+            "derived_under_law": under(laws[FREE_SCENE], derived_multiplier),
+            "printed_under_law": under(laws[FREE_SCENE], printed_multiplier),
+            "difference": under(laws[INITIAL_SCENE], derived_multiplier - printed_multiplier),
         },
-        page=page,
+        figures={
+            "misprint": draw_curves(
+                [printed_and_derived(paper, printed_multiplier, results["pushed"])], gettext("t (dimensionless)")
+            )
+        },
+        sources=files_of(cards),
     )
 
 

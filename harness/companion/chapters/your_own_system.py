@@ -7,43 +7,36 @@ from typing import Any
 from ...documents import Document, ask
 from ...failures import HolonomError
 from ...files import private_directory
-from ...language import translatable
-from ..chapter import Chapter, Page, Run
-from ..examples import PENDULUM
+from ..chapter import Page, Run
 from ..excerpts import excerpt
 from ..runs import derived
+from . import PENDULUM
 
 SCENE = "swing_scene"
 FITTING, CONTRADICTING = "y = -cos(%pi/13)", "y = -1"
 
 
-def chapter(root: Path) -> Chapter:
-    """The chapter, with the systems under a root."""
+def runs(root: Path) -> dict[str, Run]:
+    """What the chapter needs."""
+    return {
+        "pendulum": derived(root / PENDULUM),
+        "refusal": Run(refusal_of_the_change, (root / PENDULUM, FITTING, CONTRADICTING)),
+    }
 
-    def page(results: Mapping[str, Any]) -> Page:
-        return Page(
-            {
-                "record": results["pendulum"].record,
-                "report": results["pendulum"].report,
-                "system_lines": excerpt(root, PENDULUM, "system"),
-                "scene_lines": excerpt(root, PENDULUM, SCENE),
-                "fitting": FITTING,
-                "contradicting": CONTRADICTING,
-                "refusal": results["refusal"],
-            },
-            sources=(PENDULUM,),
-        )
 
-    return Chapter(
-        slug="your-own-system",
-        title=translatable("How to do it with a system of your own"),
-        aim=translatable("From a description in a file to pages like these."),
-        template="your_own_system.html",
-        runs={
-            "pendulum": derived(root / PENDULUM),
-            "refusal": Run(refusal_of_the_change, (root / PENDULUM, FITTING, CONTRADICTING)),
+def page(root: Path, results: Mapping[str, Any]) -> Page:
+    """The page that results make."""
+    return Page(
+        {
+            "record": results["pendulum"].record,
+            "report": results["pendulum"].report,
+            "system_lines": excerpt(root, PENDULUM, "system"),
+            "scene_lines": excerpt(root, PENDULUM, SCENE),
+            "fitting": FITTING,
+            "contradicting": CONTRADICTING,
+            "refusal": results["refusal"],
         },
-        page=page,
+        sources=(PENDULUM,),
     )
 
 
