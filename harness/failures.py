@@ -5,13 +5,14 @@ from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from enum import Enum
 from pathlib import Path
+from typing import Any
 
 OPTION = re.compile(r"--[a-z-]+")
 LIMITS = frozenset({"--time-limit", "--memory-limit", "--sandbox"})  # options that are one argument in Python
 
 
 class Failure(Enum):
-    """A way to fail: the sentence that names it, in which {detail} stands for the case, and the remedy."""
+    """A way to fail: the sentence that names it, in which {detail} and other facts stand for the case; the remedy."""
 
     FILE_MISSING = ("there is no such file{detail}", "give the path of a scene, for instance examples/paper/paper.mac")
     FILE_UNREADABLE = ("the file cannot be read: {detail}", "give the path of a readable Maxima file")
@@ -167,7 +168,11 @@ class Failure(Enum):
         "the constraints cannot all be satisfied at t = {detail}",
         "end the run before, or remove the constraint that contradicts the others",
     )
-    NO_WAY_THROUGH = ("the motion cannot be followed beyond t = {detail}", "")
+    NO_GRADIENT = (
+        "the motion cannot be followed beyond t = {instant:.10g}, where the gradient of the constraint of {multiplier} "
+        "vanishes and no reaction can act",
+        "end the run before it, or choose a law that keeps the length away from zero",
+    )
     NO_WAY_ON = ("the motion cannot be followed beyond t = {detail}", "end the run before it")
     RTEST_UNPAIRED = ("an input has no expected result", "")
     RTEST_FAILED = ("not all of the {detail} tests passed", "")
@@ -211,6 +216,8 @@ class HolonomError(Exception):
         The last lines that Maxima printed.
     command : str
         A shell command that repeats the failure with Maxima alone.
+    **facts : object
+        What else the sentence names, by its placeholders.
     """
 
     def __init__(
@@ -221,6 +228,7 @@ class HolonomError(Exception):
         *,
         last_lines: tuple[str, ...] = (),
         command: str = "",
+        **facts: Any,
     ) -> None:
         super().__init__(failure, place, detail)
         self.failure = failure
@@ -228,6 +236,7 @@ class HolonomError(Exception):
         self.detail = detail
         self.last_lines = last_lines
         self.command = command
+        self.facts = facts
 
     def __str__(self) -> str:
         """As Python says it: what are options on the command line are arguments here."""
@@ -247,12 +256,16 @@ class HolonomError(Exception):
         return self._told(", or ".join(each for each in clauses if set(OPTION.findall(each)) <= set(options)))
 
     @property
+    def said(self) -> str:
+        """What went wrong, without where and what to do."""
+        return self.failure.value[0].format(detail=self.detail, **self.facts)
+
+    @property
     def _remedy(self) -> str:
-        return self.failure.value[1].format(detail=self.detail)
+        return self.failure.value[1].format(detail=self.detail, **self.facts)
 
     def _told(self, remedy: str) -> str:
-        said = self.failure.value[0].format(detail=self.detail)
-        located = f"{self.place}: {said}" if self.place else said
+        located = f"{self.place}: {self.said}" if self.place else self.said
         return located.rstrip(".") + (f"; {remedy}." if remedy else ".")
 
 

@@ -76,6 +76,8 @@ def stability(short: bool, plot_file: Path | None, json_file: Path | None) -> in
 
 
 def _report_document(report: "CaseReport") -> dict[str, Any]:
+    from ..explanations import advice
+
     sweep = report.sweep
     return {
         "case": report.case.name,
@@ -83,6 +85,6 @@ def _report_document(report: "CaseReport") -> dict[str, Any]:
         "truth": report.case.truth,
         "results": [asdict(result) for result in report.results],
         "sweep": sweep and asdict(sweep),
-        "advice": report.advice,
+        "advice": advice(report.case.kind),
         "fails": report.fails,
     }

@@ -11,12 +11,12 @@ import jinja2
 from markupsafe import Markup, escape
 from sympy import Expr
 
+from ..explanations import advice, engine_text, remarks
 from ..free_motion import UniversalLaw
 from ..language import ENGLISH, LANGUAGES, gettext, ngettext, spoken, translated
 from ..mathjson import number
 from ..record import Scene
 from ..reference.topics import Topic
-from ..simulation.diagnosis import engine_text, remarks
 from . import TEMPLATES, mathematics
 from .chapter import Chapter
 from .excerpts import Excerpt
@@ -203,6 +203,7 @@ def _environment(language: str) -> jinja2.Environment:  # templates are compiled
         "both": _both,
         "law_text": _law_text,
         "signed": _signed,
+        "advice": advice,
         "engine_text": engine_text,
         "remarks": remarks,
         "complex_numbers": _complex_numbers,

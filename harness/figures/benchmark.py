@@ -129,8 +129,8 @@ def _rows(report: CaseReport) -> list[Result | str]:
 
 def _draw_digits(axes: "Axes", rows: Sequence[Result | str]) -> None:
     shown = {place: row for place, row in enumerate(rows) if isinstance(row, Result)}
-    for verdicts, colour, marker in (({Outcome.HOLDS}, BLUE, "o"), ({Outcome.LOSES, Outcome.FAILS}, VERMILION, "X")):
-        digits = {place: result.digits for place, result in shown.items() if result.verdict in verdicts}
+    for outcomes, colour, marker in (({Outcome.HOLDS}, BLUE, "o"), ({Outcome.LOSES, Outcome.FAILS}, VERMILION, "X")):
+        digits = {place: result.digits for place, result in shown.items() if result.outcome in outcomes}
         axes.hlines(list(digits), 0, list(digits.values()), color=colour, alpha=0.4, linewidth=3)
         axes.plot(list(digits.values()), list(digits), marker, color=colour, clip_on=False)
     labels = [

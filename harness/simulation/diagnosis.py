@@ -1,23 +1,19 @@
-"""What kinds of hard case a motion is, and what a user should do about each.
+"""What kinds of hard case a motion is.
 
 Its matrices tell at the start and at the end; what the engines meet on the way, redundant constraints, singular
 configurations, vanishing gradients, they tell themselves.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from enum import StrEnum
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from ..language import gettext, translatable, translated
+from ..language import translatable
 from .constraints.factorization import factored_constraints, rank_of, weighted_constraints
 from .diagnostics import condition
 from .matrices import Matrices, MotionMatrices, Vector
-from .request import EngineName
-
-if TYPE_CHECKING:
-    from .engines.switching import Leg
 
 ILL_CONDITIONED, DEPENDENT = 1e8, 1e20  # condition of G: half of a double's digits lost, and none left
 UNEQUAL_MASSES = 1e8  # ratio of the entries on A's diagonal: half of a double's digits
@@ -27,7 +23,6 @@ FREE = 1e-13  # constraint forces, in terms of the others
 STIFF = 1e5  # squares of frequencies, one in terms of another
 AT_REST = 1e-8  # squares of frequencies, in terms of the largest, that differences do not tell from zero
 DIFFERENCE = 1e-5  # in coordinates: the cube root of a double's rounding error
-LISTED = 3  # legs of the robust engine that are told one by one
 
 
 class HardCase(StrEnum):
@@ -42,46 +37,6 @@ class HardCase(StrEnum):
     LONG_RUN = translatable("long run")
     FREE_CANCELLATION = translatable("cancellation along a free motion")
     VANISHING_LENGTH = translatable("vanishing length")
-
-
-ADVICE = {
-    HardCase.NEARLY_DEPENDENT: translatable(
-        "The constraints are nearly dependent: take the orthogonal solve, which keeps the accelerations, "
-        "and trust the constraint forces rather than single multipliers."
-    ),
-    HardCase.REDUNDANT: translatable(
-        "The constraints are redundant: the motion and the constraint forces are unique, single multipliers are not; "
-        "remove constraints to give them a meaning."
-    ),
-    HardCase.SINGULAR_PASSAGE: translatable(
-        "The motion passes a singular configuration: keep the default engine, which hands over to the robust one, "
-        "and look at the energy error, which tells whether it left on the right branch."
-    ),
-    HardCase.STIFF: translatable(
-        "The motion is stiff: keep the Taylor engine where its fast oscillation matters, and where it does not, "
-        "replace the stiff part by a constraint."
-    ),
-    HardCase.OVERFLOW: translatable(
-        "Numbers come near the end of the range of double precision: divide the constraint by what grows in it, "
-        "or choose units in which the control stays moderate."
-    ),
-    HardCase.MASS_RATIO: translatable(
-        "The masses differ by many orders of magnitude: take the orthogonal solve, and quadruple precision where a "
-        "light body hangs in line between heavy ones; or leave the light mass out."
-    ),
-    HardCase.LONG_RUN: translatable(
-        "The run is long: keep the projection and the default tolerance, and expect to lose up to one and a half "
-        "digits of the phase for every tenfold time, or take quadruple precision."
-    ),
-    HardCase.FREE_CANCELLATION: translatable(
-        "The motion is free: every multiplier is a difference that cancels, so read values below 1e-13 of the forces "
-        "as zero, and let `holonom free` prove it."
-    ),
-    HardCase.VANISHING_LENGTH: translatable(
-        "A controlled length goes through zero, where its constraint has no gradient and no reaction can act: "
-        "end the run before it, or choose a law that keeps the length away from zero."
-    ),
-}
 
 
 class Instant(NamedTuple):
@@ -194,46 +149,3 @@ def _free(ends: Sequence[Matrices], multipliers: Vector) -> bool:
     forces = max(float(np.abs(at.force).max(initial=0.0)) for at in ends)
     reaction = float(np.abs(ends[-1].jacobian.T @ multipliers).max(initial=0.0))
     return forces > 0 and len(multipliers) > 0 and reaction <= FREE * forces
-
-
-def advice(kind: HardCase) -> str:
-    """The sentence that says what to do about a hard case."""
-    return ADVICE[kind]
-
-
-def engine_text(legs: "Sequence[Leg]") -> str:
-    """Who followed the motion when, in one line.
-
-    Returns
-    -------
-    str
-        For instance ``taylor`` or ``taylor, robust 0.31..0.35, taylor``.
-    """
-    if len(legs) == 1:
-        return translated(legs[0].engine)
-    robust = [leg for leg in legs if leg.engine is EngineName.ROBUST]
-    if len(robust) > LISTED:
-        return gettext(
-            "%(engine)s, robust %(count)s times from %(start).6g to %(end).6g",
-            engine=translated(legs[0].engine),
-            count=len(robust),
-            start=robust[0].start,
-            end=robust[-1].end,
-        )
-    spans = {leg: f" {leg.start:.6g}..{leg.end:.6g}" for leg in robust}
-    return ", ".join(f"{translated(leg.engine)}{spans.get(leg, '')}" for leg in legs)
-
-
-def remarks(legs: "Sequence[Leg]", cases: Iterable[HardCase]) -> Iterator[str]:
-    """What happened on the way, and what to do about the hard cases that the motion is: one sentence each."""
-    called = [leg for leg in legs if leg.engine is EngineName.ROBUST and leg.case is not None]
-    for leg in called[:LISTED]:
-        yield gettext(
-            "From t = %(start).6g to %(end).6g the robust engine takes over, because %(reason)s.",
-            start=leg.start,
-            end=leg.end,
-            reason=translated(leg.reason),
-        )
-    if len(called) > LISTED:
-        yield gettext("The robust engine takes over %(count)s times in all.", count=len(called))
-    yield from (translated(advice(kind)) for kind in cases)

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from ..confined import MIB
 from ..documents import Publication, published
+from ..explanations import engine_text, remarks
 from ..failures import Failure, HolonomError, missing_package
 from ..files import whole_file
 from ..program.motion_problem import MotionProblem
-from .diagnosis import engine_text, remarks
 from .result import Report, Sampled, Simulation
 
 BYTES_OF_NUMBER = 250  # while samples are collected and written as text: measured for 300000 of six numbers each

@@ -198,7 +198,7 @@ class RowMaker:
         try:
             found = self._singles.follow(problem, self._asked)
         except HolonomError as error:
-            rows.mark(np.array([row]), Status.BROKEN_OFF, f"{error.failure.value[0].format(detail=error.detail)}")
+            rows.mark(np.array([row]), Status.BROKEN_OFF, error.said)
             return
         here, rows.residual[row] = np.array([row]), found.residual
         points = {stop: found.points[place][:, None] for place, stop in enumerate(self._asked)}

@@ -8,7 +8,7 @@ import mpmath
 from mpmath import mp, mpf
 
 from ...language import translatable
-from ...simulation.diagnosis import HardCase, advice
+from ...simulation.diagnosis import HardCase
 
 MOST = 16.0  # digits of a double
 TRUTH_DIGITS = 40  # that a truth is computed with
@@ -39,7 +39,7 @@ class Result:
     method: str
     quantity: str
     digits: float | None
-    verdict: Outcome
+    outcome: Outcome
 
 
 @dataclass(frozen=True)
@@ -81,14 +81,9 @@ class CaseReport:
     sweep: Sweep | None
 
     @property
-    def advice(self) -> str:
-        """What a user should do."""
-        return advice(self.case.kind)
-
-    @property
     def fails(self) -> bool:
         """Whether a method of ours does not hold what it should."""
-        return any(result.verdict is Outcome.FAILS for result in self.results)
+        return any(result.outcome is Outcome.FAILS for result in self.results)
 
 
 def examined(case: Case, extent: Extent) -> CaseReport:

@@ -113,7 +113,9 @@ def _price(price: "Price") -> str:
 
 def show_stability(console: Console, reports: Sequence["CaseReport"]) -> None:
     """Print what each method keeps of each hard case, with the advice."""
-    table = Table("case", "method", "quantity", "digits", "verdict")
+    from ...explanations import advice
+
+    table = Table("case", "method", "quantity", "digits", "outcome")
     table.title, table.title_justify = "Digits kept in hard cases", "left"
     table.columns[3].justify = "right"
     for report in reports:
@@ -121,12 +123,12 @@ def show_stability(console: Console, reports: Sequence["CaseReport"]) -> None:
         name = report.case.name
         for result in report.results:
             digits = "" if result.digits is None else f"{result.digits:.1f}"
-            table.add_row(name, result.method, result.quantity, digits, styled(result.verdict))
+            table.add_row(name, result.method, result.quantity, digits, styled(result.outcome))
             name = ""
     console.print(table)
     for report in reports:
         console.print(Text(report.case.name, style="cyan"))
         console.print(f"    truth: {report.case.truth}", soft_wrap=True, markup=False)
-        console.print(f"    {report.advice}", soft_wrap=True, markup=False)
+        console.print(f"    {advice(report.case.kind)}", soft_wrap=True, markup=False)
     failed = sum(report.fails for report in reports)
     console.print(f"{counted(len(reports), 'hard case')}, {counted(failed, 'failure')}")

@@ -99,7 +99,7 @@ def show_report(console: "Console", scene: str, title: str, report: "Report") ->
 
 
 def _quality(report: "Report") -> Iterator[str]:
-    from ...simulation.diagnosis import engine_text, remarks
+    from ...explanations import engine_text, remarks
 
     if report.correction is not None:
         name, size = report.correction

@@ -20,7 +20,7 @@ from ...program.motion_problem import MotionProblem, computing
 from ...program.motion_program import Name
 from ...program.numpy_function import NumpyFunction
 from ...program.sign_pattern import in_numbers
-from ..diagnosis import HardCase, Instant, advice
+from ..diagnosis import Instant
 from ..evaluation import Numbers, as_floats
 from ..matrices import MotionMatrices, Vector, start_of
 from .factorization import DEPENDENT, WeightedConstraints, rank_of, weighted_constraints
@@ -173,8 +173,7 @@ def shortly_before(t: float, start: float) -> float:
 
 def no_gradient(t: float, multiplier: str) -> HolonomError:
     """The refusal to follow a motion to where the gradient of a constraint vanishes."""
-    place = f"{t:.10g}, where the gradient of the constraint of {multiplier} vanishes"
-    return HolonomError(Failure.NO_WAY_THROUGH, detail=f"{place}: {advice(HardCase.VANISHING_LENGTH)}")
+    return HolonomError(Failure.NO_GRADIENT, instant=float(t), multiplier=multiplier)
 
 
 def zeros_of_controls(problem: MotionProblem, start: float, end: float) -> list[float]:

@@ -23,9 +23,9 @@ def report(request) -> CaseReport:
 
 
 def test_ours_hold_and_the_plain_ways_lose_where_the_case_is_hard_for_them(report):
-    failing = [result for result in report.results if result.verdict is Outcome.FAILS]
+    failing = [result for result in report.results if result.outcome is Outcome.FAILS]
     assert not failing
-    losing = {result.method for result in report.results if result.verdict is Outcome.LOSES}
+    losing = {result.method for result in report.results if result.outcome is Outcome.LOSES}
     assert losing >= LOSING.get(report.case.name, set())
 
 

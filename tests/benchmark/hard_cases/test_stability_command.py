@@ -10,7 +10,8 @@ from holonom.benchmark.hard_cases import register
 from holonom.benchmark.hard_cases.case import Case, Extent, Sweep, examined, ours, required, theirs
 from holonom.cli import holonom
 from holonom.documents import schema
-from holonom.simulation.diagnosis import HardCase, advice
+from holonom.explanations import advice
+from holonom.simulation.diagnosis import HardCase
 
 
 def shown(name: str, *found) -> Case:
@@ -37,7 +38,7 @@ def test_document_keeps_its_schema_and_tells_digits_verdicts_and_advice(monkeypa
     content = json.loads(capsys.readouterr().out)
     Draft202012Validator(schema("hard-cases")).validate(content)
     (case,) = content["cases"]
-    assert [result["verdict"] for result in case["results"]] == ["loses it", "holds", "holds"]
+    assert [result["outcome"] for result in case["results"]] == ["loses it", "holds", "holds"]
     assert [result["digits"] for result in case["results"]] == [1.25, 9.0, None]
     assert case["sweep"]["digits"]["plain"] == [9.0, 7.0]
     assert case["advice"] == advice(HardCase.STIFF)
