@@ -92,21 +92,11 @@ class LimitExceeded(Exception):
 
 @dataclass(frozen=True)
 class Confinement:
-    """Where a process runs and what it sees.
+    """Where a process runs and what it sees."""
 
-    Parameters
-    ----------
-    directory : Path
-        Its working directory, the only one that it may write to where it is walled in.
-    environment : mapping of str to str
-        Its whole environment.
-    readable : sequence of Path
-        What it may read besides the system's programs, where it is walled in.
-    """
-
-    directory: Path
-    environment: Mapping[str, str]
-    readable: Sequence[Path]
+    directory: Path  # its working directory, the only one that it may write to where it is walled in
+    environment: Mapping[str, str]  # its whole environment
+    readable: Sequence[Path]  # what it may read besides the system's programs, where it is walled in
     limits: Limits
 
 

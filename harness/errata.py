@@ -14,35 +14,18 @@ PRINTED = shared("examples") / "paper" / "printed.mac"
 
 @dataclass(frozen=True)
 class PrintedEquation:
-    """An equation of the paper and the verdict on its print in our copy. Equations are Maxima text, on one line.
+    """An equation of the paper and the verdict on its print in our copy. Equations are Maxima text, on one line."""
 
-    Parameters
-    ----------
-    number : str
-        The paper's number, without brackets; empty for an equation that has none.
-    name : str
-        What the equation is.
-    agrees : bool
-        Whether the printed equation is the derived one.
-    printed : str
-        The equation as printed.
-    difference : str or None
-        Left side less right side as printed, less the same as derived; None where the print agrees.
-    corrected : str or None
-        The printed equation, mended; None where the print agrees.
-    remark : str or None
-        What there is to say about the transcription.
-    printed_tree, difference_tree, corrected_tree : Tree or None
-        The same equations as trees that `holonom.typeset` sets in type, in their own order; None where there is none.
-    """
-
-    number: str
-    name: str
-    agrees: bool
-    printed: str
+    number: str  # the paper's number, without brackets; empty for an equation that has none
+    name: str  # what the equation is
+    agrees: bool  # whether the printed equation is the derived one
+    printed: str  # the equation as printed
+    # left side less right side as printed, less the same as derived; None where the print agrees
     difference: str | None
-    corrected: str | None
-    remark: str | None
+    corrected: str | None  # the printed equation, mended; None where the print agrees
+    remark: str | None  # what there is to say about the transcription
+    # printed_tree, difference_tree, corrected_tree: the same equations as trees that `holonom.typeset` sets in type, in
+    # their own order; None where there is none
     printed_tree: Tree
     difference_tree: Tree | None
     corrected_tree: Tree | None

@@ -51,24 +51,12 @@ class Relation:
 
 @dataclass(frozen=True)
 class Equation:
-    """One item of the derivation.
+    """One item of the derivation."""
 
-    Parameters
-    ----------
-    id : str
-        What programs know it by, ``multipliers`` for instance.
-    number : str
-        The number that the paper gives it; several items may share one.
-    name : str
-        What it is, for people.
-    relations : tuple of Relation
-        Its components.
-    """
-
-    id: str
-    number: str
-    name: str
-    relations: tuple[Relation, ...]
+    id: str  # what programs know it by, ``multipliers`` for instance
+    number: str  # the number that the paper gives it; several items may share one
+    name: str  # what it is, for people
+    relations: tuple[Relation, ...]  # its components
 
 
 @dataclass(frozen=True)
@@ -89,47 +77,26 @@ class ForceEffect:
 
 @dataclass(frozen=True)
 class System:
-    """A system as its scene file describes it, before anything is derived.
+    """A system as its scene file describes it, before anything is derived."""
 
-    Parameters
-    ----------
-    title : str
-        What the system is.
-    source : str or None
-        Where it is published.
-    time : str
-        Name of the time.
-    coordinates, velocities, accelerations : tuple of n str
-        Names of q, dot(q) and ddot(q).
-    controls, control_rates, control_accelerations : tuple of alpha str
-        Names of u, dot(u) and ddot(u).
-    parameters : tuple of str
-        Names of the constants.
-    multipliers : tuple of g str
-        Names of the constraint multipliers.
-    kinetic_energy, potential_energy : tuple of Effect
-        T and V as sums of named parts.
-    forces : tuple of ForceEffect
-        Q as a sum of named parts.
-    constraints : tuple of g Expr
-        Each is zero on every motion.
-    """
-
-    title: str
-    source: str | None
-    time: str
+    title: str  # what the system is
+    source: str | None  # where it is published
+    time: str  # name of the time
+    # coordinates, velocities, accelerations: names of q, dot(q) and ddot(q)
     coordinates: tuple[str, ...]
     velocities: tuple[str, ...]
     accelerations: tuple[str, ...]
+    # controls, control_rates, control_accelerations: names of u, dot(u) and ddot(u)
     controls: tuple[str, ...]
     control_rates: tuple[str, ...]
     control_accelerations: tuple[str, ...]
-    parameters: tuple[str, ...]
-    multipliers: tuple[str, ...]
+    parameters: tuple[str, ...]  # names of the constants
+    multipliers: tuple[str, ...]  # names of the constraint multipliers
+    # kinetic_energy, potential_energy: T and V as sums of named parts
     kinetic_energy: tuple[Effect, ...]
     potential_energy: tuple[Effect, ...]
-    forces: tuple[ForceEffect, ...]
-    constraints: tuple[Expr, ...]
+    forces: tuple[ForceEffect, ...]  # Q as a sum of named parts
+    constraints: tuple[Expr, ...]  # each is zero on every motion
 
 
 class LeftOut(NamedTuple):

@@ -14,18 +14,11 @@ SETTING = re.compile(r"([^\W\d]\w*)=(-?\d+(?:\.\d+)?(?:e-?\d+)?(?:/\d+)?)", re.I
 
 @dataclass(frozen=True)
 class Request:
-    """Which scene of a file, and how.
+    """Which scene of a file, and how."""
 
-    Parameters
-    ----------
-    scene : str or None
-        Name of the scene; None for the last one, or for the system where there is none.
-    settings : mapping of str to str
-        Numbers in Maxima's notation, for what the file leaves open and for parameters.
-    """
-
-    scene: str | None = None
+    scene: str | None = None  # name of the scene; None for the last one, or for the system where there is none
     solve: Solve = Solve.DIRECT
+    # numbers in Maxima's notation, for what the file leaves open and for parameters
     settings: Mapping[str, str] = field(default_factory=dict)
 
 

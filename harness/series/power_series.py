@@ -31,29 +31,16 @@ NumberTexts = tuple[str, ...]
 
 @dataclass(frozen=True)
 class SeriesRequest:
-    """Which power series of a scene file.
+    """Which power series of a scene file."""
 
-    Parameters
-    ----------
-    order : int
-        Highest power of t - t0.
-    scene : str or None
-        Name of the scene; None for the last one.
-    digits : int or str
-        Significant decimal digits, ``exact``, or ``automatic``: exact where that is possible.
-    until : Fraction or None
-        Instant to which the motion is continued by further expansions.
-    settings : mapping of str to str
-        Numbers for what the file leaves open and for parameters.
-    precision : str or int, or None
-        heyoka's numbers, as `holonom.program.precision.read_precision` takes them; None for Maxima's, with the digits.
-    """
-
-    order: int
-    scene: str | None = None
+    order: int  # highest power of t - t0
+    scene: str | None = None  # name of the scene; None for the last one
+    # significant decimal digits, ``exact``, or ``automatic``: exact where that is possible
     digits: int | str = AUTOMATIC
-    until: Fraction | None = None
+    until: Fraction | None = None  # instant to which the motion is continued by further expansions
+    # numbers for what the file leaves open and for parameters
     settings: Mapping[str, str] = field(default_factory=dict)
+    # heyoka's numbers, as `holonom.program.precision.read_precision` takes them; None for Maxima's, with the digits
     precision: str | int | None = None
 
 

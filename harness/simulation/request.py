@@ -32,33 +32,19 @@ class Stabilization(StrEnum):
 
 @dataclass(frozen=True)
 class SimulationRequest:
-    """How a motion is to be followed.
+    """How a motion is to be followed."""
 
-    Parameters
-    ----------
-    tol : float or None
-        Tolerance of a step, relative; None for what the engine and the precision can hold.
-    precision : str or int
-        ``double``, ``extended``, ``quadruple``, or a number of decimal digits. Only the Taylor engine knows others
-        than double.
-    drift : Stabilization
-        What the Taylor and the Runge-Kutta engine do; the robust one always projects.
-    until : Fraction or None
-        Last instant; None for the end of the scene's time span.
-    samples : int or None
-        So many equidistant instants from the first to the last, or, with 0, the final state alone; None for the
-        engine's own steps.
-    compact : bool or None
-        Whether heyoka compiles in its compact mode; None to choose by what the compilation takes and the run gains.
-    max_step : float or None
-        Time that no step is to exceed; None where the engine alone decides.
-    """
-
-    tol: float | None = None
+    tol: float | None = None  # tolerance of a step, relative; None for what the engine and the precision can hold
+    # ``double``, ``extended``, ``quadruple``, or a number of decimal digits. Only the Taylor engine knows others than
+    # double.
     precision: str | int = "double"
     engine: EngineName = EngineName.AUTO
+    # what the Taylor and the Runge-Kutta engine do; the robust one always projects
     drift: Stabilization = Stabilization.PROJECTION
-    until: Fraction | None = None
+    until: Fraction | None = None  # last instant; None for the end of the scene's time span
+    # so many equidistant instants from the first to the last, or, with 0, the final state alone; None for the engine's
+    # own steps
     samples: int | None = None
+    # whether heyoka compiles in its compact mode; None to choose by what the compilation takes and the run gains
     compact: bool | None = None
-    max_step: float | None = None
+    max_step: float | None = None  # time that no step is to exceed; None where the engine alone decides

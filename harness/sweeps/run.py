@@ -35,35 +35,17 @@ Progress = Callable[[int], None]
 
 @dataclass(frozen=True)
 class SweepRequest:
-    """What a sweep is asked for.
-
-    Parameters
-    ----------
-    tol : float
-        Tolerance of a step.
-    until : Fraction or None
-        The last instant; None for the end of the scene's time span.
-    drift : Stabilization
-        ``PROJECTION`` or ``NONE``.
-    chunk : int
-        Rows of a file.
-    workers : int or None
-        Processes that compute; None for one a processor.
-    scheduler : str or None
-        Address of a running Dask scheduler that is to be used instead.
-    resume : bool
-        Whether the sweep must have been begun before.
-    """
+    """What a sweep is asked for."""
 
     axes: Axes
     kept: tuple[Kept, ...]
-    tol: float = TOLERANCE
-    until: Fraction | None = None
-    drift: Stabilization = Stabilization.PROJECTION
-    chunk: int = CHUNK
-    workers: int | None = None
-    scheduler: str | None = None
-    resume: bool = False
+    tol: float = TOLERANCE  # tolerance of a step
+    until: Fraction | None = None  # the last instant; None for the end of the scene's time span
+    drift: Stabilization = Stabilization.PROJECTION  # ``PROJECTION`` or ``NONE``
+    chunk: int = CHUNK  # rows of a file
+    workers: int | None = None  # processes that compute; None for one a processor
+    scheduler: str | None = None  # address of a running Dask scheduler that is to be used instead
+    resume: bool = False  # whether the sweep must have been begun before
 
 
 @dataclass(frozen=True)

@@ -120,29 +120,14 @@ class SingleMotions:
 
 
 class SingleMotion(NamedTuple):
-    """What came of one motion.
+    """What came of one motion."""
 
-    Parameters
-    ----------
-    end : float
-        The last instant.
-    states : ndarray, shape (stops, 2n)
-        At the instants asked for; after the end, as they are there.
-    points : ndarray, shape (stops, quantities)
-    steps : list of Steps
-        Each quantity along the motion, with one lane.
-    residual : float
-        How far the end is from the constraints.
-    missed : float
-        What steps passed over, as `holonom.simulation.passed_over` says; zero where they cannot.
-    """
-
-    end: float
-    states: Floats
-    points: Floats
-    steps: list[Steps]
-    residual: float
-    missed: float
+    end: float  # the last instant
+    states: Floats  # shape (stops, 2n): at the instants asked for; after the end, as they are there
+    points: Floats  # shape (stops, quantities)
+    steps: list[Steps]  # each quantity along the motion, with one lane
+    residual: float  # how far the end is from the constraints
+    missed: float  # what steps passed over, as `holonom.simulation.passed_over` says; zero where they cannot
 
 
 def _residual(motion: PiecewiseMotion) -> float:
