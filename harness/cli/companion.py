@@ -11,7 +11,7 @@ from ..failures import missing_package
 from ..language import ENGLISH, LANGUAGES
 from .group import holonom
 from .options import runs_scenes, takes_settings
-from .outputs import OutputFile, SceneFile
+from .outputs import OutputFile, SceneFile, as_given
 
 EXTRAS = ("jinja2", "babel", "latex2mathml", "matplotlib", "heyoka", "ziamath", "pypdf")
 
@@ -56,7 +56,8 @@ def companion(
     given = tuple(settings.items())
     if given and not scenes:
         raise click.UsageError("--set needs a SCENE")
-    book = book_of_scenes(scenes, given, limits) if scenes else book_of_the_paper()
+    command = " ".join(["holonom companion", *map(as_given, scenes)])
+    book = book_of_scenes(scenes, given, limits, command) if scenes else book_of_the_paper()
     with progress(f"Making {directory}", len(book.runs)) as done:
         make_book(book, directory, pdf, tuple(dict.fromkeys(languages)) or (ENGLISH,), done)
     done_line = f"The companion is in {directory}: open {directory / 'index.html'} in a browser."

@@ -9,7 +9,7 @@ import click
 from ..confined import Limits
 from .group import holonom
 from .options import asks_one_scene, chooses_solve, present, read_instant, runs_scenes, writes_json
-from .outputs import OutputFile
+from .outputs import OutputFile, as_given
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -108,7 +108,8 @@ def sweep(
 
         require_formats(None, plot_file)
         require_plottable(axes)
-    wanted = SweepRequest(axes, kept, tol, until, Stabilization(drift), chunk, workers, scheduler, resume)
+    cure, called = Stabilization(drift), as_given(scene_file)
+    wanted = SweepRequest(axes, kept, tol, until, cure, chunk, workers, scheduler, resume, called)
     with sweep_progress(axes.rows) as progress:
         found = run_sweep(scene_file, request, wanted, output, limits, progress)
     if plot_file is not None:

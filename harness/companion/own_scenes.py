@@ -23,8 +23,8 @@ EQUATIONS = ("2", "3a", "3", "4", "5", "6", "7", "8", "9", "11")
 INITIAL_MOTION = ("12", "13", "18", "19")
 
 
-def book_of_scenes(files: Sequence[Path], settings: Settings, limits: Limits) -> Book:
-    """The companion of scene files.
+def book_of_scenes(files: Sequence[Path], settings: Settings, limits: Limits, command: str) -> Book:
+    """The companion of scene files, which a command makes.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def book_of_scenes(files: Sequence[Path], settings: Settings, limits: Limits) ->
         title=translatable("A companion to systems of your own"),
         subtitle=", ".join(file.name for file in files),
         foreword="own_foreword.html",
-        command=f"holonom companion {' '.join(map(str, files))}",
+        command=command,
         root=REPOSITORY,
         parts=tuple(
             (file.name, _chapters(prefix, file, settings, limits)) for prefix, file in zip(prefixes, files, strict=True)

@@ -17,7 +17,7 @@ from ..program.request import Request
 from ..simulation.engines.taylor import held
 from ..simulation.request import Stabilization
 from .axes import Axes, Grid, Listed, Sample
-from .dataset import SweepFolder, chunks_of, read_document
+from .dataset import SweepFolder, chunks_of
 from .kept import Kept, Kind
 from .rows import TOLERANCE, Plan, RowMaker
 from .workers import compute
@@ -46,6 +46,7 @@ class SweepRequest:
     workers: int | None = None  # processes that compute; None for one a processor
     scheduler: str | None = None  # address of a running Dask scheduler that is to be used instead
     resume: bool = False  # whether the sweep must have been begun before
+    called: str | None = None  # what the document calls the scene file; None for its path
 
 
 @dataclass(frozen=True)
@@ -148,11 +149,6 @@ def run_sweep(
     return Sweep(folder, target.document)
 
 
-def load_sweep(folder: Path) -> Sweep:
-    """A sweep that is in a folder, whole or not."""
-    return Sweep(folder, read_document(folder))
-
-
 def _derived(file: Path, request: Request, axes: Axes, limits: Limits) -> str:
     """The document of the motion with its parameters open; where it takes values to derive it, the middle ones."""
     try:
@@ -178,7 +174,7 @@ def _document(file: Path, request: Request, wanted: SweepRequest, derived: str, 
     text, problem, axes = file.read_text(encoding="utf-8"), maker.plan.problem, wanted.axes
     return {
         "scene": {
-            "file": str(file),
+            "file": wanted.called or str(file),
             "name": problem.scene,
             "title": problem.title,
             "system": problem.system,

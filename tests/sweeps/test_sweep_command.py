@@ -26,10 +26,10 @@ class Done(NamedTuple):
     stderr: str
 
 
-def sweep(*arguments: str | Path) -> Done:
-    """The command, in this process."""
+def sweep(*arguments: str | Path, text: str | None = None) -> Done:
+    """The command, in this process, with a text on standard input."""
     command = ["sweep", *map(str, arguments), "--workers", "1"]
-    done = CliRunner(mix_stderr=False).invoke(holonom.cli.holonom, command, standalone_mode=False)
+    done = CliRunner(mix_stderr=False).invoke(holonom.cli.holonom, command, input=text, standalone_mode=False)
     assert done.exception is None
     return Done(done.return_value, done.stderr)
 
@@ -67,6 +67,12 @@ def test_the_same_command_computes_the_missing_parts_alone(swept):
     assert rows(swept / "runs").equals(whole)
     assert first.stat().st_mtime_ns == stamp
     assert not list((swept / "runs").glob(".part*"))
+
+
+def test_a_sweep_of_standard_input_told_a_temporary_file(swept):
+    done = sweep("-", *ASKED[1:], "-o", swept / "runs", "--json", swept / "again.json", text=CRANE.read_text())
+    assert (done.returncode, done.stderr) == (0, "")
+    assert json.loads((swept / "again.json").read_text())["scene"]["file"] == "-"
 
 
 @pytest.mark.parametrize(
