@@ -74,8 +74,11 @@ def test_examples_run_and_maximas_own_still_do(batch):
     assert "not found" in batch("load(holonom)$\nexample(no_such_topic)$\n")
 
 
-def test_the_demonstration_runs_to_its_end(batch):
+def test_the_demonstration_waits_as_maximas_own_do_and_runs_to_its_end(batch):
     printed = batch("load(holonom)$\ndemo(holonom)$\n", answers=";\n" * 10)
+    waiting = "type ';' and <enter> to proceed with the demonstration"
+    assert waiting in printed
+    assert waiting in batch("demo(cf)$\n", answers=";\n" * 40)
     assert "(10)  condition of free motion" in printed
     assert "(18)  initial motion, as a series" in printed
 

@@ -55,8 +55,9 @@ def show_components(console: "Console", components: "Iterable[Component]") -> No
 def maxima_path() -> int:
     """Put Holonom into Maxima's user directory, where load(holonom) finds it from anywhere.
 
-    Then `? holonomic_system`, example(holonomic_system) and demo(holonom) work in Maxima as well. The directory is the
-    one that MAXIMA_USERDIR names, or .maxima in the home directory; no file of yours there is replaced.
+    Then `? holonomic_system`, example(holonomic_system) and demo(holonom) work in Maxima as well. Like all of Maxima's
+    demonstrations, the latter waits for a `;` after each step, in batch too; the example does not. The directory is
+    the one that MAXIMA_USERDIR names, or .maxima in the home directory; no file of yours there is replaced.
     """
     from ..installation import put_into_maxima, user_directory
     from .tables.text import make_console
