@@ -103,17 +103,14 @@ class Confinement:
 def run_confined(command: Sequence[str], confinement: Confinement, printed: bytearray) -> int:
     """Run a command to its end, or end it with all that it started at the first limit it exceeds.
 
+    Returns its exit status; negative, the signal that ended it.
+
     Parameters
     ----------
     command : sequence of str
         The program, by its path, and its arguments.
     printed : bytearray
         Receives what it prints, also when it is ended early.
-
-    Returns
-    -------
-    int
-        Its exit status; negative, the signal that ended it.
 
     Raises
     ------
@@ -217,10 +214,7 @@ def _watch(process: subprocess.Popen[bytes], limits: Limits, printed: bytearray)
 def resident_memory(pid: int) -> int:
     """Resident memory of a process and all that it started, in bytes.
 
-    Returns
-    -------
-    int
-        What has ended, even while it was looked at, counts for nothing.
+    What has ended, even while it was looked at, counts for nothing.
     """
     return sum(map(_own_memory, _tree(pid)))
 

@@ -81,11 +81,6 @@ def ask(
     settings : mapping of str to str
         Numbers in Maxima's notation, for what the file leaves open and for parameters.
 
-    Returns
-    -------
-    str
-        JSON text, for `read`.
-
     Raises
     ------
     HolonomError
@@ -98,11 +93,6 @@ def ask(
 
 def read(document: Document, text: str) -> dict[str, Any]:
     """Read a document as Maxima writes it.
-
-    Returns
-    -------
-    dict
-        What its schema says.
 
     Raises
     ------

@@ -32,12 +32,7 @@ class PrintedEquation:
 
 
 def errata() -> tuple[PrintedEquation, ...]:
-    """Compare every equation and condition that the paper prints with the derived one.
-
-    Returns
-    -------
-    tuple of PrintedEquation
-        In the paper's order.
+    """Compare every equation and condition that the paper prints with the derived one, in the paper's order.
 
     Raises
     ------

@@ -57,13 +57,7 @@ def advice(kind: HardCase) -> str:
 
 
 def engine_text(legs: "Sequence[Leg]") -> str:
-    """Who followed the motion when, in one line.
-
-    Returns
-    -------
-    str
-        For instance ``taylor`` or ``taylor, robust 0.31..0.35, taylor``.
-    """
+    """Who followed the motion when, in one line, for instance ``taylor`` or ``taylor, robust 0.31..0.35, taylor``."""
     if len(legs) == 1:
         return translated(legs[0].engine)
     robust = [leg for leg in legs if leg.engine is EngineName.ROBUST]

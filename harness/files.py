@@ -243,12 +243,7 @@ def written_before(directory: Path) -> frozenset[str]:
 
 
 def require_own_files(directory: Path, names: Iterable[str]) -> None:
-    """Refuse to replace files of a directory that its manifest does not list.
-
-    Parameters
-    ----------
-    names : iterable of str
-        What is to be written, by paths in the directory.
+    """Refuse to replace files of a directory, given by their paths in it, that its manifest does not list.
 
     Raises
     ------

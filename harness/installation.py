@@ -107,17 +107,9 @@ def user_directory() -> Path:
 
 
 def put_into_maxima(directory: Path) -> Path:
-    """Let Maxima find the library, and its help, from a directory that it searches.
+    """Let Maxima find the library, and its help, from a directory that it searches, made where it is missing.
 
-    Parameters
-    ----------
-    directory : Path
-        It is made where it is missing.
-
-    Returns
-    -------
-    Path
-        The file that ``load(holonom)`` loads.
+    Returns the file that ``load(holonom)`` loads.
 
     Raises
     ------

@@ -100,17 +100,7 @@ class _Application:
 
 
 def to_sympy(tree: Tree) -> Expr:
-    """Convert a MathJSON tree to a SymPy expression.
-
-    Parameters
-    ----------
-    tree : int, str, dict or list
-        The tree, as `json.loads` gives it.
-
-    Returns
-    -------
-    Expr
-        The expression, automatically simplified as SymPy does; every symbol is real.
+    """Convert a MathJSON tree to a SymPy expression. It is simplified as SymPy does by itself; every symbol is real.
 
     Raises
     ------
@@ -121,17 +111,9 @@ def to_sympy(tree: Tree) -> Expr:
 
 
 def from_sympy(expression: Expr) -> Tree:
-    """Convert a SymPy expression to a MathJSON tree.
+    """Convert a SymPy expression, in real symbols and functions that MathJSON shares with SymPy, to a MathJSON tree.
 
-    Parameters
-    ----------
-    expression : Expr
-        An expression in real symbols and the functions that MathJSON shares with SymPy.
-
-    Returns
-    -------
-    int, str, dict or list
-        The tree; `to_sympy` makes the expression of it again.
+    `to_sympy` makes the expression of it again.
 
     Raises
     ------

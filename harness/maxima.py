@@ -100,11 +100,6 @@ def ask_scene(
     settings : mapping of str to str
         Numbers in Maxima's notation, for what the file leaves open and for parameters.
 
-    Returns
-    -------
-    str
-        What the function wrote.
-
     Raises
     ------
     HolonomError
@@ -135,11 +130,6 @@ def run_batch(
     file, writer, limits, settings
         As for `ask_scene`.
 
-    Returns
-    -------
-    str
-        What the function wrote.
-
     Raises
     ------
     HolonomError
@@ -152,11 +142,6 @@ def run_batch(
 
 def run_rtest(rtest: Path) -> int:
     """Run a file in Maxima's own test convention, pairs of input and expected result, with the library loaded.
-
-    Parameters
-    ----------
-    rtest : Path
-        The file, ``rtest_*.mac``.
 
     Returns
     -------
@@ -182,23 +167,12 @@ def run_rtest(rtest: Path) -> int:
 
 
 def count_statements(text: str) -> int:
-    """Count the statements in Maxima text.
-
-    Parameters
-    ----------
-    text : str
-        Maxima text, its statements ended by ``;`` or ``$``.
-
-    Returns
-    -------
-    int
-        The number of terminators outside comments and strings.
-    """
+    """Count the statements in Maxima text: terminators, ``;`` or ``$``, outside comments and strings."""
     return sum(1 for _ in statement_ends(text))
 
 
 def statement_ends(text: str, position: int = 0) -> Iterator[int]:
-    """Yield where statements end in Maxima text.
+    """Yield where statements end in Maxima text: the positions just past a terminator, ``;`` or ``$``.
 
     Parameters
     ----------
@@ -206,11 +180,6 @@ def statement_ends(text: str, position: int = 0) -> Iterator[int]:
         Maxima text.
     position : int
         Where to begin, outside comments and strings.
-
-    Yields
-    ------
-    int
-        The position just past a terminator, ``;`` or ``$``.
     """
     depth = 0
     while match := (IN_COMMENT if depth else IN_CODE).search(text, position):
@@ -233,12 +202,7 @@ def _copy(run: Run) -> str:
 
 
 def read_maxima_text(file: Path) -> str:
-    """Read a Maxima file, with or without a byte order mark, its lines ended in any way.
-
-    Returns
-    -------
-    str
-        With line feeds.
+    """Read a Maxima file, with or without a byte order mark, its lines ended in any way; with line feeds then.
 
     Raises
     ------

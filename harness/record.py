@@ -197,12 +197,7 @@ def derived_record(
 
 
 def read_record(text: str) -> Record:
-    """Read a derivation record.
-
-    Returns
-    -------
-    Record
-        The record; the expressions in its equations are converted when they are first asked for.
+    """Read a derivation record; the expressions in its equations are converted when they are first asked for.
 
     Raises
     ------

@@ -56,11 +56,6 @@ class _Interrupted(BaseException):
 def supervise(command: Callable[[], int]) -> Ending:
     """Run a command in a child process, which does not come back from here.
 
-    Parameters
-    ----------
-    command : callable
-        Returns its exit status.
-
     Raises
     ------
     HolonomError

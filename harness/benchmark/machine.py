@@ -29,13 +29,7 @@ class Machine:
 
 
 def this_machine(packages: tuple[str, ...] = PACKAGES) -> Machine:
-    """The machine this runs on, today.
-
-    Parameters
-    ----------
-    packages : tuple of str
-        Whose versions matter; those that are not installed are left out.
-    """
+    """The machine this runs on, today, with the versions of those packages that are installed."""
     versions = {"Python": platform.python_version()}
     for package in packages:
         try:

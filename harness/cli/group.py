@@ -107,13 +107,7 @@ def main() -> None:
 
 
 def run() -> int:
-    """Run the command line in this process.
-
-    Returns
-    -------
-    int
-        The exit status; every failure has been told in one sentence.
-    """
+    """Run the command line in this process; every failure is told in one sentence. Returns the exit status."""
     _write_what_can_be_written()
     try:
         status = holonom(standalone_mode=False, obj=OWN_PROCESS)

@@ -122,11 +122,6 @@ def require_apart(scenes: Iterable[Path], outputs: Iterable[Path]) -> None:
 def require_writable(path: Path, kinds: Iterable[str]) -> None:
     """Refuse an output that cannot be written, before there is anything to write.
 
-    Parameters
-    ----------
-    kinds : iterable of str
-        What it may hold; of these only c is a directory.
-
     Raises
     ------
     HolonomError
@@ -146,12 +141,7 @@ def require_writable(path: Path, kinds: Iterable[str]) -> None:
 
 
 def require_earlier_output(path: Path, kinds: Iterable[str]) -> None:
-    """Refuse to replace what is no earlier output.
-
-    Parameters
-    ----------
-    kinds : iterable of str
-        Of what kinds an output may be, keys of `EARLIER`.
+    """Refuse to replace what is no earlier output of one of these kinds, keys of `EARLIER`.
 
     Raises
     ------

@@ -118,7 +118,7 @@ def require_companion_or_nothing(directory: Path) -> None:
 
 
 def pages(book: Book, results: Mapping[Run, Any], twins: tuple[Twin, ...] = ()) -> dict[str, str | bytes]:
-    """The files of a book, in the language spoken.
+    """The files of a book, in the language spoken, by their names.
 
     Parameters
     ----------
@@ -126,11 +126,6 @@ def pages(book: Book, results: Mapping[Run, Any], twins: tuple[Twin, ...] = ()) 
         Of all the book's runs.
     twins : tuple of Twin
         The same book in other languages.
-
-    Returns
-    -------
-    dict of str to str or bytes
-        What each file holds, by its name.
     """
     contents = contents_of(book, results, twins)
     made = {chapter: _page(chapter, results) for chapter in book.chapters}

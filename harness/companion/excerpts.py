@@ -22,12 +22,7 @@ class Excerpt:
 
 
 def excerpt(root: Path, file: str, name: str) -> Excerpt:
-    """Find the definition of a Maxima function or variable.
-
-    Parameters
-    ----------
-    root : Path
-        The directory that `file` is relative to.
+    """Find the definition of a Maxima function or variable in a file below a root.
 
     Raises
     ------

@@ -88,7 +88,7 @@ def index_page(book: Contents, terms: Sequence[Place]) -> str:
 
 
 def chapter_page(book: Contents, chapter: Chapter, content: Mapping[str, Any]) -> str:
-    """The page of a chapter.
+    """The page of a chapter, well-formed.
 
     Parameters
     ----------
@@ -96,11 +96,6 @@ def chapter_page(book: Contents, chapter: Chapter, content: Mapping[str, Any]) -
         One of the book's.
     content : mapping of str to object
         The variables of its template.
-
-    Returns
-    -------
-    str
-        The page's text, well-formed.
 
     Raises
     ------

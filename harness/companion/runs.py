@@ -119,11 +119,6 @@ def perform(runs: Iterable[Run], done: Callable[[], None]) -> dict[Run, Any]:
     done : callable
         Called each time that one is done.
 
-    Returns
-    -------
-    dict of Run to object
-        Their results.
-
     Raises
     ------
     HolonomError

@@ -68,10 +68,7 @@ class Place(NamedTuple):
 def check_record(record: Record, seed: str | None = None) -> CheckReport:
     """Compare every equation of a record with the independent evaluation.
 
-    Parameters
-    ----------
-    seed : str or None
-        Draws the random points; None for a fresh one.
+    The seed draws the random points; None is for a fresh one.
 
     Returns
     -------

@@ -29,12 +29,7 @@ class LinearEquations:
         return [residual.xreplace(nothing) for residual in self.residuals]
 
     def solution(self, value: Callable[[sp.Expr], mp.mpf]) -> dict[sp.Symbol, mp.mpf]:
-        """Solve for the unknowns at a point.
-
-        Parameters
-        ----------
-        value : callable
-            Value of an expression at the point.
+        """Solve for the unknowns at a point, where `value` evaluates an expression.
 
         Raises
         ------

@@ -49,17 +49,14 @@ class RootRelation(NamedTuple):
 def is_identically_zero(expressions: Iterable[sp.Expr], allowance: int = ALLOWANCE) -> bool:
     """Whether all expressions are shown to be identically zero within the allowance.
 
+    True is a proof; False says nothing.
+
     Parameters
     ----------
     expressions : iterable of Expr
         Of real symbols, rational numbers, elementary functions.
     allowance : int
         Terms read and products of terms made that the proof may take.
-
-    Returns
-    -------
-    bool
-        True is a proof; False says nothing.
     """
     canonical = []
     for expression in expressions:

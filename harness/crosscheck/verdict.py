@@ -70,13 +70,7 @@ class Judgement(NamedTuple):
 
 
 def judge(comparison: Comparison, seed: str) -> Judgement:
-    """Verdict on a comparison.
-
-    Parameters
-    ----------
-    seed : str
-        Makes the random points; the same points for the same seed.
-    """
+    """Verdict on a comparison; the same seed makes the same random points."""
     if not comparison.pairs:
         return Judgement(Verdict.NOTHING, None, None)
     names = _free_names(comparison)

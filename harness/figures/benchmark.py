@@ -42,12 +42,7 @@ PANELS = (
 
 
 def draw_study(study: "Study", path: Path) -> None:
-    """Draw a study in six panels.
-
-    Parameters
-    ----------
-    path : Path
-        The SVG file.
+    """Draw a study in six panels, as SVG.
 
     Raises
     ------
@@ -98,12 +93,7 @@ MOST_DIGITS = 16.5
 
 
 def draw_stability(reports: Sequence[CaseReport], file: Path) -> None:
-    """Draw the digits that every method keeps of every case.
-
-    Parameters
-    ----------
-    file : Path
-        The SVG file.
+    """Draw the digits that every method keeps of every case, as SVG.
 
     Raises
     ------

@@ -49,7 +49,7 @@ SMALLEST = 1e-16  # error that is still drawn
 
 
 def draw_partial_sums(name: str, coefficients: Sequence[float], radius: Radius, times: NDArray, motion: NDArray) -> str:
-    """Draw the partial sums of a series over the motion that it is of, and their errors.
+    """Draw the partial sums of a series over the motion that it is of, and their errors, as SVG.
 
     Parameters
     ----------
@@ -61,11 +61,6 @@ def draw_partial_sums(name: str, coefficients: Sequence[float], radius: Radius, 
         Finite.
     times, motion : ndarray, shape (k,)
         t - t0, and the coordinate there, from an integration that does not know the series.
-
-    Returns
-    -------
-    str
-        SVG.
     """
     with figure_style():
         figure = new_figure(8, 6)
@@ -115,12 +110,7 @@ def find_radii() -> RadiiFound:
 
 
 def draw_radius(found: RadiiFound, file: Path) -> None:
-    """Draw the radius of convergence and the nearest singularities against u0.
-
-    Parameters
-    ----------
-    file : Path
-        The SVG file to write.
+    """Draw the radius of convergence and the nearest singularities against u0, as SVG.
 
     Raises
     ------

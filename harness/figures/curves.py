@@ -25,17 +25,7 @@ class Panel:
 
 
 def draw_curves(panels: Sequence[Panel], xlabel: str) -> str:
-    """Draw panels over one axis.
-
-    Parameters
-    ----------
-    xlabel : str
-        What is below all of them, with its unit.
-
-    Returns
-    -------
-    str
-        SVG.
+    """Draw panels over one axis, as SVG.
 
     Raises
     ------

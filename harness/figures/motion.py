@@ -23,12 +23,7 @@ LEGIBLE = 12  # curves that a legend can still tell apart
 
 
 def draw_motion(simulation: Simulation, file: Path) -> None:
-    """Draw a motion into a file.
-
-    Parameters
-    ----------
-    file : Path
-        The SVG or PNG file.
+    """Draw a motion into a file, SVG or PNG.
 
     Raises
     ------
@@ -95,18 +90,7 @@ HEIGHT_OF_WAYS = 4.8  # inches
 
 
 def draw_with_and_without(present: Simulation, absent: Simulation, across: str, along: str) -> str:
-    """Draw the way of a body in the plane of two coordinates, with an effect and without it.
-
-    Parameters
-    ----------
-    across, along : str
-        The coordinates on the two axes.
-
-    Returns
-    -------
-    str
-        SVG.
-    """
+    """Draw the way of a body in the plane of two coordinates, with an effect and without it, as SVG."""
     reach = 1.05 * max(abs(motion.coordinates[name]).max() for motion in (present, absent) for name in (across, along))
     with figure_style():
         figure = new_figure(WIDTH, HEIGHT_OF_WAYS)

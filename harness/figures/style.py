@@ -106,17 +106,7 @@ def _fonts() -> list[str]:
 
 
 def new_figure(width: float, height: float) -> "Figure":
-    """An empty figure, of no window and no global state.
-
-    Parameters
-    ----------
-    width, height : float
-        In inches; the text is of 10 points.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        Its panels are laid out so that nothing overlaps.
+    """An empty figure of that size in inches, of no window and no global state; panels do not overlap.
 
     Raises
     ------

@@ -20,17 +20,7 @@ BESIDE = ("row", "residual", "status", "remark")
 
 
 def sweep_figure(sweep: "Sweep", quantity: str | None = None) -> "Figure":
-    """The figure of a sweep.
-
-    Parameters
-    ----------
-    quantity : str or None
-        A column; None for the first that is kept.
-
-    Returns
-    -------
-    Figure
-        Of rows that have no such value nothing is drawn.
+    """The figure of a column of a sweep, else of the first that is kept; of rows without a value nothing is drawn.
 
     Raises
     ------

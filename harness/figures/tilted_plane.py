@@ -23,7 +23,7 @@ ABOVE = 1.25  # how far the plane goes beyond the particle
 
 
 def draw_tilted_plane(particle: Sequence[float], tilt: float) -> str:
-    """Draw the plane, the knob, the particle and the reaction.
+    """Draw the plane, the knob, the particle and the reaction, as SVG.
 
     Parameters
     ----------
@@ -31,11 +31,6 @@ def draw_tilted_plane(particle: Sequence[float], tilt: float) -> str:
         On the plane.
     tilt : float
         u.
-
-    Returns
-    -------
-    str
-        SVG.
     """
     q = np.asarray(particle, dtype=float)
     foot = np.array([q[0] - q[1], q[1] - q[0], 0.0]) / 2

@@ -66,18 +66,7 @@ class Arithmetic(Generic[Value]):
 
 
 def run_program(program: Program, inputs: Mapping[str, Value], arithmetic: Arithmetic[Value]) -> dict[str, Value]:
-    """Carry a program out, assignment by assignment.
-
-    Parameters
-    ----------
-    inputs : mapping
-        A value for each of the program's inputs.
-
-    Returns
-    -------
-    dict
-        Value of each output, in the program's order.
-    """
+    """Carry a program out, assignment by assignment, for a value of each input; each output's value in their order."""
     names = dict(inputs)
     for name, expression in program.assignments:
         names[name] = arithmetic.value(expression, names)

@@ -208,15 +208,7 @@ target_link_libraries({name}_driver PRIVATE {name})
 def c_library(model: Model, name: str) -> dict[str, str]:
     """Write a model as a library in C11.
 
-    Parameters
-    ----------
-    name : str
-        The library's, with which every public name begins.
-
-    Returns
-    -------
-    dict of str to str
-        The text of each file by its name: NAME.h, NAME.c, NAME_driver.c, CMakeLists.txt.
+    The text of each file by its name: NAME.h, NAME.c, NAME_driver.c, CMakeLists.txt.
 
     Raises
     ------

@@ -126,15 +126,7 @@ def c_source(program: Program) -> str:
 def scalar_statements(program: Program, inputs: Sequence[str]) -> Iterator[str]:
     """The program for one point, as statements of C that fill an array ``out``.
 
-    Parameters
-    ----------
-    inputs : sequence of str
-        For each input an expression of C.
-
-    Yields
-    ------
-    str
-        They need `HELPERS` and the mathematical functions.
+    Each input is given as an expression of C. They need `HELPERS` and the mathematical functions.
     """
     return statements(program, ONE, inputs, [f"out[{place}] = {{value}};" for place in range(len(program.outputs))])
 

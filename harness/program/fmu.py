@@ -35,15 +35,7 @@ enum {{ N = {NAME}_COORDINATES, G = {NAME}_MULTIPLIERS, M = {NAME}_CONTROLS, K =
 def write_fmu(model: Model, name: str) -> bytes:
     """Write a model as an FMI 3.0 unit.
 
-    Parameters
-    ----------
-    name : str
-        Its model identifier, and the name of the library in C.
-
-    Returns
-    -------
-    bytes
-        A ZIP archive with modelDescription.xml, the binary for this machine, and the sources.
+    A ZIP archive with modelDescription.xml, the binary for this machine, and the sources.
 
     Raises
     ------

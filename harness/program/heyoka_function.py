@@ -80,11 +80,6 @@ def heyoka_expressions(
     number : callable
         Takes a Fraction to one of heyoka's numbers; `float` is for double precision.
 
-    Returns
-    -------
-    dict of str to expression
-        Each output of the program.
-
     Raises
     ------
     HolonomError
@@ -100,6 +95,8 @@ def dynamics(
 ) -> list[tuple[expression, expression]]:
     """First-order equations of motion for heyoka's integrators.
 
+    Each coordinate and its velocity, then each velocity and its acceleration.
+
     Parameters
     ----------
     program : Program
@@ -109,11 +106,6 @@ def dynamics(
         time, coordinates and velocities.
     number : callable
         As for `heyoka_expressions`.
-
-    Returns
-    -------
-    list of (expression, expression)
-        Each coordinate and its velocity, then each velocity and its acceleration.
 
     Raises
     ------

@@ -43,15 +43,7 @@ if (typeof module === "object") module.exports = {name};
 def javascript_source(program: Program, name: str = "motion") -> str:
     """Write a program as JavaScript.
 
-    Parameters
-    ----------
-    name : str
-        Name of the constant that holds the names of the inputs and outputs and the function ``evaluate``.
-
-    Returns
-    -------
-    str
-        A classic script, which Node can require too; it needs nothing but Math.
+    A classic script, which Node can require too: a constant of that name with `inputs`, `outputs` and ``evaluate``.
 
     Raises
     ------

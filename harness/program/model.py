@@ -47,12 +47,7 @@ class Model:
 
 
 def scene_model(file: Path, request: Request, parameters: Sequence[str], limits: Limits) -> Model:
-    """Ask Maxima for a scene as a model.
-
-    Parameters
-    ----------
-    parameters : sequence of str
-        Those that stay open although the scene gives them values.
+    """Ask Maxima for a scene as a model, in which parameters stay open although the scene gives them values.
 
     Raises
     ------

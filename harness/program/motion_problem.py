@@ -120,10 +120,7 @@ class MotionProblem:
     def once(self, what: Hashable, program: Program, build: "Callable[[], Built]") -> "Built":
         """What is built of a program, once for all values of the open parameters; anew where there are none.
 
-        Parameters
-        ----------
-        what : hashable
-            Tells apart what is built of the same program.
+        `what` tells apart what is built of the same program.
         """
         if not self.parameters:
             return build()
@@ -192,17 +189,7 @@ def motion_problem(
 def problem_document(
     file: Path, request: Request, limits: Limits, digits: int = DOUBLE_DIGITS, open_parameters: Sequence[str] = ()
 ) -> str:
-    """The document of a scene's motion, as Maxima writes it.
-
-    Parameters
-    ----------
-    file, request, limits, digits, open_parameters
-        As for `motion_problem`.
-
-    Returns
-    -------
-    str
-        JSON text, for `read_problem`.
+    """The document of a scene's motion, as Maxima writes it, for `read_problem`; arguments as for `motion_problem`.
 
     Raises
     ------
@@ -255,18 +242,7 @@ def read_problem(text: str) -> MotionProblem:
 
 
 def computing(program: Program, wanted: Collection[str]) -> Program:
-    """The part of a program that some of its outputs need.
-
-    Parameters
-    ----------
-    wanted : collection of str
-        Outputs to keep.
-
-    Returns
-    -------
-    Program
-        With the same inputs.
-    """
+    """The part of a program that some of its outputs need, with the same inputs."""
     outputs = {name: value for name, value in program.outputs.items() if name in wanted}
     needed = set().union(*map(names_in, outputs.values()))
     kept = []

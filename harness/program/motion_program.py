@@ -128,11 +128,6 @@ def read_program(text: str) -> Program:
 def program_of(document: Any) -> Program:
     """Read a motion program that is part of a larger document.
 
-    Parameters
-    ----------
-    document : Any
-        What JSON gives for a program.
-
     Raises
     ------
     HolonomError

@@ -36,12 +36,7 @@ class Precision:
 
 
 def read_precision(text: str) -> Precision:
-    """The numbers that an option asks for.
-
-    Parameters
-    ----------
-    text : str
-        ``double``, ``extended``, ``quadruple``, or a whole number of decimal digits.
+    """The numbers that an option asks for: ``double``, ``extended``, ``quadruple``, or a number of decimal digits.
 
     Raises
     ------

@@ -32,12 +32,7 @@ def within_reach(number: str) -> bool:
 
 
 def read_settings(texts: Iterable[str]) -> dict[str, str]:
-    """Read settings as they stand on a command line.
-
-    Parameters
-    ----------
-    texts : iterable of str
-        Each ``NAME=VALUE``, the value an integer, a decimal or a quotient of integers.
+    """Read settings as they stand on a command line: ``NAME=VALUE``, an integer, a decimal or a quotient of integers.
 
     Raises
     ------

@@ -25,11 +25,6 @@ def problem_in(problem: MotionProblem, pattern: Pattern) -> MotionProblem:
     ----------
     pattern : mapping of str to int or str
         1, -1 or `HELD` for each sign; one at most is held, of those that `holdable` names.
-
-    Returns
-    -------
-    MotionProblem
-        Without signs.
     """
     if not problem.signs:
         return problem
@@ -40,15 +35,7 @@ def problem_in(problem: MotionProblem, pattern: Pattern) -> MotionProblem:
 def program_in(problem: MotionProblem, program: Program, pattern: Pattern) -> Program:
     """A program of the motion with the signs of a pattern.
 
-    Parameters
-    ----------
-    problem, pattern
-        As for `problem_in`.
-
-    Returns
-    -------
-    Program
-        Its inputs are the time, the coordinates, the velocities and the multipliers alone.
+    Its inputs are the time, the coordinates, the velocities and the multipliers alone.
     """
     for name, sign in pattern.items():
         if sign == HELD:
@@ -59,15 +46,7 @@ def program_in(problem: MotionProblem, program: Program, pattern: Pattern) -> Pr
 def drawing_at_any_time(problem: MotionProblem) -> Drawing:
     """How the system looks, each sign as it is at the state drawn.
 
-    Parameters
-    ----------
-    problem : MotionProblem
-        With a drawing.
-
-    Returns
-    -------
-    Drawing
-        Its program takes the time, the coordinates, the velocities and the multipliers alone.
+    Its program takes the time, the coordinates, the velocities and the multipliers alone.
     """
     program = problem.drawing.program
     for index, sign in reversed(list(enumerate(problem.signs, start=1))):
@@ -89,13 +68,7 @@ def in_numbers(problem: MotionProblem, program: Program) -> Program:
 
 
 def with_values_in(problem: MotionProblem) -> MotionProblem:
-    """The motion with the values of its parameters put into its programs, none left open.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-        With a value for each open parameter.
-    """
+    """The motion with the values of its parameters put into its programs, none left open."""
     if not problem.parameters:
         return problem
     return replace(
@@ -174,7 +147,7 @@ def _text(problem: MotionProblem) -> Hashable:
 
 
 def drive(problem: MotionProblem, name: str, sign: int, pattern: Pattern) -> Program:
-    """The rate that a sign contributes to of its own function, for one value of it.
+    """The rate that a sign contributes to of its own function, for one value of it. Its one output is ``drive``.
 
     Parameters
     ----------
@@ -182,11 +155,6 @@ def drive(problem: MotionProblem, name: str, sign: int, pattern: Pattern) -> Pro
         As for `problem_in`.
     name : str
         One of the signs, that `holdable` is true of.
-
-    Returns
-    -------
-    Program
-        Its one output is ``drive``.
     """
     output = f"drive[{_index(problem, name)}]"
     program = program_in(problem, computing(problem.switching, {output}), {**pattern, name: sign})
@@ -194,13 +162,7 @@ def drive(problem: MotionProblem, name: str, sign: int, pattern: Pattern) -> Pro
 
 
 def with_numbers(program: Program, numbers: Mapping[str, Fraction]) -> Program:
-    """A program with numbers for some of its inputs; what is multiplied by zero is dropped.
-
-    Returns
-    -------
-    Program
-        Without these inputs.
-    """
+    """A program with numbers for some of its inputs; what is multiplied by zero is dropped."""
     known: dict[str, Expression] = dict(numbers)
     kept = []
     for name, expression in program.assignments:

@@ -58,14 +58,9 @@ def python_batch(function: Callable[[Sequence[float]], object], point: Sequence[
 
 
 def shortest_times(batches: Mapping[Key, Batch]) -> dict[Key, float]:
-    """Measure several functions side by side.
+    """Measure several functions side by side: the seconds that one call of each takes.
 
     The functions take turns, so that what slows the machine down for a while slows all of them.
-
-    Returns
-    -------
-    dict of float
-        Seconds that one call of each takes.
     """
     calls = {key: max(1, int(BATCH / max(_first_guess(batch), SHORTEST))) for key, batch in batches.items()}
     rounds = [{key: batch(calls[key]) for key, batch in batches.items()} for _ in range(ROUNDS)]

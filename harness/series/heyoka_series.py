@@ -55,12 +55,7 @@ def expand_by_heyoka(file: Path, request: SeriesRequest, limits: Limits) -> Moti
 
 
 def expand(problem: MotionProblem, order: int, precision: Precision) -> MotionSeries:
-    """Expand a motion in power series.
-
-    Parameters
-    ----------
-    order : int
-        2 or more.
+    """Expand a motion in power series, to order 2 or more.
 
     Raises
     ------
@@ -91,12 +86,7 @@ def expand(problem: MotionProblem, order: int, precision: Precision) -> MotionSe
 
 
 def continue_motion(problem: MotionProblem, until: Fraction, precision: Precision) -> Continuation:
-    """Follow a motion step by step.
-
-    Parameters
-    ----------
-    until : Fraction
-        The last instant.
+    """Follow a motion step by step, to the instant `until`.
 
     Raises
     ------

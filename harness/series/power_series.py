@@ -131,11 +131,6 @@ def compute_series(file: Path, request: SeriesRequest, limits: Limits) -> Motion
 def read_series(text: str) -> MotionSeries:
     """Read what Maxima writes.
 
-    Parameters
-    ----------
-    text : str
-        JSON document.
-
     Raises
     ------
     HolonomError
@@ -158,12 +153,7 @@ def read_series(text: str) -> MotionSeries:
 
 
 def values_at(motion: MotionSeries, time: Fraction) -> Values:
-    """Add the series up at an instant.
-
-    Parameters
-    ----------
-    time : Fraction
-        The instant, inside the radius of convergence.
+    """Add the series up at an instant inside the radius of convergence.
 
     Raises
     ------

@@ -72,17 +72,9 @@ TOO_FEW = Radius(
 
 
 def estimate_radius(series: Iterable[Sequence[mpmath.mpf]]) -> Radius:
-    """Estimate the radius of convergence of a motion.
+    """Estimate the radius of convergence of a motion from its power series in t - t0.
 
-    Parameters
-    ----------
-    series : iterable of sequences of mpf
-        Coefficients of power series in t - t0 that belong to one motion.
-
-    Returns
-    -------
-    Radius
-        The most certain estimate among those of the series that end first.
+    The most certain estimate among those of the series that end first.
     """
     return _first_end([_radius_of(coefficients) for coefficients in series])
 
@@ -118,15 +110,7 @@ def _first_end(found: Sequence[Radius]) -> Radius:
 def truncation_error(coefficients: Sequence[mpmath.mpf], radius: Radius, time: float) -> float:
     """Estimate what the terms left out of a power series add up to.
 
-    Parameters
-    ----------
-    time : float
-        t - t0, inside the radius of convergence.
-
-    Returns
-    -------
-    float
-        The sum of a geometric series above the last terms; infinite where that does not converge.
+    The sum of a geometric series above the last terms; infinite where that does not converge.
     """
     last = len(coefficients) - 1
     terms = [float(abs(c) * mpmath.mpf(abs(time)) ** n) for n, c in enumerate(coefficients)]

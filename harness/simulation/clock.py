@@ -34,13 +34,7 @@ class _Otherwise(ArithmeticError):
 
 
 def ticks(problem: MotionProblem) -> Mapping[str, Tick]:
-    """When each sign changes that a function a + b t decides.
-
-    Returns
-    -------
-    mapping of str to Tick
-        By the sign's name; signs of other functions are not among them.
-    """
+    """When each sign changes that a function a + b t decides, by the sign's name."""
     found = {}
     for index, sign in enumerate(problem.signs, start=1):
         if sign.by is By.TIME:

@@ -24,17 +24,7 @@ class Derivations:
         self._closed: dict[tuple[object, ...], MotionProblem] = {}
 
     def motion(self, request: Request, digits: int = DOUBLE_DIGITS) -> MotionProblem:
-        """The motion that a request asks for.
-
-        Parameters
-        ----------
-        digits : int
-            Significant digits of the initial state.
-
-        Returns
-        -------
-        MotionProblem
-            Its open parameters, if it has any, have the values of the settings.
+        """The motion that a request asks for. Its open parameters, if it has any, have the values of the settings.
 
         Raises
         ------
@@ -70,10 +60,7 @@ def open_names(request: Request, digits: int) -> tuple[str, ...]:
 def stands(problem: MotionProblem) -> bool:
     """Whether the programs of a motion, with its parameters open, solve its equations at the start.
 
-    Returns
-    -------
-    bool
-        Also where no parameter is open.
+    True also where no parameter is open.
     """
     if not problem.parameters:
         return True

@@ -93,10 +93,7 @@ def hard_cases(
 def dependence(matrices: MotionMatrices, at: Instant) -> str | None:
     """Why no fixed order of pivots can solve the equations of motion at a state, if none can.
 
-    Returns
-    -------
-    str or None
-        A clause; None where the constraints, those apart that are known to follow from others, are independent.
+    A clause; constraints that are known to follow from others are left apart.
     """
     found = matrices.independent(*at)
     rank = rank_of(weighted_constraints(found.mass, found.jacobian).singular_values())

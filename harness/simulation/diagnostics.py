@@ -30,7 +30,7 @@ PROBES = (0.3127, -0.7411, 1.2713)  # seeds of states at which power that vanish
 
 
 def residuals(at: Matrices, state: Vector, accelerations: Vector) -> Mapping[str, float]:
-    """What is left of the constraints at a state.
+    """What is left of the constraints at a state: ``position``, ``velocity``, ``acceleration``.
 
     Parameters
     ----------
@@ -38,11 +38,6 @@ def residuals(at: Matrices, state: Vector, accelerations: Vector) -> Mapping[str
         At the state.
     state : ndarray, shape (2n,)
     accelerations : ndarray, shape (n,)
-
-    Returns
-    -------
-    mapping of str to float
-        ``position``, ``velocity``, ``acceleration``.
     """
     n = len(accelerations)
     left = {
@@ -56,10 +51,7 @@ def residuals(at: Matrices, state: Vector, accelerations: Vector) -> Mapping[str
 def condition(at: Matrices) -> float:
     """Condition number of G = J A^-1 J^T, each constraint scaled to length one in the mass metric.
 
-    Returns
-    -------
-    float
-        Infinite where constraints depend on one another.
+    Infinite where constraints depend on one another.
 
     Raises
     ------
@@ -110,13 +102,7 @@ class EnergyBalance:
         return self._output("power", instants, states, reactions)
 
     def works(self, piece: "Piece", ends: Sequence[Any]) -> list[Any]:
-        """Integrals of the power over the parts of a piece of the motion.
-
-        Parameters
-        ----------
-        ends : sequence of k numbers
-            Where the parts end, in order; the last one with the piece.
-        """
+        """Integrals of the power over parts of a piece of the motion, given by their ends; the last is the piece's."""
         if self.conservative:
             return [self._precision.number("0")] * len(ends)
         starts = np.array([piece.start, *ends[:-1]])

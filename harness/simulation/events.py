@@ -88,10 +88,7 @@ class Events(SignedFunctions):
     def first_event(self, piece: Piece, sides: dict[str, int]) -> Crossing | None:
         """The first crossing within a step.
 
-        Parameters
-        ----------
-        sides : dict of str to int
-            The sign that each expression has had since it left zero; what this step shows is added.
+        `sides` are the signs that expressions have had since they left zero; what this step shows is added.
         """
         begun = self._see_sides(piece, sides) if len(sides) < len(self._names) else ()
         self._rows = [(name, -sides[name], sides[name]) for name in self._names if name in sides]

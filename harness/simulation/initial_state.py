@@ -231,17 +231,7 @@ class _Group:
 
 
 def at_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionProblem:
-    """The motion for other values of its open parameters.
-
-    Parameters
-    ----------
-    values : mapping of str to Fraction
-        One for each open parameter that the motion has no value of.
-
-    Returns
-    -------
-    MotionProblem
-        Its start is good to double precision.
+    """The motion for other values of its open parameters, its start good to double precision.
 
     Raises
     ------

@@ -96,11 +96,6 @@ def write_files(simulation: Simulation, samples: Path | None, figure: Path | Non
 def write_samples(simulation: Simulation, path: Path) -> None:
     """Write the samples of a motion.
 
-    Parameters
-    ----------
-    path : Path
-        Its suffix names the format: one of `FORMATS`.
-
     Raises
     ------
     HolonomError
@@ -119,17 +114,14 @@ def streams(path: Path) -> bool:
 def sample_file(path: Path, digits: int) -> Iterator[Callable[[Sampled], None]]:
     """A file of samples that are written as they come. It is there when the block has ended well, and whole.
 
+    What it gives takes samples that follow those before.
+
     Parameters
     ----------
     path : Path
         Its suffix names the format: one of `FORMATS`.
     digits : int
         Of numbers that no double can hold.
-
-    Yields
-    ------
-    callable
-        Takes samples that follow those before.
 
     Raises
     ------
@@ -218,13 +210,7 @@ BYTES_ON_DISK = {".csv": 20, ".parquet": 9}
 
 
 def simulation_document(simulation: Simulation) -> dict[str, Any]:
-    """The report and the samples.
-
-    Returns
-    -------
-    dict
-        As `report_document`, with the samples by name under ``samples``.
-    """
+    """The report, as `report_document`, and with it the samples by name under ``samples``."""
     digits = simulation.report.digits
     columns = {name: published_list(samples, digits) for name, samples in simulation.columns()}
     named = {"scene": simulation.scene, "title": simulation.title}
@@ -251,13 +237,7 @@ def report_document(report: Report) -> dict[str, Any]:
 
 
 def published_list(samples: np.ndarray, digits: int) -> list[float | str]:
-    """Samples for another program to read.
-
-    Parameters
-    ----------
-    digits : int
-        Of those that no double can hold.
-    """
+    """Samples for another program to read."""
     return samples.tolist() if samples.dtype == float else [_published(sample, digits) for sample in samples]
 
 

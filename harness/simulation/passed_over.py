@@ -50,13 +50,7 @@ class StepsHeldAgainstTheEquations:
         self.missed = 0.0
 
     def take(self, piece: Piece) -> None:
-        """Look into a step that is long.
-
-        Parameters
-        ----------
-        piece : Piece
-            Of the phase at work.
-        """
+        """Look into a step that is long, a piece of the phase at work."""
         length = piece.end - piece.start
         parts = ceil(float(length) / self._span * PARTS)
         if parts > 1:

@@ -62,13 +62,7 @@ class Recording:
             self._keep(instant, state.copy())
 
     def take(self, piece: Piece) -> None:
-        """Keep what is wanted of a piece.
-
-        Parameters
-        ----------
-        piece : Piece
-            It begins where the last one ended.
-        """
+        """Keep what is wanted of a piece, which begins where the last one ended."""
         start = piece.start
         while start != piece.end:
             wanted = [piece.end] if self._steps else list(islice(self._wanted_until(piece.end), PORTION))

@@ -30,12 +30,7 @@ TakeSamples = Callable[[Sampled], None]
 
 
 def simulate(problem: MotionProblem, request: SimulationRequest, progress: Progress | None = None) -> Simulation:
-    """Follow a motion, and keep its samples.
-
-    Parameters
-    ----------
-    progress : callable or None
-        Told the fraction that is done, now and then.
+    """Follow a motion, and keep its samples; `progress` is told the fraction that is done, now and then.
 
     Raises
     ------
@@ -90,11 +85,6 @@ def followable(problem: MotionProblem, request: SimulationRequest) -> MotionProb
     """The motion with its parameters open where the engines take them so, else with their values put in.
 
     What follows an analytic motion in double precision, as it is or projected, is compiled once for all values.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-        With a value for each open parameter.
     """
     open_ = (
         not problem.signs
@@ -106,12 +96,7 @@ def followable(problem: MotionProblem, request: SimulationRequest) -> MotionProb
 
 
 def last_instant(problem: MotionProblem, until: Fraction | None, precision: Precision) -> Any:
-    """The instant at which a simulation ends.
-
-    Parameters
-    ----------
-    until : Fraction or None
-        What is asked for; None for the end of the scene's time span.
+    """The instant at which a simulation ends: what is asked for, or the end of the scene's time span.
 
     Raises
     ------

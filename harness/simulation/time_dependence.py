@@ -50,13 +50,7 @@ class TimeDependence(NamedTuple):
 
 
 def time_dependence(program: Program, start: float, end: float) -> TimeDependence:
-    """Look at what a program computes from the time alone.
-
-    Parameters
-    ----------
-    program : Program
-        One of its inputs is ``t``.
-    """
+    """Look at what a program computes from the time alone, its input ``t``."""
     expressions = time_expressions(program)
     if not start < end:
         return TimeDependence()
@@ -66,10 +60,7 @@ def time_dependence(program: Program, start: float, end: float) -> TimeDependenc
 def time_expressions(program: Program) -> Program:
     """What a program computes from the time alone, as far as anything else is computed from it.
 
-    Returns
-    -------
-    Program
-        Its one input is ``t``.
+    Its one input is ``t``.
     """
     known, kept, used = {"t"}, [], {}
     for name, expression in program.assignments:

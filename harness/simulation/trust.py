@@ -33,13 +33,7 @@ class Doubt(NamedTuple):
 
 
 def doubts(missed: Mapping[str, float], tol: float, steps: int) -> Iterator[Doubt]:
-    """What is out of proportion to the tolerance.
-
-    Parameters
-    ----------
-    missed : mapping of str to float
-        By quantity, relative to its size.
-    """
+    """What is out of proportion to the tolerance, of what is missed by quantity, relative to its size."""
     expected = MARGIN * max(tol, FINEST) * max(1, steps)
     for quantity, value in missed.items():
         if not value <= expected:

@@ -59,12 +59,7 @@ class SweepFolder:
 
     @contextmanager
     def held(self, resume: bool) -> Iterator[None]:
-        """Keep other commands out while the block runs.
-
-        Parameters
-        ----------
-        resume : bool
-            Whether the sweep must have been begun before.
+        """Keep other commands out while the block runs. With `resume`, the sweep must have been begun before.
 
         Raises
         ------

@@ -70,17 +70,7 @@ class Kept:
 
 
 def read_kept(texts: Iterable[str]) -> tuple[Kept, ...]:
-    """Read what is to be kept, as it stands on a command line.
-
-    Parameters
-    ----------
-    texts : iterable of str
-        Items, or several of them with commas between them.
-
-    Returns
-    -------
-    tuple of Kept
-        Each once.
+    """Read what is to be kept, as it stands on a command line, with commas between the items; each is kept once.
 
     Raises
     ------

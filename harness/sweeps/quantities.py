@@ -37,13 +37,7 @@ def solved_names(problem: MotionProblem) -> tuple[str, ...]:
 
 
 def along_motion(problem: MotionProblem, known: Known) -> dict[str, Any]:
-    """Everything that quantities can be made of, from t, the state and the parameters.
-
-    Parameters
-    ----------
-    known : mapping of str to heyoka.expression
-        The time, the state and the open parameters.
-    """
+    """Everything that quantities can be made of, from t, the state and the parameters."""
     inputs = {**known, **zero_multipliers(problem.multipliers, 0.0)}
     solved = {**known, **heyoka_expressions(problem.motion, inputs)}
     others = (problem.energy, problem.matrices, problem.controls, problem.events)
@@ -52,13 +46,7 @@ def along_motion(problem: MotionProblem, known: Known) -> dict[str, Any]:
 
 
 def expressions_of(quantities: Sequence[Expression], known: Known) -> list[Any]:
-    """Quantities as heyoka's expressions.
-
-    Parameters
-    ----------
-    known : mapping of str to heyoka.expression
-        What they are made of.
-    """
+    """Quantities as heyoka's expressions, of the expressions that they are made of."""
     named = {f"kept[{place}]": quantity for place, quantity in enumerate(quantities)}
     program = Program(
         scene=None,

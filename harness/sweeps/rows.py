@@ -105,13 +105,7 @@ class RowMaker:
         return tuple(dict.fromkeys(name for group in names for name in group if name != Kind.RESIDUAL))
 
     def table(self, first: int, last: int) -> "pyarrow.Table":
-        """The rows from the first up to the last, which is not among them.
-
-        Returns
-        -------
-        pyarrow.Table
-            ``row``, the parameters, what is kept, ``residual``, ``status`` and ``remark``; empty where there is none.
-        """
+        """The rows from the first up to the last, which is not among them."""
         import pyarrow as pa
 
         groups = [self._group(begin, min(begin + GROUP, last)) for begin in range(first, last, GROUP)]

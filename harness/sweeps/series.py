@@ -18,6 +18,8 @@ Floats = NDArray[np.float64]
 def lane_radii(problem: MotionProblem, states: Floats, values: Floats) -> Floats:
     """Radius of convergence of each motion about its start.
 
+    Shape (k,): infinite for an entire motion, nan where the orders do not tell.
+
     Parameters
     ----------
     problem : MotionProblem
@@ -25,11 +27,6 @@ def lane_radii(problem: MotionProblem, states: Floats, values: Floats) -> Floats
     states : ndarray, shape (2n, k)
         At the starts.
     values : ndarray, shape (p, k)
-
-    Returns
-    -------
-    ndarray, shape (k,)
-        Infinite for an entire motion, nan where the orders do not tell.
     """
     series = expanded(problem, states, values)
     finite, radii = np.isfinite(series).all(axis=(0, 1)), np.full(states.shape[1], np.nan)

@@ -33,15 +33,7 @@ PUNCTUATION = "\u2013\u2014\u2018\u2019\u201c\u201d\u2026"
 def tex_document(record: Record) -> str:
     """Write a derivation as a LaTeX document.
 
-    Parameters
-    ----------
-    record : Record
-        The derivation.
-
-    Returns
-    -------
-    str
-        The text of a file that pdflatex and lualatex compile; each equation under the paper's number and its name.
+    pdflatex and lualatex compile it; each equation stands under the paper's number and its name.
     """
     sections = [
         _description(record.system),

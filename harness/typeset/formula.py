@@ -100,7 +100,7 @@ class SignedTerm:
 
 
 def formula_box(tree: Tree, room: float = inf) -> Box:
-    """Typeset a formula.
+    """Typeset a formula in LaTeX's math mode.
 
     Parameters
     ----------
@@ -108,11 +108,6 @@ def formula_box(tree: Tree, room: float = inf) -> Box:
         The formula.
     room : float
         Width to keep to where the formula can be broken, in digits.
-
-    Returns
-    -------
-    Box
-        The formula in LaTeX's math mode.
 
     Raises
     ------

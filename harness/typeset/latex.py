@@ -13,7 +13,7 @@ MISPRINT, CORRECTION = "misprint", "correction"  # colours that a document defin
 
 
 def latex(expression: Expr, width: float = inf) -> str:
-    """Typeset an expression.
+    """Typeset an expression in LaTeX's math mode, with amsmath.
 
     Parameters
     ----------
@@ -22,11 +22,6 @@ def latex(expression: Expr, width: float = inf) -> str:
         dot(q1)_0 their initial values, with a further index 0.
     width : float
         Width to keep to where the formula can be broken over lines, in digits of its typeface.
-
-    Returns
-    -------
-    str
-        LaTeX for math mode, with amsmath.
 
     Raises
     ------
@@ -49,6 +44,8 @@ def latex_tree(tree: Tree, width: float = inf) -> str:
 def latex_marked(tree: Tree, other: Tree, colour: str = MISPRINT, width: float = inf) -> str:
     """Typeset an equation of the errata, what is not in the other one in a colour.
 
+    LaTeX for math mode, with amsmath and xcolor.
+
     Parameters
     ----------
     tree, other : int, str, dict or list
@@ -57,11 +54,6 @@ def latex_marked(tree: Tree, other: Tree, colour: str = MISPRINT, width: float =
         Name of the colour, which a document defines: MISPRINT or CORRECTION.
     width : float
         As in `latex`.
-
-    Returns
-    -------
-    str
-        LaTeX for math mode, with amsmath and xcolor.
     """
     return formula_box(marked(tree, other, colour), width).latex
 
@@ -73,17 +65,14 @@ QUANTITIES = {"Subscript", "Dot", "Ddot", "Dddot", "Partial"}  # marked whole
 def marked(tree: Tree, other: Tree, colour: str) -> Tree:
     """Mark the parts of a tree that are not in the other one.
 
+    Each part that differs is put into ["Marked", colour, part].
+
     Parameters
     ----------
     tree, other : int, str, dict or list
         Two formulas of much the same form.
     colour : str
         What the marks say.
-
-    Returns
-    -------
-    int, str, dict or list
-        `tree` with ["Marked", colour, part] in place of each part that differs.
     """
     if tree == other:
         return tree

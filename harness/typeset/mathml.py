@@ -21,7 +21,7 @@ ElementTree.register_namespace("", NAMESPACE)
 
 
 def mathml(latex: str, alt: str = "") -> str:
-    """Formula on lines of its own.
+    """Formula on lines of its own, a <math display="block"> element; what is marked has the class of its colour.
 
     Parameters
     ----------
@@ -29,11 +29,6 @@ def mathml(latex: str, alt: str = "") -> str:
         LaTeX for math mode, as `holonom.typeset.latex` makes it.
     alt : str
         What to say where the formula cannot be shown; without it, the LaTeX on one line.
-
-    Returns
-    -------
-    str
-        One well-formed <math display="block"> element. What is marked has the class of its colour.
 
     Raises
     ------

@@ -16,17 +16,7 @@ READING_ORDER = (Number, sympy.NumberSymbol, Symbol, Indexed, sympy.Function, Po
 
 
 def presented(expression: Expr) -> Tree:
-    """Tree of an expression in reading order.
-
-    Parameters
-    ----------
-    expression : Expr
-        An expression of a derivation record, or computed from such.
-
-    Returns
-    -------
-    int, str, dict or list
-        Heads are those of MathJSON, among them Negate, Divide, Sqrt and Exp.
+    """Tree of an expression in reading order. Heads are those of MathJSON, among them Negate, Divide, Sqrt and Exp.
 
     Raises
     ------

@@ -94,10 +94,7 @@ class Stuck(ArithmeticError):
 def plain_motion(motion: MotionProblem, until: float) -> Vector:
     """State to which SciPy's DOP853 carries the plain bordered system, without any cure of drift.
 
-    Returns
-    -------
-    ndarray, shape (2n,)
-        Coordinates, then velocities; nans where it does not arrive.
+    Nans where it does not arrive.
     """
     matrices, n = MotionMatrices(motion), len(motion.coordinates)
     left = iter(range(EVALUATIONS))

@@ -34,17 +34,14 @@ SolveAt = Callable[[float, Vector], Solved]
 def every_solve(file: str, scene: str | None = None) -> Mapping[str, SolveAt]:
     """Each way to solve a scene's equations of motion.
 
+    Each takes the instant and the state of shape (2n,), coordinates and then velocities.
+
     Parameters
     ----------
     file : str
         Relative to the examples.
     scene : str, optional
         Without it, the last one.
-
-    Returns
-    -------
-    mapping of str to callable
-        Each takes the instant and the state of shape (2n,), coordinates and then velocities.
     """
     matrices = MotionMatrices(problem(file, scene))
     return {

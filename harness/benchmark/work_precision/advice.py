@@ -45,11 +45,7 @@ def prices(measurements: Sequence[Measurement]) -> Iterator[Price]:
     """By how much each method's time grows with every digit: least squares through log(time) against digits.
 
     Runs whose error no longer falls with the tolerance, at the rounding errors of their numbers, are left out.
-
-    Yields
-    ------
-    Price
-        Of each method with enough settings.
+    Every method with enough settings has one.
     """
     for method in dict.fromkeys(m.method for m in measurements if m.group in WHOLE_MOTION):
         falling = _falling([m for m in measurements if m.method == method and m.group in WHOLE_MOTION])

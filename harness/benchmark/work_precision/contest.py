@@ -51,7 +51,7 @@ Result = Measurement | Omission
 
 
 def measure(candidates: Iterable[Candidate], reference: Reference, advance: Callable[[], None]) -> list[Result]:
-    """Measure errors and times.
+    """Measure errors and times, in the order of the candidates.
 
     Parameters
     ----------
@@ -59,11 +59,6 @@ def measure(candidates: Iterable[Candidate], reference: Reference, advance: Call
         The settings of a method one after the other, from the least to the most demanding.
     advance : callable
         Called after each candidate.
-
-    Returns
-    -------
-    list of Measurement or Omission
-        In the order of the candidates.
     """
     results: list[Result] = []
     repeated: dict[int, Prepared] = {}

@@ -32,13 +32,7 @@ HARDWARE = ("double", "extended")  # numbers for which the way of compiling matt
 def taylor_ladder(
     problem: MotionProblem, until: Fraction, precision: str, tolerances: Sequence[float]
 ) -> Iterator[Candidate]:
-    """The Taylor engine in one precision, tolerance by tolerance.
-
-    Parameters
-    ----------
-    precision : str
-        As `holonom.program.precision.read_precision` takes it.
-    """
+    """The Taylor engine in one precision, tolerance by tolerance."""
     for tol in tolerances:
         prepare = partial(prepare_taylor, problem, until, precision, tol, Stabilization.PROJECTION)
         yield Candidate(Group.TAYLOR, taylor_name(precision), f"tol {tol:g}", until, prepare)

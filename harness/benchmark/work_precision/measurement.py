@@ -16,15 +16,7 @@ WORKING_DIGITS = 300  # more than any state has
 def relative_error(found: State, true: State) -> float:
     """Larger of the relative errors of coordinates and of velocities, each in the maximum norm.
 
-    Parameters
-    ----------
-    found, true : sequence of mpf
-        Coordinates, then as many velocities.
-
-    Returns
-    -------
-    float
-        Where all true values of one kind are zero, their error is absolute.
+    Where all true values of one kind are zero, their error is absolute.
     """
     middle = len(true) // 2
     with mpmath.workdps(WORKING_DIGITS):

@@ -46,11 +46,6 @@ class Expansion:
 def expansion_of(problem: MotionProblem, until: Fraction) -> Expansion:
     """Choose the instant: half the radius of convergence after the start, not beyond the end of the motion.
 
-    Parameters
-    ----------
-    until : Fraction
-        The last instant.
-
     Raises
     ------
     HolonomError
@@ -87,17 +82,14 @@ def maxima_series(
 ) -> Iterator[Measurement]:
     """Maxima's expansions, timed by Maxima.
 
+    Operations are those of one expansion; rounded coefficients take at least two.
+
     Parameters
     ----------
     orders : sequence of int
         Ascending.
     digits : int or str
         Significant digits, or ``exact``.
-
-    Yields
-    ------
-    Measurement
-        Its operations are those of one expansion; rounded coefficients take at least two.
 
     Raises
     ------

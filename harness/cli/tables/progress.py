@@ -9,11 +9,6 @@ from contextlib import contextmanager
 def progress(title: str, steps: int) -> Iterator[Callable[[], None]]:
     """Show a progress bar while the block runs, on standard error if that is a terminal.
 
-    Parameters
-    ----------
-    steps : int
-        How many there are.
-
     Yields
     ------
     callable

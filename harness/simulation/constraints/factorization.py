@@ -141,10 +141,7 @@ def weighted_constraints(mass: Matrix, jacobian: Matrix) -> WeightedConstraints:
 def factored_constraints(weighted: WeightedConstraints, rank: int) -> FactoredConstraints:
     """Factor the constraints' directions, counting so many of them as independent.
 
-    Parameters
-    ----------
-    rank : int
-        Where it is less than the number of constraints, the smallest singular values are dropped.
+    Where that is less than all of them, the smallest singular values are dropped.
     """
     if rank == weighted.directions.shape[1]:
         return _factored_by_reflections(weighted)
@@ -153,18 +150,7 @@ def factored_constraints(weighted: WeightedConstraints, rank: int) -> FactoredCo
 
 
 def dependent_constraints(weighted: WeightedConstraints, rank: int) -> tuple[int, ...]:
-    """Which of the constraints depend on one another.
-
-    Parameters
-    ----------
-    rank : int
-        How many of them are independent.
-
-    Returns
-    -------
-    tuple of int
-        Those that a vanishing combination of directions involves, in order.
-    """
+    """Which of the constraints, of that rank, a vanishing combination of directions involves, in order."""
     combinations = np.linalg.svd(weighted.directions)[2][rank:]
     involved = np.max(np.abs(combinations), axis=0, initial=0.0) > INVOLVED
     return tuple(int(beta) for beta in np.flatnonzero(involved))

@@ -79,11 +79,6 @@ def _nearest_by_numpy(problem: MotionProblem) -> Evaluation:
 def nearest_state(problem: MotionProblem, precision: Precision, **options: Any) -> Any:
     """Compile the projection of a state.
 
-    Parameters
-    ----------
-    **options
-        For heyoka's compiler.
-
     Returns
     -------
     heyoka.cfunc

@@ -56,16 +56,7 @@ def project(matrices: MotionMatrices, t: float, state: Vector, rank: int | None 
 def settle(
     matrices: MotionMatrices, t: float, state: Vector, rank: int | None = None
 ) -> tuple[Vector, FactoredConstraints]:
-    """Nearest state that keeps the constraints, and the constraints as factored there.
-
-    Parameters
-    ----------
-    matrices, t, state, rank
-        As for `project`.
-
-    Returns
-    -------
-    (ndarray of shape (2n,), FactoredConstraints)
+    """Nearest state that keeps the constraints, and the constraints as factored there. Arguments as for `project`.
 
     Raises
     ------

@@ -132,13 +132,7 @@ class Watch:
 
 
 def vanishing_instants(problem: MotionProblem, matrices: MotionMatrices, end: float) -> list[float]:
-    """Instants before the end of a motion at which the gradient of a constraint may vanish.
-
-    Returns
-    -------
-    list of float
-        In order.
-    """
+    """Instants before the end of a motion at which the gradient of a constraint may vanish, in order."""
     start, state = start_of(problem)
     instants = zeros_of_controls(problem, start, end)
     constraints = range(len(problem.multipliers)) if instants else ()
@@ -177,13 +171,7 @@ def no_gradient(t: float, multiplier: str) -> HolonomError:
 
 
 def zeros_of_controls(problem: MotionProblem, start: float, end: float) -> list[float]:
-    """Instants inside a time span at which a control changes its sign.
-
-    Returns
-    -------
-    list of float
-        In order.
-    """
+    """Instants inside a time span at which a control changes its sign, in order."""
     matrices = in_numbers(problem, problem.matrices)
     assigned = {name for name, _ in matrices.assignments}
     laws = {name: Name(name) for name in assigned if f"dot({name})" in assigned}

@@ -25,15 +25,7 @@ Equations = list[tuple[Any, Any]]
 def equations_of_motion(problem: MotionProblem, program: Program, precision: Precision) -> Equations:
     """The first-order equations as they are.
 
-    Parameters
-    ----------
-    program : Program
-        Gives the accelerations.
-
-    Returns
-    -------
-    list of (expression, expression)
-        Each coordinate and each velocity with its rate; the open parameters are heyoka's.
+    Each coordinate and each velocity with its rate; the open parameters are heyoka's.
     """
     heyoka = import_heyoka()
     parameters = {name: heyoka.par[place] for place, name in enumerate(problem.parameters)}

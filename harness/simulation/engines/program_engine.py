@@ -54,10 +54,7 @@ class Integrator(Protocol):
     ) -> tuple[Any, Any, Any, int, Dense | None, None]:
         """Take steps: to an instant, or so many, or until one fails.
 
-        Returns
-        -------
-        (outcome, shortest, longest, steps, dense, None)
-            A step that the last instant cut short is neither the shortest nor the longest.
+        A step that the last instant cut short is neither the shortest nor the longest.
         """
 
 
@@ -100,22 +97,12 @@ class ProgramEngine:
         return Watch(self._problem)
 
     def restart(self, instant: Any, state: Numbers) -> None:
-        """Go on from another instant and state.
-
-        Parameters
-        ----------
-        state : array_like, shape (2n,)
-        """
+        """Go on from another instant and state, shape (2n,)."""
         self._go_back(instant, state)
         self._usual, self._obstacle = 0.0, None
 
     def advance(self, until: Any) -> None:
-        """Follow the motion to an instant.
-
-        Parameters
-        ----------
-        until : number
-            In the numbers of the precision.
+        """Follow the motion to an instant, in the numbers of the precision.
 
         Raises
         ------

@@ -79,12 +79,7 @@ class RobustEngine:
         self.restart(*start_of(problem))
 
     def restart(self, instant: float, state: Vector) -> None:
-        """Go on from another instant and state.
-
-        Parameters
-        ----------
-        state : ndarray, shape (2n,)
-        """
+        """Go on from another instant and state, shape (2n,)."""
         self._arc: Arc | None = None
         self.rank, until_singular = probed(self.matrices, instant, state)
         if until_singular == 0:
@@ -106,12 +101,7 @@ class RobustEngine:
             pass
 
     def pieces(self, until: float) -> Iterator[Piece]:
-        """Follow the motion to an instant, step by step.
-
-        Yields
-        ------
-        Piece
-            Its states are to be asked for before the next step.
+        """Follow the motion to an instant, step by step. A piece's states are to be asked for before the next step.
 
         Raises
         ------

@@ -143,11 +143,6 @@ class PrinceDormand(ctypes.Structure):
     ) -> tuple[bool, float, float, int, "Steps | None", None]:
         """Take steps: to an instant, or so many, or until one fails.
 
-        Parameters
-        ----------
-        c_output : bool
-            Whether the states between the steps are wanted.
-
         Returns
         -------
         (bool, float, float, int, Steps or None, None)

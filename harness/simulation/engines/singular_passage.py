@@ -68,6 +68,8 @@ class Arc:
 def arc_over(compute: Accelerations, start: float, end: float, state: Vector, guess: Matrix) -> Arc | None:
     """The motion from a state over a singular configuration, to an instant behind it.
 
+    None where the iteration finds no motion.
+
     Parameters
     ----------
     compute : callable
@@ -78,11 +80,6 @@ def arc_over(compute: Accelerations, start: float, end: float, state: Vector, gu
         At the start.
     guess : ndarray, shape (NODES, n)
         Accelerations at Gauss's nodes to begin with.
-
-    Returns
-    -------
-    Arc or None
-        None where the iteration finds no motion.
     """
     instants, last = (start + end) / 2 + (end - start) / 2 * POINTS, np.inf
     arc = _integrated(start, end, state, guess)

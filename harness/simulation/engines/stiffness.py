@@ -18,13 +18,7 @@ class StiffnessWatch:
         self._found = 0
 
     def stiff(self, solver: DOP853) -> bool:
-        """Look at the step that the integrator just took.
-
-        Returns
-        -------
-        bool
-            Whether so many steps met the boundary that the motion is stiff.
-        """
+        """Look at the step just taken: whether so many steps met the boundary that the motion is stiff."""
         self._found = self._found + 1 if at_boundary(solver) else 0
         return self._found >= STEPS
 

@@ -82,16 +82,13 @@ class TaylorEngine(ProgramEngine):
     def steps_ahead(self, until: Any, trial: int) -> int | None:
         """About how many steps there are to an instant, by the length of the first ones.
 
+        None where so few reach the instant, or do not succeed.
+
         Parameters
         ----------
         until : number
         trial : int
             Steps to take, and to take back.
-
-        Returns
-        -------
-        int or None
-            None where so few reach the instant, or do not succeed.
         """
         begun, state = self.time, self.state.copy()
         outcome = self._integrator.propagate_until(until, max_steps=trial)[0]
@@ -170,12 +167,7 @@ def block_within(allowed: float, steps: int, drift: float) -> int:
 
 
 def held(tol: float, precision: Precision) -> float:
-    """A tolerance that the numbers can hold.
-
-    Returns
-    -------
-    float
-        The same.
+    """A tolerance, if the numbers can hold it.
 
     Raises
     ------
