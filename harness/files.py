@@ -29,6 +29,15 @@ def shared(folder: str) -> Path:
     return inside if inside.is_dir() else Path(__file__).resolve().parents[1] / folder
 
 
+def scene_file(path: str | Path) -> Path:
+    """A scene file as it is named; where there is none, the example of that name that travels with the package."""
+    file = Path(path)
+    if not file.exists() and file.parts[:1] == ("examples",):
+        travelling = shared("examples").joinpath(*file.parts[1:])
+        return travelling if travelling.is_file() else file
+    return file
+
+
 @contextmanager
 def private_directory() -> Iterator[Path]:
     """A directory for temporary files, gone at the end. While it is in use it is locked.

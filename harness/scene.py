@@ -17,7 +17,7 @@ from .confined import Limits
 from .documents import Document, ask, read
 from .equations import Equations
 from .failures import Failure, HolonomError, naming_the_extra
-from .files import KeptDirectory, near_file
+from .files import KeptDirectory, near_file, scene_file
 from .program.forms import MotionProgram
 from .program.motion_program import Solve
 from .program.request import Request, read_settings
@@ -47,7 +47,7 @@ def load(path: str | Path, scene: str | None = None, limits: Limits | None = Non
     Parameters
     ----------
     path : str or Path
-        A Maxima file that describes one system and any number of scenes.
+        A Maxima file that describes one system and any number of scenes; ``examples/...`` is found anywhere.
     scene : str or None
         The name that the scene is assigned to; None for the last one in the file.
     limits : Limits or None
@@ -60,7 +60,7 @@ def load(path: str | Path, scene: str | None = None, limits: Limits | None = Non
     HolonomError
         There is no such file; a setting is no number.
     """
-    file = Path(path)
+    file = scene_file(path)
     if not file.is_file():
         raise HolonomError(Failure.FILE_MISSING, file, near_file(file))
     return Scene(file, scene, _settings(settings), limits or Limits())

@@ -205,6 +205,17 @@ def test_a_missing_file_is_refused_at_once():
         holonom.load("nowhere.mac")
 
 
+def test_an_example_that_travels_with_the_package_is_found_from_anywhere(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert holonom.load("examples/pendulum.mac").file.read_text().startswith("/*")
+    (tmp_path / "examples").mkdir()
+    own = Path("examples", "pendulum.mac")
+    own.write_text("mine : 1$")
+    assert holonom.load(own).file == own
+    with pytest.raises(holonom.HolonomError, match="no such file"):
+        holonom.load("examples/none.mac")
+
+
 def test_the_right_hand_side_serves_another_integrator(pendulum):
     f = pendulum.rhs()
     assert f.names == ("x", "y", "dot(x)", "dot(y)")

@@ -13,7 +13,7 @@ from typing import Any
 import click
 
 from ..failures import Failure, HolonomError
-from ..files import draft_of, private_directory
+from ..files import draft_of, private_directory, scene_file
 
 STANDARD_OUTPUT = Path("-")
 LOOKED_AT = 16384  # bytes at each end of a file
@@ -47,7 +47,7 @@ class SceneFile(click.Path):
     def convert(self, value: Any, parameter: click.Parameter | None, ctx: click.Context | None) -> Path:
         """The path of the file."""
         if value != str(STANDARD_OUTPUT) or ctx is None:
-            return super().convert(value, parameter, ctx)
+            return scene_file(super().convert(value, parameter, ctx))
         file = Path(ctx.with_resource(private_directory()), "standard_input.mac")
         file.write_bytes(click.get_binary_stream("stdin").read())
         ctx.meta[STANDARD_INPUT] = file

@@ -11,7 +11,7 @@ from .motion_problem import MotionProblem, computing, require_analytic
 from .numpy_function import NumpyFunction
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class RightHandSide:
     """f(t, y) of dy/dt = f(t, y), y the coordinates and then the velocities; arrays of states are columns."""
 
@@ -21,6 +21,9 @@ class RightHandSide:
         if self.problem.motion is None:
             raise HolonomError(Failure.NO_PIVOTS, detail=self.problem.obstacle)
         require_analytic(self.problem)
+
+    def __repr__(self) -> str:
+        return f"<RightHandSide of {', '.join(self.names)} from t = {self.t0:g}>"
 
     @property
     def names(self) -> tuple[str, ...]:
