@@ -74,8 +74,8 @@ def end_of(problem: MotionProblem, request: SimulationRequest) -> tuple[Any, End
     if not problem.until:
         return end, None
     with doing("looking for the end of the motion"):
-        closed = with_values_in(problem)
-        event = first_event(PiecewiseMotion(closed, request, precision, end), closed, precision, end)
+        open_ = followable(problem, request)
+        event = first_event(PiecewiseMotion(open_, request, precision, end), precision, end)
     if event is None:
         return end, Ending(problem.until, None)
     return event.t, Ending(problem.until, event.name)
