@@ -1,47 +1,21 @@
-"""MathJSON trees to SymPy expressions and back; nothing in a tree is ever evaluated as code.
+"""MathJSON trees (`holonom.trees`) to SymPy expressions and back; nothing in a tree is ever evaluated as code."""
 
-A tree is what `json.loads` makes of
-
-    integer          7, or {"num": "12345678901234567890"} from 2^53 on
-    float            {"num": "1.25e0"}: a double; with more than 17 digits a number of that many digits
-    symbol           "q1", "dot(q1)", "lambda1": always a real quantity
-    constant         "Pi", "ExponentialE", "ImaginaryUnit"
-    application      ["Add", a, b, ...], ["Power", a, b], ["Sin", a], ["Rational", 1, 3], ...
-    indexed quantity ["Subscript", "A", 1, 2]
-
-and nothing else. Both directions walk with a stack of their own: the depth of an expression is bounded by memory, not
-by Python's recursion limit. (`json.loads` itself gives up at about a thousand levels.)
-"""
-
-import re
 import sys
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from operator import neg, sub, truediv
-from typing import Any
 
 import mpmath
 import sympy
 from sympy import Expr, Float, Indexed, IndexedBase, Integer, Rational, S, Symbol
 
-from .failures import Failure, HolonomError
+from .trees import FLOAT, INTEGER, JSON_INTEGERS, Tree, converted, integer, quantity, refusal
 
-Tree = int | str | dict | list
-
-JSON_INTEGERS = 2**53  # integers below it are JSON numbers that every reader reads exactly
 DOUBLE_DIGITS = 17  # decimal digits that tell any two doubles apart
 DOUBLE_BITS = 53
 SPARE_DIGITS = 11  # of a number longer than Python reads, beyond those that mpmath keeps
-SHOWN = 60  # characters of a refused fragment that its refusal shows
-
-INTEGER = re.compile(r"-?\d{1,4300}")  # Python's own limit on decimal digits
-FLOAT = re.compile(r"-?0*(\d+)\.?(\d*)(?:[eE][+-]?\d{1,9})?")
-# A name, a time derivative of one, or the initial value of either: q1, %omega, dot(q1), ddot(u), q1_0, dot(q1)_0.
-NAME = re.compile(r"%?[^\W\d][\w%]*|d{1,3}ot\(%?[^\W\d][\w%]*\)\w*")
 
 CONSTANTS = {"Pi": S.Pi, "ExponentialE": S.Exp1, "ImaginaryUnit": S.ImaginaryUnit}
 CONSTANT_NAMES = {constant: name for name, constant in CONSTANTS.items()}
-RESERVED = CONSTANTS.keys() | {"True", "False"}
 NOT_NUMBERS = (S.ComplexInfinity, S.Infinity, S.NegativeInfinity, S.NaN)
 
 FUNCTIONS = {
@@ -91,14 +65,6 @@ BINARY: dict[str, Callable[..., Expr]] = {
 VARIADIC: dict[str, Callable[..., Expr]] = {"Add": sympy.Add, "Multiply": sympy.Mul}
 
 
-@dataclass(frozen=True)
-class _Application:
-    """A function that waits for its last `arity` arguments to be converted."""
-
-    build: Callable[..., object]
-    arity: int
-
-
 def to_sympy(tree: Tree) -> Expr:
     """Convert a MathJSON tree to a SymPy expression. It is simplified as SymPy does by itself; every symbol is real.
 
@@ -107,7 +73,7 @@ def to_sympy(tree: Tree) -> Expr:
     HolonomError
         The tree, or a part of it, is not of the kinds listed above, or has no finite value (1/0).
     """
-    return _converted(tree, _read)
+    return converted(tree, _read)
 
 
 def from_sympy(expression: Expr) -> Tree:
@@ -120,30 +86,13 @@ def from_sympy(expression: Expr) -> Tree:
     HolonomError
         The expression, or a part of it, cannot be written.
     """
-    return _converted(expression, _write)
-
-
-def _converted(root: Any, expand: Callable[[Any], tuple[Callable[..., Any], list]]) -> Any:
-    """Convert an expression, arguments first; `expand` takes a node to a function and that function's arguments."""
-    waiting = [root]
-    converted: list[Any] = []
-    while waiting:
-        node = waiting.pop()
-        if isinstance(node, _Application):
-            arguments = converted[len(converted) - node.arity :]
-            del converted[len(converted) - node.arity :]
-            converted.append(node.build(*arguments))
-        else:
-            build, arguments = expand(node)
-            waiting.append(_Application(build, len(arguments)))
-            waiting.extend(reversed(arguments))
-    return converted.pop()
+    return converted(expression, _write)
 
 
 def _read(tree: Tree) -> tuple[Callable[..., Expr], list]:
     match tree:
         case bool():
-            raise _refusal(tree)
+            raise refusal(tree)
         case int() | dict() | ["Rational", *_]:
             value = _number(tree)
         case str():
@@ -153,7 +102,7 @@ def _read(tree: Tree) -> tuple[Callable[..., Expr], list]:
         case [str(head), *arguments]:
             return _builder(head, tree), arguments
         case _:
-            raise _refusal(tree)
+            raise refusal(tree)
     return (lambda: value), []
 
 
@@ -166,12 +115,12 @@ def _builder(head: str, tree: list) -> Callable[..., Expr]:
     elif head in UNARY and arity == 1:
         function = UNARY[head]
     else:
-        raise _refusal(tree)
+        raise refusal(tree)
 
     def build(*arguments: Expr) -> Expr:
         value = function(*arguments)
         if value in NOT_NUMBERS:
-            raise _refusal(tree)
+            raise refusal(tree)
         return value
 
     return build
@@ -189,23 +138,15 @@ def _number(tree: Tree) -> Expr:
         case int():
             return _integer(tree)
         case _:
-            raise _refusal(tree)
+            raise refusal(tree)
 
 
 def _integer(tree: Tree) -> Integer:
-    match tree:
-        case int() if not isinstance(tree, bool) and abs(tree) < JSON_INTEGERS:
-            return Integer(tree)
-        case {"num": str(digits), **rest} if not rest and INTEGER.fullmatch(digits):
-            return Integer(int(digits))
-        case _:
-            raise _refusal(tree)
+    return Integer(integer(tree))
 
 
 def _symbol(name: str) -> Symbol:
-    if name in RESERVED or not NAME.fullmatch(name):
-        raise _refusal(name)
-    return Symbol(name, real=True)
+    return Symbol(quantity(name), real=True)
 
 
 def _write(expression: Expr) -> tuple[Callable[..., Tree], list]:
@@ -229,7 +170,7 @@ def _write(expression: Expr) -> tuple[Callable[..., Tree], list]:
             head = HEADS[expression.func]
             return (lambda *arguments: [head, *arguments]), list(expression.args)
         case _:
-            raise _refusal(expression)
+            raise refusal(expression)
     return (lambda: tree), []
 
 
@@ -242,11 +183,6 @@ def _digits(value: Float) -> str:
     if value._prec <= DOUBLE_BITS:
         return f"{float(value):.{DOUBLE_DIGITS - 1}e}"
     return sympy.sstr(value, full_prec=True)
-
-
-def _refusal(part: object) -> HolonomError:
-    shown = str(part)
-    return HolonomError(Failure.NOT_AN_EXPRESSION, detail=shown if len(shown) <= SHOWN else f"{shown[:SHOWN]}...")
 
 
 # ---- numbers as text ----

@@ -1,22 +1,24 @@
 """The derivation record: what Maxima derived from one scene file, typed and frozen.
 
-This is the only module that knows the record's wire format. Its expressions are read by `holonom.mathjson`: data, of
-which nothing is evaluated as code.
+This is the only module that knows the record's wire format. Its expressions are trees (`holonom.trees`): data, of
+which nothing is evaluated as code. SymPy expressions are made of them when they are first asked for, and SymPy is
+imported then.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
-
-from sympy import Expr
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from .confined import Limits
 from .documents import Document, ask, read
 from .failures import Failure, HolonomError
-from .mathjson import Tree, to_sympy
 from .maxima import DEFAULT_LIMITS, NO_SETTINGS
+from .trees import Tree
+
+if TYPE_CHECKING:
+    from sympy import Expr
 
 NAMED_QUANTITIES = (
     "coordinates",
@@ -33,20 +35,20 @@ Result = TypeVar("Result")
 
 @dataclass(frozen=True)
 class Relation:
-    """left = right, on every motion of the system; the SymPy expressions are made when they are first asked for."""
+    """left = right, on every motion of the system."""
 
     left_tree: Tree
     right_tree: Tree
 
     @cached_property
-    def left(self) -> Expr:
+    def left(self) -> "Expr":
         """The left side."""
-        return to_sympy(self.left_tree)
+        return _expression(self.left_tree)
 
     @cached_property
-    def right(self) -> Expr:
+    def right(self) -> "Expr":
         """The right side."""
-        return to_sympy(self.right_tree)
+        return _expression(self.right_tree)
 
 
 @dataclass(frozen=True)
@@ -64,7 +66,12 @@ class Effect:
     """A named part of the kinetic or of the potential energy."""
 
     effect: str
-    value: Expr
+    tree: Tree
+
+    @cached_property
+    def value(self) -> "Expr":
+        """The energy."""
+        return _expression(self.tree)
 
 
 @dataclass(frozen=True)
@@ -72,7 +79,12 @@ class ForceEffect:
     """A named part of the generalized forces, one component a coordinate."""
 
     effect: str
-    value: tuple[Expr, ...]
+    trees: tuple[Tree, ...]
+
+    @cached_property
+    def value(self) -> "tuple[Expr, ...]":
+        """The forces."""
+        return _each(_expression, self.trees)
 
 
 @dataclass(frozen=True)
@@ -96,7 +108,31 @@ class System:
     kinetic_energy: tuple[Effect, ...]
     potential_energy: tuple[Effect, ...]
     forces: tuple[ForceEffect, ...]  # Q as a sum of named parts
-    constraints: tuple[Expr, ...]  # each is zero on every motion
+    constraint_trees: tuple[Tree, ...]  # each is zero on every motion
+
+    @cached_property
+    def constraints(self) -> "tuple[Expr, ...]":
+        """The constraints, g of them."""
+        return _each(_expression, self.constraint_trees)
+
+
+class Values(Mapping[str, "Expr"]):
+    """Expressions by name."""
+
+    def __init__(self, trees: Mapping[str, Tree]) -> None:
+        self._trees = trees
+        self._made: dict[str, Expr] = {}
+
+    def __getitem__(self, name: str) -> "Expr":
+        if name not in self._made:
+            self._made[name] = _expression(self._trees[name])
+        return self._made[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._trees)
+
+    def __len__(self) -> int:
+        return len(self._trees)
 
 
 class LeftOut(NamedTuple):
@@ -148,7 +184,7 @@ class Scene:
     correction : (str, str) or None
         The given value that missed the constraints in its last digits and was corrected most, and the size of the
         correction in decimal digits.
-    time_span : pair of Expr or None
+    span_trees : pair of trees or None
         First and last instant.
     observe : tuple of str
         What to compute.
@@ -164,16 +200,21 @@ class Scene:
     title: str
     derivation: int
     effects: tuple[str, ...]
-    control_law: Mapping[str, Expr]
-    parameter_values: Mapping[str, Expr]
-    initial_state: Mapping[str, Expr]
+    control_law: Mapping[str, "Expr"]
+    parameter_values: Mapping[str, "Expr"]
+    initial_state: Mapping[str, "Expr"]
     given: tuple[str, ...]
     correction: tuple[str, str] | None
-    time_span: tuple[Expr, Expr] | None
+    span_trees: tuple[Tree, Tree] | None
     observe: tuple[str, ...]
     equations: tuple[Equation, ...]
     left_out: LeftOut | None = None
     law_around_start: bool = False
+
+    @cached_property
+    def time_span(self) -> "tuple[Expr, Expr] | None":
+        """First and last instant."""
+        return None if self.span_trees is None else (_expression(self.span_trees[0]), _expression(self.span_trees[1]))
 
 
 @dataclass(frozen=True)
@@ -197,12 +238,12 @@ def derived_record(
 
 
 def read_record(text: str) -> Record:
-    """Read a derivation record; the expressions in its equations are converted when they are first asked for.
+    """Read a derivation record; an expression in it that is malformed is refused when it is asked for.
 
     Raises
     ------
     HolonomError
-        The text is not JSON, has not the shape of a record, or one of its expressions is malformed.
+        The text is not JSON, or has not the shape of a record.
     """
     document = read(Document.RECORD, text)
     record = Record(
@@ -227,16 +268,16 @@ def read_system(system: dict[str, Any]) -> System:
         kinetic_energy=_each(_effect, system["kinetic_energy"]),
         potential_energy=_each(_effect, system["potential_energy"]),
         forces=_each(_force_effect, system["forces"]),
-        constraints=_each(to_sympy, system["constraints"]),
+        constraint_trees=tuple(system["constraints"]),
     )
 
 
 def _effect(part: dict[str, Any]) -> Effect:
-    return Effect(part["effect"], to_sympy(part["value"]))
+    return Effect(part["effect"], part["value"])
 
 
 def _force_effect(part: dict[str, Any]) -> ForceEffect:
-    return ForceEffect(part["effect"], _each(to_sympy, part["value"]))
+    return ForceEffect(part["effect"], tuple(part["value"]))
 
 
 def _derivation(derivation: dict[str, Any]) -> Derivation:
@@ -261,13 +302,13 @@ def _scene(scene: dict[str, Any]) -> Scene:
         title=scene["title"],
         derivation=scene["derivation"],
         effects=tuple(scene["effects"]),
-        control_law=_values(scene["control_law"]),
+        control_law=Values(scene["control_law"]),
         law_around_start=scene.get("law_around_start", False),
-        parameter_values=_values(scene["parameter_values"]),
-        initial_state=_values(scene["initial_state"]),
+        parameter_values=Values(scene["parameter_values"]),
+        initial_state=Values(scene["initial_state"]),
         given=tuple(scene["given"]),
         correction=scene["correction"] and (scene["correction"]["name"], scene["correction"]["size"]),
-        time_span=None if span is None else (to_sympy(span[0]), to_sympy(span[1])),
+        span_trees=None if span is None else (span[0], span[1]),
         observe=tuple(scene["observe"]),
         equations=_each(_equation, scene["equations"]),
         left_out=_left_out(scene["left_out"]),
@@ -282,9 +323,11 @@ def _relation(relation: dict[str, Any]) -> Relation:
     return Relation(relation["left"], relation["right"])
 
 
-def _values(values: dict[str, Tree]) -> dict[str, Expr]:
-    return {name: to_sympy(tree) for name, tree in values.items()}
+def _expression(tree: Tree) -> "Expr":
+    from .mathjson import to_sympy
+
+    return to_sympy(tree)
 
 
-def _each(read: Callable[[Any], Result], items: list[Any]) -> tuple[Result, ...]:
+def _each(read: Callable[[Any], Result], items: Sequence[Any]) -> tuple[Result, ...]:
     return tuple(read(item) for item in items)

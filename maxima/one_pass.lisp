@@ -72,3 +72,48 @@
 
 (defun sum-of-many (terms)
   (simplifya (cons '(mplus) (sort (copy-list terms) #'great)) t))
+
+;;; ---- of many, most are zero --------------------------------------------------------------
+;;;
+;;; What a coordinate says of another is nearly always nothing. Derivatives are taken by the names that a
+;;; term contains, and products and images are formed of what is not zero.
+
+(defun $gradient (e names)
+  "Partial derivatives by the names, a list."
+  (let ((terms (terms-by-name e)))
+    (mlist-of (mapcar #'(lambda (name)
+                          (cond ((not (symbolp name)) (diff-between-jumps (list e name)))
+                                ((gethash name terms)
+                                 (diff-between-jumps (list (sum-of-many (gethash name terms)) name)))
+                                (t 0)))
+                      (cdr names)))))
+
+(defun terms-by-name (e)
+  "The terms of the sum that contain each name."
+  (let ((table (make-hash-table)) (e (if (specrepp e) (specdisrep e) e)))
+    (dolist (term (if (and (consp e) (eq (caar e) 'mplus)) (cdr e) (list e)) table)
+      (dolist (name (cdr ($names_in term))) (push term (gethash name table))))))
+
+(defun $inner (a b)
+  "The sum of the products of two lists."
+  (let ((products nil))
+    (mapc #'(lambda (x y) (or (eql x 0) (eql y 0) (push (mul x y) products))) (cdr a) (cdr b))
+    (sum-of-many products)))
+
+(defun $over_nonzero (f items)
+  "What  f  makes of the items, of a list or of a matrix; it is taken to make zero of zero."
+  (cons (car items)
+        (mapcar #'(lambda (item)
+                    (cond ((eql item 0) 0)
+                          (($listp item) ($over_nonzero f item))
+                          (t (mapply1 f (list item) f nil))))
+                (cdr items))))
+
+(defun $nonzero_places (items)
+  "The places of a list at which it is not zero."
+  (let ((place 0) (places nil))
+    (dolist (item (cdr items) (mlist-of (nreverse places)))
+      (incf place)
+      (or (eql item 0) (push place places)))))
+
+(defun mlist-of (items) (cons '(mlist simp) items))

@@ -1,13 +1,18 @@
 """The derivation record: what Maxima writes is read whole, and anything else is refused."""
 
 import json
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 from sympy import Rational, Symbol
 
+from holonom.documents import Document, ask
 from holonom.failures import Failure, HolonomError
 from holonom.record import read_record
 
+CHAIN = Path(__file__).parents[1] / "examples" / "chain.mac"
 z, u = Symbol("z", real=True), Symbol("u", real=True)
 
 
@@ -36,7 +41,6 @@ def test_refuses_what_is_no_record(text):
         (["surprise"], 1),
         (["system", "coordinates"], "x"),
         (["system", "constraints", 0], None),
-        (["system", "constraints", 0], ["eval", "x"]),
         (["scenes", 0, "derivation"], 7),
         (["scenes", 0, "time_span"], [0]),
         (["derivations", 0, "equations", 0, "relations", 0], {"left": 1}),
@@ -52,3 +56,30 @@ def test_refuses_a_record_with_one_thing_wrong(place, value, particle_record):
     with pytest.raises(HolonomError) as raised:
         read_record(json.dumps(document))
     assert "\n" not in str(raised.value)
+
+
+def test_refuses_what_is_no_expression_when_it_is_asked_for(particle_record):
+    document = json.loads(particle_record)
+    document["system"]["constraints"][0] = ["eval", "x"]
+    document["scenes"][0]["initial_state"]["x"] = ["eval", "x"]
+    record = read_record(json.dumps(document))
+    for question in (lambda: record.system.constraints, lambda: record.scenes[0].initial_state["x"]):
+        with pytest.raises(HolonomError) as raised:
+            question()
+        assert raised.value.failure is Failure.NOT_AN_EXPRESSION
+
+
+def test_the_record_of_a_chain_grew_with_the_square_of_its_length():
+    lengths = [len(ask(Document.RECORD, CHAIN, settings={"N": str(links)})) for links in (16, 32)]
+    assert lengths[1] < 2.2 * lengths[0]
+
+
+def test_reading_and_printing_a_record_imported_sympy(particle_record):
+    program = (
+        "import sys; from rich.console import Console; from holonom.record import read_record; "
+        "from holonom.cli.tables.derivation import show_record; "
+        "show_record(Console(), read_record(sys.stdin.read())); assert 'sympy' not in sys.modules"
+    )
+    done = subprocess.run([sys.executable, "-c", program], input=particle_record, text=True, capture_output=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "(11) accelerations" in done.stdout

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from itertools import groupby
-from math import inf
+from math import inf, prod
 
 from sympy import Indexed
 
@@ -61,14 +61,19 @@ def _plain_rows(relations: Sequence[Relation], width: float) -> list[str]:
 
 def _array_rows(name: str, entries: Sequence[Relation], width: float) -> list[str]:
     """The entries between brackets where they are easy to read there, else below each other without the zeros."""
-    matrix = _matrix(entries)
-    if _suits_brackets(entries) and matrix.width <= width:
+    whole = _has_all_indices(entries)
+    if whole and _suits_brackets(entries) and (matrix := _matrix(entries)).width <= width:
         letter = "A^{-1}" if name == "A_inverse" else letter_box(name).latex
         return [f"{letter} &= {matrix.latex}"]
     present = [entry for entry in entries if entry.right != 0]
-    if len(present) in (0, len(entries)):
+    if whole and len(present) in (0, len(entries)):
         return _plain_rows(entries, width)
     return [*_plain_rows(present, width), r"& \text{and zero for all other indices}"]
+
+
+def _has_all_indices(entries: Sequence[Relation]) -> bool:
+    """Whether none was left out for being zero."""
+    return len(entries) == prod(max(places) for places in zip(*(entry.left.indices for entry in entries), strict=True))
 
 
 def _suits_brackets(entries: Sequence[Relation]) -> bool:

@@ -14,7 +14,7 @@ from holonom.crosscheck.check import (
     UNDER_LAW_IN_SCENE,
 )
 from holonom.crosscheck.verdict import Comparison, Judgement
-from holonom.record import Equation, LeftOut, Record, Relation
+from holonom.record import Equation, LeftOut, Record, Relation, derived_record
 
 TWICE = Relation(["Subscript", "A", 1, 1], 1)
 
@@ -135,3 +135,25 @@ def test_a_derivation_is_of_its_own_effects_and_of_a_supported_mass_matrix_where
     assert claims.known.supported
     assert claims.system.potential_energy == 0
     assert not check._claims(every_term_record, derived).known.supported
+
+
+COUPLED = """
+load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y, z],
+  kinetic_energy = dot(x)^2 + dot(x)*dot(z) + dot(y)^2 + dot(z)^2 + x*dot(y), constraints = [x - y])$
+"""
+
+
+def test_zeros_left_out_of_a_large_mass_matrix_are_zeros_and_nothing_else_may_be(write_scene):
+    record = derived_record(write_scene(COUPLED), closed_form_size=8)
+    split = held(record, "kinetic_energy")
+    names = [str(relation.left) for relation in split.relations]
+    assert names == ["A[1, 1]", "A[1, 3]", "A[2, 2]", "A[3, 1]", "A[3, 3]", "B[1]", "B[2]", "B[3]", "T0"]
+    assert "without the zeros off the diagonal" in split.name
+
+    def verdict(equation: Equation) -> Verdict:
+        found = next(each for each in check_record(with_equations(record, equation)).verdicts if each.id == equation.id)
+        return found.verdict
+
+    assert verdict(split) is Verdict.PROVED
+    assert verdict(dataclasses.replace(split, relations=split.relations[:1] + split.relations[2:])) is Verdict.DISAGREES

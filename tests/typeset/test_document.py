@@ -80,3 +80,9 @@ def test_derive_says_where_the_document_cannot_be_written(particle_scene, tmp_pa
     done = subprocess.run(command, capture_output=True, text=True, timeout=120)
     assert (done.returncode, done.stdout) == (2, "")
     assert "cannot be written" in done.stderr
+
+
+def test_a_mass_matrix_without_its_zeros_is_no_smaller_matrix(particle_scene):
+    text = tex_document(derived_record(particle_scene, closed_form_size=1))
+    assert "m & 0" not in text
+    assert "\\text{and zero for all other indices}" in text

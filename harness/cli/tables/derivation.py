@@ -12,12 +12,13 @@ from rich.terminal_theme import DIMMED_MONOKAI
 from rich.text import Text
 
 from ...language import gettext, ngettext, translatable, translated
-from .text import counted, formula, styled
+from ...notation import scene_text
+from .text import counted, styled
 
 if TYPE_CHECKING:
     from ...crosscheck import CheckReport
     from ...errata import PrintedEquation
-    from ...record import Equation, LeftOut, Record
+    from ...record import Equation, LeftOut, Record, Relation
 
 
 def show_record(console: Console, record: "Record") -> None:
@@ -78,10 +79,14 @@ def _sum(report: "CheckReport") -> str:
 def _show_equations(console: Console, equations: Iterable["Equation"]) -> None:
     for equation in equations:
         console.print(Text(f"({equation.number}) {equation.name}", style="cyan"))
-        for relation in equation.relations:
-            console.print(f"    {formula(relation.left)} = {formula(relation.right)}", soft_wrap=True, markup=False)
-        if not equation.relations:
+        if equation.relations:
+            console.print("\n".join(map(_line, equation.relations)), soft_wrap=True, markup=False)
+        else:
             console.print("    none", style="dim")
+
+
+def _line(relation: "Relation") -> str:
+    return f"    {scene_text(relation.left_tree)} = {scene_text(relation.right_tree)}"
 
 
 def _show_left_out(console: Console, left_out: "LeftOut | None") -> None:

@@ -1,0 +1,187 @@
+"""MathJSON trees (`holonom.trees`) as one line of text, in the notation of the scene files.
+
+The order of terms and factors is the tree's. A minus sign stands once before a term, negative powers and denominators
+stand once below a stroke.
+"""
+
+from collections.abc import Callable, Sequence
+from decimal import Decimal
+
+from .program.infix import Formula, Rank, atom, call
+from .trees import FLOAT, INTEGER, Tree, converted, integer, quantity, refusal
+
+CONSTANTS = {"Pi": "%pi", "ExponentialE": "%e", "ImaginaryUnit": "%i"}
+FUNCTIONS = {
+    "Sqrt": "sqrt",
+    "Exp": "exp",
+    "Ln": "log",
+    "Abs": "abs",
+    "Sign": "signum",
+    "Sin": "sin",
+    "Cos": "cos",
+    "Tan": "tan",
+    "Sec": "sec",
+    "Csc": "csc",
+    "Cot": "cot",
+    "Sinh": "sinh",
+    "Cosh": "cosh",
+    "Tanh": "tanh",
+    "Sech": "sech",
+    "Csch": "csch",
+    "Coth": "coth",
+    "Arcsin": "asin",
+    "Arccos": "acos",
+    "Arctan": "atan",
+    "Arcsec": "asec",
+    "Arccsc": "acsc",
+    "Arccot": "acot",
+    "Arsinh": "asinh",
+    "Arcosh": "acosh",
+    "Artanh": "atanh",
+    "Arsech": "asech",
+    "Arcsch": "acsch",
+    "Arcoth": "acoth",
+    "Erf": "erf",
+}
+Expanded = tuple[Callable[..., Formula], list[Tree]]
+
+
+def scene_text(tree: Tree) -> str:
+    """Write a tree as scene files have it.
+
+    Raises
+    ------
+    HolonomError
+        The tree, or a part of it, is no expression.
+    """
+    return converted(tree, _expanded).text
+
+
+def _expanded(tree: Tree) -> Expanded:
+    negative, tree = _parted(tree)
+    if negative:
+        return _negated, [tree]
+    match tree:
+        case bool():
+            raise refusal(tree)
+        case str():
+            text = CONSTANTS.get(tree) or quantity(tree)
+        case int() | dict():
+            text = _digits(tree)
+        case ["Subscript", str(name), _, *_]:
+            text = f"{quantity(name)}[{','.join(str(integer(index)) for index in tree[2:])}]"
+        case ["Add", _, *_]:
+            return _sum(tree[1:])
+        case ["Subtract", a, b]:
+            return _sum([a, ["Negate", b]])
+        case ["Rational" | "Divide" | "Multiply", _, *_] | ["Power", _, _] if _below(tree) or tree[0] == "Multiply":
+            return _product(tree)
+        case ["Power", base, exponent]:
+            return _power, [base, exponent]
+        case ["Arctan2", y, x]:
+            return (lambda *sides: call("atan2", *sides)), [y, x]
+        case [str(head), argument] if head in FUNCTIONS:
+            return (lambda formula: call(FUNCTIONS[head], formula)), [argument]
+        case _:
+            raise refusal(tree)
+    return (lambda: atom(text)), []
+
+
+def _parted(tree: Tree) -> tuple[bool, Tree]:
+    """Whether a minus sign stands before a tree, and the tree without it."""
+    match tree:
+        case bool():
+            return False, tree
+        case int() if tree < 0:
+            return True, -tree
+        case {"num": str(digits), **rest} if not rest and digits.startswith("-"):
+            return True, {"num": digits[1:]}
+        case ["Rational", numerator, denominator]:
+            negative, size = _parted(numerator)
+            return negative, ["Rational", size, denominator]
+        case ["Negate", part]:
+            negative, size = _parted(part)
+            return not negative, size
+        case ["Multiply", first, *others]:
+            negative, size = _parted(first)
+            if not negative:
+                return False, tree
+            factors = others if size == 1 and others else [size, *others]
+            return True, factors[0] if len(factors) == 1 else ["Multiply", *factors]
+        case _:
+            return False, tree
+
+
+def _sum(terms: Sequence[Tree]) -> Expanded:
+    signs, sizes = zip(*map(_parted, terms), strict=True)
+
+    def build(*formulas: Formula) -> Formula:
+        parts = (
+            f"{' - ' if negative else ' + '}{formula.within(Rank.PRODUCT)}"
+            for negative, formula in zip(signs, formulas, strict=True)
+        )
+        text = "".join(parts)
+        return Formula(f"-{text[3:]}" if signs[0] else text[3:], Rank.SUM)
+
+    return build, list(sizes)
+
+
+def _product(tree: Tree) -> Expanded:
+    over: list[Tree] = []
+    under: list[Tree] = []
+    for factor in tree[1:] if tree[0] == "Multiply" else [tree]:
+        above, below = _fraction(factor)
+        over += [] if above == 1 else [above]
+        under += [] if below == 1 else [below]
+
+    def build(*formulas: Formula) -> Formula:
+        factors = "*".join(formula.within(Rank.SIGNED) for formula in formulas[: len(over)]) or "1"
+        below = formulas[len(over) :]
+        if not below:
+            return Formula(factors, Rank.PRODUCT)
+        if len(below) == 1:
+            return Formula(f"{factors}/{below[0].within(Rank.SIGNED)}", Rank.PRODUCT)
+        return Formula(f"{factors}/({'*'.join(formula.within(Rank.SIGNED) for formula in below)})", Rank.PRODUCT)
+
+    return build, over + under
+
+
+def _fraction(factor: Tree) -> tuple[Tree, Tree]:
+    """What of a factor stands above the stroke and what below it."""
+    match factor:
+        case ["Rational", numerator, denominator]:
+            _digits(numerator), _digits(denominator)  # which are refused where they are no whole numbers
+            return numerator, denominator
+        case ["Divide", numerator, denominator]:
+            return numerator, denominator
+        case _:
+            below = _below(factor)
+            return (1, below) if below else (factor, 1)
+
+
+def _below(tree: Tree) -> Tree | None:
+    """What stands below a stroke, where that is all of a tree, or its denominator."""
+    match tree:
+        case ["Rational" | "Divide", _, denominator]:
+            return denominator
+        case ["Power", base, exponent] if _parted(exponent)[0]:
+            size = _parted(exponent)[1]
+            return base if size == 1 else ["Sqrt", base] if size == ["Rational", 1, 2] else ["Power", base, size]
+        case _:
+            return None
+
+
+def _power(base: Formula, exponent: Formula) -> Formula:
+    return Formula(f"{base.within(Rank.ATOM)}^{exponent.within(Rank.ATOM)}", Rank.POWER)
+
+
+def _negated(size: Formula) -> Formula:
+    return Formula(f"-{size.within(Rank.PRODUCT)}", Rank.SUM)
+
+
+def _digits(tree: Tree) -> str:
+    match tree:
+        case {"num": str(digits), **rest} if not rest and FLOAT.fullmatch(digits) and not INTEGER.fullmatch(digits):
+            return str(Decimal(digits).normalize())
+        case _:
+            return str(integer(tree))

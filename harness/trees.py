@@ -1,0 +1,93 @@
+"""MathJSON trees: what documents hold expressions as, and the way to go through one.
+
+A tree is what `json.loads` makes of
+
+    integer          7, or {"num": "12345678901234567890"} from 2^53 on
+    float            {"num": "1.25e0"}: a double; with more than 17 digits a number of that many digits
+    symbol           "q1", "dot(q1)", "lambda1": always a real quantity
+    constant         "Pi", "ExponentialE", "ImaginaryUnit"
+    application      ["Add", a, b, ...], ["Power", a, b], ["Sin", a], ["Rational", 1, 3], ...
+    indexed quantity ["Subscript", "A", 1, 2]
+
+and nothing else. It is gone through with a stack: the depth of an expression is bounded by memory, not by Python's
+recursion limit. (`json.loads` itself gives up at about a thousand levels.)
+"""
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from .failures import Failure, HolonomError
+
+Tree = int | str | dict | list
+
+JSON_INTEGERS = 2**53  # integers below it are JSON numbers that every reader reads exactly
+SHOWN = 60  # characters of a refused fragment that its refusal shows
+
+INTEGER = re.compile(r"-?\d{1,4300}")  # Python's own limit on decimal digits
+FLOAT = re.compile(r"-?0*(\d+)\.?(\d*)(?:[eE][+-]?\d{1,9})?")
+# A name, a time derivative of one, or the initial value of either: q1, %omega, dot(q1), ddot(u), q1_0, dot(q1)_0.
+NAME = re.compile(r"%?[^\W\d][\w%]*|d{1,3}ot\(%?[^\W\d][\w%]*\)\w*")
+RESERVED = frozenset({"Pi", "ExponentialE", "ImaginaryUnit", "True", "False"})
+
+
+@dataclass(frozen=True)
+class _Application:
+    """A function that waits for its last `arity` arguments to be converted."""
+
+    build: Callable[..., object]
+    arity: int
+
+
+def converted(root: Any, expand: Callable[[Any], tuple[Callable[..., Any], list]]) -> Any:
+    """Convert an expression, arguments first; `expand` takes a node to a function and that function's arguments."""
+    waiting = [root]
+    found: list[Any] = []
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, _Application):
+            arguments = found[len(found) - node.arity :]
+            del found[len(found) - node.arity :]
+            found.append(node.build(*arguments))
+        else:
+            build, arguments = expand(node)
+            waiting.append(_Application(build, len(arguments)))
+            waiting.extend(reversed(arguments))
+    return found.pop()
+
+
+def integer(tree: object) -> int:
+    """The value of a tree that is an integer.
+
+    Raises
+    ------
+    HolonomError
+        It is none.
+    """
+    match tree:
+        case int() if not isinstance(tree, bool) and abs(tree) < JSON_INTEGERS:
+            return tree
+        case {"num": str(digits), **rest} if not rest and INTEGER.fullmatch(digits):
+            return int(digits)
+        case _:
+            raise refusal(tree)
+
+
+def quantity(name: str) -> str:
+    """A name, if it is one of a quantity.
+
+    Raises
+    ------
+    HolonomError
+        It is not.
+    """
+    if name in RESERVED or not NAME.fullmatch(name):
+        raise refusal(name)
+    return name
+
+
+def refusal(part: object) -> HolonomError:
+    """Of a part that is no expression."""
+    shown = str(part)
+    return HolonomError(Failure.NOT_AN_EXPRESSION, detail=shown if len(shown) <= SHOWN else f"{shown[:SHOWN]}...")
