@@ -28,14 +28,20 @@ def problem_in(problem: MotionProblem, pattern: Pattern) -> MotionProblem:
     """
     if not problem.signs:
         return problem
-    analytic = _with_programs(problem, lambda program: program_in(problem, program, pattern))
-    return replace(analytic, signs=(), switching=None)
+
+    def build() -> MotionProblem:
+        return _with_programs(problem, lambda program: program_in(problem, program, pattern))
+
+    analytic = problem.once(frozenset(pattern.items()), problem.matrices, build)
+    return replace(
+        analytic, start=problem.start, values=problem.values, correction=problem.correction, signs=(), switching=None
+    )
 
 
 def program_in(problem: MotionProblem, program: Program, pattern: Pattern) -> Program:
     """A program of the motion with the signs of a pattern.
 
-    Its inputs are the time, the coordinates, the velocities and the multipliers alone.
+    Its inputs are those of the motion, but for the signs.
     """
     for name, sign in pattern.items():
         if sign == HELD:

@@ -13,6 +13,7 @@ from typing import NamedTuple
 from ..program.arithmetic import Arithmetic, run_program
 from ..program.motion_problem import By, MotionProblem, computing
 from ..program.motion_program import Constant, Operation, Program
+from ..program.sign_pattern import in_numbers
 
 
 class Tick(NamedTuple):
@@ -38,7 +39,7 @@ def ticks(problem: MotionProblem) -> Mapping[str, Tick]:
     found = {}
     for index, sign in enumerate(problem.signs, start=1):
         if sign.by is By.TIME:
-            function = _affine(computing(problem.switching, {f"switch[{index}]"}))
+            function = _affine(in_numbers(problem, computing(problem.switching, {f"switch[{index}]"})))
             if function is not None and function.b:
                 found[sign.name] = Tick(-function.a / function.b, 1 if function.b > 0 else -1)
     return found

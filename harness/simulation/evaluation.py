@@ -153,6 +153,12 @@ def zeros(precision: Precision, *shape: int) -> Numbers:
     return array
 
 
+def beside_state(problem: MotionProblem, precision: Precision) -> Numbers:
+    """What programs take behind the time and the state where multipliers do not matter: these, and the parameters."""
+    unused = [precision.number("0")] * len(problem.multipliers)
+    return np.array([*unused, *(precision.ratio(problem.values[name]) for name in problem.parameters)])
+
+
 def as_floats(numbers: Numbers) -> NDArray[np.float64]:
     """The same numbers in double precision."""
     return np.array([float(number) for number in numbers])

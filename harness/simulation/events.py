@@ -14,7 +14,7 @@ from ..program.motion_problem import MotionProblem
 from ..program.motion_program import names_in
 from ..program.precision import Precision
 from .engines.engine import Piece, Solutions
-from .evaluation import Numbers, as_floats, evaluation, zeros
+from .evaluation import Numbers, as_floats, beside_state, evaluation_once
 from .piecewise import PiecewiseMotion
 from .surfaces import NODES, Crossing, SignedFunctions
 
@@ -29,15 +29,13 @@ class Ending(NamedTuple):
     crossed: str | None
 
 
-def first_event(motion: PiecewiseMotion, problem: MotionProblem, precision: Precision, end: Any) -> Crossing | None:
-    """Follow a motion to the first zero crossing of one of its problem's events.
+def first_event(motion: PiecewiseMotion, precision: Precision, end: Any) -> Crossing | None:
+    """Follow a motion to the first zero crossing of one of its events.
 
     Parameters
     ----------
     motion : PiecewiseMotion
-        At its start.
-    problem : MotionProblem
-        With events.
+        At its start, of a problem with events.
     end : number
         The last instant.
 
@@ -78,12 +76,12 @@ class Events(SignedFunctions):
         self, problem: MotionProblem, precision: Precision, solutions: Callable[[Numbers, Numbers], Solutions]
     ) -> None:
         super().__init__(precision)
-        self._names, self._multipliers = problem.until, len(problem.multipliers)
+        self._names, self._others = problem.until, beside_state(problem, precision)
         program = problem.events
         used = set().union(*(names_in(value) for _, value in program.assignments))
         used |= set().union(*map(names_in, program.outputs.values()))
         self._solutions = solutions if used & set(problem.multipliers) else None
-        self._evaluate = evaluation(program, precision)
+        self._evaluate = evaluation_once(problem, program, precision)
 
     def first_event(self, piece: Piece, sides: dict[str, int]) -> Crossing | None:
         """The first crossing within a step.
@@ -116,11 +114,11 @@ class Events(SignedFunctions):
         HolonomError
             One has no real, finite value.
         """
-        if self._solutions is None:
-            multipliers = zeros(self._precision, self._multipliers, len(instants))
-        else:
+        others = np.repeat(self._others[:, None], len(instants), axis=1)
+        if self._solutions is not None:
             multipliers = self._solutions(instants, states).multipliers
-        inputs = np.ascontiguousarray(np.concatenate([np.reshape(instants, (1, -1)), states, multipliers]))
+            others[: len(multipliers)] = multipliers
+        inputs = np.ascontiguousarray(np.concatenate([np.reshape(instants, (1, -1)), states, others]))
         found = np.array([as_floats(row) for row in self._evaluate(inputs)])
         if not np.isfinite(found).all():
             row, place = np.argwhere(~np.isfinite(found))[0]

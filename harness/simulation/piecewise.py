@@ -15,7 +15,7 @@ state, an impulse of a surface whose law of impact nobody has given.
 
 from bisect import bisect_left, bisect_right
 from collections import deque
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from enum import StrEnum
 from fractions import Fraction
@@ -27,6 +27,7 @@ import numpy as np
 
 from ..failures import Failure, HolonomError
 from ..program.motion_problem import By, MotionProblem, Sign, computing
+from ..program.motion_program import Program
 from ..program.precision import Precision
 from ..program.sign_pattern import (
     HELD,
@@ -47,7 +48,7 @@ from .diagnostics import POINTS, EnergyBalance, residuals
 from .engines.choice import Between, Choice
 from .engines.engine import Piece, Solutions
 from .engines.switching import Leg, SwitchingEngine
-from .evaluation import Evaluation, Numbers, as_floats, evaluation, zeros
+from .evaluation import Evaluation, Numbers, as_floats, beside_state, evaluation, evaluation_once
 from .matrices import Matrices, MotionMatrices, Vector, start_of
 from .request import SimulationRequest
 from .surfaces import Crossing, Surfaces
@@ -127,18 +128,22 @@ class Part:
     @cached_property
     def momenta(self) -> Any:
         """dL/d dot(q) as a function of the state."""
-        wanted = {name for name in self._whole.switching.outputs if name.startswith("momentum[")}
-        program = program_in(self._whole, computing(self._whole.switching, wanted), self.pattern)
-        return evaluation(program, self._precision)
+        switching = self._whole.switching
+        wanted = {name for name in switching.outputs if name.startswith("momentum[")}
+
+        def build() -> Evaluation:
+            return evaluation(program_in(self._whole, computing(switching, wanted), self.pattern), self._precision)
+
+        return self._whole.once(("momenta", self._precision.name, frozenset(self.pattern.items())), switching, build)
 
     def controls(self, instants: Numbers, states: Numbers) -> Numbers:
         """The controls at instants, shape (k,), and states, shape (2n, k)."""
-        unused = zeros(self._precision, len(self.problem.multipliers), len(instants))
-        return self._controls(np.ascontiguousarray(np.concatenate([instants[None, :], states, unused])))
+        others = np.repeat(beside_state(self.problem, self._precision)[:, None], len(instants), axis=1)
+        return self._controls(np.ascontiguousarray(np.concatenate([instants[None, :], states, others])))
 
     @cached_property
     def _controls(self) -> Evaluation:
-        return evaluation(in_numbers(self.problem, self.problem.controls), self._precision)
+        return evaluation_once(self.problem, self.problem.controls, self._precision)
 
     @cached_property
     def projection(self) -> ProgramProjection:
@@ -182,7 +187,11 @@ class PiecewiseMotion:
         self._clock = ticks(problem)
         self._to_come = deque(sorted({tick.t for tick in self._clock.values()}))
         self._parts: dict[tuple[Any, ...], Part] = {}
-        self._known: dict[Hashable, MotionProblem] = {}
+        self._known: dict[Hashable, MotionProblem] = problem.once("parts", problem.matrices, dict)
+        self._functions: dict[Hashable, Evaluation] = problem.once(
+            ("switching", precision.name), problem.matrices, dict
+        )
+        self._others = beside_state(problem, precision)
         self._span = float(end) - float(problem.start["t"])
         self._left: tuple[str, ...] = ()
         self._jump = precision.number("0")
@@ -468,15 +477,21 @@ class PiecewiseMotion:
 
     def _output(self, name: str, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> float:
         output = f"{name}[{1 + self._problem.signs.index(sign)}]"
-        return self._evaluated(
-            program_in(self._problem, computing(self._problem.switching, {output}), pattern), t, state
-        )
+
+        def program() -> Program:
+            return program_in(self._problem, computing(self._problem.switching, {output}), pattern)
+
+        return self._evaluated((output, frozenset(pattern.items())), program, t, state)
 
     def _drive(self, sign: Sign, to: int, pattern: Pattern, t: Any, state: Numbers) -> float:
-        return self._evaluated(drive(self._problem, sign.name, to, pattern), t, state)
+        what = "drive", sign.name, to, frozenset(pattern.items())
+        return self._evaluated(what, lambda: drive(self._problem, sign.name, to, pattern), t, state)
 
-    def _evaluated(self, program: Any, t: Any, state: Numbers) -> float:
-        return float(evaluation(program, self._precision)(self._inputs(t, state))[0])
+    def _evaluated(self, what: Hashable, program: Callable[[], Program], t: Any, state: Numbers) -> float:
+        """The one output of a program, which is compiled when it is first asked for."""
+        if what not in self._functions:
+            self._functions[what] = evaluation(program(), self._precision)
+        return float(self._functions[what](self._inputs(t, state))[0])
 
     def _momenta(self, part: Part, t: Any, state: Numbers) -> Numbers:
         return part.momenta(self._inputs(t, state))
@@ -485,8 +500,7 @@ class PiecewiseMotion:
         return part.balance.energy(np.array([t]), state[:, None])[0]
 
     def _inputs(self, t: Any, state: Numbers) -> Numbers:
-        unused = [self._precision.number("0")] * len(self._problem.multipliers)
-        return np.array([t, *state, *unused])
+        return np.array([t, *state, *self._others])
 
     # ---- parts ----
 

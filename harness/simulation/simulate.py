@@ -74,8 +74,8 @@ def end_of(problem: MotionProblem, request: SimulationRequest) -> tuple[Any, End
     if not problem.until:
         return end, None
     with doing("looking for the end of the motion"):
-        closed = with_values_in(problem)
-        event = first_event(PiecewiseMotion(closed, request, precision, end), closed, precision, end)
+        open_ = followable(problem, request)
+        event = first_event(PiecewiseMotion(open_, request, precision, end), precision, end)
     if event is None:
         return end, Ending(problem.until, None)
     return event.t, Ending(problem.until, event.name)
@@ -84,11 +84,10 @@ def end_of(problem: MotionProblem, request: SimulationRequest) -> tuple[Any, End
 def followable(problem: MotionProblem, request: SimulationRequest) -> MotionProblem:
     """The motion with its parameters open where the engines take them so, else with their values put in.
 
-    What follows an analytic motion in double precision, as it is or projected, is compiled once for all values.
+    What follows a motion in double precision, as it is or projected, is compiled once for all values.
     """
     open_ = (
-        not problem.signs
-        and request.precision == "double"
+        request.precision == "double"
         and request.engine is not EngineName.RUNGE_KUTTA
         and request.drift in (Stabilization.PROJECTION, Stabilization.NONE)
     )

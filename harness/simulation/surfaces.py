@@ -7,7 +7,6 @@ found by halving, to the last bit of its numbers.
 
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Sequence
-from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,7 +17,7 @@ from ..program.motion_program import Program
 from ..program.precision import Precision
 from ..program.sign_pattern import HELD, Pattern, drive, program_in
 from .engines.engine import Piece
-from .evaluation import Numbers, as_floats, evaluation, zeros
+from .evaluation import Numbers, as_floats, beside_state, evaluation
 from .matrices import Vector
 
 DEGREE, FINE = 32, 256
@@ -130,28 +129,33 @@ class Surfaces(SignedFunctions):
         self, problem: MotionProblem, pattern: Pattern, precision: Precision, known: Collection[str] = ()
     ) -> None:
         super().__init__(precision)
-        self._unused = len(problem.multipliers)
-        programs = []
-        for index, sign in enumerate(problem.signs, start=1):
-            if sign.name in known:
-                continue
-            if (value := pattern[sign.name]) == HELD:
-                for to in (1, -1):
-                    self._rows.append((sign.name, to, -to))
-                    programs.append(_alone(drive(problem, sign.name, to, pattern), len(programs)))
-            else:
-                self._rows.append((sign.name, -value, value))
-                function = computing(problem.switching, {f"switch[{index}]"})
-                programs.append(_alone(program_in(problem, function, pattern), len(programs)))
-        self._functions = [evaluation(program, precision) for program in programs]
+        self._others = beside_state(problem, precision)
+        for sign in problem.signs:
+            if sign.name not in known:
+                value = pattern[sign.name]
+                self._rows += [(sign.name, to, -to) for to in ((1, -1) if value == HELD else (-value,))]
+        what = "surfaces", precision.name, frozenset(pattern.items()), frozenset(known)
+        self._functions = problem.once(
+            what,
+            problem.switching,
+            lambda: [evaluation(_inside(problem, pattern, name, to), precision) for name, to, _ in self._rows],
+        )
 
     def values(self, instants: Numbers, states: Numbers) -> Numbers:
         """How far inside of its pattern the motion is, by each surface; negative outside."""
-        unused = zeros(self._precision, self._unused, len(instants))
-        inputs = np.ascontiguousarray(np.concatenate([np.reshape(instants, (1, -1)), states, unused]))
+        others = np.repeat(self._others[:, None], len(instants), axis=1)
+        inputs = np.ascontiguousarray(np.concatenate([np.reshape(instants, (1, -1)), states, others]))
         found = [as_floats(function(inputs)[0]) for function in self._functions]
         inside = np.array([side for *_, side in self._rows], dtype=float)
         return inside[:, None] * np.reshape(found, (len(self._rows), len(instants)))
+
+
+def _inside(problem: MotionProblem, pattern: Pattern, name: str, to: int) -> Program:
+    """The function whose sign tells on which side of a surface the motion is."""
+    if pattern[name] == HELD:
+        return drive(problem, name, to, pattern)
+    index = 1 + [sign.name for sign in problem.signs].index(name)
+    return program_in(problem, computing(problem.switching, {f"switch[{index}]"}), pattern)
 
 
 def _narrow_dip(coefficients: Vector, between: Vector, end: float) -> Vector | None:
@@ -167,9 +171,3 @@ def _narrow_dip(coefficients: Vector, between: Vector, end: float) -> Vector | N
         if chebyshev.chebval(place, coefficients) < 0 and (1 + place) / 2 < end:
             return (1 + np.array([low, place])) / 2
     return None
-
-
-def _alone(program: Program, index: int) -> Program:
-    """The program with its one output under another name."""
-    (value,) = program.outputs.values()
-    return replace(program, outputs={f"surface[{index}]": value})

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import heyoka
 import numpy as np
 import pyarrow as pa
 import pytest
@@ -161,6 +162,16 @@ def test_motions_that_switch_are_followed_one_by_one(rows_of, scenes):
     assert found["x"] == pytest.approx(1 / (2 * found["mu"]), rel=1e-10)  # v^2/(2 mu), then it sticks
     assert found["max(x)"] == pytest.approx(found["x"], rel=1e-10)
     assert (found["status"] == Status.OK).all()
+
+
+@pytest.mark.parametrize("scene", ["friction", "skidding"])
+def test_what_switching_motions_need_is_compiled_once(rows_of, scenes, monkeypatch, scene):
+    maker = rows_of(scenes / f"{scene}.mac", "final", "mu=1/2:1:6")
+    first = maker.table(5, 6)
+    for name in ("cfunc", "taylor_adaptive"):
+        monkeypatch.setattr(heyoka, name, None)
+    end = 1 / (2 * np.linspace(0.5, 1, 6)) if scene == "friction" else np.full(6, 0.25)
+    assert pa.concat_tables([maker.table(0, 5), first])["x"].to_numpy() == pytest.approx(end, rel=1e-11)
 
 
 def test_each_motion_ends_where_its_own_event_is(rows_of, scenes):

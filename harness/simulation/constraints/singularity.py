@@ -72,7 +72,8 @@ def probed(matrices: MotionMatrices, t: float, state: Vector) -> tuple[int, floa
     rank = max(rank_of(here), rank_of(there, max(way**1.5, DEPENDENT)))
     until = extrapolated_zero(t, least_of(here, rank), later, least_of(there, rank)) - t
     grown = least_of(there, rank) > GROWN * least_of(here, rank)
-    return rank, 0.0 if grown or until * speed < NEXT_TO else until
+    next_to = until < np.inf and until * speed < NEXT_TO
+    return rank, 0.0 if grown or next_to else until
 
 
 def extrapolated_zero(before: float, last: float, now: float, least: float) -> float:
