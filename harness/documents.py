@@ -74,17 +74,14 @@ def ask(
 ) -> str:
     """Ask Maxima for a document about a scene file.
 
+    Raises as `holonom.maxima.ask_scene`; and where a string can be no name.
+
     Parameters
     ----------
     *arguments : None, int, Fraction, str or sequence of these
         What the writer in Maxima takes behind the name of the file that it writes; a string is a name.
     settings : mapping of str to str
         Numbers in Maxima's notation, for what the file leaves open and for parameters.
-
-    Raises
-    ------
-    HolonomError
-        As `holonom.maxima.ask_scene`; a string can be no name.
     """
     call = ", ".join(["file", *map(_maxima_text, arguments)])
     run = run_batch if document in NO_SCENE else ask_scene
@@ -108,13 +105,7 @@ def read(document: Document, text: str) -> dict[str, Any]:
 
 
 def require(document: Document | Publication, content: Any) -> None:
-    """Refuse what has not the shape of a document.
-
-    Raises
-    ------
-    HolonomError
-        It has not.
-    """
+    """Refuse what has not the shape of a document."""
     errors = _validator(document).iter_errors(content)
     if error := min(errors, key=lambda each: len(each.instance_path), default=None):
         raise _refusal(document, f"at {_json_path(error.instance_path)}, {error.message[:SHOWN]}")

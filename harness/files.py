@@ -40,13 +40,7 @@ def scene_file(path: str | Path) -> Path:
 
 @contextmanager
 def private_directory() -> Iterator[Path]:
-    """A directory for temporary files, gone at the end. While it is in use it is locked.
-
-    Raises
-    ------
-    HolonomError
-        It cannot be made.
-    """
+    """A directory for temporary files, gone at the end. While it is in use it is locked."""
     path, lock = _locked_directory()
     try:
         yield path
@@ -252,13 +246,7 @@ def written_before(directory: Path) -> frozenset[str]:
 
 
 def require_own_files(directory: Path, names: Iterable[str]) -> None:
-    """Refuse to replace files of a directory, given by their paths in it, that its manifest does not list.
-
-    Raises
-    ------
-    HolonomError
-        It names the first such file.
-    """
+    """Refuse to replace files of a directory, given by their paths in it, that its manifest does not list."""
     listed = written_before(directory)
     for name in names:
         if os.path.lexists(directory / name) and name not in listed:

@@ -125,15 +125,12 @@ def run_batch(
 ) -> str:
     """Run a Maxima file in the open, then one Maxima function that writes a document, perhaps one of the file's.
 
+    Raises as `ask_scene`.
+
     Parameters
     ----------
     file, writer, limits, settings
         As for `ask_scene`.
-
-    Raises
-    ------
-    HolonomError
-        As `ask_scene`.
     """
     with doing("deriving with Maxima"), _new_run(file, replace(limits, sandbox=Sandbox.TRUSTED), settings) as run:
         printed = _run(run, f"run-file {_copy(run)} {_call(writer, run)}", writer)

@@ -66,13 +66,7 @@ def companion(
 
 
 def require_extras() -> None:
-    """Refuse to begin where a package that the pages take is missing.
-
-    Raises
-    ------
-    HolonomError
-        It names the package.
-    """
+    """Refuse to begin where a package that the pages take is missing, and name it."""
     for package in EXTRAS:
         if find_spec(package) is None:
             raise missing_package(package)

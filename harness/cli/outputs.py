@@ -104,13 +104,7 @@ def is_forced() -> bool:
 
 
 def require_apart(scenes: Iterable[Path], outputs: Iterable[Path]) -> None:
-    """Refuse an output that is a scene of the command, or another output, also through links.
-
-    Raises
-    ------
-    HolonomError
-        One is.
-    """
+    """Refuse an output that is a scene of the command, or another output, also through links."""
     taken = [(scene, "the scene itself") for scene in scenes]
     for output in outputs:
         for other, what in taken:

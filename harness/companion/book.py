@@ -104,13 +104,7 @@ def _folder(language: str, languages: Sequence[str]) -> str:
 
 
 def require_companion_or_nothing(directory: Path) -> None:
-    """Refuse a directory that holds what is no companion.
-
-    Raises
-    ------
-    HolonomError
-        It does.
-    """
+    """Refuse a directory that holds what is no companion."""
     if not directory.exists() or (directory.is_dir() and not any(directory.iterdir())):
         return
     if not directory.is_dir() or "index.html" not in written_before(directory):

@@ -39,13 +39,7 @@ def excerpt(root: Path, file: str, name: str) -> Excerpt:
 
 
 def step(root: Path, name: str) -> tuple[Excerpt, ...]:
-    """The Maxima lines that derive an equation, given its id.
-
-    Raises
-    ------
-    HolonomError
-        A function that should be there is not.
-    """
+    """The Maxima lines that derive an equation, given its id."""
     return tuple(excerpt(root, file, function) for file, functions in STEPS[name].items() for function in functions)
 
 

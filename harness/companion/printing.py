@@ -73,13 +73,7 @@ def print_book(contents: Contents, files: Mapping[str, str | bytes], pdf: Path) 
 
 
 def browser() -> str:
-    """The browser that prints.
-
-    Raises
-    ------
-    HolonomError
-        None is installed.
-    """
+    """The browser that prints, or the refusal where none is installed."""
     found = next(filter(None, map(shutil.which, BROWSERS)), None)
     if found is None:
         raise HolonomError(Failure.BROWSER_MISSING)

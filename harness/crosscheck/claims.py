@@ -68,13 +68,7 @@ def entries_of(name: str, shape: Sequence[int], relations: Sequence[Relation]) -
 
 
 def require_names(names: Iterable[str], relations: Sequence[Relation]) -> None:
-    """Refuse relations about an indexed quantity or symbol that is not named.
-
-    Raises
-    ------
-    NotComparable
-        One of the left sides is something else.
-    """
+    """Refuse relations about an indexed quantity or symbol that is not named."""
     allowed = set(names)
     for relation in relations:
         left = relation.left

@@ -48,13 +48,7 @@ def sweep_figure(sweep: "Sweep", quantity: str | None = None) -> "Figure":
 
 
 def require_plottable(axes: "SweepAxes") -> None:
-    """Refuse to draw what neither a curve nor a map can show.
-
-    Raises
-    ------
-    HolonomError
-        There are more than two parameters, or two that are no grid.
-    """
+    """Refuse to draw what neither curve nor map can show: more than two parameters, or two that are no grid."""
     if len(axes.names) > 2 or (len(axes.names) == 2 and axes.samples):
         raise HolonomError(Failure.NOT_PLOTTED, detail="a curve takes one parameter, a map two in grids or lists")
 

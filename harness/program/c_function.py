@@ -83,7 +83,7 @@ def compile_c(program: Program) -> CFunction:
 
 
 def load_c(source: str, *options: str) -> ctypes.CDLL:
-    """Compile C99 source into a shared object in a private directory, and load it.
+    """Compile C99 source into a shared object in a private directory, and load it. Raises as `compile_c`.
 
     Parameters
     ----------
@@ -94,11 +94,6 @@ def load_c(source: str, *options: str) -> ctypes.CDLL:
     -------
     ctypes.CDLL
         It stays usable when the directory is gone.
-
-    Raises
-    ------
-    HolonomError
-        As `compile_c`.
     """
     with private_directory() as directory:
         source_file, library = directory / "motion.c", directory / "motion.so"
@@ -111,7 +106,7 @@ def load_c(source: str, *options: str) -> ctypes.CDLL:
 
 
 def compile_shared(sources: Sequence[Path], library: Path, *options: str) -> None:
-    """Compile C sources into a shared object.
+    """Compile C sources into a shared object. Raises as `compile_c`.
 
     Parameters
     ----------
@@ -119,11 +114,6 @@ def compile_shared(sources: Sequence[Path], library: Path, *options: str) -> Non
         The shared object to make.
     options : str
         What the compiler is told.
-
-    Raises
-    ------
-    HolonomError
-        As `compile_c`.
     """
     command = [*_compiler(), *map(str, sources), "-o", str(library), *options, "-lm"]
     said = bytearray()

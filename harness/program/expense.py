@@ -45,11 +45,6 @@ def require_means(problem: MotionProblem, precision: Precision, order: int, unti
         With a value for each parameter.
     until : number or None
         The instant to which the motion is followed; None where it is expanded once.
-
-    Raises
-    ------
-    HolonomError
-        It names what they take and what there is.
     """
     if order <= HIGH_ORDER:
         return

@@ -95,7 +95,7 @@ def dynamics(
 ) -> list[tuple[expression, expression]]:
     """First-order equations of motion for heyoka's integrators.
 
-    Each coordinate and its velocity, then each velocity and its acceleration.
+    Each coordinate and its velocity, then each velocity and its acceleration. Raises as `heyoka_expressions`.
 
     Parameters
     ----------
@@ -106,11 +106,6 @@ def dynamics(
         time, coordinates and velocities.
     number : callable
         As for `heyoka_expressions`.
-
-    Raises
-    ------
-    HolonomError
-        As `heyoka_expressions`.
     """
     variables = _variables(program)
     coordinates = [name for name in program.inputs if f"ddot({name})" in program.outputs]

@@ -189,13 +189,7 @@ def motion_problem(
 def problem_document(
     file: Path, request: Request, limits: Limits, digits: int = DOUBLE_DIGITS, open_parameters: Sequence[str] = ()
 ) -> str:
-    """The document of a scene's motion, as Maxima writes it, for `read_problem`; arguments as for `motion_problem`.
-
-    Raises
-    ------
-    HolonomError
-        As `motion_problem`.
-    """
+    """The document of a scene's motion, as Maxima writes it, for `read_problem`; arguments as for `motion_problem`."""
     asked = (request.scene, request.solve, digits, tuple(open_parameters))
     return ask(Document.MOTION_PROBLEM, file, *asked, settings=request.settings, limits=limits)
 

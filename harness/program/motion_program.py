@@ -126,13 +126,7 @@ def read_program(text: str) -> Program:
 
 
 def program_of(document: Any) -> Program:
-    """Read a motion program that is part of a larger document.
-
-    Raises
-    ------
-    HolonomError
-        As `read_program`.
-    """
+    """Read a motion program that is part of a larger document. Raises as `read_program`."""
     require(Document.PROGRAM, document)
     return _checked(document)
 

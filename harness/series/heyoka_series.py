@@ -33,17 +33,14 @@ ONCE, OFTEN = 0, 3  # LLVM's levels of optimisation: compiled in a tenth of the 
 def expand_by_heyoka(file: Path, request: SeriesRequest, limits: Limits) -> MotionSeries:
     """Expand a scene's motion with heyoka, and continue it where that is asked for.
 
+    Raises as `motion_problem`, `expand` and `continue_motion`.
+
     Parameters
     ----------
     request : SeriesRequest
         With a precision; its digits do not matter.
     limits : Limits
         What Maxima may take to write the motion program.
-
-    Raises
-    ------
-    HolonomError
-        As `motion_problem`, `expand` and `continue_motion`.
     """
     precision = read_precision(str(request.precision))
     asked = Request(request.scene, settings=request.settings)

@@ -26,10 +26,7 @@ class Derivations:
     def motion(self, request: Request, digits: int = DOUBLE_DIGITS) -> MotionProblem:
         """The motion that a request asks for. Its open parameters, if it has any, have the values of the settings.
 
-        Raises
-        ------
-        HolonomError
-            As `motion_problem`.
+        Raises as `motion_problem`.
         """
         names = open_names(request, digits)
         opened = self._at_settings(request, names) if names else None

@@ -44,10 +44,7 @@ def require_formats(samples: Path | None, figure: Path | None) -> None:
 def require_memory(problem: MotionProblem, samples: int, memory_mib: int) -> None:
     """Refuse more samples than the memory holds, before the motion is followed.
 
-    Raises
-    ------
-    HolonomError
-        It names what they take and how many there is room for.
+    What they take and how many there is room for is told.
     """
     numbers = _numbers_a_sample(problem)
     needed = samples * numbers * BYTES_OF_NUMBER / MIB
@@ -60,10 +57,7 @@ def require_memory(problem: MotionProblem, samples: int, memory_mib: int) -> Non
 def require_disk(problem: MotionProblem, samples: int, path: Path) -> None:
     """Refuse more samples than there is room for where they are to be written, before the motion is followed.
 
-    Raises
-    ------
-    HolonomError
-        It names what they take and how many there is room for.
+    What they take and how many there is room for is told.
     """
     folder = path.resolve().parent
     free = shutil.disk_usage(folder).free / MIB

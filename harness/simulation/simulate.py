@@ -32,10 +32,7 @@ TakeSamples = Callable[[Sampled], None]
 def simulate(problem: MotionProblem, request: SimulationRequest, progress: Progress | None = None) -> Simulation:
     """Follow a motion, and keep its samples; `progress` is told the fraction that is done, now and then.
 
-    Raises
-    ------
-    HolonomError
-        As `follow`.
+    Raises as `follow`.
     """
     parts: list[Sampled] = []
     report = follow(problem, request, parts.append, progress)

@@ -12,13 +12,7 @@ Known = Mapping[str, Any]
 
 
 def require_known(problem: MotionProblem, quantities: Sequence[Expression]) -> None:
-    """Refuse quantities that hold names which the motion does not have.
-
-    Raises
-    ------
-    HolonomError
-        It names the first, and what there is.
-    """
+    """Refuse quantities that hold names which the motion does not have."""
     controls = tuple(problem.controls.outputs) if problem.controls is not None else ()
     there = ("t", *problem.state, *solved_names(problem), *controls, *problem.parameters, "energy")
     for quantity in quantities:

@@ -33,7 +33,7 @@ Take = Callable[[Chunk, bytes], None]
 
 
 def compute(plan: Plan, chunks: Sequence[Chunk], take: Take, workers: int, scheduler: str | None) -> None:
-    """Compute chunks, in any order.
+    """Compute chunks, in any order. Raises as `RowMaker`; and where the workers are lost.
 
     Parameters
     ----------
@@ -43,11 +43,6 @@ def compute(plan: Plan, chunks: Sequence[Chunk], take: Take, workers: int, sched
         Processes to start; with one, or for one chunk, this process does it.
     scheduler : str or None
         Address of a Dask scheduler that is to be used instead.
-
-    Raises
-    ------
-    HolonomError
-        As `RowMaker`; the workers are lost.
     """
     if scheduler is None and min(workers, len(chunks)) <= 1:
         maker = RowMaker(plan)

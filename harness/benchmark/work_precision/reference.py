@@ -47,6 +47,8 @@ class Reference:
 def find_reference(problem: MotionProblem, instants: Sequence[Fraction], digits: int) -> Reference:
     """Follow a motion twice, with more digits than any method that is to be measured.
 
+    Raises as `holonom.simulation.engines.taylor.TaylorEngine`.
+
     Parameters
     ----------
     problem : MotionProblem
@@ -55,11 +57,6 @@ def find_reference(problem: MotionProblem, instants: Sequence[Fraction], digits:
         In their order.
     digits : int
         Of the most precise method.
-
-    Raises
-    ------
-    HolonomError
-        As `holonom.simulation.engines.taylor.TaylorEngine`.
     """
     fine, coarse = digits + MORE_DIGITS, digits + CONFIRMING_DIGITS
     states, confirming = (_states(problem, instants, d) for d in (fine, coarse))

@@ -59,10 +59,7 @@ class CompiledRates:
 def compiled_rates(problem: MotionProblem) -> CompiledRates:
     """The motion program of a problem, compiled by the system's C compiler.
 
-    Raises
-    ------
-    HolonomError
-        As `holonom.program.c_function.compile_c`.
+    Raises as `holonom.program.c_function.compile_c`.
     """
     program = acceleration_program(problem)
     return CompiledRates(compile_c(program).one, len(problem.coordinates), len(program.inputs))

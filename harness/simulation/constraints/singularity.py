@@ -149,11 +149,6 @@ def require_gradient(problem: MotionProblem, matrices: MotionMatrices, t: float,
         An instant at which one may.
     at : Instant
         The motion shortly before it.
-
-    Raises
-    ------
-    HolonomError
-        One has lost all but a thousandth of its gradient.
     """
     left, whole = (np.linalg.norm(matrices(*when).jacobian, axis=1) for when in (at, start_of(problem)))
     lost = np.flatnonzero(left < VANISHED * whole)

@@ -103,10 +103,7 @@ class RobustEngine:
     def pieces(self, until: float) -> Iterator[Piece]:
         """Follow the motion to an instant, step by step. A piece's states are to be asked for before the next step.
 
-        Raises
-        ------
-        HolonomError
-            As `advance`.
+        Raises as `advance`.
         """
         while self.time < until:
             yield self._along_arc(until) if self._arc or self._arc_found() else self._step(until)
