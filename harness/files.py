@@ -215,13 +215,6 @@ def whole_file(path: Path) -> Iterator[BinaryIO]:
 def write_files(directory: Path, files: Mapping[str, str]) -> None:
     """Write files into a directory, each whole or not at all; what else the directory holds stays.
 
-    Parameters
-    ----------
-    directory : Path
-        It is made where it is missing.
-    files : mapping of str to str
-        The text of each file, by its name.
-
     Raises
     ------
     HolonomError

@@ -169,15 +169,7 @@ def count_statements(text: str) -> int:
 
 
 def statement_ends(text: str, position: int = 0) -> Iterator[int]:
-    """Yield where statements end in Maxima text: the positions just past a terminator, ``;`` or ``$``.
-
-    Parameters
-    ----------
-    text : str
-        Maxima text.
-    position : int
-        Where to begin, outside comments and strings.
-    """
+    """Yield where statements end in Maxima text: the positions just past a terminator, ``;`` or ``$``."""
     depth = 0
     while match := (IN_COMMENT if depth else IN_CODE).search(text, position):
         position = match.end()

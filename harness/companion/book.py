@@ -112,15 +112,7 @@ def require_companion_or_nothing(directory: Path) -> None:
 
 
 def pages(book: Book, results: Mapping[Run, Any], twins: tuple[Twin, ...] = ()) -> dict[str, str | bytes]:
-    """The files of a book, in the language spoken, by their names.
-
-    Parameters
-    ----------
-    results : mapping of Run to object
-        Of all the book's runs.
-    twins : tuple of Twin
-        The same book in other languages.
-    """
+    """The files of a book, in the language spoken, by their names."""
     contents = contents_of(book, results, twins)
     made = {chapter: _page(chapter, results) for chapter in book.chapters}
     written = {f"{chapter.slug}.html": chapter_page(contents, chapter, page.content) for chapter, page in made.items()}

@@ -69,12 +69,7 @@ def scene_cards(
 ) -> list[Card]:
     """Cards of equations (10) and (12) to (19) of scenes, each given with the derivation that it belongs to.
 
-    Parameters
-    ----------
-    scenes : sequence of (Derived, str)
-        The derivation, and the name of the scene in it.
-    prefix : str
-        What the anchors begin with, where a page shows the cards of several scenes.
+    A prefix begins the anchors, where a page shows the cards of several scenes.
     """
     instances = [_scene_instances(derived, name) for derived, name in scenes]
     return _cards(numbers, instances, tuple(printed), root, _is_controlled(scenes[0][0]), prefix)

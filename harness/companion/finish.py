@@ -49,15 +49,7 @@ class Place:
 
 
 def finished(pages: Mapping[str, str], parts: Sequence[Sequence[str]]) -> dict[str, str]:
-    """Finish pages.
-
-    Parameters
-    ----------
-    pages : mapping of str to str
-        By the names of their files.
-    parts : sequence of sequence of str
-        Those names, part by part: an equation is looked for on the page itself, then in its part, then everywhere.
-    """
+    """Finish pages, by name: an equation is looked for on the page itself, then in its part, then everywhere."""
     found = {name: list(dict.fromkeys(EQUATION.findall(text))) for name, text in pages.items()}
     everywhere = _links(found, found)
     done = {}

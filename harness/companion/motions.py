@@ -56,14 +56,7 @@ def follow_all(file: Path, settings: Settings, limits: Limits) -> dict[str, Moti
 
 
 def follow(file: Path, scene: str | None, until: Fraction | None, settings: Settings, limits: Limits) -> Motion:
-    """Follow a motion.
-
-    Parameters
-    ----------
-    scene : str or None
-        Without a name, the last one of the file.
-    until : Fraction or None
-        Without it, the end of the scene's time span.
+    """Follow a motion, of the file's last scene without a name, to the end of the scene's time span without an instant.
 
     Raises
     ------

@@ -24,15 +24,7 @@ INITIAL_MOTION = ("12", "13", "18", "19")
 
 
 def book_of_scenes(files: Sequence[Path], settings: Settings, limits: Limits, command: str) -> Book:
-    """The companion of scene files, which a command makes.
-
-    Parameters
-    ----------
-    settings : tuple of (str, str)
-        Numbers for what the files leave open.
-    limits : Limits
-        What each Maxima run may take.
-    """
+    """The companion of scene files, which a command makes."""
     prefixes = [""] if len(files) == 1 else [_prefix(file, place) for place, file in enumerate(files, 1)]
     return Book(
         title=translatable("A companion to systems of your own"),

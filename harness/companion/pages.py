@@ -90,13 +90,6 @@ def index_page(book: Contents, terms: Sequence[Place]) -> str:
 def chapter_page(book: Contents, chapter: Chapter, content: Mapping[str, Any]) -> str:
     """The page of a chapter, well-formed.
 
-    Parameters
-    ----------
-    chapter : Chapter
-        One of the book's.
-    content : mapping of str to object
-        The variables of its template.
-
     Raises
     ------
     jinja2.TemplateError
@@ -119,15 +112,7 @@ def chapter_page(book: Contents, chapter: Chapter, content: Mapping[str, Any]) -
 def printed_page(
     book: Contents, front: Markup, chapters: Sequence[tuple[Entry, Markup]], sheets: Mapping[str, int]
 ) -> str:
-    """The whole book as one page.
-
-    Parameters
-    ----------
-    front : Markup
-        Title and foreword.
-    sheets : mapping of str to int
-        The sheet that each place is on, as far as it is known.
-    """
+    """The whole book as one page, with the sheet that each place is on as far as it is known."""
     terms = terms_in({f"{entry.slug}.html": text for entry, text in chapters})
     return _rendered("print.html", "print.html", book=book, front=front, chapters=chapters, sheets=sheets, terms=terms)
 

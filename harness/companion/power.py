@@ -35,12 +35,7 @@ class EnergyBalance:
 def energy_balance(system: System, scene: Scene, motion: Simulation) -> EnergyBalance:
     """Take stock of the energy of a motion, from the description of the system alone.
 
-    Parameters
-    ----------
-    system : System
-        Without potential energy.
-    motion : Simulation
-        Of that scene, with its multipliers, at many equidistant instants.
+    The system has no potential energy; the motion has multipliers, at many equidistant instants.
     """
     described = described_system(system, scene.effects)
     power, forces, kinetic = (

@@ -41,14 +41,7 @@ LINK = re.compile(r' href="(?!data:|http)([^"#]*)(#[^"]*)?"')
 
 
 def print_book(contents: Contents, files: Mapping[str, str | bytes], pdf: Path) -> None:
-    """Print a book.
-
-    Parameters
-    ----------
-    files : mapping of str to str or bytes
-        All that the book consists of, by name: pages, figures, style and font.
-    pdf : Path
-        The file to write.
+    """Print a book, given all that it consists of by name: pages, figures, style and font.
 
     Raises
     ------

@@ -110,15 +110,7 @@ def study(file: Path, settings: Settings, limits: Limits) -> Run:
 
 
 def perform(runs: Iterable[Run], done: Callable[[], None]) -> dict[Run, Any]:
-    """Perform runs, two at a time. Where one fails, those that have not begun are given up.
-
-    Parameters
-    ----------
-    runs : iterable of Run
-        Equal ones are performed once.
-    done : callable
-        Called each time that one is done.
-    """
+    """Perform runs, equal ones once, two at a time, and call `done` after each; where one fails, give up the others."""
     with ProcessPoolExecutor(WORKERS, get_context("spawn"), die_with_parent, (os.getpid(),)) as processes:
         waiting = {processes.submit(run.compute, *run.arguments): run for run in dict.fromkeys(runs)}
         results = {}

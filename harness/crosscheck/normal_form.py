@@ -49,14 +49,7 @@ class RootRelation(NamedTuple):
 def is_identically_zero(expressions: Iterable[sp.Expr], allowance: int = ALLOWANCE) -> bool:
     """Whether all expressions are shown to be identically zero within the allowance.
 
-    True is a proof; False says nothing.
-
-    Parameters
-    ----------
-    expressions : iterable of Expr
-        Of real symbols, rational numbers, elementary functions.
-    allowance : int
-        Terms read and products of terms made that the proof may take.
+    True is a proof; False says nothing. The allowance is of terms read and products of terms made.
     """
     canonical = []
     for expression in expressions:
@@ -74,12 +67,7 @@ def is_identically_zero(expressions: Iterable[sp.Expr], allowance: int = ALLOWAN
 class NormalForms:
     """Numerators of expressions over one polynomial ring.
 
-    Parameters
-    ----------
-    expressions : sequence of Expr
-        Their symbols, functions and roots become the generators.
-    allowance : int
-        Products of terms that the work may take.
+    The symbols, functions and roots of the expressions are its generators; the allowance is of products of terms.
     """
 
     def __init__(self, expressions: Iterable[sp.Expr], allowance: int) -> None:

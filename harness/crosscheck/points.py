@@ -49,18 +49,9 @@ def fresh_seed() -> str:
 
 
 def random_point(names: Iterable[str], attempt: int, seed: str) -> dict[sp.Symbol, sp.Rational]:
-    """Draw a rational point, the same for the same arguments on every machine.
+    """Draw a rational point, the same for the same names, number of the draw and seed on every machine.
 
     Every second attempt is positive throughout, for the sake of logarithms and roots.
-
-    Parameters
-    ----------
-    names : iterable of str
-        Names of the symbols that need a value.
-    attempt : int
-        Number of the draw.
-    seed : str
-        What the point is for.
     """
     draw = random.Random(f"{seed} {attempt}")
     lowest = -2 * PARTS if attempt % 2 else 1

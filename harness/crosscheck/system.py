@@ -97,15 +97,7 @@ def history(symbol: sp.Symbol) -> tuple[sp.Symbol, ...]:
 
 
 def described_system(system: System, effects: Collection[str]) -> MechanicalSystem:
-    """Take the system with the named effects alone.
-
-    Parameters
-    ----------
-    system : System
-        The description in the record.
-    effects : collection of str
-        Names of the effects called for; the others are left out.
-    """
+    """Take the system of a record with the named effects alone."""
     forces = [effect.value for effect in system.forces if effect.effect in effects]
     return MechanicalSystem(
         time=sp.Symbol(system.time, real=True),

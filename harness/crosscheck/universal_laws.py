@@ -35,20 +35,9 @@ class LawOfControls:
 
 
 def judge_law(system: MechanicalSystem, values: Mapping[sp.Symbol, sp.Expr], law: LawOfControls) -> Judgement:
-    """Verdict on a law: whether the multipliers vanish in random states.
+    """Verdict on a law: whether multipliers vanish in random states; undecided where too few regular ones are found.
 
-    Parameters
-    ----------
-    system : MechanicalSystem
-        Of the effects called for.
-    values : mapping of Symbol to Expr
-        Values of parameters; those left out are drawn at random too.
-
-    Returns
-    -------
-    Judgement
-        ``agrees`` with the digits and states, ``disagrees`` with the first residual, or ``undecided`` where too few
-        regular states were found.
+    Parameters without a value are drawn at random too.
     """
     moved = _MovedByLaw(system, values, law)
     seed = fresh_seed()

@@ -77,15 +77,7 @@ class Film:
 def film_of(simulation: Simulation, drawing: Drawing) -> Film:
     """The film of a motion, or of its beginning where it goes through the picture too often.
 
-    Parameters
-    ----------
-    simulation : Simulation
-        At many equidistant instants; its scene observes the trajectory.
-
-    Returns
-    -------
-    Film
-        Of 180 frames at most.
+    The motion has many equidistant instants; the film has 180 frames at most.
     """
     instants = simulation.instants.astype(float)
     numbers = drawing.numbers(instants, simulation.coordinates)

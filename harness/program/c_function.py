@@ -85,15 +85,7 @@ def compile_c(program: Program) -> CFunction:
 def load_c(source: str, *options: str) -> ctypes.CDLL:
     """Compile C99 source into a shared object in a private directory, and load it. Raises as `compile_c`.
 
-    Parameters
-    ----------
-    options : str
-        What else the compiler is told: where headers and libraries are.
-
-    Returns
-    -------
-    ctypes.CDLL
-        It stays usable when the directory is gone.
+    It stays usable when the directory is gone.
     """
     with private_directory() as directory:
         source_file, library = directory / "motion.c", directory / "motion.so"
@@ -106,15 +98,7 @@ def load_c(source: str, *options: str) -> ctypes.CDLL:
 
 
 def compile_shared(sources: Sequence[Path], library: Path, *options: str) -> None:
-    """Compile C sources into a shared object. Raises as `compile_c`.
-
-    Parameters
-    ----------
-    library : Path
-        The shared object to make.
-    options : str
-        What the compiler is told.
-    """
+    """Compile C sources into a shared object. Raises as `compile_c`."""
     command = [*_compiler(), *map(str, sources), "-o", str(library), *options, "-lm"]
     said = bytearray()
     try:

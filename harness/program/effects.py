@@ -135,10 +135,7 @@ def read_costs(text: str) -> Costs:
 def measure_costs(costs: Costs) -> MeasuredCosts:
     """Count the operations of a scene's programs and measure their times, at one regular point.
 
-    Returns
-    -------
-    MeasuredCosts
-        Times are those of compiled C, or of NumPy where there is no C compiler.
+    Times are those of compiled C, or of NumPy where there is no C compiler.
 
     Raises
     ------

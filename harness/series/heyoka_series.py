@@ -34,13 +34,6 @@ def expand_by_heyoka(file: Path, request: SeriesRequest, limits: Limits) -> Moti
     """Expand a scene's motion with heyoka, and continue it where that is asked for.
 
     Raises as `motion_problem`, `expand` and `continue_motion`.
-
-    Parameters
-    ----------
-    request : SeriesRequest
-        With a precision; its digits do not matter.
-    limits : Limits
-        What Maxima may take to write the motion program.
     """
     precision = read_precision(str(request.precision))
     asked = Request(request.scene, settings=request.settings)
@@ -112,12 +105,8 @@ def continue_motion(problem: MotionProblem, until: Fraction, precision: Precisio
 def expanding_integrator(problem: MotionProblem, order: int, precision: Precision, effort: int = ONCE) -> Any:
     """Set up heyoka's integrator for one expansion; its state ends with the integrals of multipliers and forces.
 
-    Parameters
-    ----------
-    order : int
-        The coefficients of the multipliers reach it; those of the state go one further.
-    effort : int
-        ``ONCE`` for one expansion, ``OFTEN`` for many.
+    The coefficients of the multipliers reach the order, those of the state go one further; the effort is ``ONCE`` or
+    ``OFTEN``.
 
     Raises
     ------

@@ -82,15 +82,12 @@ def estimate_radius(series: Iterable[Sequence[mpmath.mpf]]) -> Radius:
 def estimate_radii(series: Floats) -> list[Radius]:
     """Estimate the radii of convergence of many motions, as `estimate_radius` does, many at a time.
 
+    What comes out for a motion does not hang on the others.
+
     Parameters
     ----------
     series : ndarray, shape (series, orders, motions)
         Finite coefficients.
-
-    Returns
-    -------
-    list of Radius
-        What comes out for a motion does not hang on the others.
     """
     each, orders, motions = series.shape
     flat = np.ascontiguousarray(np.moveaxis(series, 2, 0).reshape(motions * each, orders))

@@ -89,13 +89,6 @@ class CompiledIfItPays:
 
     What takes how long is counted, not measured, so that the same calls have the same results everywhere: measured on
     programs of 17 to 434 operations.
-
-    Parameters
-    ----------
-    by_numpy, compiled : callable
-        Make the function.
-    operations : int
-        Of what it computes.
     """
 
     def __init__(self, by_numpy: Callable[[], Evaluation], compiled: Callable[[], Evaluation], operations: int) -> None:

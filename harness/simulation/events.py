@@ -30,19 +30,7 @@ class Ending(NamedTuple):
 
 
 def first_event(motion: PiecewiseMotion, precision: Precision, end: Any) -> Crossing | None:
-    """Follow a motion to the first zero crossing of one of its events.
-
-    Parameters
-    ----------
-    motion : PiecewiseMotion
-        At its start, of a problem with events.
-    end : number
-        The last instant.
-
-    Returns
-    -------
-    Crossing or None
-        Its name is the expression that crosses; None where none does.
+    """Follow a motion, from its start, to the first zero crossing of one of its events; None where there is none.
 
     Raises
     ------

@@ -110,13 +110,6 @@ def sample_file(path: Path, digits: int) -> Iterator[Callable[[Sampled], None]]:
 
     What it gives takes samples that follow those before.
 
-    Parameters
-    ----------
-    path : Path
-        Its suffix names the format: one of `FORMATS`.
-    digits : int
-        Of numbers that no double can hold.
-
     Raises
     ------
     HolonomError
@@ -214,11 +207,7 @@ def simulation_document(simulation: Simulation) -> dict[str, Any]:
 def report_document(report: Report) -> dict[str, Any]:
     """The report alone.
 
-    Returns
-    -------
-    dict
-        Its attributes; ``trusted``; and beside the legs and the cases the sentences that people
-        read, ``engine`` and ``remarks``.
+    With ``trusted``, and beside legs and cases the sentences that people read, ``engine`` and ``remarks``.
     """
     said = {"engine": engine_text(report.legs), "remarks": tuple(remarks(report.legs, report.cases))}
     lists = {name: tuple(each._asdict() for each in getattr(report, name)) for name in ("legs", "switchings", "doubts")}

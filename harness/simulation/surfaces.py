@@ -115,15 +115,7 @@ class SignedFunctions(ABC):
 
 
 class Surfaces(SignedFunctions):
-    """The surfaces on which a pattern of signs ends.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-        With signs.
-    known : collection of str
-        Signs whose changes are known without looking for them.
-    """
+    """The surfaces on which a pattern of signs ends, but for signs whose changes are known without looking."""
 
     def __init__(
         self, problem: MotionProblem, pattern: Pattern, precision: Precision, known: Collection[str] = ()

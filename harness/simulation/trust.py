@@ -56,15 +56,7 @@ HIGH = 16  # exponents from which a power is as faint as an exponential
 
 
 def may_hide(program: Program, parameters: Collection[str] = ()) -> bool:
-    """Whether a program contains such a function of the state.
-
-    Parameters
-    ----------
-    program : Program
-        One of its inputs is ``t``; the others are the state, and parameters.
-    parameters : collection of str
-        Which inputs are.
-    """
+    """Whether a program, of the time, the state and parameters, contains such a function of the state."""
     moving = set(program.inputs) - {"t", *parameters}
     for name, expression in program.assignments:
         if any(_is_faint(call) and names_in(call) & moving for call in calls_in(expression)):

@@ -112,14 +112,7 @@ def run_sweep(
     limits: Limits,
     progress: Progress | None = None,
 ) -> Sweep:
-    """Compute what is missing of a sweep.
-
-    Parameters
-    ----------
-    folder : Path
-        Where its files are, or are to be.
-    progress : callable or None
-        Told how many rows are there, now and then.
+    """Compute what is missing of a sweep in a folder; `progress` is told how many rows are there, now and then.
 
     Raises
     ------

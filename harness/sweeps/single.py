@@ -69,13 +69,6 @@ class SingleMotions:
     def follow(self, problem: MotionProblem, stops: Sequence[float]) -> "SingleMotion":
         """Follow one motion.
 
-        Parameters
-        ----------
-        problem : MotionProblem
-            With values for the open parameters, and its start.
-        stops : sequence of float
-            As for `LaneEngine.follow`.
-
         Raises
         ------
         HolonomError

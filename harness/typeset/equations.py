@@ -19,13 +19,6 @@ def latex_equation(equation: Equation, width: float = inf) -> tuple[str, ...]:
     """Typeset an equation.
 
     LaTeX for math mode, with amsmath: a formula for each block of relations that belong together.
-
-    Parameters
-    ----------
-    equation : Equation
-        An item of a derivation.
-    width : float
-        Width to keep to where a formula can be broken over lines, in digits of its typeface.
     """
     return tuple(rows[0].replace("&", "", 1) if len(rows) == 1 else aligned(rows) for rows in blocks(equation, width))
 

@@ -66,13 +66,6 @@ def marked(tree: Tree, other: Tree, colour: str) -> Tree:
     """Mark the parts of a tree that are not in the other one.
 
     Each part that differs is put into ["Marked", colour, part].
-
-    Parameters
-    ----------
-    tree, other : int, str, dict or list
-        Two formulas of much the same form.
-    colour : str
-        What the marks say.
     """
     if tree == other:
         return tree

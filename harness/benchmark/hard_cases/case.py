@@ -111,10 +111,7 @@ def required(method: str, quantity: str, holds: bool) -> Result:
 def digits_kept(computed: Iterable[float], truth: Iterable[mpf], scale: float | mpf | None = None) -> float:
     """Decimal digits that numbers keep of the truth, the worst of them counting: from 0, also for no number, to 16.
 
-    Parameters
-    ----------
-    scale : number, optional
-        What an error is relative to; without it, the largest of the true numbers.
+    An error is relative to the scale; without it, to the largest of the true numbers.
     """
     pairs = [(mpf(float(value)), exact) for value, exact in zip(computed, truth, strict=True)]
     if not all(mpmath.isfinite(value) for value, _ in pairs):

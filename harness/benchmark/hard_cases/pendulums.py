@@ -19,15 +19,7 @@ with certified:
 
 @certified
 def swing(amplitude: mpf, frequency: mpf, t: mpf) -> tuple[mpf, mpf]:
-    """sin(phi) and cos(phi) of a pendulum released at rest.
-
-    Parameters
-    ----------
-    amplitude : mpf
-        The greatest angle from below, less than pi.
-    frequency : mpf
-        Of small oscillations, w.
-    """
+    """sin(phi) and cos(phi) of a pendulum released at rest at an amplitude below pi; w is its frequency near zero."""
     modulus = sin(amplitude / 2)
     half = modulus * ellipfun("sn", ellipk(modulus**2) + frequency * t, m=modulus**2)
     return 2 * half * sqrt(1 - half**2), 1 - 2 * half**2

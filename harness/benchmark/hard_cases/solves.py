@@ -32,16 +32,9 @@ SolveAt = Callable[[float, Vector], Solved]
 
 
 def every_solve(file: str, scene: str | None = None) -> Mapping[str, SolveAt]:
-    """Each way to solve a scene's equations of motion.
+    """Each way to solve the equations of motion of a scene among the examples; without a name, of the file's last one.
 
     Each takes the instant and the state of shape (2n,), coordinates and then velocities.
-
-    Parameters
-    ----------
-    file : str
-        Relative to the examples.
-    scene : str, optional
-        Without it, the last one.
     """
     matrices = MotionMatrices(problem(file, scene))
     return {

@@ -53,12 +53,7 @@ Result = Measurement | Omission
 def measure(candidates: Iterable[Candidate], reference: Reference, advance: Callable[[], None]) -> list[Result]:
     """Measure errors and times, in the order of the candidates.
 
-    Parameters
-    ----------
-    candidates : iterable of Candidate
-        The settings of a method one after the other, from the least to the most demanding.
-    advance : callable
-        Called after each candidate.
+    Settings of a method come one after the other, the least demanding first; `advance` is called after each candidate.
     """
     results: list[Result] = []
     repeated: dict[int, Prepared] = {}

@@ -82,14 +82,8 @@ def maxima_series(
 ) -> Iterator[Measurement]:
     """Maxima's expansions, timed by Maxima.
 
-    Operations are those of one expansion; rounded coefficients take at least two.
-
-    Parameters
-    ----------
-    orders : sequence of int
-        Ascending.
-    digits : int or str
-        Significant digits, or ``exact``.
+    Operations are those of one expansion; rounded coefficients take at least two. Orders ascend; `digits` are
+    significant digits, or ``exact``.
 
     Raises
     ------

@@ -97,14 +97,7 @@ def scipy_solver(method: str, motion: CompiledRates, span: tuple[float, float], 
 
 
 def sundials_solver(method: str, motion: CompiledRates, span: tuple[float, float], start: Floats, tol: float) -> Floats:
-    """The state at the end, by CVODE of SUNDIALS.
-
-    Parameters
-    ----------
-    method : str
-        ``Adams`` or ``BDF``.
-    motion, span, start, tol
-        As for `scipy_solver`.
+    """The state at the end, by CVODE of SUNDIALS, ``Adams`` or ``BDF``; arguments as for `scipy_solver`.
 
     Raises
     ------

@@ -94,12 +94,8 @@ def study(
 ) -> Study:
     """Measure what accuracy costs in time and in operations.
 
-    Parameters
-    ----------
-    request : Request
-        Its solve is the one of all comparisons but that of the two solves.
-    advance : callable
-        Called `plan.steps` times at most.
+    The solve that is asked for is that of all comparisons but one, of the two solves. `advance` is called `plan.steps`
+    times at most.
 
     Raises
     ------

@@ -141,15 +141,7 @@ def vanishing_instants(problem: MotionProblem, matrices: MotionMatrices, end: fl
 
 
 def require_gradient(problem: MotionProblem, matrices: MotionMatrices, t: float, at: Instant) -> None:
-    """Refuse to go on where a constraint is about to lose its gradient.
-
-    Parameters
-    ----------
-    t : float
-        An instant at which one may.
-    at : Instant
-        The motion shortly before it.
-    """
+    """Refuse to go on to an instant at which a constraint may lose its gradient, when it has just before."""
     left, whole = (np.linalg.norm(matrices(*when).jacobian, axis=1) for when in (at, start_of(problem)))
     lost = np.flatnonzero(left < VANISHED * whole)
     if len(lost):

@@ -41,17 +41,7 @@ def better_code(code: Code, precision: Precision) -> Code | None:
 
 
 def pays(code: Code, operations: int, seconds: float) -> bool:
-    """Whether a run earns back the compilation of better code.
-
-    Parameters
-    ----------
-    code : Code
-        The better one.
-    operations : int
-        Of the motion program.
-    seconds : float
-        What is left of the run takes, in the code that it has.
-    """
+    """Whether what is left of a run, in seconds of the code that it has, earns back the compilation of better code."""
     return (1 - LEFT[code]) * seconds > compilation(code, operations)
 
 

@@ -82,13 +82,7 @@ class TaylorEngine(ProgramEngine):
     def steps_ahead(self, until: Any, trial: int) -> int | None:
         """About how many steps there are to an instant, by the length of the first ones.
 
-        None where so few reach the instant, or do not succeed.
-
-        Parameters
-        ----------
-        until : number
-        trial : int
-            Steps to take, and to take back.
+        None where so few reach the instant, or do not succeed. `trial` steps are taken, and taken back.
         """
         begun, state = self.time, self.state.copy()
         outcome = self._integrator.propagate_until(until, max_steps=trial)[0]
