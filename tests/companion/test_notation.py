@@ -10,7 +10,9 @@ from holonom.companion.paper import REPOSITORY
 from holonom.record import Scene, System
 
 SYMBOLS = table("notation")["symbols"]
-RECORD = {"system": {each.name for each in fields(System)}, "scene": {each.name for each in fields(Scene)}}
+RECORD = {
+    name: {each.name for each in fields(kind)} | {*vars(kind)} for name, kind in (("system", System), ("scene", Scene))
+}
 FILES = [path.relative_to(REPOSITORY) for path in sorted((REPOSITORY / "maxima").rglob("*.mac"))]
 
 

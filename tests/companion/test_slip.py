@@ -7,7 +7,7 @@ import pytest
 from holonom import maxima
 from holonom.companion.paper import REPOSITORY, chapter_of_the_paper
 
-RIGHT = '"2 d^2f/dq_s du_r dot(q_s) dot(u_r)" = 2*inner(v,'
+RIGHT = '"2 d^2f/dq_s du_r dot(q_s) dot(u_r)" = 2*mixed_form(f,'
 WRONG = RIGHT.replace("= 2*", "= -2*")
 
 
