@@ -135,7 +135,14 @@ class Failure(Enum):
         "where {detail} changes its sign the motion is another than the series, perhaps before the instant asked for",
         "take holonom simulate, which steps to such instants",
     )
-    LAW_ENDS = ("the tables of the control law end at t = {detail}", "let the motion end there or before, with --until")
+    LAW_ENDS = (
+        "the drives end at t = {detail}, with a table or, of special functions, with the scene's time span",
+        "let the motion end there or before, with --until, or give a longer table or time span",
+    )
+    SPECIAL_EXPANDED = (
+        "{detail} is a special function, which programs hold as a polynomial with other derivatives of high order",
+        "take `holonom series` without --precision: Maxima expands it to any digits",
+    )
     GSL_MISSING = (
         "the Runge-Kutta engine needs the GNU Scientific Library with its headers",
         "install it, for instance the package `libgsl-dev` of your distribution",

@@ -8,13 +8,14 @@ import mpmath
 import sympy
 from sympy import Expr, Float, Indexed, IndexedBase, Integer, Rational, S, Symbol
 
+from .elliptic import JacobiCn, JacobiDn, JacobiSn
 from .trees import FLOAT, INTEGER, JSON_INTEGERS, Tree, converted, integer, quantity, refusal
 
 DOUBLE_DIGITS = 17  # decimal digits that tell any two doubles apart
 DOUBLE_BITS = 53
 SPARE_DIGITS = 11  # of a number longer than Python reads, beyond those that mpmath keeps
 
-CONSTANTS = {"Pi": S.Pi, "ExponentialE": S.Exp1, "ImaginaryUnit": S.ImaginaryUnit}
+CONSTANTS = {"Pi": S.Pi, "ExponentialE": S.Exp1, "ImaginaryUnit": S.ImaginaryUnit, "EulerGamma": S.EulerGamma}
 CONSTANT_NAMES = {constant: name for name, constant in CONSTANTS.items()}
 NOT_NUMBERS = (S.ComplexInfinity, S.Infinity, S.NegativeInfinity, S.NaN)
 
@@ -48,9 +49,25 @@ FUNCTIONS = {
     "Arcsch": sympy.acsch,
     "Arcoth": sympy.acoth,
     "Erf": sympy.erf,
+    "Erfc": sympy.erfc,
+    "Gamma": sympy.gamma,
+    "AiryAi": sympy.airyai,
+    "AiryBi": sympy.airybi,
+    "AiryAiPrime": sympy.airyaiprime,
+    "AiryBiPrime": sympy.airybiprime,
 }
-HEADS = {function: head for head, function in FUNCTIONS.items()} | {
-    sympy.atan2: "Arctan2",
+OF_TWO = {
+    "Arctan2": sympy.atan2,
+    "BesselJ": sympy.besselj,
+    "BesselY": sympy.bessely,
+    "BesselI": sympy.besseli,
+    "BesselK": sympy.besselk,
+    "PolyGamma": sympy.polygamma,
+    "JacobiSn": JacobiSn,
+    "JacobiCn": JacobiCn,
+    "JacobiDn": JacobiDn,
+}
+HEADS = {function: head for head, function in (FUNCTIONS | OF_TWO).items()} | {
     sympy.Add: "Add",
     sympy.Mul: "Multiply",
     sympy.Pow: "Power",
@@ -60,7 +77,7 @@ BINARY: dict[str, Callable[..., Expr]] = {
     "Power": sympy.Pow,
     "Divide": truediv,
     "Subtract": sub,
-    "Arctan2": sympy.atan2,
+    **OF_TWO,
 }
 VARIADIC: dict[str, Callable[..., Expr]] = {"Add": sympy.Add, "Multiply": sympy.Mul}
 

@@ -10,7 +10,7 @@ from decimal import Decimal
 from .program.infix import Formula, Rank, atom, call
 from .trees import FLOAT, INTEGER, Tree, converted, integer, quantity, refusal
 
-CONSTANTS = {"Pi": "%pi", "ExponentialE": "%e", "ImaginaryUnit": "%i"}
+CONSTANTS = {"Pi": "%pi", "ExponentialE": "%e", "ImaginaryUnit": "%i", "EulerGamma": "%gamma"}
 FUNCTIONS = {
     "Sqrt": "sqrt",
     "Exp": "exp",
@@ -42,6 +42,22 @@ FUNCTIONS = {
     "Arcsch": "acsch",
     "Arcoth": "acoth",
     "Erf": "erf",
+    "Erfc": "erfc",
+    "Gamma": "gamma",
+    "AiryAi": "airy_ai",
+    "AiryBi": "airy_bi",
+    "AiryAiPrime": "airy_dai",
+    "AiryBiPrime": "airy_dbi",
+}
+OF_TWO = {
+    "Arctan2": "atan2",
+    "BesselJ": "bessel_j",
+    "BesselY": "bessel_y",
+    "BesselI": "bessel_i",
+    "BesselK": "bessel_k",
+    "JacobiSn": "jacobi_sn",
+    "JacobiCn": "jacobi_cn",
+    "JacobiDn": "jacobi_dn",
 }
 Expanded = tuple[Callable[..., Formula], list[Tree]]
 
@@ -78,8 +94,10 @@ def _expanded(tree: Tree) -> Expanded:
             return _product(tree)
         case ["Power", base, exponent]:
             return _power, [base, exponent]
-        case ["Arctan2", y, x]:
-            return (lambda *sides: call("atan2", *sides)), [y, x]
+        case [str(head), first, second] if head in OF_TWO:
+            return (lambda *arguments: call(OF_TWO[head], *arguments)), [first, second]
+        case ["PolyGamma", int(order), argument]:
+            return (lambda formula: call(f"psi[{order}]", formula)), [argument]
         case [str(head), argument] if head in FUNCTIONS:
             return (lambda formula: call(FUNCTIONS[head], formula)), [argument]
         case _:

@@ -5,7 +5,7 @@ A tree is what `json.loads` makes of
     integer          7, or {"num": "12345678901234567890"} from 2^53 on
     float            {"num": "1.25e0"}: a double; with more than 17 digits a number of that many digits
     symbol           "q1", "dot(q1)", "lambda1": always a real quantity
-    constant         "Pi", "ExponentialE", "ImaginaryUnit"
+    constant         "Pi", "ExponentialE", "ImaginaryUnit", "EulerGamma"
     application      ["Add", a, b, ...], ["Power", a, b], ["Sin", a], ["Rational", 1, 3], ...
     indexed quantity ["Subscript", "A", 1, 2]
 
@@ -29,7 +29,7 @@ INTEGER = re.compile(r"-?\d{1,4300}")  # Python's own limit on decimal digits
 FLOAT = re.compile(r"-?0*(\d+)\.?(\d*)(?:[eE][+-]?\d{1,9})?")
 # A name, a time derivative of one, or the initial value of either: q1, %omega, dot(q1), ddot(u), q1_0, dot(q1)_0.
 NAME = re.compile(r"%?[^\W\d][\w%]*|d{1,3}ot\(%?[^\W\d][\w%]*\)\w*")
-RESERVED = frozenset({"Pi", "ExponentialE", "ImaginaryUnit", "True", "False"})
+RESERVED = frozenset({"Pi", "ExponentialE", "ImaginaryUnit", "EulerGamma", "True", "False"})
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,8 @@ from collections.abc import Iterable, Mapping
 import sympy as sp
 from mpmath import mp
 
+from ..elliptic import JacobiCn, JacobiDn, JacobiSn
+
 PARTS = 1_000_003
 """Coordinates of a random point are multiples of its inverse, up to two: small, rarely special, too many to foresee."""
 
@@ -31,6 +33,20 @@ FUNCTIONS = {
         for name in ("sec", "csc", "cot", "sech", "csch", "coth", "asec", "acsc", "acot", "asech", "acsch", "acoth")
     },
     sp.erf: mp.erf,
+    sp.erfc: mp.erfc,
+    sp.gamma: mp.gamma,
+    sp.polygamma: mp.polygamma,
+    sp.besselj: mp.besselj,
+    sp.bessely: mp.bessely,
+    sp.besseli: mp.besseli,
+    sp.besselk: mp.besselk,
+    sp.airyai: mp.airyai,
+    sp.airybi: mp.airybi,
+    sp.airyaiprime: lambda x: mp.airyai(x, derivative=1),
+    sp.airybiprime: lambda x: mp.airybi(x, derivative=1),
+    JacobiSn: lambda u, m: mp.ellipfun("sn", u, m=m),
+    JacobiCn: lambda u, m: mp.ellipfun("cn", u, m=m),
+    JacobiDn: lambda u, m: mp.ellipfun("dn", u, m=m),
     sp.exp: mp.exp,
     sp.log: mp.log,
     sp.Abs: abs,

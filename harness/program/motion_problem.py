@@ -98,7 +98,9 @@ class MotionProblem:
     # ``energy``, the energy function, and ``power``, its rate along the motion; they need the multipliers
     energy: Program
     drawing: "Drawing | None"  # how the system looks; None where it does not say
-    law_end: str | None = None  # the last instant at which the control law has values, where tables give it
+    # the last instant at which the drives have values, where tables or special functions give them
+    law_end: str | None = None
+    written_out: tuple[str, ...] = ()  # special functions of the time, which programs hold as sums of polynomials
     controls: Program | None = None  # the controls, by name; None where the scene does not observe them
     # how many of the constraints, the last ones, controls in forces keep, so that their multipliers are zero
     servo: int = 0
@@ -166,6 +168,12 @@ def require_analytic(problem: MotionProblem) -> None:
         raise HolonomError(Failure.NOT_ANALYTIC, problem.scene, problem.signs[0].of)
 
 
+def require_expandable(problem: MotionProblem) -> None:
+    """Refuse a motion whose programs do not have the derivatives of its drives, but for the first ones."""
+    if problem.written_out:
+        raise HolonomError(Failure.SPECIAL_EXPANDED, problem.scene, problem.written_out[0])
+
+
 def motion_problem(
     file: Path, request: Request, limits: Limits, digits: int = DOUBLE_DIGITS, open_parameters: Sequence[str] = ()
 ) -> MotionProblem:
@@ -222,6 +230,7 @@ def read_problem(text: str) -> MotionProblem:
         energy=program_of(document["energy"]),
         drawing=_drawing(document["drawing"]),
         law_end=document.get("law_end"),
+        written_out=tuple(document.get("written_out", ())),
         controls=_optional(document.get("controls")),
         servo=document.get("servo", 0),
         relative_degrees=tuple(document.get("relative_degrees", ())),

@@ -21,7 +21,7 @@ from ..confined import Limits
 from ..failures import Failure, HolonomError
 from ..program.expense import order_for, require_means
 from ..program.heyoka_function import dynamics, heyoka_expressions, import_heyoka, zero_multipliers
-from ..program.motion_problem import MotionProblem, motion_problem
+from ..program.motion_problem import MotionProblem, motion_problem, require_expandable
 from ..program.precision import GUARD_DIGITS, Precision, read_precision
 from ..program.request import Request
 from .power_series import Continuation, MotionSeries, NumberTexts, SeriesRequest
@@ -145,6 +145,7 @@ def continuing_integrator(problem: MotionProblem, precision: Precision) -> Any:
 def _integrator(
     heyoka: ModuleType, problem: MotionProblem, precision: Precision, integrals: Sequence[tuple], **options: Any
 ) -> Any:
+    require_expandable(problem)
     start = [precision.number(problem.start[name]) for name in problem.state]
     return heyoka.taylor_adaptive(
         [

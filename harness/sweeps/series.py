@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..program.heyoka_function import dynamics, heyoka_expressions, import_heyoka, zero_multipliers
-from ..program.motion_problem import MotionProblem
+from ..program.motion_problem import MotionProblem, require_expandable
 from ..series.radius import ENTIRE, POLYNOMIAL, Radius, estimate_radii
 
 ORDER = 40
@@ -36,6 +36,7 @@ def lane_radii(problem: MotionProblem, states: Floats, values: Floats) -> Floats
 
 def expanded(problem: MotionProblem, states: Floats, values: Floats) -> Floats:
     """Power series of the coordinates and multipliers, shape (n + g, orders, k)."""
+    require_expandable(problem)
     integrator = problem.once("expansion", problem.motion, lambda: _expanding(problem))
     k, n, g = states.shape[1], len(problem.coordinates), len(problem.multipliers)
     found = np.empty((n + g, ORDER + 1, k))

@@ -38,6 +38,7 @@ from .boxes import (
     Box,
     above,
     aligned,
+    below,
     beside,
     bracketed,
     coloured,
@@ -52,7 +53,7 @@ from .quantities import indexed_box, name_box
 
 NARROWEST = 14  # digits below which nothing is pressed
 TALLEST = 10  # lines that brackets reach over at most
-CONSTANTS = {"Pi": r"\pi", "ExponentialE": "e", "ImaginaryUnit": "i"}
+CONSTANTS = {"Pi": r"\pi", "ExponentialE": "e", "ImaginaryUnit": "i", "EulerGamma": r"\gamma"}
 FUNCTIONS = {
     "Ln": r"\ln",
     "Sin": r"\sin",
@@ -81,12 +82,24 @@ FUNCTIONS = {
     "Arcsch": r"\operatorname{arcsch}",
     "Arcoth": r"\operatorname{arcoth}",
     "Erf": r"\operatorname{erf}",
+    "Erfc": r"\operatorname{erfc}",
+    "Gamma": r"\Gamma",
+    "AiryAi": r"\operatorname{Ai}",
+    "AiryBi": r"\operatorname{Bi}",
+    "AiryAiPrime": r"\operatorname{Ai'}",
+    "AiryBiPrime": r"\operatorname{Bi'}",
+    "JacobiSn": r"\operatorname{sn}",
+    "JacobiCn": r"\operatorname{cn}",
+    "JacobiDn": r"\operatorname{dn}",
     "Sign": r"\operatorname{sign}",
     "Determinant": r"\det",
 }
+OF_AN_ORDER = {"BesselJ": "J", "BesselY": "Y", "BesselI": "I", "BesselK": "K", "PolyGamma": r"\psi"}
 FRACTIONS = {"Divide", "Rational", "Partial", "Rate"}
 SUMS = {"Add", "Negate", "Subtract"}
-LOOSE = SUMS | FRACTIONS | FUNCTIONS.keys() | {"Multiply", "Power", "Exp", "Factorial"}  # in brackets under an exponent
+LOOSE = (  # in brackets under an exponent
+    SUMS | FRACTIONS | FUNCTIONS.keys() | OF_AN_ORDER.keys() | {"Multiply", "Power", "Exp", "Factorial"}
+)
 PARTIAL, TOTAL, TIME = word(r"\partial", 1), word("d", 1), word("t", 1)
 
 
@@ -279,6 +292,8 @@ def _set(tree: Tree, room: float) -> Box:
             return SETTERS[head](room, *parts)
         case [str(head), *arguments] if head in FUNCTIONS:
             return _function(word(FUNCTIONS[head], 3), arguments, room)
+        case [str(head), order, argument] if head in OF_AN_ORDER:
+            return _of_an_order(OF_AN_ORDER[head], order, argument, room)
         case _:
             raise _refusal(tree)
 
@@ -379,6 +394,12 @@ def _function(name: Box, arguments: Sequence[Tree], room: float) -> Box:
     if len(arguments) == 1 and isinstance(_content(arguments[0]), str):
         return beside(name, inner)
     return beside(name, bracketed(inner))
+
+
+def _of_an_order(letter: str, order: Tree, argument: Tree, room: float) -> Box:
+    """A function that carries its order as an index; its argument always stands in brackets."""
+    name = below(word(letter, 1), formula_box(order))
+    return beside(name, bracketed(formula_box(argument, room - name.width - 2)))
 
 
 def _modulus(room: float, argument: Tree) -> Box:

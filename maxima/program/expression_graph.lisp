@@ -299,6 +299,7 @@
              (mquotient (quotient-of (expression-term (second e)) (expression-term (third e))))
              (($atan2 %atan2) (call-term *arctan2* (mapcar #'expression-term (cdr e))))
              (mexpt (exponential-term (second e) (expression-term (third e))))
+             ($chebyshev_sum (clenshaw-term (mapcar #'rational-of (cdr (second e))) (expression-term (third e))))
              (t (call-term (caar e) (mapcar #'expression-term (cdr e))))))))
 
 (defun exponential-term (base exponent)
@@ -316,6 +317,15 @@
           (of-reciprocal (call-of (cdr of-reciprocal) (power-of (first terms) -1)))
           ((get operator 'graph-derivative) (apply #'call-of operator terms))
           (t (merror (intl:gettext "motion_program: the function ~M cannot be written into a motion program") operator)))))
+
+;; Held, for a sum that is opened where numbers meet would double with every order.
+(defun clenshaw-term (coefficients x)
+  "c_0 + c_1 T_1(x) + ... + c_n T_n(x) by Clenshaw's recurrence b_k = c_k + 2 x b_(k+1) - b_(k+2)."
+  (let ((b (number-term 0)) (above (number-term 0)))
+    (dolist (c (reverse (cdr coefficients)))
+      (psetq b (held-term (sum-of (list (number-term c) (product-of (list (number-term 2) x b)) (scaled-term -1 above))))
+             above b))
+    (sum-of (list (number-term (car coefficients)) (product-of (list x b)) (scaled-term -1 above)))))
 
 ;;; ---- derivatives -----------------------------------------------------------------------
 

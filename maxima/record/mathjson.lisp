@@ -15,10 +15,14 @@
     (%asinh . "Arsinh") (%acosh . "Arcosh") (%atanh . "Artanh")
     (%sec . "Sec") (%csc . "Csc") (%cot . "Cot") (%sech . "Sech") (%csch . "Csch") (%coth . "Coth")
     (%asec . "Arcsec") (%acsc . "Arccsc") (%acot . "Arccot")
-    (%asech . "Arsech") (%acsch . "Arcsch") (%acoth . "Arcoth") (%erf . "Erf")))
+    (%asech . "Arsech") (%acsch . "Arcsch") (%acoth . "Arcoth") (%erf . "Erf") (%erfc . "Erfc")
+    (%bessel_j . "BesselJ") (%bessel_y . "BesselY") (%bessel_i . "BesselI") (%bessel_k . "BesselK")
+    (%gamma . "Gamma")
+    (%airy_ai . "AiryAi") (%airy_bi . "AiryBi") (%airy_dai . "AiryAiPrime") (%airy_dbi . "AiryBiPrime")
+    (%jacobi_sn . "JacobiSn") (%jacobi_cn . "JacobiCn") (%jacobi_dn . "JacobiDn")))
 
 (defvar *mathjson-constants*
-  '(($%pi . "Pi") ($%e . "ExponentialE") ($%i . "ImaginaryUnit")))
+  '(($%pi . "Pi") ($%e . "ExponentialE") ($%i . "ImaginaryUnit") ($%gamma . "EulerGamma")))
 
 (defun $write_json (tree file)
   (with-open-file (out file :direction :output :if-exists :supersede)
@@ -82,6 +86,7 @@
         ((eq (caar e) 'mexpt) (write-power (cadr e) (caddr e) out))
         ((eq (caar e) 'mplus) (write-sum (cdr e) out))
         ((member 'array (car e)) (write-tree "Subscript" (cons (caar e) (cdr e)) out))
+        ((polygamma-p e) (write-tree "PolyGamma" (list (second (second e)) (third e)) out))
         ((cdr (assoc (caar e) *mathjson-functions*))
          (write-tree (cdr (assoc (caar e) *mathjson-functions*)) (cdr e) out))
         (t (merror "the function ~M is not one that the record knows" (caar e)))))
@@ -94,6 +99,8 @@
     (write-char #\, out)
     (write-mathjson a out))
   (write-char #\] out))
+
+(defun polygamma-p (e) (and (eq (caar e) 'mqapply) (eq (caar (second e)) '$psi)))
 
 ;;; Maxima's own sums hold no minus signs; those of a motion program do, as differences.
 (defun write-sum (terms out)

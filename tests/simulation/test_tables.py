@@ -141,7 +141,7 @@ def test_a_series_was_summed_up_where_the_law_is_another(driven):
 
 def test_no_motion_leads_beyond_the_last_point(driven):
     scene = driven(f"table({points()})")
-    with pytest.raises(HolonomError, match="the tables of the control law end at t = 4"):
+    with pytest.raises(HolonomError, match="the drives end at t = 4, with a table"):
         scene.simulate(until=5)
 
 

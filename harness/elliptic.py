@@ -1,0 +1,56 @@
+"""Jacobi's elliptic functions sn, cn, dn of (u, m), as Maxima writes them, for SymPy, which has none.
+
+Their rates by u are polynomials in themselves (DLMF 22.13.1-3); numbers are mpmath's.
+"""
+
+from mpmath import mp
+from sympy import Expr, Float, Function
+from sympy.core.function import ArgumentIndexError
+
+
+class _Jacobi(Function):
+    """One of the three; `kind` is its name in mpmath."""
+
+    nargs = 2
+    kind: str
+
+    def fdiff(self, argindex: int = 1) -> Expr:
+        """Derivative by u; none by the parameter m is known here."""
+        if argindex != 1:
+            raise ArgumentIndexError(self, argindex)
+        return self._rate(*self.args)
+
+    def _rate(self, u: Expr, m: Expr) -> Expr:
+        raise NotImplementedError
+
+    def _eval_evalf(self, prec: int) -> Expr | None:
+        u, m = (argument._to_mpmath(prec) for argument in (each._evalf(prec) for each in self.args))
+        with mp.workprec(prec):
+            return Float._new(mp.ellipfun(self.kind, u, m=m)._mpf_, prec)
+
+
+class JacobiSn(_Jacobi):
+    """sn(u, m)."""
+
+    kind = "sn"
+
+    def _rate(self, u: Expr, m: Expr) -> Expr:
+        return JacobiCn(u, m) * JacobiDn(u, m)
+
+
+class JacobiCn(_Jacobi):
+    """cn(u, m)."""
+
+    kind = "cn"
+
+    def _rate(self, u: Expr, m: Expr) -> Expr:
+        return -JacobiSn(u, m) * JacobiDn(u, m)
+
+
+class JacobiDn(_Jacobi):
+    """dn(u, m)."""
+
+    kind = "dn"
+
+    def _rate(self, u: Expr, m: Expr) -> Expr:
+        return -m * JacobiSn(u, m) * JacobiCn(u, m)
