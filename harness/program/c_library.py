@@ -40,6 +40,7 @@ extern "C" {{
 extern const char *const {name}_coordinates[];
 extern const char *const {name}_multipliers[];
 extern const char *const {name}_controls[];
+extern const char *const {name}_found_controls[];
 extern const char *const {name}_parameters[];
 
 /* The scene's start: instant, coordinates, velocities; NAN where they depend on a parameter without value. */
@@ -65,6 +66,9 @@ void {name}_residual(double t, const double *q, const double *v, const double *u
 
 /* Constraint Jacobian df/dq, row by row: J[beta*{NAME}_COORDINATES + s]. */
 void {name}_jacobian(double t, const double *q, const double *v, const double *u, const double *p, double *J);
+
+/* Controls that servo-constraints find, and the motion above has: {found}. */
+void {name}_servo(double t, const double *q, const double *v, const double *u, const double *p, double *found);
 
 /* Project a state in place onto position and velocity constraints, in the mass metric. Returns 0; or 1 where Newton's
    method does not converge, and then the state is left as it was. */
@@ -140,6 +144,11 @@ void {name}_residual(double t, const double *q, const double *v, const double *u
 void {name}_jacobian(double t, const double *q, const double *v, const double *u, const double *p, double *J)
 {{
 {jacobian}
+}}
+
+void {name}_servo(double t, const double *q, const double *v, const double *u, const double *p, double *found)
+{{
+{servo}
 }}
 
 static void corrections(double t, const double *q, const double *v, const double *u, const double *p,
@@ -224,6 +233,7 @@ def c_library(model: Model, name: str) -> dict[str, str]:
             explanation=comment_text_of(explanation(model)),
             enumerations="\n".join(_enumerations(model, name.upper())),
             law=comment_text(", ".join(model.under_law) or "the scene has none"),
+            found=comment_text(", ".join(model.found) or "the scene has none"),
         ),
         f"{name}.c": _source(model, written),
         f"{name}_driver.c": DRIVER.format(**written),
@@ -257,6 +267,7 @@ def _enumerations(model: Model, prefix: str) -> Iterator[str]:
         "COORDINATE": model.coordinates,
         "MULTIPLIER": model.multipliers,
         "CONTROL": model.controls,
+        "FOUND_CONTROL": model.found,
         "PARAMETER": model.parameters,
     }
     for group, names in groups.items():
@@ -308,6 +319,7 @@ def _source(model: Model, written: Mapping[str, str]) -> str:
         g=len(model.multipliers),
         residual=_residual(model, one),
         jacobian=_jacobian(model, one),
+        servo=_servo(model, one),
         corrections=one(model.projection, [corrections[name] for name in model.projection.outputs], "t q v u p dq dv"),
     )
 
@@ -338,9 +350,10 @@ def _results(model: Model, item: str) -> list[str]:
 
 
 def _names(model: Model, name: str) -> Iterator[str]:
-    for group in ("coordinates", "multipliers", "controls", "parameters"):
-        members = ", ".join([*map(c_string, getattr(model, group)), "NULL"])
-        yield f"const char *const {name}_{group}[] = {{{members}}};"
+    groups = {group: getattr(model, group) for group in ("coordinates", "multipliers", "controls", "parameters")}
+    for group, members in {**groups, "found_controls": model.found}.items():
+        listed = ", ".join([*map(c_string, members), "NULL"])
+        yield f"const char *const {name}_{group}[] = {{{listed}}};"
 
 
 def c_string(text: str) -> str:
@@ -381,6 +394,13 @@ def _residual(model: Model, function: Callable[..., str]) -> str:
     places = {f"residual[{b}]": f"f[{b - 1}]" for b in g} | {f"residual_rate[{b}]": f"rate[{b - 1}]" for b in g}
     program = computing(model.constraints, places)
     return function(program, [places[name] for name in program.outputs], parameters)
+
+
+def _servo(model: Model, function: Callable[..., str]) -> str:
+    parameters = "t q v u p found"
+    if model.servo is None:
+        return _body((), parameters)
+    return function(model.servo, [f"found[{place}]" for place in range(len(model.found))], parameters)
 
 
 def _jacobian(model: Model, function: Callable[..., str]) -> str:

@@ -8,6 +8,7 @@
        P            parameters
        DQ, A        the states' derivatives
        LAMBDA       multipliers
+       FOUND        controls that servo-constraints find
 
    What lies before STORED is held; the rest is computed when it is asked for, once for each state.    */
 
@@ -34,7 +35,8 @@ typedef const char *fmi3String;
 typedef void (*fmi3Callback)(void);
 typedef void (*fmi3LogMessageCallback)(fmi3Environment, fmi3Status, fmi3String category, fmi3String message);
 
-enum { Q = 1, V = Q + N, U = V + N, P = U + 3*M, STORED = P + K, DQ = STORED, A = DQ + N, LAMBDA = A + N, ALL = LAMBDA + G };
+enum { Q = 1, V = Q + N, U = V + N, P = U + 3*M, STORED = P + K, DQ = STORED, A = DQ + N, LAMBDA = A + N,
+    FOUND = LAMBDA + G, ALL = FOUND + F };
 
 typedef struct {
     double x[ALL];
@@ -55,6 +57,7 @@ static void compute(Unit *unit)
     if (unit->computed) return;
     memcpy(x + DQ, x + V, N*sizeof *x);
     MODEL(motion)(x[0], x + Q, x + V, x + U, x + P, x + A, x + LAMBDA);
+    MODEL(servo)(x[0], x + Q, x + V, x + U, x + P, x + FOUND);
     unit->computed = true;
 }
 

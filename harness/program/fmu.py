@@ -28,7 +28,8 @@ MODEL_H = """\
 #include "{name}.h"
 #define MODEL(function) {name}_##function
 #define TOKEN "{token}"
-enum {{ N = {NAME}_COORDINATES, G = {NAME}_MULTIPLIERS, M = {NAME}_CONTROLS, K = {NAME}_PARAMETERS }};
+enum {{ N = {NAME}_COORDINATES, G = {NAME}_MULTIPLIERS, M = {NAME}_CONTROLS, K = {NAME}_PARAMETERS,
+    F = {NAME}_FOUND_CONTROLS }};
 """
 
 
@@ -121,7 +122,7 @@ def _variables(model: Model) -> Iterator[dict[str, str]]:
     for s, name in enumerate((*model.coordinates, *velocities)):
         derivative = {"name": f"der({name})", "causality": "local", "initial": "calculated", "derivative": str(s + 1)}
         yield derivative if s < n else derivative | {"name": f"ddot({model.coordinates[s - n]})", "causality": "output"}
-    for name in model.multipliers:
+    for name in (*model.multipliers, *model.found):
         yield {"name": name, "causality": "output", "initial": "calculated"}
 
 

@@ -39,6 +39,13 @@ class Model:
     # constraint
     constraints: Program | None
     projection: Program  # ``position_correction[s]``, ``velocity_correction[s]``
+    # the controls that servo-constraints find, by name, of the same inputs; None where they find none
+    servo: Program | None = None
+
+    @property
+    def found(self) -> tuple[str, ...]:
+        """Names of the controls that servo-constraints find."""
+        return () if self.servo is None else tuple(self.servo.outputs)
 
     @property
     def under_law(self) -> tuple[str, ...]:
@@ -72,9 +79,8 @@ def read_model(text: str) -> Model:
     """
     document = read(Document.MODEL, text)
     names = {kind: tuple(document[kind]) for kind in ("coordinates", "multipliers", "controls", "parameters")}
-    programs = {
-        part: document[part] and program_of(document[part]) for part in ("law", "motion", "constraints", "projection")
-    }
+    parts = ("law", "motion", "constraints", "projection", "servo")
+    programs = {part: document[part] and program_of(document[part]) for part in parts}
     return Model(
         system=document["system"]["title"],
         source=document["system"]["source"],
