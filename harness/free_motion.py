@@ -76,7 +76,7 @@ class ControlCondition:
 class UniversalControls:
     """The laws under which every motion is free."""
 
-    verdict: str  # ``all`` (these laws are all there are), ``some``, ``none`` (there are none) or ``undecided``
+    verdict: str  # ``all`` (no other analytic law does), ``some``, ``none`` (there are none) or ``undecided``
     laws: tuple[UniversalLaw, ...]
     conditions: tuple[ControlCondition, ...]  # shortest first
     generic: bool  # parameters were left open, and the answer is that for generic values
