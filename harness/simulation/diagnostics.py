@@ -87,6 +87,7 @@ class EnergyBalance:
         self._evaluate = evaluation_once(problem, problem.energy, self._precision)
         self._values = np.array([[self._precision.ratio(problem.values[name])] for name in problem.parameters])
         self._rows = {name: row for row, name in enumerate(problem.energy.outputs)}
+        self._points, self._weights = 1 + self._numbers(POINTS), self._numbers(WEIGHTS)
         self._g, self._multipliers = len(problem.multipliers), multipliers
         self._moving = _constraints_move(problem)
         hidden = may_hide(computing(problem.energy, {"power"}), problem.parameters)
@@ -107,9 +108,9 @@ class EnergyBalance:
             return [self._precision.number("0")] * len(ends)
         starts = np.array([piece.start, *ends[:-1]])
         halves = (np.array(ends) - starts) / 2
-        instants = (starts[:, None] + halves[:, None] * (1 + self._numbers(POINTS))).ravel()
+        instants = (starts[:, None] + halves[:, None] * self._points).ravel()
         power = self.power(instants, piece.states(instants)).reshape(len(ends), -1)
-        return [half * (self._numbers(WEIGHTS) * row).sum() for half, row in zip(halves, power, strict=True)]
+        return [half * (self._weights * row).sum() for half, row in zip(halves, power, strict=True)]
 
     def _output(self, name: str, instants: Numbers, states: Numbers, multipliers: Numbers) -> Numbers:
         parts = [np.reshape(instants, (1, -1)), states, multipliers]
