@@ -222,9 +222,9 @@ def _import_what_follows(own_process: bool) -> None:
             _import_heyoka_alone()
 
         from ..simulation import output, simulate  # noqa: F401
-        from ..simulation.constraints.factorization import lapack
         from ..simulation.engines import taylor  # noqa: F401
         from ..simulation.evaluation import wake_compiler
+        from ..simulation.parts_of_scipy import lapack
 
         wake_compiler()
         lapack()

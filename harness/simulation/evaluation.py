@@ -89,17 +89,28 @@ class CompiledIfItPays:
 
     What takes how long is counted, not measured, so that the same calls have the same results everywhere: measured on
     programs of 17 to 434 operations.
+
+    Parameters
+    ----------
+    called : float
+        Seconds that NumPy takes for a call, beside what it computes.
     """
 
-    def __init__(self, by_numpy: Callable[[], Evaluation], compiled: Callable[[], Evaluation], operations: int) -> None:
-        self._evaluate, self._compiled, self._operations = by_numpy(), compiled, operations
+    def __init__(
+        self,
+        by_numpy: Callable[[], Evaluation],
+        compiled: Callable[[], Evaluation],
+        operations: int,
+        called: float = CALLED,
+    ) -> None:
+        self._evaluate, self._compiled, self._operations, self._called = by_numpy(), compiled, operations, called
         self._left = COMPILED + COMPILED_OPERATION * operations
 
     def __call__(self, inputs: Numbers) -> Numbers:
         """Evaluate the function at inputs of shape (inputs,) or (inputs, points)."""
         if self._left > 0:
             points = inputs.shape[1] if inputs.ndim > 1 else 1
-            self._left -= CALLED + self._operations * (OPERATION + OPERATION_AT_POINT * points)
+            self._left -= self._called + self._operations * (OPERATION + OPERATION_AT_POINT * points)
             if self._left <= 0:
                 self._evaluate = self._compiled()
         return self._evaluate(inputs)

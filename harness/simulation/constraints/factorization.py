@@ -12,24 +12,18 @@ Each factorisation costs O(n^3) operations for n coordinates: g^2 n by Household
 independent, a singular value decomposition where they are not.
 """
 
-import sys
 from dataclasses import dataclass
-from functools import cache
-from importlib.machinery import PathFinder
-from importlib.util import module_from_spec
-from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 
 from ...failures import Failure, HolonomError
 from ..matrices import Matrix, Vector
+from ..parts_of_scipy import lapack
 
 EPSILON = float(np.finfo(float).eps)
 DEPENDENT = 1e-12  # singular values of the scaled constraints, relative to the largest, that count as rounding
 INVOLVED = 1e-6  # share of a constraint in a vanishing combination that is more than rounding
 NEGATIVE = 1e-12  # masses below zero, relative to the largest, that are more than rounding
-COMPILED_LAPACK = "scipy.linalg._flapack"
 SINGULAR_MASS = 64 * EPSILON  # what elimination may leave of a diagonal entry of A before A counts as singular
 
 
@@ -193,27 +187,6 @@ def _cholesky(metric: Matrix) -> Matrix | None:
     factor, failed = lapack().dpotrf(metric, lower=1, clean=1)
     regular = not failed and np.all(factor.diagonal() ** 2 > SINGULAR_MASS * metric.diagonal())
     return factor if regular else None
-
-
-@cache
-def lapack() -> ModuleType:
-    """LAPACK as SciPy wraps it, imported when it is first wanted.
-
-    All of ``scipy.linalg`` takes ten times as long to import, longer than a short motion takes to be followed: the
-    compiled module is loaded alone where it lies in its place.
-    """
-    import scipy
-
-    if (loaded := sys.modules.get(COMPILED_LAPACK)) is not None:
-        return loaded
-    found = PathFinder.find_spec(COMPILED_LAPACK, [str(Path(folder, "linalg")) for folder in scipy.__path__])
-    if found is None:
-        from scipy.linalg import lapack
-
-        return lapack
-    module = sys.modules[COMPILED_LAPACK] = module_from_spec(found)  # scipy.linalg takes the same one later
-    found.loader.exec_module(module)
-    return module
 
 
 def _or_one(lengths: Vector) -> Vector:

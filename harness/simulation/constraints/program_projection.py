@@ -14,6 +14,8 @@ from ...program.numpy_function import NumpyFunction
 from ...program.precision import Precision
 from ..evaluation import CompiledIfItPays, Evaluation, Numbers, may_wait, zeros
 
+CALLED = 5e-5  # seconds that NumPy takes for a projection, beside its operations
+
 
 class ProgramProjection:
     """Projects states in the mass metric, by the pivots of the motion program."""
@@ -54,6 +56,7 @@ def _function(problem: MotionProblem, precision: Precision) -> Evaluation:
         lambda: _nearest_by_numpy(problem),
         lambda: nearest_state(problem, precision, opt_level=0),
         2 * problem.projection.operations,
+        CALLED,
     )
 
 

@@ -21,7 +21,7 @@ REFERENCE = 1e-9  # the tolerance of the costs below
 OPERATION = 7.5e-8  # seconds a step of the Taylor engine takes for an operation, in quick code
 ORDERS = 1.6  # power of the order that this grows with
 STAGES, STEP = 7.5e-9, 2e-7  # seconds a step of the other takes for an operation, in all its stages, and beside them
-STRIDE = 0.94  # steps of the other for one of the Taylor engine
+STRIDE = 0.89  # steps of the other for one of the Taylor engine
 ORDER = 8  # of the other: what its steps shrink with
 COMPILER = 0.15, 5e-4  # seconds that the C compiler takes, and for an operation
 

@@ -20,7 +20,7 @@ ROUTINES = ("dpotrf", "dtrtrs", "dtrtri", "dgeqp3", "dorgqr")
 @pytest.mark.parametrize("first", ["lapack()", "import scipy.linalg"])
 def test_lapack_by_itself_is_that_of_scipy(first):
     script = f"""
-from holonom.simulation.constraints.factorization import lapack
+from holonom.simulation.parts_of_scipy import lapack
 {first}
 import scipy.linalg.lapack
 print(all(getattr(lapack(), name) is getattr(scipy.linalg.lapack, name) for name in {ROUTINES}))

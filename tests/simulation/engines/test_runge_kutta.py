@@ -5,6 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+import scipy.integrate
 from problems import problem
 
 from holonom.confined import Limits
@@ -12,8 +13,10 @@ from holonom.failures import Failure, HolonomError
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
 from holonom.simulation.engines import runge_kutta
+from holonom.simulation.engines.program_engine import FIRST_BLOCK
 from holonom.simulation.engines.runge_kutta import RungeKuttaEngine
 from holonom.simulation.engines.taylor import TaylorEngine
+from holonom.simulation.parts_of_scipy import dormand_prince
 from holonom.simulation.request import EngineName, SimulationRequest, Stabilization
 from holonom.simulation.simulate import simulate
 
@@ -46,6 +49,25 @@ def test_the_error_follows_the_tolerance():
     assert errors[2] < 1e-9
     assert 1e2 < errors[0] / errors[1] < 1e5
     assert 1e2 < errors[1] / errors[2] < 1e5
+
+
+def test_the_coefficients_are_those_of_scipys_method():
+    alone, public = dormand_prince(), scipy.integrate.DOP853
+    stages = public.n_stages
+    assert np.array_equal(alone.A[:stages, :stages], public.A)
+    assert np.array_equal(alone.C[:stages], public.C)
+    assert all(np.array_equal(getattr(alone, row), getattr(public, row)) for row in ("B", "E3", "E5"))
+
+
+def test_a_motion_in_one_call_is_that_in_pieces_and_past_a_block():
+    """Truth: the same steps, to the last bit; 100 time units take several blocks."""
+    until, motions = 100.0, [RungeKuttaEngine(problem("pendulum.mac", "swing_scene"), 1e-9) for _ in range(2)]
+    motions[0].advance(until)
+    for _ in motions[1].pieces(until):
+        pass
+    assert motions[0].time == motions[1].time == until
+    assert motions[0].steps == motions[1].steps > FIRST_BLOCK
+    assert np.array_equal(motions[0].state, motions[1].state)
 
 
 @pytest.mark.parametrize("drift", [Stabilization.BAUMGARTE, Stabilization.GGL])

@@ -1,21 +1,27 @@
-/* A motion by the explicit Runge-Kutta method of Prince and Dormand, 8(7) in 13 stages
+/* A motion by the explicit Runge-Kutta method of Dormand and Prince, 8(5,3) in 12 stages
 
-   J. Comput. Appl. Math. 7 (1981) 67; the GNU Scientific Library takes the steps. Before this text prince_dormand.py
-   puts the number STATE of coordinates and velocities, and the functions of t and the state
+   Hairer, Norsett & Wanner I, section II.10; the GNU Scientific Library leads from step to step. Before this text
+   runge_kutta.py puts the number STATE of coordinates and velocities, and the functions of t and the state
 
        accelerations                               and, where the constraints are to be kept,
        position_corrections, velocity_corrections  with the number PROJECTED of steps after which the state is
                                                    moved to them, or with Baumgarte's cure or Gear's (GGL), which
                                                    add to the rates so that what is missed dies out like
-                                                   exp(-GAMMA t).                                              */
+                                                   exp(-GAMMA t);
+
+   and the method's coefficients, each sum over stages written out for component i:
+
+       STAGES        from t, h, y, k1 to k2 ... k12, by way of w, each by one call of evaluate
+       SOLUTION(i)   the weights of the solution
+       ERROR5(i), ERROR3(i)   those of its errors of order 5 and 3                                              */
 
 #include <float.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
 
 #define MARGIN 0.8
-#define LEAST_GROWTH 0.2
-#define MOST_GROWTH 5.0
+#define LEAST_GROWTH 0.333
+#define MOST_GROWTH 6.0
 
 enum { COORDINATES = STATE/2 };
 
@@ -23,13 +29,16 @@ struct follower {
     double t, *state;               /* where the motion has come                                       */
     double until;                   /* where it goes                                                   */
     double last;                    /* length of the last step                                         */
-    double shortest, longest;       /* of the steps taken, without the one that reached `until`        */
+    double shortest, longest;       /* of the steps taken, without the one that reached `until`; the   */
+                                    /* shortest of those that are shorter than the one before          */
+    double usual;                   /* the longest of quiet steps since the motion began anew          */
     long most, taken;               /* steps                                                           */
     double *instants, *states;      /* filled with the start of each step, unless they are NULL        */
 };
 
 long evaluations;
 static double tolerance;
+static double estimated;                          /* error of the last step, one where it is all that is allowed  */
 static double reached = NAN, left[STATE], step;   /* where the last steps led, and how long the next would be */
 static gsl_odeiv2_step *method;
 static gsl_odeiv2_control *control;
@@ -62,13 +71,18 @@ static void cure_drift(double t, const double *state, double *out)
     (void)t, (void)state, (void)out;
 }
 
-static int rates(double t, const double *state, double *out, void *unused)
+static void evaluate(double t, const double *state, double *out)
 {
-    (void)unused;
     memcpy(out, state + COORDINATES, COORDINATES*sizeof *out);
     accelerations(t, state, out + COORDINATES);
     cure_drift(t, state, out);
     evaluations++;
+}
+
+static int rates(double t, const double *state, double *out, void *unused)
+{
+    (void)unused;
+    evaluate(t, state, out);
     return are_finite(STATE, out) ? GSL_SUCCESS : GSL_FAILURE;
 }
 
@@ -85,16 +99,44 @@ static double size_of(const double *x, const double *state)
     return sqrt(sum/STATE);
 }
 
+/* One step. A stage that is not finite makes the solution, and its rates, not finite either. */
+static int take_step(void *unused, size_t size, double t, double h, double *y, double *errors, const double *k1,
+                     double *k13, const gsl_odeiv2_system *system)
+{
+    (void)unused, (void)size, (void)system;
+    double k2[STATE], k3[STATE], k4[STATE], k5[STATE], k6[STATE], k7[STATE], k8[STATE], k9[STATE], k10[STATE];
+    double k11[STATE], k12[STATE], w[STATE], five = 0, three = 0;
+    STAGES
+    for (int i = 0; i < STATE; i++) {
+        w[i] = y[i] + h*(SOLUTION(i));
+        const double scale = tolerance*(1 + fmax(fabs(y[i]), fabs(w[i])));
+        const double error5 = (ERROR5(i))/scale, error3 = (ERROR3(i))/scale;
+        five += error5*error5;
+        three += error3*error3;
+    }
+    memcpy(y, w, sizeof w);
+    estimated = five == 0 ? 0 : h*five/sqrt((five + 0.01*three)*STATE);
+    memset(errors, 0, sizeof w);    /* GSL has room for one estimate; adjust_step goes by what is made of both */
+    return rates(t + h, y, k13, NULL);
+}
+
+static void *no_room(size_t size) { (void)size; return &tolerance; }
+static int nothing_to_forget(void *unused, size_t size) { (void)unused, (void)size; return GSL_SUCCESS; }
+static unsigned order(void *unused) { (void)unused; return 8; }
+static void nothing_to_free(void *unused) { (void)unused; }
+
+static const gsl_odeiv2_step_type dormand_prince = {
+    "Dormand and Prince 8(5,3)", 1, 1, no_room, take_step, NULL, nothing_to_forget, order, nothing_to_free};
+
 /* Each step is as long as the error of the one before allows (Hairer, Norsett & Wanner I, section II.4), with a margin
    that lets next to none fail. GSL's own control leaves a step alone while the error is between half the tolerance and
    all of it; a seventh of the steps of a chain fail then. */
 static int adjust_step(void *unused, size_t size, unsigned order, const double *state, const double *errors,
                        const double *slope, double *length)
 {
-    (void)unused, (void)size, (void)slope;
-    const double error = size_of(errors, state);
-    *length *= fmin(MOST_GROWTH, fmax(LEAST_GROWTH, MARGIN*pow(error, -1.0/order)));
-    return error <= 1 ? GSL_ODEIV_HADJ_NIL : GSL_ODEIV_HADJ_DEC;
+    (void)unused, (void)size, (void)state, (void)errors, (void)slope;
+    *length *= fmin(MOST_GROWTH, fmax(LEAST_GROWTH, MARGIN*pow(estimated, -1.0/order)));
+    return estimated <= 1 ? GSL_ODEIV_HADJ_NIL : GSL_ODEIV_HADJ_DEC;
 }
 
 static void *what_it_knows(void) { return &tolerance; }
@@ -106,7 +148,7 @@ int begin(double relative_and_absolute_tolerance)
 {
     gsl_set_error_handler_off();
     tolerance = relative_and_absolute_tolerance;
-    method = gsl_odeiv2_step_alloc(gsl_odeiv2_step_rk8pd, STATE);
+    method = gsl_odeiv2_step_alloc(&dormand_prince, STATE);
     control = gsl_odeiv2_control_alloc(&every_step);
     evolution = gsl_odeiv2_evolve_alloc(STATE);
     return method && control && evolution ? GSL_SUCCESS : GSL_ENOMEM;
@@ -148,26 +190,30 @@ static void keep_constraints(double t, double *state)
 }
 
 /* Takes the steps that are asked for; returns 0, or GSL's number for what ended them before. */
-int advance(struct follower *f)
+static int follow(struct follower *f)
 {
     const int moved = f->t != reached || memcmp(f->state, left, sizeof left) != 0;
     f->taken = 0;
     f->shortest = HUGE_VAL;
     f->longest = 0;
     begin_anew();
-    if (moved) step = first_step(f->t, f->state);
+    if (moved) {
+        step = first_step(f->t, f->state);
+        f->last = 0;
+    }
     while (f->t < f->until && f->taken < f->most) {
         if (f->instants) {
             f->instants[f->taken] = f->t;
             memcpy(f->states + f->taken*STATE, f->state, sizeof left);
         }
+        const double before = f->last;
         const int failure = gsl_odeiv2_evolve_apply(
             evolution, control, method, &motion, &f->t, f->until, &step, f->state);
         if (failure) return failure;
         f->taken++;
         f->last = evolution->last_step;
         if (f->t < f->until) {
-            f->shortest = fmin(f->shortest, f->last);
+            if (f->last < before) f->shortest = fmin(f->shortest, f->last);
             f->longest = fmax(f->longest, f->last);
         }
 #ifdef PROJECTED
@@ -175,11 +221,36 @@ int advance(struct follower *f)
 #endif
     }
     keep_constraints(f->t, f->state);
+    if (tolerance*tolerance > DBL_EPSILON) keep_constraints(f->t, f->state);   /* what is left is of second order */
     reached = f->t;
     memcpy(left, f->state, sizeof left);
     if (are_finite(STATE, left)) return GSL_SUCCESS;
     f->t = NAN;
     return GSL_FAILURE;
+}
+
+/* The same for those outside; inside, the C library's old advance() could be called in its place. */
+int advance(struct follower *f) { return follow(f); }
+
+/* As advance, where no step fails, or is SHRUNK times shorter than the longest since the motion began anew. Returns the
+   number of steps; 0 where the motion is left as it was, to be watched. */
+long advance_quietly(struct follower *f, double until, long most)
+{
+    const double begun = f->t;
+    double state[STATE];
+    memcpy(state, f->state, sizeof state);
+    if (begun != reached || memcmp(state, left, sizeof state) != 0) f->usual = 0;
+    f->until = until;
+    f->most = most;
+    const int failure = follow(f);
+    const double usual = fmax(f->usual, f->longest);
+    if (!failure && f->shortest*SHRUNK >= usual) {
+        f->usual = usual;
+        return f->taken;
+    }
+    f->t = begun;
+    memcpy(f->state, state, sizeof state);
+    return 0;
 }
 
 /* Takes a state to an instant not far from its own, in as many steps as that needs. */
