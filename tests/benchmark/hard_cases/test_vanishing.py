@@ -1,5 +1,6 @@
 """Instants at which a controlled length vanishes: a zero of the law, and a point without gradient on the constraint."""
 
+import pickle
 from math import pi
 
 import pytest
@@ -8,7 +9,7 @@ from holonom.confined import Limits
 from holonom.failures import HolonomError
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request
-from holonom.simulation.constraints.singularity import vanishing_instants, zeros_of_controls
+from holonom.simulation.constraints.singularity import no_gradient, vanishing_instants, zeros_of_controls
 from holonom.simulation.matrices import MotionMatrices
 from holonom.simulation.request import FINAL_STATE_ALONE, EngineName, SimulationRequest
 from holonom.simulation.simulate import simulate
@@ -71,3 +72,11 @@ def test_motion_goes_on_past_a_zero_at_which_the_bob_is_far_from_the_hinge(descr
     assert report.t == 2.0
     assert [leg.engine for leg in report.legs] == [EngineName.TAYLOR]
     assert report.coordinates["x"] ** 2 - report.coordinates["y"] ** 2 == pytest.approx(-1, abs=1e-12)
+
+
+def test_a_refusal_holds_what_its_sentence_is_made_of_also_from_another_process():
+    refused = no_gradient(1.0, "lambda1")
+    again = pickle.loads(pickle.dumps(refused))
+    assert again.facts == {"instant": 1.0, "multiplier": "lambda1"}
+    assert str(again) == str(refused)
+    assert "beyond t = 1, where the gradient of the constraint of lambda1 vanishes" in again.said
