@@ -184,7 +184,6 @@ static void keep_constraints(double t, double *state)
     for (int i = 0; i < COORDINATES; i++) state[i] += change[i];
     velocity_corrections(t, state, change);
     for (int i = 0; i < COORDINATES; i++) state[COORDINATES + i] += change[i];
-    begin_anew();
 #endif
     (void)t, (void)state;
 }
@@ -217,7 +216,10 @@ static int follow(struct follower *f)
             f->longest = fmax(f->longest, f->last);
         }
 #ifdef PROJECTED
-        if (f->taken % PROJECTED == 0) keep_constraints(f->t, f->state);
+        if (f->taken % PROJECTED == 0) {
+            keep_constraints(f->t, f->state);
+            begin_anew();
+        }
 #endif
     }
     keep_constraints(f->t, f->state);

@@ -12,6 +12,7 @@ import shutil
 import subprocess
 import time
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from textwrap import indent
 from typing import Any
@@ -126,6 +127,9 @@ class DormandPrince(ctypes.Structure):
         At that instant, in place.
     last_h : float
         Length of the last step.
+    quiet_steps : callable
+        Takes an instant and a number of steps, and that many steps, or those to the instant, if there is nothing to
+        watch on the way; returns their number, 0 where the motion is left as it was.
     usual : float
         Length of the longest step that `quiet_steps` took since the motion began anew.
 
@@ -150,11 +154,11 @@ class DormandPrince(ctypes.Structure):
         library = load_c("\n".join(_source(problem, drift, decay)), *narrow, *_options_of_gsl())
         self._advance, self._go_between = library.advance, library.go_between
         self._advance.argtypes = (ctypes.c_void_p,)
-        self._advance_quietly = library.advance_quietly
-        self._advance_quietly.argtypes = (ctypes.c_void_p, ctypes.c_double, ctypes.c_long)
-        self._advance_quietly.restype = ctypes.c_long
+        library.advance_quietly.argtypes = (ctypes.c_void_p, ctypes.c_double, ctypes.c_long)
+        library.advance_quietly.restype = ctypes.c_long
         self._go_between.argtypes = (ctypes.c_double, ctypes.c_double, ctypes.c_void_p)
         self._address = ctypes.addressof(self)
+        self.quiet_steps = partial(library.advance_quietly, self._address)
         self._evaluations = ctypes.c_long.in_dll(library, "evaluations")
         library.begin.argtypes = (ctypes.c_double,)
         if library.begin(tol) != 0:
@@ -164,16 +168,6 @@ class DormandPrince(ctypes.Structure):
     def evaluations(self) -> int:
         """How often the accelerations have been evaluated."""
         return self._evaluations.value
-
-    def quiet_steps(self, until: float, most: int) -> int:
-        """Take steps, to an instant or so many, if there is nothing to watch on the way.
-
-        Returns
-        -------
-        int
-            Their number; 0 where the motion is left as it was.
-        """
-        return self._advance_quietly(self._address, until, most)
 
     def propagate_until(
         self, until: float, max_steps: int, *, c_output: bool = False
