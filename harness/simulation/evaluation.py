@@ -85,32 +85,38 @@ def _by_numpy(program: Program) -> Evaluation:
 
 
 class CompiledIfItPays:
-    """A function in double precision that is compiled once carrying it out by NumPy has taken as long as that.
+    """A function in double precision that is compiled once carrying it out without has taken as long as that.
 
     What takes how long is counted, not measured, so that the same calls have the same results everywhere: measured on
     programs of 17 to 434 operations.
 
     Parameters
     ----------
+    waiting, compiled : callable
+        Make the function.
     called : float
-        Seconds that NumPy takes for a call, beside what it computes.
+        Seconds that a call takes while it waits, beside the operations.
+    carried_out : int or None
+        Operations that NumPy carries out then; None for all of them.
     """
 
     def __init__(
         self,
-        by_numpy: Callable[[], Evaluation],
+        waiting: Callable[[], Evaluation],
         compiled: Callable[[], Evaluation],
         operations: int,
         called: float = CALLED,
+        carried_out: int | None = None,
     ) -> None:
-        self._evaluate, self._compiled, self._operations, self._called = by_numpy(), compiled, operations, called
+        self._evaluate, self._compiled, self._called = waiting(), compiled, called
+        self._carried_out = operations if carried_out is None else carried_out
         self._left = COMPILED + COMPILED_OPERATION * operations
 
     def __call__(self, inputs: Numbers) -> Numbers:
         """Evaluate the function at inputs of shape (inputs,) or (inputs, points)."""
         if self._left > 0:
             points = inputs.shape[1] if inputs.ndim > 1 else 1
-            self._left -= self._called + self._operations * (OPERATION + OPERATION_AT_POINT * points)
+            self._left -= self._called + self._carried_out * (OPERATION + OPERATION_AT_POINT * points)
             if self._left <= 0:
                 self._evaluate = self._compiled()
         return self._evaluate(inputs)

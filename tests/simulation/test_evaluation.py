@@ -10,7 +10,7 @@ from holonom.confined import Limits
 from holonom.program.motion_problem import motion_problem
 from holonom.program.precision import read_precision
 from holonom.program.request import Request
-from holonom.simulation.constraints.program_projection import ProgramProjection, nearest_state
+from holonom.simulation.constraints.program_projection import ProgramProjection, _nearest_by_lapack, nearest_state
 from holonom.simulation.evaluation import CompiledIfItPays, evaluation, evaluation_once
 
 DOUBLE = read_precision("double")
@@ -78,6 +78,12 @@ def test_the_projection_by_numpy_is_the_compiled_one(problem, states):
         assert distance == pytest.approx(found[-1] ** 0.5, rel=1e-12)
 
 
+def test_the_projection_by_lapack_is_the_compiled_one(problem, states):
+    compiled, solved = nearest_state(problem, DOUBLE), _nearest_by_lapack(problem)
+    for point in states.T:
+        assert np.allclose(solved(point), compiled(np.ascontiguousarray(point)), rtol=1e-13, atol=1e-13)
+
+
 def test_what_is_kept_for_all_values_of_a_parameter_is_compiled_at_once(tmp_path):
     """Else the last digits of a motion would hang on how many were followed before."""
     file = tmp_path / "oscillator.mac"
@@ -90,3 +96,10 @@ def test_what_is_kept_for_all_values_of_a_parameter_is_compiled_at_once(tmp_path
     problem = motion_problem(file, Request(), Limits(), open_parameters=("k",))
     assert problem.values == {"k": Fraction(1)}
     assert not isinstance(evaluation_once(problem, problem.matrices, DOUBLE), CompiledIfItPays)
+
+
+def test_a_long_projection_is_not_carried_out_by_numpy():
+    """It took three times as long as LAPACK's solve, and was compiled for some hundred states."""
+    long, short = example("linkage.mac", N="8"), example("pendulum.mac")
+    assert ProgramProjection(long, DOUBLE)._nearest._carried_out == 0
+    assert ProgramProjection(short, DOUBLE)._nearest._carried_out > 0

@@ -1,7 +1,8 @@
 """The projection program at work: the nearest state that keeps the constraints, and how far away it is.
 
 One step of Newton's method for the position, then one for the velocity at the new position, in one function: what is
-left of the residuals is of second order in them.
+left of the residuals is of second order in them. Until compiling that pays, NumPy carries the program out, or, where
+the program is long, LAPACK solves the same equations from the matrices.
 """
 
 from typing import Any
@@ -12,8 +13,11 @@ from ...program.heyoka_function import COMPACT_FROM, heyoka_expressions, import_
 from ...program.motion_problem import MotionProblem, computing
 from ...program.numpy_function import NumpyFunction
 from ...program.precision import Precision
-from ..evaluation import CompiledIfItPays, Evaluation, Numbers, may_wait, zeros
+from ..evaluation import OPERATION, CompiledIfItPays, Evaluation, Numbers, may_wait, zeros
+from ..matrices import MotionMatrices
+from .factorization import lapack
 
+SOLVED, SOLVED_UNKNOWN = 5e-5, 5e-11  # seconds that LAPACK takes for a solve, and for the cube of its unknowns
 CALLED = 5e-5  # seconds that NumPy takes for a projection, beside its operations
 
 
@@ -52,12 +56,38 @@ def _function(problem: MotionProblem, precision: Precision) -> Evaluation:
     """From t, the state and the open parameters to what `nearest_state` says."""
     if not may_wait(problem, problem.projection, precision):
         return nearest_state(problem, precision, opt_level=0)
+    by_lapack = 2 * _seconds_by_lapack(problem)
+    solved = by_lapack < CALLED + 2 * OPERATION * problem.projection.operations
     return CompiledIfItPays(
-        lambda: _nearest_by_numpy(problem),
+        lambda: _nearest_by_lapack(problem) if solved else _nearest_by_numpy(problem),
         lambda: nearest_state(problem, precision, opt_level=0),
         2 * problem.projection.operations,
-        CALLED,
+        by_lapack if solved else CALLED,
+        carried_out=0 if solved else None,
     )
+
+
+def _seconds_by_lapack(problem: MotionProblem) -> float:
+    """Of one solve, the matrices included."""
+    unknowns = len(problem.coordinates) + len(problem.independent)
+    return OPERATION * problem.matrices.operations + SOLVED + SOLVED_UNKNOWN * unknowns**3
+
+
+def _nearest_by_lapack(problem: MotionProblem) -> Evaluation:
+    matrices, n = MotionMatrices(problem), len(problem.coordinates)
+
+    def nearest(inputs: Numbers) -> Numbers:
+        before = inputs[1 : 1 + 2 * n]
+        state = before.copy()
+        for moved, residual in ((slice(n), "residual"), (slice(n, 2 * n), "residual_rate")):
+            at = matrices.independent(inputs[0], state)
+            g = len(at.jacobian)
+            bordered = np.block([[at.mass, at.jacobian.T], [at.jacobian, np.zeros((g, g))]])
+            solution, singular = lapack().dgesv(bordered, np.append(np.zeros(n), -getattr(at, residual)))[2:]
+            state[moved] += np.nan if singular else solution[:n]
+        return np.append(state, np.sum((state - before) ** 2 / (1 + before**2)))
+
+    return nearest
 
 
 def _nearest_by_numpy(problem: MotionProblem) -> Evaluation:

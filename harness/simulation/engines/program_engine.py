@@ -3,7 +3,7 @@
 An integrator takes its steps in blocks, without Python in between. A block whose steps have shrunk suddenly is taken
 back and repeated step by step, under watch: steps shrink in proportion to the distance of a singularity, and a singular
 configuration of the constraints is one for the fixed pivots of the motion program, although the motion itself goes
-through it.
+through it. Behind an obstacle the next one may be near, and the first steps are under watch from the beginning.
 """
 
 import time
@@ -26,6 +26,7 @@ from ..request import EngineName
 from .engine import Obstacle, Piece, Solutions
 
 FIRST_BLOCK = 128  # steps; what surrounds a block, projection above all, takes as long as some small steps
+WATCHED = 32  # steps behind an obstacle
 SHRUNK = 32  # times shorter than the longest: a step that calls for a closer look; 16 occurs in quiet motions
 DECAYS_IN_A_RUN = 50.0  # gamma of Baumgarte's cure and Gear's, times the length of the time span
 SHORTEST = 1e-10  # of the longest: a step that leads nowhere
@@ -84,6 +85,7 @@ class ProgramEngine:
         self.steps, self._longest, self._usual = 0, 0.0, 0.0
         self._problem = problem
         self._obstacle: HolonomError | None = None
+        self._behind_obstacle = False
         self._evaluate: Evaluation | None = None
 
     @property
@@ -99,6 +101,7 @@ class ProgramEngine:
     def restart(self, instant: Any, state: Numbers) -> None:
         """Go on from another instant and state, shape (2n,)."""
         self._go_back(instant, state)
+        self._behind_obstacle = self._obstacle is not None
         self._usual, self._obstacle = 0.0, None
 
     def advance(self, until: Any) -> None:
@@ -156,6 +159,10 @@ class ProgramEngine:
         """Take a block of steps; whether it was the last, and its dense outputs where they are asked for."""
         if self._obstacle is not None:
             raise self._obstacle
+        if self._behind_obstacle:
+            self._behind_obstacle = False
+            outputs = self._watched(until, dense, WATCHED)
+            return self.time == until, outputs
         integrator = self._integrator
         instant, before = integrator.time, self.state.copy()
         take = integrator.propagate_until  # by position: heyoka takes a microsecond for a keyword
@@ -167,7 +174,7 @@ class ProgramEngine:
         if broken_off or shortest * SHRUNK < longest:
             reached = until if broken_off else integrator.time
             self._go_back(instant, before)
-            outputs = self._watched(reached, dense)
+            outputs = self._watched(reached, dense, self._length)
             return self.time == until, outputs
         self.steps += steps
         self._usual = longest
@@ -175,11 +182,11 @@ class ProgramEngine:
             self._prepare_next(until)
         return ended, [output]
 
-    def _watched(self, until: Any, dense: bool) -> list[Dense | None]:
-        """The block in single steps, until it ends or the motion program is about to fail."""
+    def _watched(self, until: Any, dense: bool, steps: int) -> list[Dense | None]:
+        """Single steps, so many, until an instant or until the motion program is about to fail."""
         self.watch.begin(self.time, self.state)
         outputs = []
-        for _ in range(self._length):
+        for _ in range(steps):
             if self.time == until or self._obstacle is not None:
                 break
             outputs += self._watched_step(until, dense)

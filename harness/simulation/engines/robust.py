@@ -20,6 +20,7 @@ from ...failures import Failure, HolonomError
 from ...program.motion_problem import MotionProblem
 from ..constraints.factorization import (
     EPSILON,
+    FactoredConstraints,
     dependent_constraints,
     factored_constraints,
     rank_of,
@@ -187,7 +188,8 @@ class RobustEngine:
         return np.concatenate([state[self.n :], factored.accelerations(at.force, at.curvature)])
 
     def _begin(self, t: float, state: Vector, length: float | None) -> None:
-        kept, _, self._least = self._kept(t, state)
+        kept, _, factored = self._kept(t, state)
+        self._least = self._least_of(factored)
         integrator = Radau if self.stiff else DOP853
         self._solver: OdeSolver = integrator(
             self._rates, t, kept, np.inf, rtol=self.tol, atol=self.tol, first_step=length
@@ -198,20 +200,26 @@ class RobustEngine:
     def _move(self, t: float, state: Vector) -> None:
         """Project what a step gave, and go on from there."""
         before, last = self.time, self._least
-        self.state, accelerations, self._least = self._kept(t, state)
+        self.state, accelerations, factored = self._kept(t, state)
+        self._least = self._least_of(factored)
         self._solver.y, self._solver.f = self.state, np.concatenate([self.state[self.n :], accelerations])
         self.time, self._vanishing = t, extrapolated_zero(before, last, t, self._least)
 
-    def _kept(self, t: float, state: Vector) -> tuple[Vector, Vector, float]:
-        """The nearest state that keeps the constraints, its accelerations, and the least singular value there."""
+    def _kept(self, t: float, state: Vector) -> tuple[Vector, Vector, FactoredConstraints]:
+        """The nearest state that keeps the constraints, its accelerations, and the constraints as factored there."""
         try:
             kept, factored = settle(self.matrices, t, state, self.rank)
         except InconsistentConstraints:
             self._require_rank(t, singular_values_at(self.matrices, t, state))
             raise
-        at, values = self.matrices(t, kept), factored.weighted.singular_values()
-        self._require_rank(t, values)
-        return kept, factored.accelerations(at.force, at.curvature), least_of(values, self.rank)
+        if self.rank < len(self._multipliers):
+            self._require_rank(t, factored.weighted.singular_values())
+        at = self.matrices(t, kept)
+        return kept, factored.accelerations(at.force, at.curvature), factored
+
+    def _least_of(self, factored: FactoredConstraints) -> float:
+        """The least singular value that counts."""
+        return least_of(factored.weighted.singular_values(), self.rank)
 
     def _require_rank(self, t: float, singular_values: Vector) -> None:
         """No constraint that depended on the others at the start may come to count."""
@@ -237,7 +245,7 @@ class RobustEngine:
             arc = arc_over(self._accelerations, self.time, self.time + 2 * longer * ahead, self.state, guess)
             if arc is None or not self._trusted(arc):
                 return None
-            if self._kept(arc.end, arc.last)[2] > CLEAR * self._least:
+            if self._least_of(self._kept(arc.end, arc.last)[2]) > CLEAR * self._least:
                 return self._taken(arc, self._place(arc))
         return None
 

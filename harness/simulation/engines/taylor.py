@@ -25,6 +25,7 @@ from .program_engine import FIRST_BLOCK, ProgramEngine, decay_in
 
 DRIFT = 100  # times what rounding does to a number: how far a state may leave the constraints inside a block
 FINE, FINE_BLOCK = 1e-9, 512  # a tolerance whose steps leave the constraints so slowly that a first block may be long
+SHORT, OPERATIONS = 16, 200_000  # steps of a first block at least; operations of its steps at most, beyond these
 LONGEST_BLOCK = 1024  # steps
 GROWTH = 8  # from block to block, at most
 
@@ -73,7 +74,8 @@ class TaylorEngine(ProgramEngine):
         self._keeper = ProgramProjection(problem, self.precision) if kept else None
         self.compile_seconds = time.perf_counter() - begun
         self.tol = float(self._integrator.tol)
-        self._first_block = FINE_BLOCK if self.tol <= FINE else FIRST_BLOCK
+        longest = FINE_BLOCK if self.tol <= FINE else FIRST_BLOCK
+        self._first_block = min(longest, max(SHORT, OPERATIONS // max(1, self._program.operations)))
         self._longest_block = LONGEST_BLOCK
         if self._integrator.order > HIGH_ORDER:  # one step is long enough to tell of
             self._first_block = self._longest_block = 1

@@ -1,5 +1,6 @@
 """What the engines that take the motion program have in common: going on, pieces, obstacles and ends."""
 
+from fractions import Fraction
 from itertools import pairwise
 
 import numpy as np
@@ -12,7 +13,9 @@ from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
 from holonom.simulation.engines.program_engine import FIRST_BLOCK, Obstacle
 from holonom.simulation.engines.runge_kutta import RungeKuttaEngine
-from holonom.simulation.engines.taylor import TaylorEngine
+from holonom.simulation.engines.taylor import FINE_BLOCK, TaylorEngine
+from holonom.simulation.request import EngineName, SimulationRequest
+from holonom.simulation.simulate import simulate
 
 CLOSE = {TaylorEngine: 1e-12, RungeKuttaEngine: 1e-9}  # what two ways to a state may differ by
 BURST = """
@@ -82,3 +85,24 @@ def test_a_motion_that_ends_in_finite_time_is_followed_to_there(engine, write_sc
     with pytest.raises(HolonomError, match=r"beyond t = 0\.99999.*, where steps become too short"):
         motion.advance(2.0)
     assert motion.state[0] * (1 - motion.time) ** 2 == pytest.approx(1, rel=1e-3)
+
+
+def test_behind_an_obstacle_the_way_to_the_next_one_was_gone_twice(monkeypatch):
+    """A block of steps to the next dead centre shrank until it failed, and was taken back at each of them."""
+    taken_back, go_back = [], TaylorEngine._go_back
+
+    def counted(engine, instant, state):
+        if instant < engine.time:
+            taken_back.append(instant)
+        go_back(engine, instant, state)
+
+    monkeypatch.setattr(TaylorEngine, "_go_back", counted)
+    report = simulate(problem("linkage.mac"), SimulationRequest(until=Fraction(5))).report
+    assert sum(leg.engine is EngineName.ROBUST for leg in report.legs) > 3
+    assert len(taken_back) == 1
+
+
+def test_the_first_block_of_a_long_program_is_short():
+    """Its steps are taken twice where it ends before a singular configuration."""
+    short, long = (TaylorEngine(problem("linkage.mac", N=bars)) for bars in ("1", "8"))
+    assert long._first_block < short._first_block == FINE_BLOCK
