@@ -232,18 +232,18 @@
 (defstruct standing bags first second)
 
 (defun repeated-pairs (bags census)
-  "The standings of all pairs found in two bags or more, the commonest first."
-  (let ((found (make-hash-table :test 'equal)) (repeated nil))
+  "The standings of all pairs found in two bags or more, the commonest first, among equals the one found last."
+  (let ((known (make-hash-table :test 'equal)) (found nil))
     (dolist (bag bags)
       (do ((rest (members-worth-pairing bag census) (cdr rest)))
           ((null rest))
         (dolist (other (cdr rest))
-          (record-pair (car rest) other bag found))))
-    (maphash #'(lambda (key standing)
-                 (declare (ignore key))
-                 (if (cdr (standing-bags standing)) (push standing repeated)))
-             found)
-    (sort repeated #'> :key #'(lambda (standing) (length (standing-bags standing))))))
+          (let ((standing (standing-of (car rest) other known)))
+            (if (null (standing-bags standing)) (push standing found))
+            (if (not (eq bag (car (standing-bags standing))))
+                (push bag (standing-bags standing)))))))
+    (stable-sort (delete-if-not #'(lambda (standing) (cdr (standing-bags standing))) found)
+                 #'> :key #'(lambda (standing) (length (standing-bags standing))))))
 
 (defvar *largest-bag-to-pair* 40
   "Members a bag may have in common with others: its pairs are as many as their square.")
@@ -253,12 +253,10 @@
                            (bag-members bag))))
     (if (<= (length common) *largest-bag-to-pair*) common)))
 
-(defun record-pair (a b bag found)
-  (let* ((key (list (node-number (cdr a)) (node-number (cdr b)) (/ (car b) (car a))))
-         (standing (or (gethash key found)
-                       (setf (gethash key found) (make-standing :first a :second b)))))
-    (if (not (eq bag (car (standing-bags standing))))
-        (push bag (standing-bags standing)))))
+(defun standing-of (a b known)
+  (let ((key (list (node-number (cdr a)) (node-number (cdr b)) (/ (car b) (car a)))))
+    (or (gethash key known)
+        (setf (gethash key known) (make-standing :first a :second b)))))
 
 (defun share-pair (standing kind)
   (let* ((a (standing-first standing)) (b (standing-second standing))
