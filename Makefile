@@ -11,7 +11,7 @@ HARD    := $(shell find examples/hard -name '*.mac')
 
 .DEFAULT_GOAL := paper
 .DELETE_ON_ERROR:
-.PHONY: paper companion book catalog check check-long mutants bench setup install pictures clean help have-programs have-chinese-letters
+.PHONY: paper companion book catalog check check-long check-lisps mutants bench setup install pictures clean help have-programs have-chinese-letters
 
 paper: $(RECORDS) build/check.json build/errata.json companion ## Derive and check every scene, compare the paper as printed (the default)
 	@echo "The derivations are in build/examples/, the verdicts in build/check.json, the misprints in build/errata.json, the textbook companion in build/companion/index.html."
@@ -46,6 +46,9 @@ check: setup ## Lint, then run the tests, Maxima's own rtest files among them
 
 check-long: setup ## Run the tests that take too long for every change
 	$(TEST) -m long || [ $$? = 5 ]    # 5: there are none
+
+check-lisps: setup ## Ask Debian's Maxima on ECL, maxima-sage, for the same programs as the first Maxima
+	HOLONOM_TEST_MAXIMAS="$$(command -v maxima-sage)" $(TEST) tests/test_lisps.py
 
 mutants: setup ## Make wrong programs of a fixed list, one at a time, and tell which of them no test finds
 	nice $(BIN)/python tests/mutants/run.py build/mutants.json

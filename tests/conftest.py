@@ -57,6 +57,11 @@ def particle_record(tmp_path_factory: pytest.TempPathFactory) -> str:
     return ask(Document.RECORD, file)
 
 
+def pytest_xdist_auto_num_workers() -> int:
+    """One more than there are cores: some tests wait, for a browser, a signal, or the end of a time limit."""
+    return (os.cpu_count() or 1) + 1
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """On several cores: the tests of a file stay together, and so do those that read the companion, made once."""

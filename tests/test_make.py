@@ -153,7 +153,7 @@ def test_no_python_that_is_new_enough_is_one_sentence(make):
     ],
 )
 def test_ci_runs_the_long_tests_only_while_there_is_time(check, check_long, at_hand, status, told, tmp_path):
-    for name in ("chromium", "chromedriver", "pdflatex"):
+    for name in ("chromium", "chromedriver", "pdflatex", "maxima-sage"):
         program(tmp_path / name, "#!/bin/sh\n")
     program(tmp_path / "make", f"#!/bin/sh\ncase $1 in check) {check} ;; check-long) {check_long} ;; esac\n")
     environment = os.environ | {"PATH": f"{tmp_path}:{os.environ['PATH']}", "SECONDS_AT_HAND": at_hand}

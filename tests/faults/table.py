@@ -15,7 +15,7 @@ from pathlib import Path
 from particle import PARTICLE
 
 MACHINE_AT_FAULT = 3
-SHORT = 2  # rows with the same sentence in the short form
+SHORT = 1  # row with the same sentence in the short form
 PENDULUM = Path(__file__).resolve().parents[2] / "examples" / "pendulum.mac"
 SWING = re.sub(r"load\(.*?\)\)", 'load("holonom.mac")', PENDULUM.read_text(encoding="utf-8"), count=1, flags=re.DOTALL)
 
