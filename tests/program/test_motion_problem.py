@@ -66,3 +66,17 @@ glide : holonomic_scene(system, effects = {effects}, initial_state = [x = 0, dot
     assert motion_problem(write_scene(text.format(effects="[kinetic_energy]")), Request(), Limits()).scene == "glide"
     with pytest.raises(HolonomError, match="the parameter c has no value"):
         motion_problem(write_scene(text.format(effects="all")), Request(), Limits())
+
+
+CONTRADICTION = """
+load("holonom.mac")$
+pair : holonomic_system(
+  coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  constraints = [x - y, x - y - t^3])$
+pulled : holonomic_scene(pair, initial_state = [x = 0, y = 0, dot(x) = 1, dot(y) = 1])$
+"""
+
+
+def test_constraints_that_hold_together_at_the_start_alone_are_refused(write_scene):
+    with pytest.raises(HolonomError, match="constraint 2 has no gradient independent of the others"):
+        motion_problem(write_scene(CONTRADICTION), Request(), Limits())

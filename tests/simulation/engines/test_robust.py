@@ -176,21 +176,6 @@ def test_a_stiff_motion_is_found_out_and_followed(write_scene):
     assert motion.state[0] == pytest.approx(x, abs=1e-9)
 
 
-CONTRADICTION = """
-load("holonom.mac")$
-pair : holonomic_system(
-  coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
-  constraints = [x - y, x - y - t^3])$
-pulled : holonomic_scene(pair, initial_state = [x = 0, y = 0, dot(x) = 1, dot(y) = 1])$
-"""
-
-
-def test_constraints_that_come_to_contradict_one_another_stop_the_motion(write_scene):
-    with pytest.raises(HolonomError) as refused:
-        RobustEngine(motion_problem(write_scene(CONTRADICTION), Request(), Limits())).advance(1.0)
-    assert refused.value.failure is Failure.INCONSISTENT
-
-
 NEAR_MISS = """
 load("holonom.mac")$
 bars : holonomic_system(
