@@ -67,3 +67,20 @@ def test_a_start_off_the_constraints_is_found(record):
         moved = {**scene.initial_state, name: scene.initial_state[name] + 1}
         wrong = dataclasses.replace(scene, initial_state=moved)
         assert verdicts(record, wrong)["12"] is Verdict.DISAGREES, name
+
+
+def test_a_parameter_beside_a_root_of_no_closed_form_was_taken_for_its_value(tmp_path):
+    """h_0 = h0 for all h0, though s_0 is known in numbers alone; (19) gave the number 1, and the check disagreed."""
+    file = tmp_path / "scene.mac"
+    file.write_text("""
+load("holonom.mac")$
+system : holonomic_system(coordinates = [s, h], parameters = [h0], kinetic_energy = (dot(s)^2 + dot(h)^2)/2,
+  constraints = [s + sin(s)/2 - h, h - h0])$
+scene : holonomic_scene(system, parameter_values = [h0 = 1], initial_state = [],
+  initial_guess = [s = 1, h = 1, dot(s) = 0, dot(h) = 0])$
+""")
+    record = derived_record(file)
+    (scene,) = record.scenes
+    found = {relation.left.name: str(relation.right) for relation in fixed_values(scene).relations}
+    assert found["h_0"] == "h0"
+    assert verdicts(record, scene)["19"] in (Verdict.PROVED, Verdict.AGREES)
