@@ -5,6 +5,7 @@ left of the residuals is of second order in them. Until compiling that pays, Num
 the program is long, LAPACK solves the same equations from the matrices.
 """
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -22,11 +23,19 @@ CALLED = 5e-5  # seconds that NumPy takes for a projection, beside its operation
 
 
 class ProgramProjection:
-    """Projects states in the mass metric, by the pivots of the motion program."""
+    """Projects states in the mass metric, by the pivots of the motion program.
 
-    def __init__(self, problem: MotionProblem, precision: Precision) -> None:
+    Parameters
+    ----------
+    waits : bool
+        Whether to compile it only if that pays.
+    """
+
+    def __init__(self, problem: MotionProblem, precision: Precision, waits: bool = True) -> None:
+        waits = waits and may_wait(problem, problem.projection, precision)
+        build = _compiled_if_it_pays if waits else partial(nearest_state, opt_level=0)
         self._nearest = problem.once(
-            ("projection", precision.name), problem.projection, lambda: _function(problem, precision)
+            ("projection", precision.name), problem.projection, lambda: build(problem, precision)
         )
         self._inputs = zeros(precision, 1 + len(problem.state) + len(problem.parameters))
         self._moving = slice(1, 1 + len(problem.state))
@@ -52,10 +61,8 @@ class ProgramProjection:
         return float(found[-1]) ** 0.5
 
 
-def _function(problem: MotionProblem, precision: Precision) -> Evaluation:
-    """From t, the state and the open parameters to what `nearest_state` says."""
-    if not may_wait(problem, problem.projection, precision):
-        return nearest_state(problem, precision, opt_level=0)
+def _compiled_if_it_pays(problem: MotionProblem, precision: Precision) -> Evaluation:
+    """From t and the state to what `nearest_state` says."""
     by_lapack = 2 * _seconds_by_lapack(problem)
     solved = by_lapack < CALLED + 2 * OPERATION * problem.projection.operations
     return CompiledIfItPays(

@@ -71,7 +71,7 @@ class TaylorEngine(ProgramEngine):
         start = np.array([number(problem.start[name]) for name in problem.state])
         self._set_up(code, number(problem.start["t"]), start)
         kept = drift is Stabilization.PROJECTION and problem.multipliers
-        self._keeper = ProgramProjection(problem, self.precision) if kept else None
+        self._keeper = ProgramProjection(problem, self.precision, waits=not self._chosen) if kept else None
         self.compile_seconds = time.perf_counter() - begun
         self.tol = float(self._integrator.tol)
         longest = FINE_BLOCK if self.tol <= FINE else FIRST_BLOCK
