@@ -38,19 +38,22 @@ def time_limit(seconds: float) -> Iterator[None]:
 
 
 def program_of_command(scene: Path, setting: str) -> tuple[str, float, float]:
-    """The JSON that `holonom program` writes of a scene, with the processor seconds and the MiB that it takes.
-
-    They are those of the whole command and of all that it starts; the memory is that of the largest process.
-    """
+    """The JSON that `holonom program` writes of a scene, with the processor seconds and the MiB that it takes."""
     with TemporaryDirectory() as directory:
         written = Path(directory, "program.json")
-        command = [sys.executable, "-m", "holonom", "program", str(scene), "--set", setting, "-o", str(written)]
-        process = subprocess.Popen(command, env=as_installed())
-        _, status, usage = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-        if process.returncode != 0:
-            raise subprocess.CalledProcessError(process.returncode, command)
-        return written.read_text(encoding="utf-8"), usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
+        seconds, mebibytes = cost_of_command("program", str(scene), "--set", setting, "-o", str(written))
+        return written.read_text(encoding="utf-8"), seconds, mebibytes
+
+
+def cost_of_command(*arguments: str) -> tuple[float, float]:
+    """Processor seconds of a whole command and of all that it starts, and the MiB of the largest process."""
+    command = [sys.executable, "-m", "holonom", *arguments]
+    process = subprocess.Popen(command, env=as_installed(), stdout=subprocess.DEVNULL)
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode != 0:
+        raise subprocess.CalledProcessError(process.returncode, command)
+    return usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
 
 
 def as_installed() -> dict[str, str]:
