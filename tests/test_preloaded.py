@@ -15,8 +15,12 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 make_image = preloaded._image
 
 
+def asked(library: Path = maxima.LIBRARY) -> tuple[str, Path, frozenset]:
+    return shutil.which("maxima"), library, frozenset({("PATH", "/usr/bin:/bin")})
+
+
 def image(library: Path = maxima.LIBRARY) -> Path | None:
-    return make_image(shutil.which("maxima"), library, frozenset({("PATH", "/usr/bin:/bin")}))
+    return make_image(*asked(library))
 
 
 @pytest.fixture(scope="module")
@@ -118,21 +122,19 @@ def test_another_text_of_the_library_has_another_image(made, tmp_path):
 
 
 def test_an_image_that_is_taken_away_is_done_without(made, monkeypatch):
-    asked = (shutil.which("maxima"), maxima.LIBRARY, frozenset({("PATH", "/usr/bin:/bin")}))
     monkeypatch.setattr(preloaded, "_known", {})
-    assert preloaded.preloaded_image(*asked) == made
+    assert preloaded.preloaded_image(*asked()) == made
     made.unlink()
-    assert preloaded.preloaded_image(*asked) is None
+    assert preloaded.preloaded_image(*asked()) is None
 
 
 def test_while_one_process_makes_an_image_others_do_without_and_ask_again(made, tmp_path, monkeypatch):
-    asked = (shutil.which("maxima"), maxima.LIBRARY, frozenset({("PATH", "/usr/bin:/bin")}))
     monkeypatch.setattr(preloaded, "_known", {})
     made.rename(tmp_path / "finished")
     with preloaded._alone_in(made.parent):
-        assert preloaded.preloaded_image(*asked) is None
+        assert preloaded.preloaded_image(*asked()) is None
         (tmp_path / "finished").rename(made)
-    assert preloaded.preloaded_image(*asked) == made
+    assert preloaded.preloaded_image(*asked()) == made
 
 
 def test_a_maxima_that_takes_too_long_to_save_itself_is_not_waited_for_twice(cache, tmp_path, monkeypatch):
