@@ -130,6 +130,7 @@ before all, outcome, mark)."
   "The text of Maxima's variable error, expressions written out in full."
   (let (($errormsg t)
         (linel most-positive-fixnum)
+        ($linel most-positive-fixnum)     ; which newer versions go by where a message holds an expression
         ($error `((mlist) ,@(mapcar (lambda (item) (if (consp item) (plain-text item) item)) (cdr $error)))))
     (one-line (with-output-to-string (*standard-output*) ($errormsg)))))
 
