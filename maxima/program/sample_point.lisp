@@ -284,6 +284,8 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
 
 (defun float-of (number) (float number 1d0))
 
+;; In floating point a residual whose terms all vanish, as y where y = 0, may stay: whoever has a point that no correction
+;; changes any more goes on from there with more digits.
 (defun newton-iteration (point constraints jacobian coordinates &optional metric)
   (let ((last-size nil))
     (dotimes (attempt *most-corrections* nil)
@@ -293,6 +295,8 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
                                 (corrections-in-metric residuals jacobian metric point (length (cdr coordinates)))
                                 (newton-corrections residuals jacobian point)))
                (size (largest-correction corrections)))
+          (if (and *floating* (< size (* double-float-epsilon (largest-coordinate point coordinates))))
+              (return point))
           (if (and (> attempt *impatience*) last-size (>= size last-size)) (return nil))
           (setq last-size size
                 point (corrected-point point corrections (cdr coordinates))))))))
@@ -357,6 +361,9 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
 
 (defun with-right-side (residual row)
   (if (zerop residual) row (acons 0 residual row)))
+
+(defun largest-coordinate (point coordinates)
+  (reduce #'max (mapcar #'(lambda (q) (abs (gethash q (sample-point-symbols point)))) (cdr coordinates))))
 
 (defun largest-correction (corrections)
   (let ((largest 0))

@@ -1,6 +1,7 @@
 """Motions whose mass matrix only the constraints make regular, against rigid-body mechanics."""
 
 import numpy as np
+import pytest
 from scipy.integrate import solve_ivp
 
 from holonom.confined import Limits
@@ -45,3 +46,40 @@ def test_a_rigid_body_in_euler_parameters_follows_eulers_equations(write_scene):
         rate = np.array([motion.velocities[f"dot(e{i})"][-1] for i in range(4)])
         np.testing.assert_allclose(angular_velocity(e, rate), eulers_equations(10.0), atol=3e-11)
         assert [leg.engine for leg in motion.report.legs] == [EngineName.TAYLOR]
+
+
+# Two Cardan joints in a row between parallel shafts: all axes of the shafts are fixed, so that the middle's length is
+# prescribed twice and one constraint is redundant. The axis of the first fork lies in the plane of the shafts.
+DOUBLE_CARDAN = """
+load("holonom.mac")$
+first_shaft : rigid_body(m, [J, J, I3], [x1, y1, z1], [a0, a1, a2, a3])$
+middle : rigid_body(m, [J, J, I3], [x2, y2, z2], [b0, b1, b2, b3])$
+last_shaft : rigid_body(m, [J, J, I3], [x3, y3, z3], [c0, c1, c2, c3])$
+system : holonomic_system(parameters = [m, J, I3], assembly(first_shaft, middle, last_shaft,
+  revolute_joint(marker(first_shaft, [0, 0, 0], [0, 0, 1]), marker(ground, [0, 0, 0], [0, 0, 1])),
+  universal_joint(marker(first_shaft, [0, 0, 1], [1, 0, 0]), marker(middle, [0, 0, -1], [0, 1, 0])),
+  universal_joint(marker(middle, [0, 0, 1], [0, 1, 0]), marker(last_shaft, [0, 0, -1], [1, 0, 0])),
+  revolute_joint(marker(last_shaft, [0, 0, 0], [0, 0, 1]), marker(ground, [6/5, 0, 18/5], [0, 0, 1]))))$
+run : holonomic_scene(system, parameter_values = [m = 1, J = 1/2, I3 = 1/10],
+  initial_state = [x1 = 0, y1 = 0, z1 = 0, a0 = 1, a1 = 0, a2 = 0, a3 = 0, x2 = 3/5, y2 = 0, z2 = 9/5,
+    x3 = 6/5, y3 = 0, z3 = 18/5, c0 = 1, c1 = 0, c2 = 0, c3 = 0, dot(a0) = 0, dot(a1) = 0, dot(a2) = 0, dot(a3) = 3],
+  initial_guess = [b0 = 95/100, b1 = 0, b2 = 31/100, b3 = 0, dot(x1) = 0, dot(y1) = 0, dot(z1) = 0, dot(x2) = 0,
+    dot(y2) = 0, dot(z2) = 0, dot(x3) = 0, dot(y3) = 0, dot(z3) = 0, dot(b0) = 0, dot(b1) = 0, dot(b2) = 0,
+    dot(b3) = 3, dot(c0) = 0, dot(c1) = 0, dot(c2) = 0, dot(c3) = 3], time_span = [0, 2])$
+"""
+
+
+@pytest.mark.long
+def test_a_double_cardan_joint_turns_both_shafts_alike(write_scene):
+    """Refused before: constraint 21 without a gradient of its own. The middle turns by Cardan's ratio."""
+    problem = motion_problem(write_scene(DOUBLE_CARDAN), Request(), Limits())
+    motion = simulate(problem, SimulationRequest(samples=21))
+    a, b, c = (np.array([motion.coordinates[f"{body}{i}"] for i in range(4)]) for body in "abc")
+    rates = {body: np.array([motion.velocities[f"dot({body}{i})"] for i in range(4)]) for body in "abc"}
+    np.testing.assert_allclose(a, c, atol=1e-12)
+    np.testing.assert_allclose(rates["a"], rates["c"], atol=1e-11)
+    shaft, middle = (2 * np.linalg.norm(rates[body], axis=0) for body in "ab")
+    ratio = 0.8 / (1 - 0.36 * np.cos(2 * np.arctan2(a[3], a[0])) ** 2)
+    np.testing.assert_allclose(middle / shaft, ratio, rtol=1e-11)
+    np.testing.assert_allclose(shaft**2 * (2 + ratio**2), 36 * (2 + 1.25**2), rtol=1e-11)
+    np.testing.assert_allclose(np.linalg.norm(b, axis=0), 1, rtol=1e-13)
