@@ -24,7 +24,7 @@ from .code import Code, better_code, pays
 from .program_engine import FIRST_BLOCK, ProgramEngine, decay_in
 
 DRIFT = 100  # times what rounding does to a number: how far a state may leave the constraints inside a block
-FINE, FINE_BLOCK = 1e-9, 512  # a tolerance whose steps leave the constraints so slowly that a first block may be long
+FINE, FINE_BLOCK = 1e-7, 512  # a tolerance whose steps leave the constraints so slowly that a first block may be long
 SHORT, OPERATIONS = 16, 200_000  # steps of a first block at least; operations of its steps at most, beyond these
 LONGEST_BLOCK = 1024  # steps
 GROWTH = 8  # from block to block, at most
