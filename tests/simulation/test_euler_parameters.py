@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy import special
 from scipy.integrate import solve_ivp
 
 from holonom.confined import Limits
@@ -83,3 +84,42 @@ def test_a_double_cardan_joint_turns_both_shafts_alike(write_scene):
     np.testing.assert_allclose(middle / shaft, ratio, rtol=1e-11)
     np.testing.assert_allclose(shaft**2 * (2 + ratio**2), 36 * (2 + 1.25**2), rtol=1e-11)
     np.testing.assert_allclose(np.linalg.norm(b, axis=0), 1, rtol=1e-13)
+
+
+SPINNING_DISK = """
+load("holonom.mac")$
+disk : rigid_body(m, [I1, I1, I3], [x, y, z], [e0, e1, e2, e3])$
+system : holonomic_system(controls = [u, w], parameters = [m, I1, I3, l, g],
+  assembly(disk, spherical_joint(marker(disk, [0, 0, -l]), [u, w, 0]), gravity = uniform_gravity(g, disk)))$
+run : holonomic_scene(system, control_law = [u = sin(3*t)/20, w = bessel_j(0, 2*t)/10],
+  parameter_values = [m = 1, I1 = 1/400, I3 = 1/200, l = 1/5, g = 981/100],
+  initial_state = [e0 = 4/5, e1 = 0, e2 = 3/5, e3 = 0, dot(e0) = -3/10, dot(e1) = 2, dot(e2) = 2/5, dot(e3) = 20],
+  time_span = [0, 2])$
+"""
+
+
+def newton_and_euler(t: float, state: np.ndarray) -> np.ndarray:
+    """Rates of e and of the angular velocity in the disk's frame, about the pivot, which the inertia is taken for."""
+    (a, b, c, d), turn = state[:4], state[4:]
+    frame = np.array(
+        [
+            [a * a + b * b - c * c - d * d, 2 * (b * c - a * d), 2 * (b * d + a * c)],
+            [2 * (b * c + a * d), a * a - b * b + c * c - d * d, 2 * (c * d - a * b)],
+            [2 * (b * d - a * c), 2 * (c * d + a * b), a * a - b * b - c * c + d * d],
+        ]
+    )
+    inertia = np.array([1 / 400 + 1 / 25, 1 / 400 + 1 / 25, 1 / 200])
+    falling = np.array([-9 * np.sin(3 * t) / 20, 4 * special.jvp(0, 2 * t, 2) / 10, 9.81])
+    moment = np.cross([0, 0, 1 / 5], -frame.T @ falling) - np.cross(turn, inertia * turn)
+    matrix = np.array([[-b, -c, -d], [a, -d, c], [d, a, -b], [-c, b, a]])
+    return np.concatenate([matrix @ turn / 2, moment / inertia])
+
+
+@pytest.mark.long
+def test_a_disk_on_a_pivot_moved_by_a_bessel_function_follows_newton_and_euler(write_scene):
+    problem = motion_problem(write_scene(SPINNING_DISK), Request(), Limits())
+    report = simulate(problem, SimulationRequest(samples=0)).report
+    e, rate = np.array([0.8, 0, 0.6, 0]), np.array([-0.3, 2, 0.4, 20])
+    start = np.concatenate([e, angular_velocity(e, rate)])
+    truth = solve_ivp(newton_and_euler, (0, 2), start, "DOP853", rtol=3e-14, atol=1e-15).y[:4, -1]
+    np.testing.assert_allclose([report.coordinates[f"e{i}"] for i in range(4)], truth, atol=1e-10)
