@@ -24,6 +24,7 @@ IDENTITIES = [
     sp.sqrt(2 + sp.sin(X)) ** 3 - (2 + sp.sin(X)) * sp.sqrt(2 + sp.sin(X)),
     (sp.sqrt(5) / 2 - X) * (sp.sqrt(5) / 2 + X) - sp.Rational(5, 4) + X**2,
     sp.Abs(X) * sp.Abs(X, evaluate=False) - X**2,
+    (sp.Abs(X) + 1) ** 2 - X**2 - 2 * sp.Abs(X) - 1,
     sp.Float("0.5") * X - X / 2,
 ]
 
