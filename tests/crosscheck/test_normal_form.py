@@ -57,6 +57,11 @@ def test_work_beyond_the_allowance_is_not_begun() -> None:
     assert is_identically_zero([identity], allowance=100_000)
 
 
+def test_what_is_too_long_to_be_read_is_not_proved() -> None:
+    assert not is_identically_zero([X + Y], allowance=2)
+    assert not is_identically_zero([sp.Integer(0), X + Y], allowance=3)
+
+
 ATOMS = st.sampled_from([X, Y, sp.sin(X), sp.cos(X), sp.sqrt(Y**2 + 1), sp.exp(X), sp.Integer(2)])
 EXPRESSIONS = st.recursive(
     ATOMS,
