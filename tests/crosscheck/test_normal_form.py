@@ -25,10 +25,13 @@ IDENTITIES = [
     (sp.sqrt(5) / 2 - X) * (sp.sqrt(5) / 2 + X) - sp.Rational(5, 4) + X**2,
     sp.Abs(X) * sp.Abs(X, evaluate=False) - X**2,
     (sp.Abs(X) + 1) ** 2 - X**2 - 2 * sp.Abs(X) - 1,
+    (sp.cbrt(X) + 1) ** 5 - sum(sp.binomial(5, k) * sp.cbrt(X) ** k for k in range(6)),
+    (sp.cbrt(X) + Y) ** 3 - X - 3 * sp.cbrt(X) ** 2 * Y - 3 * sp.cbrt(X) * Y**2 - Y**3,
     sp.Float("0.5") * X - X / 2,
 ]
 
 NO_IDENTITIES = [
+    (sp.sqrt(X) + 1) ** 3 - 4 * X - 3 * sp.sqrt(X) - 1,
     X - Y,
     sp.sin(X) ** 2 - sp.cos(X) ** 2,
     sp.sqrt(X**2 + 1) - X,
