@@ -90,7 +90,9 @@ def _expanded(tree: Tree) -> Expanded:
             return _sum(tree[1:])
         case ["Subtract", a, b]:
             return _sum([a, ["Negate", b]])
-        case ["Rational" | "Divide" | "Multiply", _, *_] | ["Power", _, _] if _below(tree) or tree[0] == "Multiply":
+        case ["Multiply", _, *_]:
+            return _product(tree)
+        case list() if _below(tree) is not None:
             return _product(tree)
         case ["Power", base, exponent]:
             return _power, [base, exponent]
@@ -174,7 +176,7 @@ def _fraction(factor: Tree) -> tuple[Tree, Tree]:
             return numerator, denominator
         case _:
             below = _below(factor)
-            return (1, below) if below else (factor, 1)
+            return (factor, 1) if below is None else (1, below)
 
 
 def _below(tree: Tree) -> Tree | None:

@@ -26,14 +26,17 @@ atoms = st.one_of(
 )
 
 
+exponents = st.one_of(st.integers(-3, 3), st.sampled_from(sorted(LETTERS)))  # powers of numbers would grow without end
+
+
 def combined(parts: st.SearchStrategy) -> st.SearchStrategy:
     several = st.lists(parts, min_size=1, max_size=4)
     return st.one_of(
         several.map(lambda terms: ["Add", *terms]),
         several.map(lambda factors: ["Multiply", *factors]),
         parts.map(lambda part: ["Negate", part]),
-        st.tuples(st.sampled_from(["Subtract", "Divide", "Power"]), parts, parts).map(list),
-        st.tuples(parts, st.integers(-3, 3)).map(lambda power: ["Power", *power]),
+        st.tuples(st.sampled_from(["Subtract", "Divide"]), parts, parts).map(list),
+        st.tuples(parts, exponents).map(lambda power: ["Power", *power]),
         st.tuples(parts, st.sampled_from([-1, 1, 3])).map(lambda power: ["Power", power[0], ["Rational", power[1], 2]]),
         st.tuples(st.sampled_from(["Sqrt", "Sin", "Abs"]), parts).map(list),
     )
@@ -42,11 +45,14 @@ def combined(parts: st.SearchStrategy) -> st.SearchStrategy:
 @given(st.recursive(atoms, combined, max_leaves=9))
 def test_text_is_read_as_the_expression(tree):
     """Truth: SymPy reads the text by its own rules, and the tree by `to_sympy`."""
+    text = scene_text(tree)
     try:
         expected = to_sympy(tree)
     except HolonomError:  # it divides by zero
         return
-    read = sympy.sympify(scene_text(tree).replace("^", "**"), locals=LETTERS | SYMPYS_NAMES)
+    if expected.has(sympy.zoo, sympy.nan):  # as this does
+        return
+    read = sympy.sympify(text.replace("^", "**"), locals=LETTERS | SYMPYS_NAMES)
     point = dict(zip(LETTERS.values(), (1.25, 0.75, 1.5, 2.25), strict=True))
     there = sympy.N((read - expected).subs(point), 30)
     assert read == expected or abs(there) <= 1e-9 * max(1, abs(sympy.N(expected.subs(point))))
