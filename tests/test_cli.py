@@ -6,6 +6,7 @@ import subprocess
 import sys
 from importlib import metadata
 from pathlib import Path
+from string import Formatter
 
 import pytest
 from click.testing import CliRunner
@@ -211,7 +212,8 @@ def test_doctor_finds_this_installation_whole():
 
 @pytest.mark.parametrize("failure", list(Failure))
 def test_advice_names_no_option_that_the_command_lacks(failure):
-    error = HolonomError(failure, "scene.mac", "detail")
+    named = {name for part in failure.value for _, name, _, _ in Formatter().parse(part) if name}
+    error = HolonomError(failure, "scene.mac", "detail", **dict.fromkeys(named - {"detail"}, 1))
     assert "--" not in error.sentence(())
     assert error.sentence({"--until", "--time-limit", "--engine", "--drift", "--precision"}).endswith(".")
 
