@@ -9,7 +9,7 @@ from holonom.failures import Failure
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
 from holonom.simulation.constraints.projection import InconsistentConstraints, project
-from holonom.simulation.matrices import MotionMatrices
+from holonom.simulation.matrices import Matrices, MotionMatrices
 
 CIRCLE = """
 load("holonom.mac")$
@@ -90,8 +90,14 @@ def test_a_closed_spatial_mechanism_is_put_together_again(distance):
     assert np.linalg.norm(projected - state) <= 20 * distance
 
 
-def test_contradicting_constraints_are_refused_with_what_remains(circle):
-    matrices = circle("[x - y, x - y - t^2]", "0", "0")
+def test_contradicting_constraints_are_refused_with_what_remains():
+    def matrices(t: float, state: np.ndarray) -> Matrices:
+        """Of x - y and x - y - t^2, which no scene may have."""
+        jacobian = np.array([[1.0, -1.0], [1.0, -1.0]])
+        missed, missed_rate = np.array([0.0, t**2]), np.array([0.0, 2 * t])
+        residuals = jacobian @ state[:2] - missed, jacobian @ state[2:] - missed_rate
+        return Matrices(3 * np.eye(2), np.zeros(2), jacobian, np.array([0.0, -2.0]), *residuals, True)
+
     with pytest.raises(InconsistentConstraints) as refused:
         project(matrices, 1.0, np.zeros(4), 1)
     assert refused.value.failure is Failure.INCONSISTENT
