@@ -7,6 +7,7 @@ asked writes them. So nothing hangs on which worker computes what, or on how oft
 import logging
 import pickle
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import lru_cache
 from itertools import islice
@@ -67,6 +68,12 @@ def make_parts(plan: bytes, chunks: Sequence[Chunk]) -> list[bytes]:
     list of bytes
         Of each chunk's file.
     """
+    with ThreadPoolExecutor(1) as thread:
+        return thread.submit(_parts, plan, chunks).result()
+
+
+def _parts(plan: bytes, chunks: Sequence[Chunk]) -> list[bytes]:
+    """The same, in a thread of its own: on the stack of Dask's, compiled code takes a fifth more time, as measured."""
     with one_blas_thread():
         return [part_of(_maker(plan).table(chunk.first, chunk.last)) for chunk in chunks]
 

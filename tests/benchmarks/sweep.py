@@ -18,6 +18,7 @@ from fractions import Fraction
 from functools import cache
 from itertools import starmap
 from pathlib import Path
+from statistics import median
 from typing import NamedTuple
 
 import heyoka
@@ -40,7 +41,7 @@ ROOT = Path(__file__).parents[2]
 CRANE, PAPER = ROOT / "examples" / "crane.mac", ROOT / "examples" / "paper" / "paper.mac"
 GRID = ("m=50:500:100", "c=0:40:100")
 MOTIONS, TOLERANCE = 10_000, 1e-12  # a chunk
-DEPTHS, REPEATS = 4, 12
+DEPTHS, REPEATS, TURNS = 4, 12, 3
 FIRST = 24  # chunks: those that two workers are given at once
 MILLION = 1_000_000
 
@@ -225,17 +226,20 @@ def command(rows: float, workers: int) -> Run:
 
 def rows_of_commands(share: float) -> Iterator[str]:
     million = MILLION * share
-    alone = [command(million * part, 1) for part in (0.1, 0.2, 1)]
-    both = command(million, 2)
-    yield f"{both.rows} crane motions by the command, on {os.cpu_count()} cores; with start-up"
-    yield f"  by this process alone {alone[2].seconds:.1f} s, by two workers {both.seconds:.1f} s"
-    yield bar("two workers, with start-up", both.seconds, most=30, unit=" s")
-    if len(both.written) > 2 * FIRST:
-        yield bar("two workers against one, without start-up", both.rate / alone[2].rate, least=1.8)
-    yield f"  two workers against one, with start-up       {alone[2].seconds / both.seconds:8.2f}"
-    sizes = ", ".join(f"{run.megabytes:.0f} MiB for {run.rows}" for run in alone)
+    small = [command(million * part, 1) for part in (0.1, 0.2)]
+    turns = [(command(million, 1), command(million, 2)) for _ in range(TURNS)]
+    (one, two), many = ([median(run.seconds for run in runs) for runs in zip(*turns, strict=True)], turns[0][0])
+    by = f"by the command, on {os.cpu_count()} cores; with start-up; medians of {TURNS} turns"
+    yield f"{many.rows} crane motions {by}"
+    yield f"  by this process alone {one:.1f} s, by two workers {two:.1f} s"
+    yield bar("two workers, with start-up", two, most=30, unit=" s")
+    if len(many.written) > 2 * FIRST:
+        alone, both = (median(run.rate for run in runs) for runs in zip(*turns, strict=True))
+        yield bar("two workers against one, without start-up", both / alone, least=1.8)
+    yield f"  two workers against one, with start-up       {one / two:8.2f}"
+    sizes = ", ".join(f"{run.megabytes:.0f} MiB for {run.rows}" for run in (*small, many))
     yield f"  largest memory by this process alone: {sizes} motions"
-    yield bar("the last in terms of the one before", alone[2].megabytes / alone[1].megabytes, most=1.1)
+    yield bar("the last in terms of the one before", many.megabytes / small[1].megabytes, most=1.1)
 
 
 def main(directory: Path, share: float) -> None:
