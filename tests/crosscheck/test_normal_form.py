@@ -31,6 +31,8 @@ IDENTITIES = [
 ]
 
 NO_IDENTITIES = [
+    sp.sqrt(X) ** 3 - X,
+    sp.cos(X) ** 3 - sp.cos(X) ** 2,
     (sp.sqrt(X) + 1) ** 3 - 4 * X - 3 * sp.sqrt(X) - 1,
     X - Y,
     sp.sin(X) ** 2 - sp.cos(X) ** 2,
