@@ -375,7 +375,7 @@ WORK = [
         "1 expansion to order 1000000",
         long=True,
     ),
-    Fault("a tolerance of nan", "simulate scene.mac --until 1 --tol nan", "tolerances", long=True),
+    Fault("a tolerance of nan", "simulate scene.mac --until 1 --tol nan", "tolerances"),
     Fault("a tolerance of zero", "simulate scene.mac --until 1 --tol 0", "tolerances", long=True),
     Fault("an end before the start", "simulate scene.mac --until -1", "not after the start", long=True),
     Fault("5000 digits", "series scene.mac --order 4 --precision 5000", "", 0, long=True),

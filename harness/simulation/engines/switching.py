@@ -249,9 +249,9 @@ def _without_pieces(engine: Engine, until: Any) -> Iterator[Piece]:
 
 def _taylor(problem: MotionProblem, request: SimulationRequest, precision: Precision, end: Any) -> "TaylorEngine":
     from ...program.expense import order_for, require_means
-    from .taylor import TaylorEngine
+    from .taylor import TaylorEngine, held
 
-    digits = precision.digits + GUARD_DIGITS if request.tol is None else -log10(request.tol)
+    digits = precision.digits + GUARD_DIGITS if request.tol is None else -log10(held(request.tol, precision))
     require_means(problem, precision, order_for(digits), end)
     decay = decay_until(end, problem, precision)
     return TaylorEngine(problem, request.tol, precision, request.drift, request.compact, decay)
