@@ -24,12 +24,15 @@
 
 (defun $applications_of (operator e)
   "The different parts of an expression that apply the operator, in the order in which they are met."
+  (applications-of-any (list operator) e))
+
+(defun applications-of-any (operators e)
   (let ((found nil) (waiting (list e)))
     (do () ((null waiting) (cons '(mlist simp) (nreverse found)))
       (let ((part (pop waiting)))
         (cond ((atom part))
               ((specrepp part) (push (specdisrep part) waiting))
-              ((eq (caar part) operator) (if (not (member part found :test #'alike1)) (push part found)))
+              ((member (caar part) operators) (if (not (member part found :test #'alike1)) (push part found)))
               (t (setq waiting (append (cdr part) waiting))))))))
 
 (defun $name_around (before name after)

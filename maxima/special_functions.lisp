@@ -17,14 +17,7 @@
 
 (defun $special_applications (e)
   "The different outermost applications of special functions, in the order in which they are met."
-  (let ((found nil) (waiting (list e)))
-    (do () ((null waiting) (cons '(mlist simp) (nreverse found)))
-      (let ((part (pop waiting)))
-        (cond ((atom part))
-              ((specrepp part) (push (specdisrep part) waiting))
-              ((member (caar part) *special-functions*)
-               (if (not (member part found :test #'alike1)) (push part found)))
-              (t (setq waiting (append (cdr part) waiting))))))))
+  (applications-of-any *special-functions* e))
 
 (defun $chebyshev_coefficients (values cosines)
   "Coefficients of orders 0 ... n, integers in the unit of the values: integers f(t_0) ... f(t_n).
