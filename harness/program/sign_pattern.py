@@ -152,19 +152,20 @@ def _text(problem: MotionProblem) -> Hashable:
     return tuple((each.inputs, each.assignments, tuple(each.outputs.items())) for each in programs)
 
 
-def drive(problem: MotionProblem, name: str, sign: int, pattern: Pattern) -> Program:
-    """The rate that a sign contributes to of its own function, for one value of it. Its one output is ``drive``.
+def switching_function(problem: MotionProblem, quantity: str, name: str, pattern: Pattern) -> Program:
+    """One function that decides how the motion passes a surface.
 
     Parameters
     ----------
     problem, pattern
         As for `problem_in`.
+    quantity : str
+        ``switch`` or ``switch_rate``; ``drive``, the rate that the value which the pattern has for the sign contributes
+        to of its own function, for a sign that `holdable` is true of.
     name : str
-        One of the signs, that `holdable` is true of.
+        One of the signs.
     """
-    output = f"drive[{_index(problem, name)}]"
-    program = program_in(problem, computing(problem.switching, {output}), {**pattern, name: sign})
-    return replace(program, outputs={"drive": program.outputs[output]})
+    return program_in(problem, computing(problem.switching, {f"{quantity}[{_index(problem, name)}]"}), pattern)
 
 
 def with_numbers(program: Program, numbers: Mapping[str, Fraction]) -> Program:

@@ -15,7 +15,7 @@ state, an impulse of a surface whose law of impact nobody has given.
 
 from bisect import bisect_left, bisect_right
 from collections import deque
-from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from enum import StrEnum
 from fractions import Fraction
@@ -27,17 +27,16 @@ import numpy as np
 
 from ..failures import Failure, HolonomError
 from ..program.motion_problem import By, MotionProblem, Sign, computing
-from ..program.motion_program import Program
 from ..program.precision import Precision
 from ..program.sign_pattern import (
     HELD,
     Pattern,
-    drive,
     holdable,
     in_numbers,
     problem_in,
     program_in,
     sharing_programs,
+    switching_function,
 )
 from .clock import Tick, ticks
 from .constraints.program_projection import ProgramProjection
@@ -401,7 +400,7 @@ class PiecewiseMotion:
 
     def _decided(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> int | str:
         """What the motions on both sides of a surface say about the sign of the motion that is on it."""
-        above, below = (self._drive(sign, to, pattern, t, state) for to in (1, -1))
+        above, below = (self._output("drive", sign, {**pattern, sign.name: to}, t, state) for to in (1, -1))
         if above * below > 0:
             return 1 if above > 0 else -1
         if above < 0 < below:
@@ -476,21 +475,11 @@ class PiecewiseMotion:
     # ---- numbers at an instant ----
 
     def _output(self, name: str, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> float:
-        output = f"{name}[{1 + self._problem.signs.index(sign)}]"
-
-        def program() -> Program:
-            return program_in(self._problem, computing(self._problem.switching, {output}), pattern)
-
-        return self._evaluated((output, frozenset(pattern.items())), program, t, state)
-
-    def _drive(self, sign: Sign, to: int, pattern: Pattern, t: Any, state: Numbers) -> float:
-        what = "drive", sign.name, to, frozenset(pattern.items())
-        return self._evaluated(what, lambda: drive(self._problem, sign.name, to, pattern), t, state)
-
-    def _evaluated(self, what: Hashable, program: Callable[[], Program], t: Any, state: Numbers) -> float:
-        """The one output of a program, which is compiled when it is first asked for."""
+        """Value of a `switching_function`, which is compiled when it is first asked for."""
+        what = name, sign.name, frozenset(pattern.items())
         if what not in self._functions:
-            self._functions[what] = evaluation(program(), self._precision)
+            program = switching_function(self._problem, name, sign.name, pattern)
+            self._functions[what] = evaluation(program, self._precision)
         return float(self._functions[what](self._inputs(t, state))[0])
 
     def _momenta(self, part: Part, t: Any, state: Numbers) -> Numbers:

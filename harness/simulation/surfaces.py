@@ -12,10 +12,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from ..program.motion_problem import MotionProblem, computing
+from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Program
 from ..program.precision import Precision
-from ..program.sign_pattern import HELD, Pattern, drive, program_in
+from ..program.sign_pattern import HELD, Pattern, switching_function
 from .engines.engine import Piece
 from .evaluation import Numbers, as_floats, beside_state, evaluation
 from .matrices import Vector
@@ -145,9 +145,8 @@ class Surfaces(SignedFunctions):
 def _inside(problem: MotionProblem, pattern: Pattern, name: str, to: int) -> Program:
     """The function whose sign tells on which side of a surface the motion is."""
     if pattern[name] == HELD:
-        return drive(problem, name, to, pattern)
-    index = 1 + [sign.name for sign in problem.signs].index(name)
-    return program_in(problem, computing(problem.switching, {f"switch[{index}]"}), pattern)
+        return switching_function(problem, "drive", name, {**pattern, name: to})
+    return switching_function(problem, "switch", name, pattern)
 
 
 def _narrow_dip(coefficients: Vector, between: Vector, end: float) -> Vector | None:

@@ -92,7 +92,7 @@ def _nearest_by_lapack(problem: MotionProblem) -> Evaluation:
             bordered = np.block([[at.mass, at.jacobian.T], [at.jacobian, np.zeros((g, g))]])
             solution, singular = lapack().dgesv(bordered, np.append(np.zeros(n), -getattr(at, residual)))[2:]
             state[moved] += np.nan if singular else solution[:n]
-        return np.append(state, np.sum((state - before) ** 2 / (1 + before**2)))
+        return _with_distance(state, before)
 
     return nearest
 
@@ -111,9 +111,13 @@ def _nearest_by_numpy(problem: MotionProblem) -> Evaluation:
         moved[1 : 1 + n] += function.at_points(given)[position]
         moved[1 + n : 1 + 2 * n] += function.at_points(moved)[velocity]
         state, before = moved[1 : 1 + 2 * n, 0], given[1 : 1 + 2 * n, 0]
-        return np.append(state, np.sum((state - before) ** 2 / (1 + before**2)))
+        return _with_distance(state, before)
 
     return nearest
+
+
+def _with_distance(state: Numbers, before: Numbers) -> Numbers:
+    return np.append(state, np.sum((state - before) ** 2 / (1 + before**2)))
 
 
 def nearest_state(problem: MotionProblem, precision: Precision, **options: Any) -> Any:
