@@ -205,7 +205,8 @@ def test_long_condition_is_left_out_with_the_reason():
     found = asked("andrews")
     assert found.condition is None
     assert "closed_form_size" in found.left_out
-    assert found.universal.verdict == "undecided"
+    # it has no controls: the motion that is not free shows that none makes every motion free
+    assert (found.motion.verdict, found.universal.verdict) == (Free.NOT_FREE, "none")
 
 
 def test_json_has_the_stated_shape(capsys, monkeypatch):
@@ -304,3 +305,45 @@ def test_a_truncated_series_was_printed_highest_power_first_and_added_up(write_s
     written = power_series(law)
     assert written.startswith("3/2 + (t - 1) + 23*(t - 1)^2/24 ")
     assert written.index("^2") < written.index("^3") < written.index("^8")
+
+
+@pytest.mark.parametrize(
+    ("effect", "force"),  # at x = 1, y = 1
+    [
+        ("potential_energy = if x > 0 then y else 0", -1),
+        ("potential_energy = max(y, 0)", -1),
+        ("forces = [0, min(2*y, 3)]", 2),
+        ("forces = [0, unit_step(x)]", 1),
+        ("forces = [0, bessel_j(0, t)]", 1),
+    ],
+)
+def test_effects_in_parts_and_special_functions_were_refused_an_answer(write_scene, effect, force):
+    file = write_scene(f"""load("holonom.mac")$
+    system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+      {effect}, constraints = [y - u])$
+    s : holonomic_scene(system, control_law = [u = 1 + t], initial_state = [x = 1, dot(x) = 0], time_span = [0, 1])$""")
+    found = free_motion(file, None, {}, Limits())
+    assert (found.motion.verdict, found.motion.first.order) == (Free.NOT_FREE, 0)
+    assert float(found.motion.first.value) == -force  # lambda = ddot(u) - force
+    assert found.trajectory.law
+
+
+@pytest.mark.parametrize(
+    ("constraint", "speed", "motion", "universal", "trajectory"),
+    [
+        ("x^2 + y^2 - 1", 1, "not free", "none", "none"),
+        ("x^2 + y^2 - 1", 0, "free", "none", "any control"),
+        ("x^2 + y^4 + cos(y) - 1 - cos(0)", 1, "not free", "none", "none"),  # "undecided" was said of all laws
+        ("x - 1", 1, "free", "all", "any control"),
+        ("x - cosh(t^50)", 1, "undecided", "none", "not determined"),
+    ],
+)
+def test_a_system_without_controls_has_the_laws_that_its_motions_show(
+    write_scene, constraint, speed, motion, universal, trajectory
+):
+    file = write_scene(f"""load("holonom.mac")$
+    system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+      constraints = [{constraint}])$
+    s : holonomic_scene(system, initial_state = [x = 1, y = 0, dot(y) = {speed}])$""")
+    found = free_motion(file, None, {}, Limits())
+    assert (found.motion.verdict, found.universal.verdict, found.trajectory.kind) == (motion, universal, trajectory)

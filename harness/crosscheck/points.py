@@ -51,7 +51,7 @@ FUNCTIONS = {
     sp.log: mp.log,
     sp.Abs: abs,
     sp.sign: mp.sign,
-    sp.DiracDelta: lambda x: mp.zero if x else mp.inf,
+    sp.DiracDelta: lambda x, order=0: mp.zero if x else mp.inf,
 }
 
 

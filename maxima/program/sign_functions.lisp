@@ -7,12 +7,20 @@
 ;;; where s is the sign of g, of a - b, of b - a. Each such g is a switching function, and a symbol
 ;;; stands for its sign. Those met so far are kept in the order of their symbols, in which a
 ;;; function may contain the symbols before it.
+;;;
+;;; Written openly, max, min, steps and if are left with |g| and signum(g) instead, which have a place in
+;;; equations and documents.
 
 (in-package :maxima)
 
 (defvar *sign-prefix* '$sign)
 
 (defvar *signs-met* nil "List of (symbol . switching function), last first.")
+
+(defvar *written-openly* nil "Whether signs stay signum(g).")
+
+(defun $written_openly (expression)
+  (let ((*written-openly* t)) (with-signs expression)))
 
 (defun $written_with_signs (expressions prefix)
   "[[[sign1, g1], ...], the expressions with the symbols prefix1, ... for the signs of g1, ...]."
@@ -27,7 +35,7 @@
       e
       (let ((operator (caar e)))
         (cond ((eq operator 'mcond) (conditional-with-signs (cdr e)))
-              ((eq operator 'mabs) (let ((g (with-signs (second e)))) (mul g (sign-of-function g))))
+              ((eq operator 'mabs) (absolute-value (with-signs (second e))))
               ((eq operator '%signum) (sign-of-function (with-signs (second e))))
               ((member operator '($max %max)) (extremum 1 (mapcar #'with-signs (cdr e))))
               ((member operator '($min %min)) (extremum -1 (mapcar #'with-signs (cdr e))))
@@ -41,8 +49,11 @@
 (defun extremum (side arguments)
   (reduce #'(lambda (a b)
               (let ((difference (sub a b)))
-                (div (add a b (mul side (sign-of-function difference) difference)) 2)))
+                (div (add a b (mul side (absolute-value difference))) 2)))
           arguments))
+
+(defun absolute-value (g)
+  (if *written-openly* (take '(mabs) g) (mul g (sign-of-function g))))
 
 (defun weight-of-sign (sign) (div (add 1 sign) 2))
 
@@ -50,6 +61,7 @@
 (defun conditional-with-signs (clauses)
   "Clauses are condition, value, condition, value, ... as Maxima keeps them."
   (let ((weight (condition-weight (first clauses))) (value (with-signs (second clauses))))
+    (if (null value) (merror (intl:gettext "an if has no else; write what holds where its condition does not")))
     (if (eql weight 1)
         value
         (add (mul weight value)
@@ -77,7 +89,8 @@
 
 (defun sign-of-function (g)
   "The sign of g, by a number and the symbols of the functions that it is a product of."
-  (with-sign-symbols (simplifya (list '(%signum) g) nil)))
+  (let ((sign (simplifya (list '(%signum) g) nil)))
+    (if *written-openly* sign (with-sign-symbols sign))))
 
 (defun with-sign-symbols (sign)
   (cond ((atom sign) sign)

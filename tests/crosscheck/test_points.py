@@ -26,6 +26,10 @@ def test_a_fraction_has_all_the_digits_that_are_worked_with():
         assert Valuation({X: sp.Rational(1, 3)})(3 * X - 1) == pytest.approx(0, abs=1e-58)
 
 
+def test_rates_of_a_step_are_zero_beside_it():
+    assert Valuation({X: sp.Rational(-1, 3)})(sp.sign(X).diff(X, 2)) == 0  # which ended in an internal error
+
+
 @pytest.mark.parametrize("expression", [sp.log(X), sp.sqrt(-1 - X**2), sp.DiracDelta(X)], ids=str)
 def test_what_is_infinite_or_imaginary_is_no_value(expression):
     with pytest.raises((IrregularPoint, ZeroDivisionError, ValueError)):
