@@ -1,9 +1,11 @@
 """The commands: what they print, what they write, and the status they leave with."""
 
+import io
 import json
 import os
 import subprocess
 import sys
+from contextlib import redirect_stderr, redirect_stdout
 from importlib import metadata
 from pathlib import Path
 from string import Formatter
@@ -13,6 +15,7 @@ from click.testing import CliRunner
 from particle import PARTICLE
 
 from holonom.cli import holonom as cli
+from holonom.cli import run
 from holonom.crosscheck import Verdict
 from holonom.crosscheck.verdict import Judgement
 from holonom.failures import Failure, HolonomError
@@ -23,6 +26,24 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 
 def holonom(*arguments: str | Path, **options) -> subprocess.CompletedProcess[str]:
     return subprocess.run([*HOLONOM, *map(str, arguments)], capture_output=True, text=True, timeout=120, **options)
+
+
+@pytest.fixture
+def holonom_here(monkeypatch):
+    """Runs a command in this process, which has loaded its libraries; what it prints, and its status."""
+
+    def run_here(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+        out, err = (io.TextIOWrapper(io.BytesIO(), encoding="utf-8") for _ in range(2))
+        monkeypatch.setattr("sys.argv", ["holonom", *map(str, arguments)])
+        with redirect_stdout(out), redirect_stderr(err):
+            status = run()
+        printed = []
+        for stream in (out, err):
+            stream.flush()
+            printed.append(stream.buffer.getvalue().decode())
+        return subprocess.CompletedProcess(arguments, status, *printed)
+
+    return run_here
 
 
 def test_help_waits_for_no_library():
@@ -52,8 +73,8 @@ def test_derive_writes_the_record_and_nothing_else(particle_scene, tmp_path):
     assert printed["format"] == "holonom-record"
 
 
-def test_check_reports_every_equation(particle_scene):
-    done = holonom("check", particle_scene, "--json", "-")
+def test_check_reports_every_equation(particle_scene, holonom_here):
+    done = holonom_here("check", particle_scene, "--json", "-")
     report = json.loads(done.stdout)
     assert done.returncode == 0
     assert report["scene"] == str(particle_scene)
@@ -62,8 +83,8 @@ def test_check_reports_every_equation(particle_scene):
     assert {found["verdict"] for found in report["equations"]} <= {"proved", "agrees", "nothing to check"}
 
 
-def test_check_of_several_scenes_is_an_array(particle_scene):
-    reports = json.loads(holonom("check", particle_scene, particle_scene, "--json", "-").stdout)
+def test_check_of_several_scenes_is_an_array(particle_scene, holonom_here):
+    reports = json.loads(holonom_here("check", particle_scene, particle_scene, "--json", "-").stdout)
     assert [report["scene"] for report in reports] == [str(particle_scene)] * 2
 
 
@@ -73,14 +94,12 @@ def test_a_disagreement_is_reported_and_leaves_with_one(particle_record, monkeyp
     multipliers["relations"][0]["right"] = ["Multiply", 2, multipliers["relations"][0]["right"]]
     monkeypatch.setattr("holonom.record.ask", lambda *_, **__: json.dumps(wrong))
     monkeypatch.setattr("sys.argv", ["holonom", "check", str(particle_scene)])
-    from holonom.cli import run
-
     assert run() == 1
     assert "disagrees" in capsys.readouterr().out
 
 
-def test_errata_lists_every_equation():
-    report = json.loads(holonom("errata", "--json", "-").stdout)
+def test_errata_lists_every_equation(holonom_here):
+    report = json.loads(holonom_here("errata", "--json", "-").stdout)
     rows = {row["number"]: row for row in report["equations"] if row["number"]}
     assert {str(number) for number in range(2, 20)} <= rows.keys()
     assert all(row["agrees"] or (row["difference"] and row["corrected"]) for row in report["equations"])
@@ -98,8 +117,8 @@ def test_errata_lists_every_equation():
         ["derive", "x", "--time-limit", "-1"],
     ],
 )
-def test_bad_arguments_leave_with_two(arguments):
-    done = holonom(*arguments)
+def test_bad_arguments_leave_with_two(arguments, holonom_here):
+    done = holonom_here(*arguments)
     assert done.returncode == 2
     assert done.stdout == ""
     assert "Traceback" not in done.stderr
@@ -120,8 +139,8 @@ def test_verbose_shows_how_to_repeat_the_run(write_scene):
     assert "repeat it with: maxima" in done.stderr
 
 
-def test_an_output_that_cannot_be_written(particle_scene, tmp_path):
-    done = holonom("derive", particle_scene, "--json", tmp_path / "nowhere" / "record.json")
+def test_an_output_that_cannot_be_written(particle_scene, tmp_path, holonom_here):
+    done = holonom_here("derive", particle_scene, "--json", tmp_path / "nowhere" / "record.json")
     assert done.returncode == 2
     assert "cannot be written" in done.stderr
 
@@ -166,8 +185,11 @@ def test_what_is_wrong_on_standard_input_is_told_of_standard_input():
     assert "standard_input.mac" not in done.stderr
 
 
-def test_quiet_prints_nothing_but_what_is_asked_for(particle_scene):
-    silent, asked = holonom("-q", "check", particle_scene), holonom("-q", "check", particle_scene, "--json", "-")
+def test_quiet_prints_nothing_but_what_is_asked_for(particle_scene, holonom_here):
+    silent, asked = (
+        holonom_here("-q", "check", particle_scene),
+        holonom_here("-q", "check", particle_scene, "--json", "-"),
+    )
     assert (silent.returncode, silent.stdout) == (0, "")
     assert json.loads(asked.stdout)["disagreements"] == 0
 
@@ -181,8 +203,8 @@ fall : holonomic_scene(system, initial_state = [{name} = 0, dot({name}) = 1], ti
     assert name in holonom("series", scene, "--order", "3").stdout
 
 
-def test_version_tells_all_that_decides_the_numbers():
-    told = dict(line.split(maxsplit=1) for line in holonom("--version").stdout.splitlines())
+def test_version_tells_all_that_decides_the_numbers(holonom_here):
+    told = dict(line.split(maxsplit=1) for line in holonom_here("--version").stdout.splitlines())
     assert set(told) == {"holonom", "Maxima", "heyoka", "SymPy"}
     assert told["Maxima"].startswith(f"{version_of_maxima()} on ")
     assert told["SymPy"] == metadata.version("sympy")
@@ -204,8 +226,8 @@ def test_doctor_tells_what_is_missing_and_the_command_that_installs_it(tmp_path)
     assert components["heyoka"]["remedy"] == "pip install 'holonom[motion]'"
 
 
-def test_doctor_finds_this_installation_whole():
-    done = holonom("doctor")
+def test_doctor_finds_this_installation_whole(holonom_here):
+    done = holonom_here("doctor")
     assert done.returncode == 0
     assert metadata.version("heyoka") in done.stdout
 
@@ -218,32 +240,32 @@ def test_advice_names_no_option_that_the_command_lacks(failure):
     assert error.sentence({"--until", "--time-limit", "--engine", "--drift", "--precision"}).endswith(".")
 
 
-def test_check_and_derive_were_silent_about_equations_that_are_not_made():
+def test_check_and_derive_were_silent_about_equations_that_are_not_made(holonom_here):
     chain = str(EXAMPLES / "chain.mac")
-    report = json.loads(holonom("check", chain, "--json", "-").stdout)
+    report = json.loads(holonom_here("check", chain, "--json", "-").stdout)
     assert (report["left_out"], report["disagreements"]) == (9, 0)
     left_out = {found["number"] for found in report["equations"] if found["verdict"] == "left out"}
     assert left_out == {"4", "5", "8", "9", "10", "11", "13", "18"}
     assert all("more than closed_form_size" in each["detail"] for each in report["equations"] if not each["id"])
-    assert "--closed-form-size 3288 makes them" in holonom("derive", chain).stdout
-    made = holonom("derive", chain, "--set", "N=2", "--closed-form-size", "1")
+    assert "--closed-form-size 3288 makes them" in holonom_here("derive", chain).stdout
+    made = holonom_here("derive", chain, "--set", "N=2", "--closed-form-size", "1")
     assert "(4), (5), (8), (9), (10), (11) not made" in made.stdout
 
 
-def test_equations_left_out_for_a_small_limit_were_called_missing(particle_scene):
-    done = holonom("check", particle_scene, "--closed-form-size", "1", "--json", "-")
+def test_equations_left_out_for_a_small_limit_were_called_missing(particle_scene, holonom_here):
+    done = holonom_here("check", particle_scene, "--closed-form-size", "1", "--json", "-")
     report = json.loads(done.stdout)
     assert (done.returncode, report["disagreements"]) == (0, 0)
     left_out = {found["number"] for found in report["equations"] if found["verdict"] == "left out"}
     assert left_out == {"4", "5", "8", "9", "10", "11", "13", "18"}
 
 
-def test_the_scene_file_s_closed_form_size_had_no_effect(write_scene):
+def test_the_scene_file_s_closed_form_size_had_no_effect(write_scene, holonom_here):
     scene = write_scene(PARTICLE + "closed_form_size : 1$\n")
-    assert "more than closed_form_size = 1;" in holonom("derive", scene).stdout
-    assert "not made" not in holonom("derive", scene, "--closed-form-size", "500").stdout
+    assert "more than closed_form_size = 1;" in holonom_here("derive", scene).stdout
+    assert "not made" not in holonom_here("derive", scene, "--closed-form-size", "500").stdout
     scene.write_text(PARTICLE + "closed_form_size : 0$\n")
-    refused = holonom("derive", scene)
+    refused = holonom_here("derive", scene)
     assert refused.returncode == 2
     assert "closed_form_size must be a positive integer; it is 0" in refused.stderr
 

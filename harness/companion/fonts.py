@@ -5,6 +5,7 @@ with the package ziamath, of which nothing else is used.
 """
 
 import io
+from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -25,6 +26,7 @@ CHARACTERS = (
 )
 
 
+@cache  # one for the pages in every language
 def mathematics_font() -> tuple[bytes, str]:
     """The subset as WOFF, and its notice of copyright and licence.
 

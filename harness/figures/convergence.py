@@ -13,7 +13,6 @@ import sys
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -23,7 +22,7 @@ from numpy.typing import NDArray
 from ..confined import Limits
 from ..files import shared
 from ..language import gettext
-from ..series.power_series import SeriesRequest, compute_series
+from ..series.power_series import MotionSeries, SeriesRequest, compute_series
 from ..series.radius import ENTIRE, Radius
 from .style import (
     BLUE,
@@ -96,17 +95,20 @@ AT_ONCE = 2  # runs of Maxima
 
 
 class RadiiFound(NamedTuple):
-    """Radii, one for each of the controls: under u0 + t from few orders and from many, and under u0 exp(t)."""
+    """Radii, one for each of the initial controls: under u0 + t from few orders and from many, and under u0 exp(t)."""
 
+    controls: Sequence[Fraction]
     coarse: list[Radius]
     fine: list[Radius]
     entire: list[Radius]
 
 
-def find_radii() -> RadiiFound:
+def find_radii(controls: Sequence[Fraction] = CONTROLS) -> RadiiFound:
     """Estimate the radii that `draw_radius` draws; raises as `holonom.series.power_series.compute_series`."""
-    coarse, fine = (_radii(LINEAR, order) for order in ORDERS_OF_RADII)
-    return RadiiFound(coarse, fine, _radii(EXPONENTIAL, ORDER_OF_ENTIRE))
+    linear = _expanded(controls, LINEAR, max(ORDERS_OF_RADII))
+    exponential = _expanded(controls, EXPONENTIAL, ORDER_OF_ENTIRE)
+    coarse, fine = ([series.up_to(order).radius for series in linear] for order in ORDERS_OF_RADII)
+    return RadiiFound(controls, coarse, fine, [series.radius for series in exponential])
 
 
 def draw_radius(found: RadiiFound, file: Path) -> None:
@@ -121,36 +123,38 @@ def draw_radius(found: RadiiFound, file: Path) -> None:
         figure = new_figure(10, 5)
         radii, plane = figure.subplots(1, 2)
         _draw_radii(radii, *found)
-        _draw_singularities(plane, found.fine)
+        _draw_singularities(plane, found.controls, found.fine)
         write_figure(figure, file)
 
 
-def _radii(scene: str, order: int) -> list[Radius]:
-    """One for each of the controls."""
+def _expanded(controls: Sequence[Fraction], scene: str, order: int) -> list[MotionSeries]:
+    """A scene's motion, under each of the initial controls."""
+    requests = [SeriesRequest(order, scene, settings={"u0": str(u0)}) for u0 in controls]
     with ThreadPoolExecutor(AT_ONCE) as pool:
-        return list(pool.map(partial(_radius, scene, order), CONTROLS))
+        return list(pool.map(lambda request: compute_series(PAPER, request, Limits()), requests))
 
 
-def _radius(scene: str, order: int, u0: Fraction) -> Radius:
-    request = SeriesRequest(order, scene, settings={"u0": str(u0)})
-    return compute_series(PAPER, request, Limits()).radius
-
-
-def _draw_radii(axes: "Axes", coarse: Sequence[Radius], fine: Sequence[Radius], entire: Sequence[Radius]) -> None:
-    u0 = np.linspace(float(CONTROLS[0]), float(CONTROLS[-1]), 201)
+def _draw_radii(
+    axes: "Axes",
+    controls: Sequence[Fraction],
+    coarse: Sequence[Radius],
+    fine: Sequence[Radius],
+    entire: Sequence[Radius],
+) -> None:
+    u0 = np.linspace(float(controls[0]), float(controls[-1]), 201)
     axes.plot(u0, np.sqrt(u0**2 + 0.5), color=INK, linewidth=1, label="√(u₀² + 1/2)")
     for radii, order, colour, marker in (
         (coarse, ORDERS_OF_RADII[0], VERMILION, "s"),
         (fine, ORDERS_OF_RADII[1], BLUE, "o"),
     ):
-        told = [(float(u), r.estimate, r.uncertainty) for u, r in zip(CONTROLS, radii, strict=True) if r.estimate]
+        told = [(float(u), r.estimate, r.uncertainty) for u, r in zip(controls, radii, strict=True) if r.estimate]
         axes.errorbar(
             *zip(*told, strict=True),
             fmt=marker,
             color=colour,
             label=gettext("u = u₀ + t, %(order)s orders", order=order),
         )
-    infinite = [float(u) for u, radius in zip(CONTROLS, entire, strict=True) if radius == ENTIRE]
+    infinite = [float(u) for u, radius in zip(controls, entire, strict=True) if radius == ENTIRE]
     axes.plot(
         infinite, [HIGHEST] * len(infinite), "^", color=GREEN, clip_on=False, label=gettext("u = u₀ exp(t): entire")
     )
@@ -159,8 +163,8 @@ def _draw_radii(axes: "Axes", coarse: Sequence[Radius], fine: Sequence[Radius], 
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)
 
 
-def _draw_singularities(axes: "Axes", radii: Sequence[Radius]) -> None:
-    drawn = list(zip(CONTROLS, radii, strict=True))[::2]
+def _draw_singularities(axes: "Axes", controls: Sequence[Fraction], radii: Sequence[Radius]) -> None:
+    drawn = list(zip(controls, radii, strict=True))[::2]
     true = [complex(-float(u), sign * math.sqrt(0.5)) for u, _ in drawn for sign in (-1, 1)]
     axes.plot(*_parts(true), "o", color=INK, fillstyle="none", markersize=10, label="1 + 2 (u₀ + t)² = 0")
     found = [z for _, radius in drawn for z in radius.singularities]

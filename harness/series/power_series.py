@@ -6,7 +6,7 @@ as many digits, where something is computed from them.
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
@@ -90,6 +90,12 @@ class MotionSeries(Shown):
         """Radius of convergence about t0."""
         with mpmath.workdps(self.digits):
             return estimate_radius([numbers(series) for _, series in self.all_series()])
+
+    def up_to(self, order: int) -> "MotionSeries":
+        """The same series without the powers above a lower order."""
+        groups = ("coordinates", "multipliers", "constraint_forces")
+        kept = {group: {name: row[: order + 1] for name, row in getattr(self, group).items()} for group in groups}
+        return replace(self, order=order, **kept)
 
     def _table(self) -> Show:
         from ..cli.tables.motion import show_series

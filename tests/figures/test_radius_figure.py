@@ -14,9 +14,8 @@ SVG = "{http://www.w3.org/2000/svg}"
 def figure(tmp_path_factory):
     path = tmp_path_factory.mktemp("figures") / "radius.svg"
     with pytest.MonkeyPatch.context() as few:
-        few.setattr(convergence, "CONTROLS", [Fraction(-1), Fraction(0), Fraction(3, 10)])
         few.setattr(convergence, "ORDERS_OF_RADII", (30, 40))
-        convergence.draw_radius(convergence.find_radii(), path)
+        convergence.draw_radius(convergence.find_radii([Fraction(-1), Fraction(0), Fraction(3, 10)]), path)
     return ElementTree.parse(path)
 
 
