@@ -367,42 +367,65 @@
 ;;;
 ;;; What rounding leaves of a zero shrinks with the digits of the arithmetic: a coefficient that
 ;;; falls by as many digits as were added, but for a few, is none. The coarser expansion may have come
-;;; out as zero by luck; then the finer one is none that is as small as what is left of others of its order.
+;;; out smaller by luck, or as zero; then there is none where both are as small as what is left of others,
+;;; measured by the largest coefficients of orders around.
 
 (defvar *few-digits* 5)
 
 (defun $agreeing_digits (coarse fine added)
   "Significant decimal digits that all coefficients of two expansions share."
-  (let ((digits most-positive-fixnum) (noise (rounding-by-order coarse fine added)))
+  (let ((digits most-positive-fixnum) (rounding (rounding-levels coarse fine added)))
     (map-coefficients coarse fine
                       #'(lambda (a b order)
-                          (if (not (rounded-zero-p a b added (svref noise order)))
+                          (if (not (rounded-zero-p a b added (svref rounding order)))
                               (setq digits (min digits (shared-digits a b))))
                           0))
     digits))
 
 (defun $without_rounded_zeros (coarse fine added)
   "The finer expansion, where rounding has left no zero."
-  (let ((noise (rounding-by-order coarse fine added)))
+  (let ((rounding (rounding-levels coarse fine added)))
     (map-coefficients coarse fine
-                      #'(lambda (a b order) (if (rounded-zero-p a b added (svref noise order)) 0 b)))))
+                      #'(lambda (a b order) (if (rounded-zero-p a b added (svref rounding order)) 0 b)))))
 
-(defun rounded-zero-p (a b added noise)
-  (if (eql a 0) (<= (abs b) noise) (shrinks-p a b added)))
+(defun rounded-zero-p (a b added levels)
+  (or (shrinks-p a b added)
+      (and (below-p a (car levels)) (below-p b (cdr levels)))))
 
 (defun shrinks-p (a b added)
   (<= (* (abs b) (expt 10 (- added *few-digits*))) (abs a)))
 
-(defun rounding-by-order (coarse fine added)
-  "For each order the most that is left of a coefficient that shrinks, and a few digits more."
-  (let ((noise (make-array (length (cdr (third (second coarse)))) :initial-element 0)))
+(defun below-p (x level)
+  (or (eql x 0) (and level (<= (binary-magnitude x) level))))
+
+(defun rounding-levels (coarse fine added)
+  "For each order binary magnitudes of what is left of a zero at most, by the coarse and by the fine expansion."
+  (let ((sizes (sizes-by-order coarse fine)) (of-coarse nil) (of-fine nil)
+        (few (ceiling (* *few-digits* (log 10d0 2d0)))))
     (map-coefficients coarse fine
                       #'(lambda (a b order)
-                          (if (and (not (eql a 0)) (shrinks-p a b added))
-                              (setf (svref noise order)
-                                    (max (svref noise order) (* (abs b) (expt 10 *few-digits*)))))
+                          (if (and (not (eql a 0)) (not (eql b 0)) (shrinks-p a b added))
+                              (setq of-coarse (larger of-coarse (- (binary-magnitude a) (svref sizes order)))
+                                    of-fine (larger of-fine (- (binary-magnitude b) (svref sizes order)))))
                           0))
-    noise))
+    (map 'vector
+         #'(lambda (size)
+             (if of-coarse (cons (+ of-coarse size few) (+ of-fine size few)) (cons nil nil)))
+         sizes)))
+
+(defun larger (x y) (if x (max x y) y))
+
+(defun sizes-by-order (coarse fine)
+  "Binary magnitude of the largest coefficient of each order and the orders beside it."
+  (let* ((orders (length (cdr (third (second coarse))))) (sizes (make-array orders :initial-element nil)))
+    (map-coefficients coarse fine
+                      #'(lambda (a b order)
+                          (declare (ignore a))
+                          (if (not (eql b 0))
+                              (loop for k from (max 0 (1- order)) to (min (1- orders) (1+ order))
+                                    do (setf (svref sizes k) (larger (svref sizes k) (binary-magnitude b)))))
+                          0))
+    (map 'vector #'(lambda (size) (or size 0)) sizes)))
 
 (defun map-coefficients (coarse fine function)
   (cons '(mlist)
