@@ -2,12 +2,15 @@
 
 BIN     := .venv/bin
 STAMP   := .venv/installed
-TEST    := $(BIN)/pytest -q --numprocesses auto --dist loadgroup
+TEST    := $(BIN)/pytest -q --numprocesses auto --dist loadgroup --no-loadscope-reorder
 SCENES  := $(filter-out %/printed.mac examples/hard/%,$(shell find examples -name '*.mac' | sort))
 RECORDS := $(SCENES:%.mac=build/%.json)
 SOURCES := $(shell find maxima harness -type f -not -path '*/__pycache__/*')
 PRINTED := examples/paper/printed.mac
 HARD    := $(shell find examples/hard -name '*.mac')
+
+# Where Python writes no bytecode, each of the hundreds of processes of a run compiles the package again.
+unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := paper
 .DELETE_ON_ERROR:

@@ -8,9 +8,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, settings
 from particle import PARTICLE
 
 from holonom.documents import Document, ask
+from holonom.errata import PrintedEquation, errata
 
 # As the command line has it, and every process that the tests start: with threads of its own in each of the tests'
 # processes, BLAS takes ten times as long. NumPy reads this when it is first imported, which is later.
@@ -21,8 +23,14 @@ for number, handler in ((signal.SIGINT, signal.default_int_handler), (signal.SIG
     if signal.getsignal(number) is signal.SIG_IGN:
         signal.signal(number, handler)
 
+# Whatever else the machine does, no example of Hypothesis' is too slow.
+settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("patient")
+
 ScenesWriter = Callable[[str], Path]
-COMPANION = Path(__file__).with_name("companion")
+# Fixtures that take long, and are made once: the group of all tests that ask for them.
+MADE_ONCE = {"results": "companion", "browser": "companion", "printed_equations": "errata"}
+LONGEST = ("companion", "test_rigid_bodies", "test_preloaded", "test_names", "test_study", "errata", "test_wheel")
 
 
 @pytest.fixture(scope="session")
@@ -57,6 +65,12 @@ def particle_record(tmp_path_factory: pytest.TempPathFactory) -> str:
     return ask(Document.RECORD, file)
 
 
+@pytest.fixture(scope="session")
+def printed_equations() -> tuple[PrintedEquation, ...]:
+    """The paper as printed, compared with the derivation."""
+    return errata()
+
+
 def pytest_xdist_auto_num_workers() -> int:
     """One more than there are cores: some tests wait, for a browser, a signal, or the end of a time limit."""
     return (os.cpu_count() or 1) + 1
@@ -64,10 +78,23 @@ def pytest_xdist_auto_num_workers() -> int:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """On several cores: the tests of a file stay together, and so do those that read the companion, made once."""
-    for item in items:
-        group = "companion" if COMPANION in item.path.parents else item.path.stem
+    """On several cores: the tests of a file stay together, and so do those of a fixture that is made once.
+
+    Those that take longest come first, then files with many tests, so that no core waits for a last long one.
+    """
+    groups = {item: _group(item) for item in items}
+    sizes = Counter(groups.values())
+    for item, group in groups.items():
         item.add_marker(pytest.mark.xdist_group(group))
+    items.sort(key=lambda item: (_rank(groups[item]), -sizes[groups[item]], groups[item]))
+
+
+def _group(item: pytest.Item) -> str:
+    return next((MADE_ONCE[name] for name in item.fixturenames if name in MADE_ONCE), item.path.stem)
+
+
+def _rank(group: str) -> int:
+    return LONGEST.index(group) if group in LONGEST else len(LONGEST)
 
 
 def pytest_terminal_summary(terminalreporter) -> None:

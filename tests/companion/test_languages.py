@@ -7,6 +7,7 @@ from xml.etree.ElementTree import Element
 import pages
 import pytest
 from click.testing import CliRunner
+from matplotlib.figure import Figure
 
 from holonom import language
 from holonom.benchmark.machine import this_machine
@@ -69,12 +70,13 @@ class Bracketing(NullTranslations):
 
 @pytest.fixture(scope="module")
 def bracketed(results, tmp_path_factory):
-    """Directory of the companion of the paper in that language; the pictures of the gallery are left out."""
+    """Directory of the companion of the paper in that language; no pictures are drawn."""
     directory = tmp_path_factory.mktemp("bracketed") / "pages"
     known = language._catalog
     with pytest.MonkeyPatch.context() as changed:
         changed.setattr(language, "_catalog", lambda name: Bracketing() if name == "zh" else known(name))
         changed.setattr(gallery, "figures_of", lambda shown: {})
+        changed.setattr(Figure, "savefig", lambda figure, file, **how: file.write("<svg/>"))
         companion_pages._environment.cache_clear()  # in which the words of templates are kept, in proper Chinese
         with speaking("zh"):
             write_whole_directory(directory, book.pages(book_of_the_paper(), results))

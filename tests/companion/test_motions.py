@@ -1,31 +1,12 @@
-"""Motions on the pages: every example is in the gallery, and a system that does not say how it looks has its curves."""
+"""Motions on the pages: every example is in the gallery, moving, still and as curves."""
 
 from xml.etree import ElementTree
 
 import pages
 import pytest
-from click.testing import CliRunner
 
-from holonom.cli import holonom
 from holonom.companion.chapters.gallery import EXHIBITS
 from holonom.companion.paper import REPOSITORY
-
-OWN = """load("holonom.mac")$
-system : holonomic_system(coordinates = [x, y], controls = [u],
-  kinetic_energy = (dot(x)^2 + dot(y)^2)/2, constraints = [y - u*x]{drawing})$
-rising : holonomic_scene(system, title = "Rising", control_law = [u = 1 + t],
-  initial_state = [x = 1, dot(x) = 0], time_span = [0, 1], observe = [residuals])$
-endless : holonomic_scene(system, title = "Endless", control_law = [u = 1 + t], initial_state = [x = 1, dot(x) = 0])$
-"""
-
-
-def own_pages(tmp_path, drawing: str):
-    file, directory = tmp_path / "own.mac", tmp_path / "pages"
-    file.write_text(OWN.format(drawing=drawing))
-    arguments = ["companion", str(file), "-o", str(directory)]
-    assert CliRunner(mix_stderr=False).invoke(holonom, arguments, standalone_mode=False).return_value == 0
-    assert pages.broken_references(directory) == []
-    return directory
 
 
 def test_every_example_is_in_the_gallery():
@@ -47,17 +28,3 @@ def test_a_support_that_is_shaken_is_seen_to_move(companion):
     film = ElementTree.parse(companion / "figures" / "spherical-pendulum-moving.svg")
     (still,) = (group for group in film.iter() if group.get("class") == "fixed")
     assert len(still) == 1
-
-
-def test_a_scene_is_drawn_whatever_it_observes_and_one_without_end_says_why_not(tmp_path):
-    directory = own_pages(tmp_path, ", drawing = [point([x, y])]")
-    assert {file.name for file in (directory / "figures").iterdir()} == {
-        f"scene-1-{kind}.svg" for kind in ("moving", "still", "curves")
-    }
-    assert "endless: the scene has no time span; give it one" in pages.words(directory / "motion.html")
-
-
-def test_a_system_that_does_not_say_how_it_looks_has_its_curves(tmp_path):
-    directory = own_pages(tmp_path, "")
-    assert [file.name for file in (directory / "figures").iterdir()] == ["scene-1-curves.svg"]
-    assert "The system does not say how it looks." in pages.words(directory / "motion.html")

@@ -1,19 +1,18 @@
 """`holonom companion SCENE... -o DIR`: the same pages for anybody's system, and refusals that say why."""
 
 import pages
-from own_system import SMOOTH, made
+from own_system import SMOOTH, TEXTS, UNCONSTRAINED, made
 
 from holonom.files import write_files
 
-ROUGH = """rough_scene : holonomic_scene(system, title = "Rough",
-  control_law = [u = 1 + t^(7/2)], parameter_values = [k = 2], initial_state = [x = 1, y = 1, dot(x) = 0, dot(y) = 0])$
-"""
-CHAPTERS = ("the-system", "equations-of-motion", "free-motion", "initial-motion")
+CHAPTERS = ("the-system", "equations-of-motion", "free-motion", "initial-motion", "motion")
 
 
 def test_every_file_has_its_chapters(own):
-    assert {f"{prefix}-{slug}.html" for prefix in ("1-my-system", "2-weightless-cabin") for slug in CHAPTERS} <= {
-        page.name for page in own.glob("*.html")
+    prefixes = [*(name.replace(" ", "-") for name in TEXTS), "weightless-cabin", "chain"]
+    assert {page.name for page in own.glob("*.html")} == {
+        "index.html",
+        *(f"{place}-{prefix}-{slug}.html" for place, prefix in enumerate(prefixes, 1) for slug in CHAPTERS),
     }
 
 
@@ -25,12 +24,17 @@ def test_links_resolve_and_pages_are_sound(own):
         assert pages.badly_nested(page) == [], page.name
 
 
+def test_no_card_without_a_formula_has_a_verdict(own):
+    """What stands in the place of a formula was not compared with anything."""
+    assert [page.name for page in pages.pages(own) if pages.verdicts_without_a_formula(page)] == []
+
+
 def test_signs_of_markup_in_a_title_are_text(own):
     assert "Cart & bob on a <stiff> spring" in pages.words(own / "1-my-system-the-system.html")
 
 
 def test_free_motion_and_series_are_answered(own):
-    assert "Every motion is free" in pages.words(own / "2-weightless-cabin-free-motion.html")
+    assert "Every motion is free" in pages.words(own / "6-weightless-cabin-free-motion.html")
     assert "The series converges for" in pages.words(own / "1-my-system-initial-motion.html")
 
 
@@ -39,25 +43,35 @@ def test_numbers_come_before_closed_forms(own):
     assert page.index("First coefficients of") < page.index("smooth_scene-eq-12")
 
 
-def test_an_answer_that_mathematics_refuses_is_replaced_by_the_reason(tmp_path):
-    outcome, directory = made(tmp_path, ROUGH)
-    assert outcome.return_value == 0
-    assert "No answer was found: " in (shown := pages.words(directory / "initial-motion.html"))
+def test_an_answer_that_mathematics_refuses_is_replaced_by_the_reason(own):
+    assert "No answer was found: " in (shown := pages.words(own / "2-rough-initial-motion.html"))
     assert "not analytic" in shown
 
 
-def test_a_system_without_constraints_is_free(tmp_path):
-    outcome, directory = made(tmp_path, "", constrained=False)
-    assert outcome.return_value == 0
-    assert "every motion is free" in pages.words(directory / "free-motion.html")
+def test_a_system_without_constraints_is_free(own):
+    assert "every motion is free" in pages.words(own / "3-unconstrained-free-motion.html")
     for slug in CHAPTERS:
-        paragraphs = pages.parsed(directory / f"{slug}.html").iter(f"{pages.HTML}p")
+        paragraphs = pages.parsed(own / f"3-unconstrained-{slug}.html").iter(f"{pages.HTML}p")
         said = " ".join("".join(each.itertext()) for each in paragraphs if each.get("class") != "origin")
         assert "control" not in said.replace("no controls", ""), slug
 
 
+def pictures(own, prefix: str) -> set[str]:
+    return {file.name for file in (own / "figures").glob(f"{prefix}-*")}
+
+
+def test_a_scene_is_drawn_whatever_it_observes_and_one_without_end_says_why_not(own):
+    assert pictures(own, "4-drawn") == {f"4-drawn-scene-1-{kind}.svg" for kind in ("moving", "still", "curves")}
+    assert "endless: the scene has no time span; give it one" in pages.words(own / "4-drawn-motion.html")
+
+
+def test_a_system_that_does_not_say_how_it_looks_has_its_curves(own):
+    assert pictures(own, "5-undrawn") == {"5-undrawn-scene-1-curves.svg"}
+    assert "The system does not say how it looks." in pages.words(own / "5-undrawn-motion.html")
+
+
 def test_a_file_that_is_refused_leaves_nothing(tmp_path):
-    outcome, directory = made(tmp_path, SMOOTH.replace("x = 1", "x = 1, y = 2"))
+    outcome, directory = made(tmp_path, {"my system": SMOOTH.replace("x = 1", "x = 1, y = 2")})
     assert outcome.return_value == 2
     assert "contradicts constraint 1" in outcome.stderr
     assert outcome.stderr.count("\n") == 1
@@ -67,7 +81,7 @@ def test_a_file_that_is_refused_leaves_nothing(tmp_path):
 def test_a_directory_with_other_things_in_it_is_left_alone(tmp_path):
     (tmp_path / "pages").mkdir()
     (tmp_path / "pages" / "thesis.txt").write_text("years of work")
-    outcome, directory = made(tmp_path, SMOOTH)
+    outcome, directory = made(tmp_path, {"own": SMOOTH})
     assert outcome.return_value == 2
     assert "other things than a companion" in outcome.stderr
     assert (directory / "thesis.txt").read_text() == "years of work"
@@ -76,7 +90,7 @@ def test_a_directory_with_other_things_in_it_is_left_alone(tmp_path):
 def test_of_a_companion_what_was_written_is_replaced_and_the_rest_stays(tmp_path):
     write_files(tmp_path / "pages", {"index.html": "an earlier edition", "stale.html": "from an earlier edition"})
     (tmp_path / "pages" / "own.mac").write_text("years of work")
-    outcome, directory = made(tmp_path, "")
+    outcome, directory = made(tmp_path, {"own": UNCONSTRAINED})
     assert outcome.return_value == 0
     assert not (directory / "stale.html").exists()
     assert (directory / "own.mac").read_text() == "years of work"

@@ -152,13 +152,13 @@ def beginning(found) -> list:
 
 
 @pytest.fixture(scope="module")
-def contents(results):
+def contents(results, chapter_pages):
     """Results of the runs and content of the page, of each chapter that states something."""
     made = {}
     for module in {statement.chapter for statement in STATEMENTS}:
         chapter = chapter_of_the_paper(module.__name__.rpartition(".")[2])
         found = {name: results[run] for name, run in chapter.runs.items()}
-        made[module] = (chapter.slug, found, chapter.page(found).content)
+        made[module] = (chapter.slug, found, chapter_pages[chapter.slug].content)
     return made
 
 

@@ -77,7 +77,7 @@ EXPRESSIONS = st.recursive(
 )
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=60, derandomize=True)
 @given(EXPRESSIONS, EXPRESSIONS)
 def test_the_square_of_a_sum_is_proved_and_its_neighbour_is_not(a: sp.Expr, b: sp.Expr) -> None:
     square = (a + b) ** 2 - (a**2 + 2 * a * b + b**2)

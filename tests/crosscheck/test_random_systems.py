@@ -113,7 +113,6 @@ EVERY_TERM = SystemText(
 
 @settings(
     max_examples=SYSTEMS,
-    deadline=None,
     derandomize=True,
     phases=[Phase.explicit, Phase.generate],  # shrinking a failure would run Maxima hundreds of times
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],

@@ -341,7 +341,7 @@ ENVIRONMENTS = [
     ),
     Fault(
         "a compiler that hangs",
-        "effects scene.mac --time-limit 6",
+        "effects scene.mac --time-limit 30",
         "ran out of them while compiling C",
         prepare=executable("hangs", "#!/bin/sh\nexec sleep 1000\n"),
         environment={"CC": "{here}/hangs"},
@@ -390,7 +390,7 @@ WORK = [
     ),
     Fault(
         "a law that swings faster and faster",
-        "simulate law.mac --until 1 --time-limit 8 --final",
+        "simulate law.mac --until 1 --time-limit 20 --final",
         "ran out of them while following the motion",
         prepare=holding("law.mac", PARTICLE.replace("u = t]", "u = sin(1/(t-1/2))]")),
         long=True,
@@ -406,7 +406,7 @@ WORK = [
     ),
     Fault(
         "a motion that takes too long",
-        "simulate swing.mac --until 1e9 --time-limit 8 --final",
+        "simulate swing.mac --until 1e9 --time-limit 20 --final",
         "ran out of them while following the motion",
         prepare=holding("swing.mac", SWING),
         long=True,

@@ -112,7 +112,7 @@ def names(processes: list[psutil.Process]) -> list[str]:
 
 
 def soon(condition: Callable[[], bool]) -> bool:
-    deadline = time.monotonic() + 60
+    deadline = time.monotonic() + 100
     while not condition() and time.monotonic() < deadline:
         time.sleep(0.05)
     return condition()

@@ -40,7 +40,7 @@ def test_programs_by_hand(written):
 
 
 @by_node
-@settings(max_examples=10, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=10, suppress_health_check=list(HealthCheck))
 @given(random_programs())
 def test_random_programs(written):
     assume_well_conditioned(written)

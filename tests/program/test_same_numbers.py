@@ -49,7 +49,7 @@ def test_programs_by_hand(written):
     assert_same_numbers(written)
 
 
-@settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=25, suppress_health_check=list(HealthCheck))
 @given(random_programs())
 def test_random_programs(written):
     assume_well_conditioned(written)

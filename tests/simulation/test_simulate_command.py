@@ -127,7 +127,8 @@ def test_an_interrupted_run_leaves_no_file(tmp_path):
     samples = tmp_path / "swing.csv"
     command = [*SIMULATE, str(PENDULUM), "--until", "100000000", "--samples", "2", "-o", str(samples)]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-    time.sleep(4)
+    while process.poll() is None and not list(tmp_path.iterdir()):  # until it writes what will be its samples
+        time.sleep(0.05)
     process.send_signal(signal.SIGINT)
     process.communicate(timeout=60)
     assert process.returncode == 130

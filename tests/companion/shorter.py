@@ -1,0 +1,30 @@
+"""The longest of the companion's runs to a smaller extent, for tests of the pages; they have tests of their own."""
+
+from fractions import Fraction
+
+from holonom.benchmark.work_precision.study import Plan, Study, study
+from holonom.companion.chapter import Run
+from holonom.companion.chapters import INITIAL_SCENE, PAPER
+from holonom.companion.paper import REPOSITORY, chapter_of_the_paper
+from holonom.confined import Limits
+from holonom.figures.convergence import RadiiFound, find_radii
+from holonom.program.request import Request
+
+
+def few_radii() -> RadiiFound:
+    return find_radii((Fraction(-1), Fraction(0), Fraction(3, 10)))
+
+
+def coarse_study() -> Study:
+    plan = Plan(
+        tolerances={"double": (1e-4, 1e-8, 1e-12), "quadruple": (1e-24,)},
+        solver_tolerances=(1e-4, 1e-8, 1e-12),
+        orders=(10, 20, 40),
+    )
+    return study(REPOSITORY / PAPER, Request(INITIAL_SCENE), Limits(), plan)
+
+
+SHORTER = {
+    chapter_of_the_paper("radius_of_convergence").runs["radius"]: Run(few_radii),
+    chapter_of_the_paper("work_precision").runs["study"]: Run(coarse_study),
+}
