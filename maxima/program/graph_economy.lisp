@@ -139,7 +139,7 @@
     (if (null letter)
         (sum-of (append open closed))
         (let* ((inside (remove-if-not #'(lambda (term) (contains-letter-p term letter)) open))
-               (outside (set-difference open inside))
+               (outside (remove-if #'(lambda (term) (contains-letter-p term letter)) open))
                (divided (mapcar #'(lambda (term) (divided-by-letter term letter)) inside))
                (product (product-of (list (factored divided nil) (letter-term letter)))))
           (factored (cons product outside) closed)))))
