@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..language import translatable
-from .constraints.factorization import factored_constraints, rank_of, weighted_constraints
+from .constraints.directions import rank_of, weighted_constraints
+from .constraints.factorization import factored_constraints
 from .diagnostics import condition
 from .matrices import Matrices, MotionMatrices, Vector
 
@@ -127,8 +128,8 @@ def stiffness(matrices: MotionMatrices, at: Instant) -> float:
 
 def _accelerations(matrices: MotionMatrices, at: Instant, move: Vector) -> Vector:
     moved = matrices(at.t, at.state + move)
-    weighted = weighted_constraints(moved.mass, moved.jacobian)
-    factored = factored_constraints(weighted, rank_of(weighted.singular_values()))
+    rank = rank_of(weighted_constraints(moved.mass, moved.jacobian).singular_values())
+    factored = factored_constraints(moved.mass, moved.jacobian, rank)
     return factored.accelerations(moved.force, moved.curvature)
 
 

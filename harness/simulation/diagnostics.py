@@ -17,7 +17,7 @@ from numpy.polynomial.legendre import leggauss
 from ..program.motion_problem import MotionProblem, computing
 from ..program.motion_program import names_in
 from ..program.precision import Precision, read_precision
-from .constraints.factorization import weighted_constraints
+from .constraints.directions import weighted_constraints
 from .evaluation import Numbers, evaluation_once, zeros
 from .matrices import Matrices, Vector
 from .trust import may_hide

@@ -45,20 +45,26 @@ class MotionMatrices:
         require_analytic(problem)
         self._layout, self._kept = _Layout(problem), problem.independent
         self._evaluate = evaluation_once(problem, problem.matrices, read_precision("double"))
-        unused = [0.0] * len(problem.multipliers)
-        self._inputs = np.array([0.0] * (1 + len(problem.state)) + unused + list(problem.numbers))
+        self._others = np.array([0.0] * len(problem.multipliers) + list(problem.numbers))
 
-    def __call__(self, t: float, state: Vector) -> Matrices:
+    def __call__(self, t: float | Vector, state: Vector) -> Matrices:
         """Evaluate the matrices.
 
         Parameters
         ----------
-        state : ndarray, shape (2n,)
+        t : float or ndarray, shape (k,)
+        state : ndarray, shape (2n,) or (k, 2n)
             Coordinates, then velocities.
+
+        Returns
+        -------
+        Matrices
+            At k states, each with a first axis more, of length k.
         """
-        self._inputs[0] = t
-        self._inputs[1 : 1 + len(state)] = state
-        return self._layout.matrices(self._evaluate(self._inputs))
+        rest = state.shape[:-1]
+        parts = [np.broadcast_to(t, rest)[..., None], state, np.broadcast_to(self._others, (*rest, len(self._others)))]
+        inputs = np.concatenate(parts, axis=-1)
+        return self._layout.matrices_at_each(self._evaluate(np.ascontiguousarray(inputs.T)).T)
 
     def independent(self, t: float, state: Vector) -> Matrices:
         """Evaluate the matrices of the constraints that do not follow from others."""
@@ -111,8 +117,16 @@ class _Layout:
         rest = outputs.shape[1:]
         values = np.zeros((self._size, *rest))
         values[self._places] = outputs
-        finite = np.isfinite(values).all(axis=0)
+        finite = np.isfinite(outputs).all(axis=0)
         return Matrices(*(values[part].reshape(*shape, *rest) for part, shape in self._parts), finite)
+
+    def matrices_at_each(self, outputs: Numbers) -> Matrices:
+        """The same of what the program computes, shape (..., outputs), each of shape (...) and its own."""
+        rest = outputs.shape[:-1]
+        values = np.zeros((*rest, self._size))
+        values[..., self._places] = outputs
+        finite = np.isfinite(outputs).all(axis=-1)
+        return Matrices(*(values[..., part].reshape(*rest, *shape) for part, shape in self._parts), finite)
 
 
 def start_of(problem: MotionProblem) -> tuple[float, Vector]:

@@ -12,13 +12,14 @@ from ...language import translatable
 from ...program.motion_problem import MotionProblem
 from ...program.motion_program import Solve
 from ...program.numpy_function import NumpyFunction
-from ...simulation.constraints.factorization import factored_constraints, rank_of, weighted_constraints
+from ...simulation.constraints.directions import rank_of, weighted_constraints
+from ...simulation.constraints.factorization import factored_constraints
 from ...simulation.matrices import Matrices, MotionMatrices, Vector
 from .case import Result, ours, theirs
 from .runs import problem
 
 TEXTBOOK, DIRECT = translatable("textbook formula"), translatable("direct")
-ORTHOGONAL, PIVOTED = translatable("orthogonal"), translatable("LAPACK, pivoted")
+ORTHOGONAL, PIVOTED = translatable("orthogonal"), translatable("pivoted")
 
 
 class Solved(NamedTuple):
@@ -67,8 +68,8 @@ def textbook(matrices: Matrices) -> Solved:
 
 def pivoted(matrices: Matrices) -> Solved:
     """As the robust engine solves."""
-    weighted = weighted_constraints(matrices.mass, matrices.jacobian)
-    factored = factored_constraints(weighted, rank_of(weighted.singular_values()))
+    rank = rank_of(weighted_constraints(matrices.mass, matrices.jacobian).singular_values())
+    factored = factored_constraints(matrices.mass, matrices.jacobian, rank)
     sides = matrices.force, matrices.curvature
     return Solved(factored.accelerations(*sides), factored.multipliers(*sides))
 

@@ -1,193 +1,231 @@
-"""Constraints in the mass metric, factored with pivots: solves that dependent rows and bad scales leave unharmed.
+"""The equations of motion at a state, A a - J^T lambda = h and J a = -c, factored with pivots.
 
-With A = L L^T and every row of J scaled to length one, W = L^-1 J^T D holds the constraints' directions as columns.
-An orthonormal basis Q of what they span splits every acceleration L^T a in two: along Q it is what the constraints
-ask, across Q what the forces give. W is never squared, so that near a singular configuration the accelerations keep
-about half of the digits that G = J A^-1 J^T would lose (Golub & Van Loan, Matrix Computations, sections 5.3 and 6.1).
+Bad scales of masses and constraints, and constraints that follow from others, do them no harm. G = J A^-1 J^T is never
+formed: near a singular configuration the accelerations keep about half of the digits that it would lose.
 
-Where A is not positive definite, A + rho J^T J and h - rho J^T c take the place of A and h: they have the same
-accelerations and the same multipliers, since J a = -c.
+Where all constraints count as independent, the equations are one sparse system. With S the inverse roots of the masses
+on A's diagonal, D what brings the rows of J S to length one, and a small alpha,
 
-Each factorisation costs O(n^3) operations for n coordinates: g^2 n by Householder's method where the constraints are
-independent, a singular value decomposition where they are not.
+    | alpha S A S  (D J S)^T |   |     S^-1 a         |     | alpha S h |
+    | D J S            0     |   | -alpha D^-1 lambda |  =  |   - D c   |
+
+is symmetric, and its condition number grows no faster than that of D J S while alpha is small beside the latter's
+singular values (Arioli, Duff & de Rijk, On the augmented system approach to sparse least-squares problems, 1989).
+SuperLU factors it with partial pivoting: what that costs grows like the fill, linearly along a chain of bodies. A step
+or two of refinement make the error that of a rounding in each entry that is not zero (Skeel, Iterative refinement
+implies numerical stability for Gaussian elimination, 1980).
+
+Where some follow from others, a singular value decomposition of the constraints' directions W drops what vanishes
+(Golub & Van Loan, Matrix Computations, sections 5.3 and 6.1): an orthonormal basis Q of what they span splits every
+acceleration L^T a in two, along Q what the constraints ask, across Q what the forces give. It costs O(n^3) operations
+for n coordinates.
 """
 
-from dataclasses import dataclass
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from math import prod
+from typing import Any
 
 import numpy as np
 
-from ...failures import Failure, HolonomError
 from ..matrices import Matrix, Vector
-from ..parts_of_scipy import lapack
+from ..parts_of_scipy import superlu
+from .directions import EPSILON, or_one, weighted_constraints
 
-EPSILON = float(np.finfo(float).eps)
-DEPENDENT = 1e-12  # singular values of the scaled constraints, relative to the largest, that count as rounding
-INVOLVED = 1e-6  # share of a constraint in a vanishing combination that is more than rounding
-NEGATIVE = 1e-12  # masses below zero, relative to the largest, that are more than rounding
-SINGULAR_MASS = 64 * EPSILON  # what elimination may leave of a diagonal entry of A before A counts as singular
-
-
-@dataclass(frozen=True)
-class WeightedConstraints:
-    """The constraints' directions in the mass metric."""
-
-    factor: Matrix  # shape (n, n): L, the Cholesky factor of the metric
-    scale: Vector  # shape (g,): D, the factors that bring the columns of W to length one
-    directions: Matrix  # shape (n, g): W = L^-1 J^T D
-    stiffening: Matrix | None  # shape (n, g): rho J^T where A is not positive definite
-
-    def singular_values(self) -> Vector:
-        """Singular values of W, the largest first."""
-        return np.linalg.svd(self.directions, compute_uv=False) if self.directions.size else np.empty(0)
-
-    def length(self, change: Vector) -> float:
-        """Length of a change of coordinates or velocities in the mass metric."""
-        return float(np.linalg.norm(self.factor.T @ change))
-
-    def per_root_mass(self, force: Vector) -> Vector:
-        """L^-1 h."""
-        return lapack().dtrtrs(self.factor, force, lower=1)[0]
-
-    def unweighted(self, z: Vector) -> Vector:
-        """L^-T z."""
-        return lapack().dtrtrs(self.factor, z, lower=1, trans=1)[0]
+ALPHA = 2.0**-10
+REFINEMENTS = 5
+CONTRACTION = 0.5  # a change at least that large beside the last one leads nowhere
+ROUNDING = 4 * EPSILON  # relative change of the accelerations that is none
 
 
-@dataclass(frozen=True)
-class FactoredConstraints:
-    """The constraints' directions in an orthonormal basis, W = Q C.
+class FactoredConstraints(ABC):
+    """The equations of motion at a state, factored, or at several states: then all arrays have an axis before.
 
     Methods take and return forces and accelerations of shape (n,); residuals, curvatures c and multipliers are of
     shape (g,).
     """
 
-    weighted: WeightedConstraints
-    basis: Matrix  # shape (n, r): Q; r is the rank that counts
-    complement: Matrix  # shape (n, n - r): an orthonormal basis of the directions that are free
-    inverse: Matrix  # shape (r, g): transposed pseudo-inverse of C
+    @abstractmethod
+    def length(self, change: Vector) -> Vector:
+        """Length of a change of coordinates or velocities, each weighted with its mass."""
 
-    def correction(self, residual: Vector) -> Vector:
-        """The change d, least in the mass metric, with J d = -residual."""
-        return self.weighted.unweighted(self.basis @ self._along(residual))
+    @abstractmethod
+    def distances(self, residual: Vector) -> Vector:
+        """How far away each constraint is in the mass metric, to first order."""
 
+    @abstractmethod
     def accelerations(self, force: Vector, curvature: Vector) -> Vector:
         """Accelerations of A a - J^T lambda = h, J a = -c."""
-        free = self.complement.T @ self._weighted_force(force, curvature)
-        return self.weighted.unweighted(self.basis @ self._along(curvature) + self.complement @ free)
 
+    @abstractmethod
     def multipliers(self, force: Vector, curvature: Vector) -> Vector:
         """Multipliers of A a - J^T lambda = h, J a = -c: of all that give the constraint forces, the least."""
-        return self._least(self._along(curvature) - self.basis.T @ self._weighted_force(force, curvature))
 
-    def multipliers_of(self, reactions: Vector) -> Vector:
-        """The least multipliers with J^T lambda = A a - h for accelerations that are known."""
-        return self._least(self.basis.T @ self.weighted.per_root_mass(reactions))
+
+class IndependentConstraints(FactoredConstraints):
+    """By the sparse system; that of several states is one, without coupling. Arguments as `factored_constraints`."""
+
+    def __init__(self, mass: Matrix, jacobian: Matrix) -> None:
+        self._mass, self._jacobian = mass, jacobian
+        masses = np.abs(np.diagonal(mass, axis1=-2, axis2=-1))
+        self._roots = np.sqrt(np.where(masses > 0, masses, or_one(np.max(masses, axis=-1, keepdims=True))))
+        directions = jacobian / self._roots[..., None, :]
+        peaks = or_one(np.max(np.abs(directions), axis=-1, initial=0.0))
+        directions /= peaks[..., None]
+        lengths = or_one(np.linalg.norm(directions, axis=-1))
+        self._scale = 1 / (peaks * lengths)
+        directions /= lengths[..., None]
+        k = prod(mass.shape[:-2])
+        self._factors = self._factored(
+            *(each.reshape(k, *each.shape[mass.ndim - 2 :]) for each in (mass, self._roots, directions))
+        )
+
+    def length(self, change: Vector) -> Vector:
+        """By the masses on A's diagonal."""
+        return np.linalg.norm(self._roots * change, axis=-1)
+
+    def distances(self, residual: Vector) -> Vector:
+        """By the same masses."""
+        return np.abs(self._scale * residual)
+
+    def accelerations(self, force: Vector, curvature: Vector) -> Vector:
+        """Refined until what changes is rounding."""
+        return self._refined(force, curvature)[0]
+
+    def multipliers(self, force: Vector, curvature: Vector) -> Vector:
+        """They are unique."""
+        return self._refined(force, curvature)[1]
+
+    def _factored(self, mass: Matrix, roots: Matrix, directions: Matrix) -> Any:
+        """What SuperLU makes of the system of k states; None where it is singular."""
+        (k, g, n), size = directions.shape, sum(directions.shape[1:])
+        s, r = np.nonzero((mass != 0).any(axis=0))
+        beta, q = np.nonzero((directions != 0).any(axis=0))
+        places = np.concatenate([s * size + r, q * size + n + beta, (n + beta) * size + q])  # it is symmetric
+        along = directions[:, beta, q]
+        order = np.argsort(places)
+        entries = np.concatenate([ALPHA * mass[:, s, r] / (roots[:, s] * roots[:, r]), along, along], axis=1)[:, order]
+        columns, rows = np.divmod(places[order], size)
+        states = np.arange(k)[:, None]
+        rows = (rows + size * states).ravel()
+        starts = (np.searchsorted(columns, np.arange(size)) + len(order) * states).ravel()
+        compressed = entries.ravel(), rows.astype(np.intc), np.append(starts, entries.size).astype(np.intc)
+        options = {"DiagPivotThresh": 1.0, "ColPerm": "COLAMD"}
+        try:
+            return superlu().gstrf(
+                k * size, entries.size, *compressed, csc_construct_func=None, ilu=False, options=options
+            )
+        except RuntimeError:
+            for each in zip(mass, self._jacobian.reshape(k, g, n), strict=True):
+                weighted_constraints(*each)  # refuses masses that make it so
+            return None
+
+    def _refined(self, force: Vector, curvature: Vector) -> tuple[Vector, Vector]:
+        """Accelerations and multipliers, with what the equations miss solved for until that is rounding."""
+        accelerations, multipliers = self._solved(force, curvature)
+        last = np.inf
+        for _ in range(REFINEMENTS):
+            missed = force - np.matvec(self._mass, accelerations) + np.vecmat(multipliers, self._jacobian)
+            change, further = self._solved(missed, curvature + np.matvec(self._jacobian, accelerations))
+            size = np.max(self.length(change) / or_one(self.length(accelerations)))
+            if not size <= CONTRACTION * last:
+                break
+            accelerations, multipliers, last = accelerations + change, multipliers + further, size
+            if size <= ROUNDING:
+                break
+        return accelerations, multipliers
+
+    def _solved(self, force: Vector, curvature: Vector) -> tuple[Vector, Vector]:
+        """Accelerations and multipliers; no numbers where the system is singular."""
+        if self._factors is None:
+            return np.full_like(force, np.nan), np.full_like(curvature, np.nan)
+        sides = np.concatenate([ALPHA * force / self._roots, -self._scale * curvature], axis=-1)
+        found, n = self._factors.solve(sides.ravel()).reshape(sides.shape), force.shape[-1]
+        return found[..., :n] / self._roots, -self._scale * found[..., n:] / ALPHA
+
+
+class DependentConstraints(FactoredConstraints):
+    """By singular values, of which so many count; arguments as for `factored_constraints`, but for one state."""
+
+    def __init__(self, mass: Matrix, jacobian: Matrix, rank: int) -> None:
+        self._weighted = weighted_constraints(mass, jacobian)
+        u, values, v = np.linalg.svd(self._weighted.directions)
+        self._basis, self._complement = u[:, :rank], u[:, rank:]
+        self._inverse = v[:rank] / values[:rank, None]  # shape (r, g): transposed pseudo-inverse of C, W = Q C
+
+    def length(self, change: Vector) -> Vector:
+        """In the mass metric."""
+        return np.linalg.norm(self._weighted.factor.T @ change)
+
+    def distances(self, residual: Vector) -> Vector:
+        """In the mass metric."""
+        return np.abs(self._weighted.scale * residual)
+
+    def accelerations(self, force: Vector, curvature: Vector) -> Vector:
+        """Those across Q by the forces, those along Q by the constraints."""
+        free = self._complement.T @ self._weighted_force(force, curvature)
+        return self._weighted.unweighted(self._basis @ self._along(curvature) + self._complement @ free)
+
+    def multipliers(self, force: Vector, curvature: Vector) -> Vector:
+        """Less what of them makes no force: the null space of J^T."""
+        along = self._along(curvature) - self._basis.T @ self._weighted_force(force, curvature)
+        found = self._weighted.scale * (along @ self._inverse)
+        acting = np.linalg.qr((self._inverse / self._weighted.scale).T)[0]
+        return acting @ (acting.T @ found)
 
     def _weighted_force(self, force: Vector, curvature: Vector) -> Vector:
         """L^-1 h, where A is singular after the change of h that goes with the change of A."""
-        if self.weighted.stiffening is not None:
-            force = force - self.weighted.stiffening @ curvature
-        return self.weighted.per_root_mass(force)
+        if self._weighted.stiffening is not None:
+            force = force - self._weighted.stiffening @ curvature
+        return self._weighted.per_root_mass(force)
 
-    def _along(self, residual: Vector) -> Vector:
-        return -(self.inverse @ (self.weighted.scale * residual))
-
-    def _least(self, along: Vector) -> Vector:
-        """Multipliers of constraint forces along Q, less what of them makes no force: the null space of J^T."""
-        found = self.weighted.scale * (along @ self.inverse)
-        if len(along) == len(found):
-            return found
-        acting = np.linalg.qr((self.inverse / self.weighted.scale).T)[0]
-        return acting @ (acting.T @ found)
+    def _along(self, curvature: Vector) -> Vector:
+        return -(self._inverse @ (self._weighted.scale * curvature))
 
 
-def weighted_constraints(mass: Matrix, jacobian: Matrix) -> WeightedConstraints:
-    """Put the constraints into the mass metric.
+class DependentConstraintsAtEach(FactoredConstraints):
+    """The same at several states; arguments as for `factored_constraints`."""
+
+    def __init__(self, mass: Matrix, jacobian: Matrix, rank: int) -> None:
+        self._each = [DependentConstraints(*at, rank) for at in zip(mass, jacobian, strict=True)]
+
+    def length(self, change: Vector) -> Vector:
+        """In the mass metric."""
+        return self._mapped(DependentConstraints.length, change)
+
+    def distances(self, residual: Vector) -> Vector:
+        """In the mass metric."""
+        return self._mapped(DependentConstraints.distances, residual)
+
+    def accelerations(self, force: Vector, curvature: Vector) -> Vector:
+        """Of each."""
+        return self._mapped(DependentConstraints.accelerations, force, curvature)
+
+    def multipliers(self, force: Vector, curvature: Vector) -> Vector:
+        """Of each."""
+        return self._mapped(DependentConstraints.multipliers, force, curvature)
+
+    def _mapped(self, method: Callable[..., Vector], *sides: Vector) -> Vector:
+        return np.array([method(each, *parts) for each, *parts in zip(self._each, *sides, strict=True)])
+
+
+def factored_constraints(mass: Matrix, jacobian: Matrix, rank: int) -> FactoredConstraints:
+    """Factor the equations of motion.
 
     Parameters
     ----------
-    mass : ndarray, shape (n, n)
+    mass : ndarray, shape (n, n) or (k, n, n)
         A, symmetric; positive definite together with the constraints.
-    jacobian : ndarray, shape (g, n)
+    jacobian : ndarray, shape (g, n) or (k, g, n)
         J; its rows may be dependent, and of any scale.
+    rank : int
+        How many of the constraints count as independent.
 
     Raises
     ------
     HolonomError
-        A is singular along a direction that the constraints leave free, or it is indefinite and the constraints do not
-        make up for it.
+        As `weighted_constraints`, where the equations are found to be singular.
     """
-    peaks = _or_one(np.max(np.abs(jacobian), axis=1, initial=0.0))
-    rows = jacobian / peaks[:, None]
-    factor, stiffening = _cholesky(mass), None
-    if factor is None:
-        stiffening = np.abs(np.diag(mass)).sum() / max(1, len(rows)) * rows.T
-        factor, stiffening = _cholesky(mass + stiffening @ rows), stiffening / peaks
-    if factor is None:
-        masses = np.linalg.eigvalsh(mass)
-        indefinite = masses[0] < -NEGATIVE * np.max(np.abs(masses))
-        raise HolonomError(Failure.MASS_INDEFINITE if indefinite else Failure.MASS_SINGULAR)
-    directions = lapack().dtrtrs(factor, rows.T, lower=1)[0] if rows.size else rows.T
-    lengths = _or_one(np.sqrt(np.einsum("sb,sb->b", directions, directions)))
-    return WeightedConstraints(factor, 1 / (peaks * lengths), directions / lengths, stiffening)
-
-
-def factored_constraints(weighted: WeightedConstraints, rank: int) -> FactoredConstraints:
-    """Factor the constraints' directions, counting so many of them as independent.
-
-    Where that is less than all of them, the smallest singular values are dropped.
-    """
-    if rank == weighted.directions.shape[1]:
-        return _factored_by_reflections(weighted)
-    u, s, v = np.linalg.svd(weighted.directions)
-    return FactoredConstraints(weighted, u[:, :rank], u[:, rank:], v[:rank] / s[:rank, None])
-
-
-def dependent_constraints(weighted: WeightedConstraints, rank: int) -> tuple[int, ...]:
-    """Which of the constraints, of that rank, a vanishing combination of directions involves, in order."""
-    combinations = np.linalg.svd(weighted.directions)[2][rank:]
-    involved = np.max(np.abs(combinations), axis=0, initial=0.0) > INVOLVED
-    return tuple(int(beta) for beta in np.flatnonzero(involved))
-
-
-def rank_of(singular_values: Vector, negligible: float = DEPENDENT) -> int:
-    """How many of the constraints are independent, rounding apart.
-
-    Parameters
-    ----------
-    singular_values : ndarray
-        Of W, the largest first.
-    negligible : float
-        Singular values that do not count, relative to the largest.
-    """
-    return int(np.count_nonzero(singular_values > negligible * singular_values.max(initial=0.0)))
-
-
-def _factored_by_reflections(weighted: WeightedConstraints) -> FactoredConstraints:
-    """W = Q C by Householder's reflections, the largest rows and columns of W first.
-
-    In this order each row keeps its digits, however small it is beside the others: that of a heavy body among light
-    ones (Cox & Higham, Stability of Householder QR factorization for weighted least squares problems, 1998).
-    """
-    n, g = weighted.directions.shape
-    if g == 0:
-        return FactoredConstraints(weighted, np.empty((n, 0)), np.eye(n), np.empty((0, 0)))
-    rows = np.argsort(-np.max(np.abs(weighted.directions), axis=1), kind="stable")
-    reflections, pivots, tau, *_ = lapack().dgeqp3(weighted.directions[rows])
-    room = np.zeros((n, n), order="F")
-    room[:, :g] = reflections
-    q, inverse = np.empty((n, n)), np.empty((g, g))
-    q[rows] = lapack().dorgqr(room, tau, overwrite_a=1)[0]
-    inverse[:, pivots - 1] = lapack().dtrtri(np.triu(reflections[:g]))[0].T
-    return FactoredConstraints(weighted, q[:, :g], q[:, g:], inverse)
-
-
-def _cholesky(metric: Matrix) -> Matrix | None:
-    """L, lower triangular; None where the metric is singular."""
-    factor, failed = lapack().dpotrf(metric, lower=1, clean=1)
-    regular = not failed and np.all(factor.diagonal() ** 2 > SINGULAR_MASS * metric.diagonal())
-    return factor if regular else None
-
-
-def _or_one(lengths: Vector) -> Vector:
-    return np.where(lengths > 0, lengths, 1.0)
+    if rank == jacobian.shape[-2]:
+        return IndependentConstraints(mass, jacobian)
+    return (DependentConstraints if mass.ndim == 2 else DependentConstraintsAtEach)(mass, jacobian, rank)

@@ -16,7 +16,7 @@ from ...program.numpy_function import NumpyFunction
 from ...program.precision import Precision
 from ..evaluation import OPERATION, CompiledIfItPays, Evaluation, Numbers, may_wait, zeros
 from ..matrices import MotionMatrices
-from .factorization import lapack
+from ..parts_of_scipy import lapack
 
 SOLVED, SOLVED_UNKNOWN = 5e-5, 5e-11  # seconds that LAPACK takes for a solve, and for the cube of its unknowns
 CALLED = 5e-5  # seconds that NumPy takes for a projection, beside its operations

@@ -5,10 +5,12 @@ the least e with J e = -df/dt. Dependent constraints do no harm: so many of them
 """
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...failures import Failure, HolonomError
 from ..matrices import Matrices, MotionMatrices, Vector
-from .factorization import EPSILON, FactoredConstraints, factored_constraints, rank_of, weighted_constraints
+from .directions import EPSILON, rank_of, weighted_constraints
+from .factorization import FactoredConstraints, factored_constraints
 
 ROUNDING = 8 * EPSILON  # relative size of a correction that is none
 CONSISTENT = 1e-9  # distance from a constraint, relative to the coordinates, that cannot be rounding
@@ -54,9 +56,12 @@ def project(matrices: MotionMatrices, t: float, state: Vector, rank: int | None 
 
 
 def settle(
-    matrices: MotionMatrices, t: float, state: Vector, rank: int | None = None
+    matrices: MotionMatrices, t: float | Vector, state: Vector, rank: int | None = None
 ) -> tuple[Vector, FactoredConstraints]:
-    """Nearest state that keeps the constraints, and the constraints as factored there. Arguments as for `project`.
+    """Nearest state that keeps the constraints, and the constraints as factored there.
+
+    Arguments as for `project`; or instants, shape (k,), and states, shape (k, 2n), which are settled at once if the
+    rank is given.
 
     Raises
     ------
@@ -65,34 +70,48 @@ def settle(
     HolonomError
         The equations of motion are not finite there.
     """
-    n, last = len(state) // 2, np.inf
+    n, last, settled = state.shape[-1] // 2, np.inf, np.False_
     for _ in range(ITERATIONS):
         at = matrices(t, state)
-        if not at.finite:
-            raise HolonomError(Failure.NO_WAY_ON, detail=f"{t:.10g}, where numbers overflow")
+        if not np.all(at.finite):
+            first = _where_not(at.finite, t)[0]
+            raise HolonomError(Failure.NO_WAY_ON, detail=f"{first:.10g}, where numbers overflow")
         factored = _factored(at, rank)
-        change = factored.correction(at.residual)
-        size, extent = factored.weighted.length(change), _extent(factored, state[:n])
-        if size <= ROUNDING * extent or CONTRACTION * last < size <= CONSISTENT * extent:
+        change = _correction(factored, at, at.residual)
+        size, extent = factored.length(change), _extent(factored, state[..., :n])
+        settled |= (size <= ROUNDING * extent) | ((CONTRACTION * last < size) & (size <= CONSISTENT * extent))
+        if np.all(settled) or not np.all(np.isfinite(size)):
             break
-        state, last = np.concatenate([state[:n] + change, state[n:]]), size
+        moved = state[..., :n] + np.where(settled[..., None], 0.0, change)
+        state, last = np.concatenate([moved, state[..., n:]], axis=-1), size
     _require_small(t, at.residual, factored, extent)
-    change = factored.correction(at.residual_rate)
-    _require_small(t, at.residual_rate + at.jacobian @ change, factored, _extent(factored, state[n:]))
-    return np.concatenate([state[:n], state[n:] + change]), factored
+    change = _correction(factored, at, at.residual_rate)
+    left = at.residual_rate + np.matvec(at.jacobian, change)
+    _require_small(t, left, factored, _extent(factored, state[..., n:]))
+    return np.concatenate([state[..., :n], state[..., n:] + change], axis=-1), factored
 
 
 def _factored(at: Matrices, rank: int | None) -> FactoredConstraints:
-    weighted = weighted_constraints(at.mass, at.jacobian)
-    return factored_constraints(weighted, rank_of(weighted.singular_values()) if rank is None else rank)
+    if rank is None:
+        rank = rank_of(weighted_constraints(at.mass, at.jacobian).singular_values())
+    return factored_constraints(at.mass, at.jacobian, rank)
 
 
-def _extent(factored: FactoredConstraints, numbers: Vector) -> float:
+def _correction(factored: FactoredConstraints, at: Matrices, residual: Vector) -> Vector:
+    """The change d, least in the mass metric, with J d = -residual."""
+    return factored.accelerations(np.zeros_like(at.force), residual)
+
+
+def _extent(factored: FactoredConstraints, numbers: Vector) -> Vector:
     """Length, in the mass metric, of coordinates or velocities, each at least one."""
-    return factored.weighted.length(np.maximum(np.abs(numbers), 1.0))
+    return factored.length(np.maximum(np.abs(numbers), 1.0))
 
 
-def _require_small(t: float, residual: Vector, factored: FactoredConstraints, extent: float) -> None:
-    left = float(np.max(np.abs(factored.weighted.scale * residual), initial=0.0))
-    if not left <= CONSISTENT * extent:
-        raise InconsistentConstraints(t, left)
+def _require_small(t: float | Vector, residual: Vector, factored: FactoredConstraints, extent: Vector) -> None:
+    left = np.max(factored.distances(residual), axis=-1, initial=0.0)
+    if not np.all(small := left <= CONSISTENT * extent):
+        raise InconsistentConstraints(_where_not(small, t)[0], _where_not(small, left)[0])
+
+
+def _where_not(good: NDArray[np.bool_], values: float | Vector) -> Vector:
+    return np.atleast_1d(values)[~np.atleast_1d(good)]

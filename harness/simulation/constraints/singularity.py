@@ -23,7 +23,7 @@ from ...program.sign_pattern import in_numbers
 from ..diagnosis import Instant
 from ..evaluation import Numbers, as_floats
 from ..matrices import MotionMatrices, Vector, start_of
-from .factorization import DEPENDENT, WeightedConstraints, rank_of, weighted_constraints
+from .directions import DEPENDENT, WeightedConstraints, rank_of, weighted_constraints
 from .projection import InconsistentConstraints, settle
 
 PROBE = 1e-4  # of a unit, the way that the coordinates go to see which constraints stay dependent
@@ -66,7 +66,7 @@ def probed(matrices: MotionMatrices, t: float, state: Vector) -> tuple[int, floa
     moved = np.concatenate([state[:n] + (later - t) * state[n:], state[n:]])
     kept_rank = rank_of(singular_values_at(matrices, later, moved), max(way**1.5, DEPENDENT))
     try:
-        there = settle(matrices, later, moved, kept_rank)[1].weighted.singular_values()
+        there = singular_values_at(matrices, later, settle(matrices, later, moved, kept_rank)[0])
     except InconsistentConstraints:
         return rank_of(here), np.inf
     rank = max(rank_of(here), rank_of(there, max(way**1.5, DEPENDENT)))

@@ -14,18 +14,11 @@ from collections.abc import Iterator
 
 import numpy as np
 from scipy.integrate import DOP853, OdeSolver, Radau
-from scipy.optimize import minimize_scalar
 
 from ...failures import Failure, HolonomError
 from ...program.motion_problem import MotionProblem
-from ..constraints.factorization import (
-    EPSILON,
-    FactoredConstraints,
-    dependent_constraints,
-    factored_constraints,
-    rank_of,
-    weighted_constraints,
-)
+from ..constraints.directions import EPSILON, dependent_constraints, rank_of, weighted_constraints
+from ..constraints.factorization import factored_constraints
 from ..constraints.projection import InconsistentConstraints, settle
 from ..constraints.singularity import extrapolated_zero, least_of, probed, singular_values_at
 from ..matrices import Matrix, MotionMatrices, Vector, start_of
@@ -76,7 +69,7 @@ class RobustEngine:
         self.n, self.steps, self.tol = len(problem.coordinates), 0, max(tol or TOLERANCE, TIGHTEST)
         self.stiff, self._stiffness = False, StiffnessWatch()
         self._multipliers, self._independent = problem.multipliers, problem.independent
-        self._places, self._arcs = [], []
+        self._arcs: list[Arc] = []
         self.restart(*start_of(problem))
 
     def restart(self, instant: float, state: Vector) -> None:
@@ -118,7 +111,7 @@ class RobustEngine:
     @property
     def passages(self) -> list[float]:
         """Instants at which the motion went through a singular configuration."""
-        return [instant for instant in self._places if instant <= self.time]
+        return [instant for arc in self._arcs if (instant := self._place(arc)) <= self.time]
 
     def solutions(self, instants: Vector, states: Matrix) -> Solutions:
         """What the equations of motion determine at instants, shape (k,), and states that keep the constraints."""
@@ -128,16 +121,15 @@ class RobustEngine:
     def solution(self, t: float, state: Vector) -> Solutions:
         """The same at one instant and state: vectors."""
         at = self.matrices(t, state)
-        weighted = weighted_constraints(at.mass, at.jacobian)
-        rank = min(self.rank, rank_of(weighted.singular_values(), UNTRUSTED))
-        factored = factored_constraints(weighted, rank)
+        singular_values = weighted_constraints(at.mass, at.jacobian).singular_values()
+        factored = factored_constraints(at.mass, at.jacobian, min(self.rank, rank_of(singular_values, UNTRUSTED)))
         arc = next((arc for arc in self._arcs if arc.start < t < arc.end), None)
         if arc is None:
             accelerations = factored.accelerations(at.force, at.curvature)
             multipliers = factored.multipliers(at.force, at.curvature)
         else:
             accelerations = arc.accelerations(t)
-            multipliers = factored.multipliers_of(at.mass @ accelerations - at.force)
+            multipliers = factored.multipliers(at.force - at.mass @ accelerations, np.zeros_like(at.curvature))
         forces = at.jacobian.T @ multipliers
         return Solutions(accelerations, self._as_in_the_program(at.jacobian, multipliers, forces), forces)
 
@@ -177,19 +169,18 @@ class RobustEngine:
 
     def _projected(self, instants: Vector, states: Matrix) -> Matrix:
         """States between two steps, on the constraints."""
-        kept = [settle(self.matrices, t, state, self.rank)[0] for t, state in zip(instants, states.T, strict=True)]
-        return np.reshape(kept, (-1, 2 * self.n)).T
+        return settle(self.matrices, instants, states.T, self.rank)[0].T
 
     def _rates(self, t: float, state: Vector) -> Vector:
         at = self.matrices(t, state)
         if not at.finite:
             return np.full_like(state, np.nan)
-        factored = factored_constraints(weighted_constraints(at.mass, at.jacobian), self.rank)
+        factored = factored_constraints(at.mass, at.jacobian, self.rank)
         return np.concatenate([state[self.n :], factored.accelerations(at.force, at.curvature)])
 
     def _begin(self, t: float, state: Vector, length: float | None) -> None:
-        kept, _, factored = self._kept(t, state)
-        self._least = self._least_of(factored)
+        kept = self._kept(t, state)[0]
+        self._least = self._least_at(t, kept)
         integrator = Radau if self.stiff else DOP853
         self._solver: OdeSolver = integrator(
             self._rates, t, kept, np.inf, rtol=self.tol, atol=self.tol, first_step=length
@@ -200,31 +191,34 @@ class RobustEngine:
     def _move(self, t: float, state: Vector) -> None:
         """Project what a step gave, and go on from there."""
         before, last = self.time, self._least
-        self.state, accelerations, factored = self._kept(t, state)
-        self._least = self._least_of(factored)
+        self.state, accelerations = self._kept(t, state)
+        self._least = self._least_at(t, self.state)
         self._solver.y, self._solver.f = self.state, np.concatenate([self.state[self.n :], accelerations])
         self.time, self._vanishing = t, extrapolated_zero(before, last, t, self._least)
 
-    def _kept(self, t: float, state: Vector) -> tuple[Vector, Vector, FactoredConstraints]:
-        """The nearest state that keeps the constraints, its accelerations, and the constraints as factored there."""
+    def _kept(self, t: float | Vector, state: Vector) -> tuple[Vector, Vector]:
+        """The nearest state that keeps the constraints, and its accelerations; of states, shape (k, 2n), each."""
         try:
             kept, factored = settle(self.matrices, t, state, self.rank)
         except InconsistentConstraints:
-            self._require_rank(t, singular_values_at(self.matrices, t, state))
+            self._require_rank(t, state)
             raise
         if self.rank < len(self._multipliers):
-            self._require_rank(t, factored.weighted.singular_values())
+            self._require_rank(t, kept)
         at = self.matrices(t, kept)
-        return kept, factored.accelerations(at.force, at.curvature), factored
+        return kept, factored.accelerations(at.force, at.curvature)
 
-    def _least_of(self, factored: FactoredConstraints) -> float:
+    def _least_at(self, t: float, state: Vector) -> float:
         """The least singular value that counts."""
-        return least_of(factored.weighted.singular_values(), self.rank)
+        return least_of(singular_values_at(self.matrices, t, state), self.rank)
 
-    def _require_rank(self, t: float, singular_values: Vector) -> None:
+    def _require_rank(self, t: float | Vector, state: Vector) -> None:
         """No constraint that depended on the others at the start may come to count."""
-        if rank_of(singular_values, UNTRUSTED) > self.rank:
-            raise HolonomError(Failure.NO_WAY_ON, detail=f"{t:.10g}, a singular configuration that it starts from")
+        for at in zip(np.atleast_1d(t), np.atleast_2d(state), strict=True):
+            if rank_of(singular_values_at(self.matrices, *at), UNTRUSTED) > self.rank:
+                raise HolonomError(
+                    Failure.NO_WAY_ON, detail=f"{at[0]:.10g}, a singular configuration that it starts from"
+                )
 
     # ---- singular configurations ----
 
@@ -245,8 +239,8 @@ class RobustEngine:
             arc = arc_over(self._accelerations, self.time, self.time + 2 * longer * ahead, self.state, guess)
             if arc is None or not self._trusted(arc):
                 return None
-            if self._least_of(self._kept(arc.end, arc.last)[2]) > CLEAR * self._least:
-                return self._taken(arc, self._place(arc))
+            if self._least_at(arc.end, self._kept(arc.end, arc.last)[0]) > CLEAR * self._least:
+                return self._taken(arc)
         return None
 
     def _arc_away(self) -> Arc:
@@ -258,21 +252,22 @@ class RobustEngine:
         for length in FIRST_ARCS / np.max(np.abs(state[self.n :])):
             arc = arc_over(self._accelerations, self.time, self.time + length, state, guess)
             if arc is not None and self._trusted(arc):
-                return self._taken(arc, self.time)
+                return self._taken(arc)
         raise HolonomError(Failure.NO_WAY_ON, detail=f"{self.time:.10g}, a singular configuration that it starts from")
 
     def _place(self, arc: Arc) -> float:
         """The instant of an arc at which the least singular value that counts vanishes."""
+        from scipy.optimize import minimize_scalar
 
         def least(t: float) -> float:
-            return least_of(singular_values_at(self.matrices, t, arc(np.array([t]))[:, 0]), self.rank)
+            return self._least_at(t, arc(np.array([t]))[:, 0])
 
         tolerance = PLACE * (arc.end - arc.start)
-        return minimize_scalar(least, bounds=(arc.start, arc.end), method="bounded", options={"xatol": tolerance}).x
+        bounds = arc.start, arc.end
+        return float(minimize_scalar(least, bounds=bounds, method="bounded", options={"xatol": tolerance}).x)
 
-    def _taken(self, arc: Arc, place: float) -> Arc:
+    def _taken(self, arc: Arc) -> Arc:
         self._arcs.append(arc)
-        self._places.append(float(place))
         return arc
 
     def _trusted(self, arc: Arc) -> bool:
@@ -285,8 +280,8 @@ class RobustEngine:
             return False
         return bool(np.max(np.abs(kept - arc.last)) <= OFF_BRANCH * max(1.0, np.max(np.abs(kept))))
 
-    def _accelerations(self, t: float, state: Vector) -> Vector:
-        return self._kept(t, state)[1]
+    def _accelerations(self, instants: Vector, states: Matrix) -> Matrix:
+        return self._kept(instants, states)[1]
 
     def _along_arc(self, until: float) -> Piece:
         """Along the arc, to its end or to the instant asked for."""

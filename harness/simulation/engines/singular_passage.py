@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import legendre
 
-from ..constraints.factorization import EPSILON
+from ..constraints.directions import EPSILON
 from ..constraints.projection import InconsistentConstraints
 from ..matrices import Matrix, Vector
 
@@ -30,7 +30,7 @@ CONTRACTION = 0.5  # a change at least that large beside the last one is roundin
 SMALL = 1e-9
 WARMING_UP = 3  # iterations that need not contract
 
-Accelerations = Callable[[float, Vector], Vector]
+Accelerations = Callable[[Vector, Matrix], Matrix]
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,8 @@ def arc_over(compute: Accelerations, start: float, end: float, state: Vector, gu
     Parameters
     ----------
     compute : callable
-        Takes an instant and a state near the constraints to the accelerations at the nearest state that keeps them.
+        Takes instants, shape (NODES,), and states near the constraints, shape (NODES, 2n), to the accelerations, shape
+        (NODES, n), at the nearest states that keep them.
     start, end : float
         The singular configuration lies well between them.
     state : ndarray, shape (2n,)
@@ -85,7 +86,7 @@ def arc_over(compute: Accelerations, start: float, end: float, state: Vector, gu
     arc = _integrated(start, end, state, guess)
     for iteration in range(ITERATIONS):
         try:
-            found = np.array([compute(t, at) for t, at in zip(instants, arc(instants).T, strict=True)])
+            found = compute(instants, arc(instants).T)
         except InconsistentConstraints:
             return None
         before, arc = arc, _integrated(start, end, state, found)

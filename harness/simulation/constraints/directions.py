@@ -1,0 +1,107 @@
+"""The constraints' directions in the mass metric: how many are independent, and how nearly one follows from others.
+
+With A = L L^T and every row of J scaled to length one, W = L^-1 J^T D holds the constraints' directions as columns.
+Its singular values tell how independent they are (Golub & Van Loan, Matrix Computations, section 5.3).
+
+Where A is not positive definite, A + rho J^T J takes its place: under J a = -c, with h - rho J^T c for h, it has the
+same accelerations and the same multipliers.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...failures import Failure, HolonomError
+from ..matrices import Matrix, Vector
+from ..parts_of_scipy import lapack
+
+EPSILON = float(np.finfo(float).eps)
+DEPENDENT = 1e-12  # singular values of the scaled constraints, relative to the largest, that count as rounding
+INVOLVED = 1e-6  # share of a constraint in a vanishing combination that is more than rounding
+NEGATIVE = 1e-12  # masses below zero, relative to the largest, that are more than rounding
+SINGULAR_MASS = 64 * EPSILON  # what elimination may leave of a diagonal entry of A before A counts as singular
+
+
+@dataclass(frozen=True)
+class WeightedConstraints:
+    """The constraints' directions in the mass metric."""
+
+    factor: Matrix  # shape (n, n): L, the Cholesky factor of the metric
+    scale: Vector  # shape (g,): D, the factors that bring the columns of W to length one
+    directions: Matrix  # shape (n, g): W = L^-1 J^T D
+    stiffening: Matrix | None  # shape (n, g): rho J^T where A is not positive definite
+
+    def singular_values(self) -> Vector:
+        """Singular values of W, the largest first."""
+        return np.linalg.svd(self.directions, compute_uv=False) if self.directions.size else np.empty(0)
+
+    def per_root_mass(self, force: Vector) -> Vector:
+        """L^-1 h."""
+        return lapack().dtrtrs(self.factor, force, lower=1)[0]
+
+    def unweighted(self, z: Vector) -> Vector:
+        """L^-T z."""
+        return lapack().dtrtrs(self.factor, z, lower=1, trans=1)[0]
+
+
+def weighted_constraints(mass: Matrix, jacobian: Matrix) -> WeightedConstraints:
+    """Put the constraints into the mass metric.
+
+    Parameters
+    ----------
+    mass : ndarray, shape (n, n)
+        A, symmetric; positive definite together with the constraints.
+    jacobian : ndarray, shape (g, n)
+        J; its rows may be dependent, and of any scale.
+
+    Raises
+    ------
+    HolonomError
+        A is singular along a direction that the constraints leave free, or it is indefinite and the constraints do not
+        make up for it.
+    """
+    peaks = or_one(np.max(np.abs(jacobian), axis=1, initial=0.0))
+    rows = jacobian / peaks[:, None]
+    factor, stiffening = _cholesky(mass), None
+    if factor is None:
+        stiffening = np.abs(np.diag(mass)).sum() / max(1, len(rows)) * rows.T
+        factor, stiffening = _cholesky(mass + stiffening @ rows), stiffening / peaks
+    if factor is None:
+        masses = np.linalg.eigvalsh(mass)
+        indefinite = masses[0] < -NEGATIVE * np.max(np.abs(masses))
+        raise HolonomError(Failure.MASS_INDEFINITE if indefinite else Failure.MASS_SINGULAR)
+    directions = lapack().dtrtrs(factor, rows.T, lower=1)[0] if rows.size else rows.T
+    lengths = or_one(np.sqrt(np.einsum("sb,sb->b", directions, directions)))
+    return WeightedConstraints(factor, 1 / (peaks * lengths), directions / lengths, stiffening)
+
+
+def dependent_constraints(weighted: WeightedConstraints, rank: int) -> tuple[int, ...]:
+    """Which of the constraints, of that rank, a vanishing combination of directions involves, in order."""
+    combinations = np.linalg.svd(weighted.directions)[2][rank:]
+    involved = np.max(np.abs(combinations), axis=0, initial=0.0) > INVOLVED
+    return tuple(int(beta) for beta in np.flatnonzero(involved))
+
+
+def rank_of(singular_values: Vector, negligible: float = DEPENDENT) -> int:
+    """How many of the constraints are independent, rounding apart.
+
+    Parameters
+    ----------
+    singular_values : ndarray
+        Of W, the largest first.
+    negligible : float
+        Singular values that do not count, relative to the largest.
+    """
+    return int(np.count_nonzero(singular_values > negligible * singular_values.max(initial=0.0)))
+
+
+def _cholesky(metric: Matrix) -> Matrix | None:
+    """L, lower triangular; None where the metric is singular."""
+    factor, failed = lapack().dpotrf(metric, lower=1, clean=1)
+    regular = not failed and np.all(factor.diagonal() ** 2 > SINGULAR_MASS * metric.diagonal())
+    return factor if regular else None
+
+
+def or_one(lengths: Vector) -> Vector:
+    """Lengths to divide by, one where there is none."""
+    return np.where(lengths > 0, lengths, 1.0)
