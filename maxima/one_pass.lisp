@@ -119,4 +119,9 @@
       (incf place)
       (or (eql item 0) (push place places)))))
 
+(defun $items_at (places items)
+  "The items of a list at these places."
+  (let ((items (coerce (cdr items) 'vector)))
+    (mlist-of (mapcar #'(lambda (place) (aref items (1- place))) (cdr places)))))
+
 (defun mlist-of (items) (cons '(mlist simp) items))

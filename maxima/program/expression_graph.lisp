@@ -24,7 +24,7 @@
 (in-package :maxima)
 
 (defstruct expression-graph
-  (nodes (make-hash-table :test 'equal))   ; description of a node -> node
+  (nodes (make-hash-table))                ; hash of a description -> list of (description . node)
   (variables (make-hash-table))            ; symbol to differentiate by -> its position
   (size 0))
 
@@ -38,6 +38,8 @@
 
 (defstruct factor node exponent)
 
+(defvar *hash-mask* (1- (expt 2 40)))
+
 (defmvar $expression_graph nil)
 
 (defun $new_expression_graph (variables)
@@ -48,11 +50,21 @@
 
 (defun node-of (kind parts description)
   "The node so described; a new one where there is none yet."
-  (let ((nodes (expression-graph-nodes $expression_graph)))
-    (or (gethash description nodes)
-        (setf (gethash description nodes)
-              (make-node :number (incf (expression-graph-size $expression_graph))
-                         :kind kind :parts parts)))))
+  (let* ((nodes (expression-graph-nodes $expression_graph))
+         (hash (hash-of description))
+         (known (assoc description (gethash hash nodes) :test #'equal)))
+    (if known
+        (cdr known)
+        (let ((node (make-node :number (incf (expression-graph-size $expression_graph))
+                               :kind kind :parts parts)))
+          (push (cons description node) (gethash hash nodes))
+          node))))
+
+;; Lisps hash a list by its first items at most, which are the same for all sums 1 - x, 1 - y, ...
+(defun hash-of (description)
+  (let ((hash 0))
+    (dolist (item description hash)
+      (setq hash (logand *hash-mask* (+ (* 31 hash) (logand *hash-mask* (sxhash item))))))))
 
 ;;; ---- numbers and symbols ---------------------------------------------------------------
 

@@ -216,9 +216,11 @@
 (defun $null_vector (rows size)
   "A list x of so many numbers, not all of them zero, with  rows . x = 0; false where there is none."
   (let* ((echelon (echelon-of (mapcar #'row-from-maxima (cdr rows))))
-         (bound (mapcar #'car (echelon-pivots echelon)))
+         (bound (make-array (+ size 2) :initial-element nil))
          (values (make-hash-table))
-         (open (do ((column 1 (1+ column))) ((or (> column size) (not (member column bound))) column))))
+         (open 1))
+    (dolist (pivot (echelon-pivots echelon)) (setf (aref bound (car pivot)) t))
+    (do () ((not (aref bound open))) (incf open))
     (if (<= open size)
         (let ((x nil))
           (setf (gethash open values) 1)
