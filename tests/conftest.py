@@ -5,12 +5,16 @@ import shutil
 import signal
 from collections import Counter
 from collections.abc import Callable
+from contextlib import redirect_stderr, redirect_stdout
+from io import BytesIO, TextIOWrapper
 from pathlib import Path
+from subprocess import CompletedProcess
 
 import pytest
 from hypothesis import HealthCheck, settings
 from particle import PARTICLE
 
+from holonom.cli import run
 from holonom.documents import Document, ask
 from holonom.errata import PrintedEquation, errata
 
@@ -55,6 +59,25 @@ def write_scene(tmp_path: Path) -> ScenesWriter:
 @pytest.fixture
 def particle_scene(write_scene: ScenesWriter) -> Path:
     return write_scene(PARTICLE)
+
+
+@pytest.fixture
+def holonom_here(monkeypatch: pytest.MonkeyPatch) -> Callable[..., CompletedProcess[str]]:
+    """Runs a command in this process, which has loaded its libraries; what it prints, and its status."""
+
+    def run_here(*arguments: str | Path) -> CompletedProcess[str]:
+        out, err = (TextIOWrapper(BytesIO(), encoding="utf-8") for _ in range(2))
+        monkeypatch.setattr("sys.argv", ["holonom", *map(str, arguments)])
+        monkeypatch.setattr("holonom.cli.motion.OWN_PROCESS", None)  # other things run in this one
+        with redirect_stdout(out), redirect_stderr(err):
+            status = run()
+        printed = []
+        for stream in (out, err):
+            stream.flush()
+            printed.append(stream.buffer.getvalue().decode())
+        return CompletedProcess(arguments, status, *printed)
+
+    return run_here
 
 
 @pytest.fixture(scope="session")

@@ -1,11 +1,9 @@
 """The commands: what they print, what they write, and the status they leave with."""
 
-import io
 import json
 import os
 import subprocess
 import sys
-from contextlib import redirect_stderr, redirect_stdout
 from importlib import metadata
 from pathlib import Path
 from string import Formatter
@@ -26,24 +24,6 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 
 def holonom(*arguments: str | Path, **options) -> subprocess.CompletedProcess[str]:
     return subprocess.run([*HOLONOM, *map(str, arguments)], capture_output=True, text=True, timeout=120, **options)
-
-
-@pytest.fixture
-def holonom_here(monkeypatch):
-    """Runs a command in this process, which has loaded its libraries; what it prints, and its status."""
-
-    def run_here(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
-        out, err = (io.TextIOWrapper(io.BytesIO(), encoding="utf-8") for _ in range(2))
-        monkeypatch.setattr("sys.argv", ["holonom", *map(str, arguments)])
-        with redirect_stdout(out), redirect_stderr(err):
-            status = run()
-        printed = []
-        for stream in (out, err):
-            stream.flush()
-            printed.append(stream.buffer.getvalue().decode())
-        return subprocess.CompletedProcess(arguments, status, *printed)
-
-    return run_here
 
 
 def test_help_waits_for_no_library():

@@ -1,8 +1,6 @@
 """Documents: every one has a schema, keeps it, and is refused where it does not."""
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -57,10 +55,8 @@ def test_maxima_writes_what_the_schema_says(document, file, arguments):
         ("effects", str(PENDULUM)),
     ],
 )
-def test_commands_publish_what_the_schema_says(command):
-    asked = [sys.executable, "-m", "holonom", *command, "--json", "-"]
-    done = subprocess.run(asked, capture_output=True, text=True, check=True)
-    content = json.loads(done.stdout)
+def test_commands_publish_what_the_schema_says(command, holonom_here):
+    content = json.loads(holonom_here(*command, "--json", "-").stdout)
     Draft202012Validator(schema(content["format"].removeprefix("holonom-"))).validate(content)
 
 

@@ -3,7 +3,7 @@
 import re
 import shlex
 import subprocess
-import sys
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -53,8 +53,13 @@ def test_there_are_snippets_of_each_kind():
     assert {kind for kind, _ in BLOCKS} == {"sh", "python", "maxima"}
 
 
+def in_a_process(*command: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+
+
 @pytest.mark.parametrize("command", commands(), ids=" ".join)
-def test_a_command_of_the_readme_runs(command, place):
+def test_a_command_of_the_readme_runs(command, place, monkeypatch, holonom_here):
+    monkeypatch.chdir(place)
     program, *arguments = command
     if program == "make":
         targets = re.findall(r"^(\w+):", (ROOT / "Makefile").read_text(), re.MULTILINE)
@@ -63,8 +68,8 @@ def test_a_command_of_the_readme_runs(command, place):
         subcommand = holonom.get_command(None, arguments[0])
         subcommand.make_context(arguments[0], arguments[1:])
     else:
-        run = [sys.executable, "-m", "holonom"] if program == "holonom" else [program]
-        done = subprocess.run([*run, *arguments], cwd=place, capture_output=True, text=True, timeout=120, check=False)
+        run = holonom_here if program == "holonom" else partial(in_a_process, program)
+        done = run(*arguments)
         assert done.returncode == 0, done.stderr
         assert "Traceback" not in done.stderr
         assert " error" not in done.stdout.replace("energy error", "")

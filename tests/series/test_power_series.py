@@ -2,8 +2,6 @@
 
 import json
 import math
-import subprocess
-import sys
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
@@ -230,10 +228,8 @@ def test_what_is_no_series_is_refused():
         read_series('{"order": 3}')
 
 
-def test_command_writes_the_document():
-    command = [sys.executable, "-m", "holonom", "series", str(PAPER), "--order", "40", "--exact", "--json", "-"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, cwd=ROOT)
-    document = json.loads(done.stdout)
+def test_command_writes_the_document(holonom_here):
+    document = json.loads(holonom_here("series", PAPER, "--order", "40", "--exact", "--json", "-").stdout)
     assert document["arithmetic"] == "exact"
     assert document["coordinates"]["q1"][:3] == ["1", "1/2", "-167/118"]
     assert document["radius_of_convergence"]["estimate"] == pytest.approx(math.sqrt(0.59), rel=1e-2)
@@ -258,9 +254,8 @@ def test_command_writes_the_document():
         ["--order", "4", "--scene", "nowhere"],
     ],
 )
-def test_bad_requests_leave_with_two_and_one_sentence(arguments):
-    command = [sys.executable, "-m", "holonom", "series", str(PAPER), *arguments]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, cwd=ROOT)
+def test_bad_requests_leave_with_two_and_one_sentence(arguments, holonom_here):
+    done = holonom_here("series", PAPER, *arguments)
     assert done.returncode == 2
     assert done.stdout == ""
     assert "Traceback" not in done.stderr

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -15,11 +16,12 @@ SIMULATE = [sys.executable, "-m", "holonom", "simulate"]
 PENDULUM = EXAMPLES / "pendulum.mac"
 
 
-def simulate(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([*SIMULATE, *map(str, arguments)], capture_output=True, text=True, timeout=120)
+@pytest.fixture
+def simulate(holonom_here):
+    return partial(holonom_here, "simulate")
 
 
-def test_the_final_state_is_one_document():
+def test_the_final_state_is_one_document(simulate):
     done = simulate(PENDULUM, "--final", "--json", "-")
     final = json.loads(done.stdout)
     assert (done.returncode, done.stderr) == (0, "")
@@ -48,19 +50,19 @@ print({{'sympy', 'rich', 'matplotlib', 'scipy.linalg', 'scipy.integrate'}} & sys
     assert done.stdout.endswith("}\nset()\n")
 
 
-def test_without_final_the_document_holds_the_samples():
+def test_without_final_the_document_holds_the_samples(simulate):
     found = json.loads(simulate(PENDULUM, "--samples", "3", "--json", "-").stdout)
     assert found["samples"]["t"] == [0, 5, 10]
     assert found["samples"]["x"][-1] == found["coordinates"]["x"]
 
 
-def test_longer_numbers_are_decimal_text():
+def test_longer_numbers_are_decimal_text(simulate):
     final = json.loads(simulate(PENDULUM, "--precision", "40", "--until", "1", "--final", "--json", "-").stdout)
     assert isinstance(final["coordinates"]["x"], str)
     assert len(final["coordinates"]["x"]) > 40
 
 
-def test_a_table_shows_the_end_and_how_well_it_was_reached():
+def test_a_table_shows_the_end_and_how_well_it_was_reached(simulate):
     done = simulate(PENDULUM)
     assert done.returncode == 0
     assert "lambda1" in done.stdout
@@ -70,7 +72,7 @@ def test_a_table_shows_the_end_and_how_well_it_was_reached():
     assert done.stderr == ""
 
 
-def test_samples_and_figures_are_written(tmp_path):
+def test_samples_and_figures_are_written(tmp_path, simulate):
     samples, vector, pixels = (tmp_path / name for name in ("swing.csv", "swing.svg", "swing.png"))
     assert simulate(PENDULUM, "-o", samples, "--plot", vector).returncode == 0
     assert simulate(PENDULUM, "--plot", pixels).returncode == 0
@@ -91,10 +93,9 @@ def test_samples_and_figures_are_written(tmp_path):
         (["--scene", "no_scene"], "no_scene"),
     ],
 )
-def test_bad_input_is_one_sentence(options, sentence, tmp_path):
-    done = subprocess.run(
-        [*SIMULATE, str(PENDULUM), *options], capture_output=True, text=True, timeout=120, cwd=tmp_path, env=in_place()
-    )
+def test_bad_input_is_one_sentence(options, sentence, tmp_path, monkeypatch, simulate):
+    monkeypatch.chdir(tmp_path)
+    done = simulate(PENDULUM, *options)
     assert done.returncode == 2
     assert sentence in done.stderr
     assert done.stderr.count("\n") == 1
@@ -102,7 +103,7 @@ def test_bad_input_is_one_sentence(options, sentence, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_start_of_limited_digits_was_corrected_without_a_word(write_scene):
+def test_a_start_of_limited_digits_was_corrected_without_a_word(write_scene, simulate):
     scene = write_scene(
         """load("holonom.mac")$
         system : holonomic_system(
@@ -116,7 +117,7 @@ def test_a_start_of_limited_digits_was_corrected_without_a_word(write_scene):
     assert "The initial state misses the constraints in its last digits and is corrected, " in simulate(scene).stdout
 
 
-def test_a_scene_without_an_end_is_refused(particle_scene):
+def test_a_scene_without_an_end_is_refused(particle_scene, simulate):
     done = simulate(particle_scene)
     assert done.returncode == 2
     assert "the scene has no time span; give it one, or the last instant with --until" in done.stderr
@@ -144,7 +145,3 @@ def test_heyoka_was_called_not_installed_where_memory_was_short(tmp_path):
     done = subprocess.run(asked, capture_output=True, text=True, timeout=120, env=environment)
     assert (done.returncode, done.stderr.count("\n")) == (3, 1)
     assert "there is not enough memory for this" in done.stderr
-
-
-def in_place() -> dict[str, str]:
-    return os.environ | {"PYTHONPATH": str(EXAMPLES.parent)}

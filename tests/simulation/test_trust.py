@@ -2,8 +2,6 @@
 
 import json
 import math
-import subprocess
-import sys
 from fractions import Fraction
 
 import pytest
@@ -47,14 +45,17 @@ NARROW = {
 }
 
 
-def followed(write_scene, place: str, *options: str):
-    command = [sys.executable, "-m", "holonom", "simulate", write_scene(WELL.format(place=place)), *options]
-    return subprocess.run([*command, "--final", "--json", "-"], capture_output=True, text=True, timeout=120)
+@pytest.fixture
+def followed(holonom_here, write_scene):
+    def simulate(place: str, *options: str):
+        return holonom_here("simulate", write_scene(WELL.format(place=place)), *options, "--final", "--json", "-")
+
+    return simulate
 
 
 @pytest.mark.parametrize("place", NARROW.values(), ids=NARROW)
-def test_a_narrow_place_was_passed_over_in_silence(write_scene, place):
-    done = followed(write_scene, place)
+def test_a_narrow_place_was_passed_over_in_silence(followed, place):
+    done = followed(place)
     found = json.loads(done.stdout)
     assert (done.returncode, found["trusted"]) == (1, False)
     assert "acceleration" in [doubt["quantity"] for doubt in found["doubts"]]
@@ -63,8 +64,8 @@ def test_a_narrow_place_was_passed_over_in_silence(write_scene, place):
 
 
 @pytest.mark.parametrize("place", NARROW.values(), ids=NARROW)
-def test_a_narrow_place_that_the_steps_look_at_is_no_ground_for_doubt(write_scene, place):
-    done = followed(write_scene, place, "--max-step", "0.001")
+def test_a_narrow_place_that_the_steps_look_at_is_no_ground_for_doubt(followed, place):
+    done = followed(place, "--max-step", "0.001")
     found = json.loads(done.stdout)
     assert (done.returncode, found["trusted"], done.stderr) == (0, True, "")
 
