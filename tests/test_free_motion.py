@@ -152,7 +152,15 @@ def test_cabin_is_free_in_parabolic_flight_and_not_in_a_lift():
     assert (lift.verdict, lift.first.order) == (Free.NOT_FREE, 0)
 
 
-@pytest.mark.parametrize("example", sorted(file.relative_to(EXAMPLES) for file in EXAMPLES.rglob("*.mac")), ids=str)
+SLOW = {"hard/bricard_linkage.mac", "ring.mac", "crane.mac"}
+
+
+def examples() -> list:
+    names = sorted(str(file.relative_to(EXAMPLES)) for file in EXAMPLES.rglob("*.mac"))
+    return [pytest.param(Path(name), id=name, marks=[pytest.mark.long] if name in SLOW else []) for name in names]
+
+
+@pytest.mark.parametrize("example", examples())
 def test_every_example_gets_a_verdict(example):
     """Also those whose condition is longer than closed_form_size, which were refused."""
     if example.name == "printed.mac":

@@ -11,13 +11,14 @@ from dataclasses import dataclass
 from itertools import combinations_with_replacement, pairwise
 from pathlib import Path
 
+import pytest
 from hypothesis import HealthCheck, Phase, example, given, settings
 from hypothesis import strategies as st
 
 from holonom.crosscheck import Verdict, check_record
 from holonom.record import derived_record
 
-SYSTEMS = 10
+SYSTEMS, MANY_SYSTEMS = 5, 40
 """Each is a run of Maxima."""
 
 CLOSED_FORM_SIZE = 300
@@ -111,16 +112,28 @@ EVERY_TERM = SystemText(
 )
 
 
-@settings(
-    max_examples=SYSTEMS,
+RANDOM = settings(
     derandomize=True,
     phases=[Phase.explicit, Phase.generate],  # shrinking a failure would run Maxima hundreds of times
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )
+
+
+@settings(RANDOM, max_examples=SYSTEMS)
 @given(system=systems())
 @example(system=EVERY_TERM)
 def test_no_equation_of_a_random_system_disagrees(tmp_path: Path, system: SystemText) -> None:
-    scene = tmp_path / "random.mac"
+    require_agreement(tmp_path / "random.mac", system)
+
+
+@pytest.mark.long
+@settings(RANDOM, max_examples=MANY_SYSTEMS)
+@given(system=systems())
+def test_no_equation_of_many_random_systems_disagrees(tmp_path: Path, system: SystemText) -> None:
+    require_agreement(tmp_path / "random.mac", system)
+
+
+def require_agreement(scene: Path, system: SystemText) -> None:
     scene.write_text(system.scene_file(), encoding="utf-8")
     report = check_record(derived_record(scene))
     assert not report.disagreements, [found for found in report.verdicts if found.verdict is Verdict.DISAGREES]

@@ -196,8 +196,8 @@ def assert_same_assignments(chosen, name, kept, write_scene):
 
 
 def test_a_scene_that_calls_for_less_pays_less():
-    swinging = costs_of(SPHERICAL, "--scene", "swinging_scene")
-    shaken = costs_of(SPHERICAL, "--scene", "shaken_scene")
+    asked = (Request(scene=f"{name}_scene") for name in ("swinging", "shaken"))
+    swinging, shaken = (json.loads(MotionProgram(SPHERICAL, each, Limits()).document) for each in asked)
     assert swinging["operations"] < shaken["operations"]
 
 
