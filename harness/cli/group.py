@@ -4,6 +4,7 @@ import io
 import os
 import sys
 from collections.abc import Collection
+from contextlib import nullcontext, suppress
 from typing import Any
 
 import click
@@ -110,9 +111,10 @@ def run() -> int:
     """Run the command line in this process; every failure is told in one sentence. Returns the exit status."""
     _write_what_can_be_written()
     try:
-        status = holonom(standalone_mode=False, obj=OWN_PROCESS)
-        sys.stdout.flush()
-        return status or 0
+        status = holonom(standalone_mode=False, obj=OWN_PROCESS) or 0
+        with suppress(OSError) if status == MACHINE_AT_FAULT else nullcontext():  # that is told already
+            sys.stdout.flush()
+        return status
     except click.ClickException as error:
         error.show()
         return error.exit_code

@@ -10,8 +10,9 @@ from pathlib import Path
 
 import psutil
 import pytest
+from shell import SHELL
 
-ENDLESS = 'load("holonom.mac")$ system("(sleep 1000 >/dev/null 2>&1 &); true")$ for i do 1$'
+ENDLESS = f'load("holonom.mac")$ {SHELL} in_a_shell("(sleep 1000 >/dev/null 2>&1 &); true")$ for i do 1$'
 VERBS = {
     "derive": ["--json", "out.json"],
     "check": ["--json", "out.json"],
