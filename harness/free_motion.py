@@ -3,9 +3,10 @@
 And the motion under prescribed reactions, of which free motion is the case zero.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cached_property
 from pathlib import Path
 
 from sympy import Add, Expr, Mul, Symbol
@@ -18,6 +19,7 @@ from .documents import Document, ask, read
 from .mathjson import to_sympy
 from .record import read_system
 from .shown import Show, Shown
+from .trees import Tree
 
 Law = Mapping[str, Expr]
 
@@ -122,14 +124,14 @@ class OpenAccelerations:
 class FreeMotion(Shown):
     """The answers about one scene.
 
-    ``condition`` is None where (10) is not written out, and ``left_out`` says why; ``prescribed`` is None where the
-    scene prescribes no reactions, ``open`` where the mass matrix is regular. ``redundant`` are the multipliers of the
-    constraints that follow from the others: (10) is that of the others, and a motion is free where it has no
+    ``condition_trees`` is None where (10) is not written out, and ``left_out`` says why; ``prescribed`` is None where
+    the scene prescribes no reactions, ``open`` where the mass matrix is regular. ``redundant`` are the multipliers of
+    the constraints that follow from the others: (10) is that of the others, and a motion is free where it has no
     constraint forces.
     """
 
     scene: str
-    condition: tuple[Expr, ...] | None
+    condition_trees: tuple[Tree, ...] | None  # as MathJSON
     left_out: str | None
     motion: MotionVerdict
     universal: UniversalControls
@@ -137,6 +139,11 @@ class FreeMotion(Shown):
     prescribed: PrescribedReactions | None
     open: OpenAccelerations | None
     redundant: tuple[str, ...]
+
+    @cached_property
+    def condition(self) -> tuple[Expr, ...] | None:
+        """What vanishes where a motion is free, for each constraint; None where it is not written out."""
+        return None if self.condition_trees is None else _expressions(self.condition_trees)
 
     def _table(self) -> Show:
         from .cli.tables.free_motion import show_free_motion
@@ -175,7 +182,7 @@ def free_motion(
     )
     return FreeMotion(
         document["scene"],
-        None if document["condition"] is None else _expressions(document["condition"]),
+        None if document["condition"] is None else tuple(document["condition"]),
         document["left_out"],
         MotionVerdict(
             Free(motion["verdict"]),
@@ -240,7 +247,7 @@ def _checked_law(document: dict, law: dict, constants: list, free: list, positiv
     return UniversalLaw(controls, tuple(constants), tuple(free), conditions, judgement)
 
 
-def _expressions(trees: list) -> tuple[Expr, ...]:
+def _expressions(trees: Iterable[Tree]) -> tuple[Expr, ...]:
     return tuple(to_sympy(tree) for tree in trees)
 
 

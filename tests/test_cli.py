@@ -14,6 +14,7 @@ from particle import PARTICLE
 
 from holonom.cli import holonom as cli
 from holonom.cli import run
+from holonom.cli.tables.condition import condition_lines
 from holonom.crosscheck import Verdict
 from holonom.crosscheck.verdict import Judgement
 from holonom.failures import Failure, HolonomError
@@ -263,3 +264,18 @@ def test_an_internal_error_had_the_status_of_a_disagreement(monkeypatch):
     found = CliRunner().invoke(cli, ["errata"], standalone_mode=False)
     assert found.return_value == 70
     assert "an internal error, AttributeError" in found.output
+
+
+def test_a_long_condition_is_printed_by_its_terms_with_its_roots_under_names():
+    distance = ["Add", ["Power", "x", 2], ["Power", "y", 2]]
+    short = ["Multiply", "x", ["Power", distance, ["Rational", -1, 2]]]
+    assert condition_lines(short) == ["x/sqrt(x^2 + y^2) = 0"]
+    terms = [["Multiply", k, "r1", ["Power", distance, ["Rational", k, 2]], ["Sqrt", 3]] for k in (-1, 3, 5, 7, 9)]
+    assert condition_lines(["Add", *terms, ["Power", "x", ["Rational", 1, 3]]]) == [
+        "with rr1 = sqrt(x^2 + y^2)",
+        "with rr2 = x^(1/3)",
+        "0 = the sum of",
+        "    -r1*sqrt(3)/rr1",
+        *(f"    {k}*r1*rr1^{k}*sqrt(3)" for k in (3, 5, 7, 9)),
+        "    rr2",
+    ]

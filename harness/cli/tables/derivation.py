@@ -13,6 +13,7 @@ from rich.text import Text
 
 from ...language import gettext, ngettext, translatable, translated
 from ...notation import scene_text
+from .condition import condition_lines
 from .text import counted, styled
 
 if TYPE_CHECKING:
@@ -79,7 +80,10 @@ def _sum(report: "CheckReport") -> str:
 def _show_equations(console: Console, equations: Iterable["Equation"]) -> None:
     for equation in equations:
         console.print(Text(f"({equation.number}) {equation.name}", style="cyan"))
-        if equation.relations:
+        if equation.id == "free_motion_condition":
+            lines = [line for relation in equation.relations for line in condition_lines(relation.left_tree)]
+            console.print("\n".join(f"    {line}" for line in lines), soft_wrap=True, markup=False)
+        elif equation.relations:
             console.print("\n".join(map(_line, equation.relations)), soft_wrap=True, markup=False)
         else:
             console.print("    none", style="dim")

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 from rich.text import Text
 
+from .condition import condition_lines
 from .motion import short_number
 from .text import formula
 
@@ -17,10 +18,11 @@ if TYPE_CHECKING:
 
 def show_free_motion(console: Console, found: "FreeMotion") -> None:
     """Print the condition of free motion and the controls that satisfy it."""
-    if found.condition is None:
+    if found.condition_trees is None:
         _show_list(console, "condition of free motion (10): not written out", [found.left_out or ""])
     else:
-        _show_list(console, "condition of free motion (10)", [f"{formula(e)} = 0" for e in found.condition])
+        lines = [line for tree in found.condition_trees for line in condition_lines(tree)]
+        _show_list(console, "condition of free motion (10)", lines)
     if found.redundant:
         names = ", ".join(found.redundant)
         _show_list(
