@@ -39,11 +39,18 @@ class Matrices(NamedTuple):
 
 
 class MotionMatrices:
-    """The matrices of a motion as a function of its state."""
+    """The matrices of a motion as a function of its state.
+
+    Attributes
+    ----------
+    coordinates : int
+        How many there are: n.
+    """
 
     def __init__(self, problem: MotionProblem) -> None:
         require_analytic(problem)
-        self._layout, self._kept = _Layout(problem), problem.independent
+        self.coordinates, self._kept = len(problem.coordinates), problem.independent
+        self._layout = _Layout(problem)
         self._evaluate = evaluation_once(problem, problem.matrices, read_precision("double"))
         self._others = np.array([0.0] * len(problem.multipliers) + list(problem.numbers))
 

@@ -111,7 +111,7 @@ class Part:
         self.balance = EnergyBalance(self.problem, self._multipliers, precision)
         inner = 0 if self.balance.conservative else len(POINTS)
         between = None if problem.signs else Between(request.samples or 0, inner)
-        self.engine = SwitchingEngine(self.problem, request, precision, end, between)
+        self.engine = SwitchingEngine(self.problem, request, precision, end, self.matrices, between)
         self._start, self._end = float(problem.start["t"]), float(end)
         self.doubtful = vanishing_instants(self.problem, self.matrices, self._end)
         self.by_time = time_dependence(in_numbers(self.problem, self.problem.matrices), self._start, self._end)
@@ -147,7 +147,7 @@ class Part:
     @cached_property
     def projection(self) -> ProgramProjection:
         """What projects states in the numbers of the run."""
-        return ProgramProjection(self.problem, self._precision)
+        return ProgramProjection(self.problem, self._precision, self.matrices)
 
     def require_way_on(self, at: Instant) -> None:
         """Refuse to go on where a constraint loses its gradient, or an expression of the time its smoothness."""

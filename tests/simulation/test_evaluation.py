@@ -11,7 +11,11 @@ from holonom.program.motion_problem import motion_problem
 from holonom.program.precision import read_precision
 from holonom.program.request import Request
 from holonom.simulation.constraints.program_projection import ProgramProjection, _nearest_by_lapack, nearest_state
+from holonom.simulation.engines.robust import RobustEngine
 from holonom.simulation.evaluation import CompiledIfItPays, evaluation, evaluation_once
+from holonom.simulation.matrices import MotionMatrices
+from holonom.simulation.piecewise import PiecewiseMotion
+from holonom.simulation.request import SimulationRequest
 
 DOUBLE = read_precision("double")
 
@@ -70,7 +74,7 @@ def test_numpy_and_heyoka_compute_the_same(problem, states, program):
 
 
 def test_the_projection_by_numpy_is_the_compiled_one(problem, states):
-    compiled, keeper = nearest_state(problem, DOUBLE), ProgramProjection(problem, DOUBLE)
+    compiled, keeper = nearest_state(problem, DOUBLE), ProgramProjection(problem, DOUBLE, MotionMatrices(problem))
     for point in states.T:
         state, found = point[1:].copy(), compiled(np.ascontiguousarray(point))
         distance = keeper.project(point[0], state)
@@ -79,7 +83,7 @@ def test_the_projection_by_numpy_is_the_compiled_one(problem, states):
 
 
 def test_the_projection_by_lapack_is_the_compiled_one(problem, states):
-    compiled, solved = nearest_state(problem, DOUBLE), _nearest_by_lapack(problem)
+    compiled, solved = nearest_state(problem, DOUBLE), _nearest_by_lapack(MotionMatrices(problem))
     for point in states.T:
         assert np.allclose(solved(point), compiled(np.ascontiguousarray(point)), rtol=1e-13, atol=1e-13)
 
@@ -101,5 +105,18 @@ def test_what_is_kept_for_all_values_of_a_parameter_is_compiled_at_once(tmp_path
 def test_a_long_projection_is_not_carried_out_by_numpy():
     """It took three times as long as LAPACK's solve, and was compiled for some hundred states."""
     long, short = example("linkage.mac", N="8"), example("pendulum.mac")
-    assert ProgramProjection(long, DOUBLE)._nearest._carried_out == 0
-    assert ProgramProjection(short, DOUBLE)._nearest._carried_out > 0
+    assert ProgramProjection(long, DOUBLE, MotionMatrices(long))._nearest._carried_out == 0
+    assert ProgramProjection(short, DOUBLE, MotionMatrices(short))._nearest._carried_out > 0
+
+
+def test_all_that_follow_a_motion_ask_the_same_matrices():
+    """Each had its own, carried out by NumPy some hundred times before it was compiled."""
+    linkage = example("linkage.mac")
+    motion = PiecewiseMotion(linkage, SimulationRequest(until=Fraction(1)), DOUBLE, 1.0)
+    motion.advance(1.0)  # past a dead centre
+    part = motion.phases[0].part
+    first, second = part.engine._first, part.engine._second
+    assert isinstance(second, RobustEngine)
+    assert second.steps > 0
+    assert part.matrices is second.matrices
+    assert part.matrices is first.watch._matrices

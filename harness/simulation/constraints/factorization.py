@@ -58,6 +58,10 @@ class FactoredConstraints(ABC):
         """Accelerations of A a - J^T lambda = h, J a = -c."""
 
     @abstractmethod
+    def correction(self, residual: Vector) -> Vector:
+        """The change d, least in the mass metric, with J d = -residual, as far as one solve gives it."""
+
+    @abstractmethod
     def multipliers(self, force: Vector, curvature: Vector) -> Vector:
         """Multipliers of A a - J^T lambda = h, J a = -c: of all that give the constraint forces, the least."""
 
@@ -91,6 +95,10 @@ class IndependentConstraints(FactoredConstraints):
     def accelerations(self, force: Vector, curvature: Vector) -> Vector:
         """Refined until what changes is rounding."""
         return self._refined(force, curvature)[0]
+
+    def correction(self, residual: Vector) -> Vector:
+        """Without refinement."""
+        return self._solved(np.zeros_like(self._roots), residual)[0]
 
     def multipliers(self, force: Vector, curvature: Vector) -> Vector:
         """They are unique."""
@@ -166,6 +174,10 @@ class DependentConstraints(FactoredConstraints):
         free = self._complement.T @ self._weighted_force(force, curvature)
         return self._weighted.unweighted(self._basis @ self._along(curvature) + self._complement @ free)
 
+    def correction(self, residual: Vector) -> Vector:
+        """Along Q alone."""
+        return self._weighted.unweighted(self._basis @ self._along(residual))
+
     def multipliers(self, force: Vector, curvature: Vector) -> Vector:
         """Less what of them makes no force: the null space of J^T."""
         along = self._along(curvature) - self._basis.T @ self._weighted_force(force, curvature)
@@ -200,6 +212,10 @@ class DependentConstraintsAtEach(FactoredConstraints):
     def accelerations(self, force: Vector, curvature: Vector) -> Vector:
         """Of each."""
         return self._mapped(DependentConstraints.accelerations, force, curvature)
+
+    def correction(self, residual: Vector) -> Vector:
+        """Of each."""
+        return self._mapped(DependentConstraints.correction, residual)
 
     def multipliers(self, force: Vector, curvature: Vector) -> Vector:
         """Of each."""

@@ -27,16 +27,20 @@ class ProgramProjection:
 
     Parameters
     ----------
+    matrices : MotionMatrices
+        Of the same motion.
     waits : bool
         Whether to compile it only if that pays.
     """
 
-    def __init__(self, problem: MotionProblem, precision: Precision, waits: bool = True) -> None:
-        waits = waits and may_wait(problem, problem.projection, precision)
-        build = _compiled_if_it_pays if waits else partial(nearest_state, opt_level=0)
-        self._nearest = problem.once(
-            ("projection", precision.name), problem.projection, lambda: build(problem, precision)
-        )
+    def __init__(
+        self, problem: MotionProblem, precision: Precision, matrices: MotionMatrices, waits: bool = True
+    ) -> None:
+        if waits and may_wait(problem, problem.projection, precision):
+            build = partial(_compiled_if_it_pays, problem, precision, matrices)
+        else:
+            build = partial(nearest_state, problem, precision, opt_level=0)
+        self._nearest = problem.once(("projection", precision.name), problem.projection, build)
         self._inputs = zeros(precision, 1 + len(problem.state) + len(problem.parameters))
         self._moving = slice(1, 1 + len(problem.state))
         for place, name in enumerate(problem.parameters, start=1 + len(problem.state)):
@@ -61,12 +65,12 @@ class ProgramProjection:
         return float(found[-1]) ** 0.5
 
 
-def _compiled_if_it_pays(problem: MotionProblem, precision: Precision) -> Evaluation:
+def _compiled_if_it_pays(problem: MotionProblem, precision: Precision, matrices: MotionMatrices) -> Evaluation:
     """From t and the state to what `nearest_state` says."""
     by_lapack = 2 * _seconds_by_lapack(problem)
     solved = by_lapack < CALLED + 2 * OPERATION * problem.projection.operations
     return CompiledIfItPays(
-        lambda: _nearest_by_lapack(problem) if solved else _nearest_by_numpy(problem),
+        lambda: _nearest_by_lapack(matrices) if solved else _nearest_by_numpy(problem),
         lambda: nearest_state(problem, precision, opt_level=0),
         2 * problem.projection.operations,
         by_lapack if solved else CALLED,
@@ -80,8 +84,8 @@ def _seconds_by_lapack(problem: MotionProblem) -> float:
     return OPERATION * problem.matrices.operations + SOLVED + SOLVED_UNKNOWN * unknowns**3
 
 
-def _nearest_by_lapack(problem: MotionProblem) -> Evaluation:
-    matrices, n = MotionMatrices(problem), len(problem.coordinates)
+def _nearest_by_lapack(matrices: MotionMatrices) -> Evaluation:
+    n = matrices.coordinates
 
     def nearest(inputs: Numbers) -> Numbers:
         before = inputs[1 : 1 + 2 * n]

@@ -77,7 +77,7 @@ def settle(
             first = _where_not(at.finite, t)[0]
             raise HolonomError(Failure.NO_WAY_ON, detail=f"{first:.10g}, where numbers overflow")
         factored = _factored(at, rank)
-        change = _correction(factored, at, at.residual)
+        change = factored.correction(at.residual)
         size, extent = factored.length(change), _extent(factored, state[..., :n])
         settled |= (size <= ROUNDING * extent) | ((CONTRACTION * last < size) & (size <= CONSISTENT * extent))
         if np.all(settled) or not np.all(np.isfinite(size)):
@@ -85,7 +85,7 @@ def settle(
         moved = state[..., :n] + np.where(settled[..., None], 0.0, change)
         state, last = np.concatenate([moved, state[..., n:]], axis=-1), size
     _require_small(t, at.residual, factored, extent)
-    change = _correction(factored, at, at.residual_rate)
+    change = factored.correction(at.residual_rate)
     left = at.residual_rate + np.matvec(at.jacobian, change)
     _require_small(t, left, factored, _extent(factored, state[..., n:]))
     return np.concatenate([state[..., :n], state[..., n:] + change], axis=-1), factored
@@ -95,11 +95,6 @@ def _factored(at: Matrices, rank: int | None) -> FactoredConstraints:
     if rank is None:
         rank = rank_of(weighted_constraints(at.mass, at.jacobian).singular_values())
     return factored_constraints(at.mass, at.jacobian, rank)
-
-
-def _correction(factored: FactoredConstraints, at: Matrices, residual: Vector) -> Vector:
-    """The change d, least in the mass metric, with J d = -residual."""
-    return factored.accelerations(np.zeros_like(at.force), residual)
 
 
 def _extent(factored: FactoredConstraints, numbers: Vector) -> Vector:

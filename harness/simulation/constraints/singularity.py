@@ -95,9 +95,9 @@ def singular_values_at(matrices: MotionMatrices, t: float, state: Vector) -> Vec
 class Watch:
     """Watches the constraints of a motion."""
 
-    def __init__(self, problem: MotionProblem) -> None:
+    def __init__(self, problem: MotionProblem, matrices: MotionMatrices) -> None:
         self._names = [problem.multipliers[beta] for beta in problem.independent]
-        self._matrices = MotionMatrices(problem)
+        self._matrices = matrices
         start = [float(problem.start[name]) for name in problem.state]
         self._scale = self._constraints(float(problem.start["t"]), start).scale
         self._least = 1.0

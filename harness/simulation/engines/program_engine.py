@@ -22,6 +22,7 @@ from ...program.precision import Precision
 from ..constraints.singularity import Watch, no_gradient
 from ..diagnosis import HardCase
 from ..evaluation import Evaluation, Numbers, evaluation_once, zeros
+from ..matrices import MotionMatrices
 from ..request import EngineName
 from .engine import Obstacle, Piece, Solutions
 
@@ -68,6 +69,8 @@ class ProgramEngine:
     ----------
     failed : object
         The outcome of the integrator's steps where the last one led to no numbers.
+    matrices : MotionMatrices or None
+        Of the same motion; None to make them.
     """
 
     name: EngineName
@@ -79,11 +82,13 @@ class ProgramEngine:
     _integrator: Integrator
     _first_block = FIRST_BLOCK
 
-    def __init__(self, problem: MotionProblem, precision: Precision, failed: object) -> None:
+    def __init__(
+        self, problem: MotionProblem, precision: Precision, failed: object, matrices: MotionMatrices | None
+    ) -> None:
         require_analytic(problem)
         self.precision, self._failed = precision, failed
         self.steps, self._longest, self._usual = 0, 0.0, 0.0
-        self._problem = problem
+        self._problem, self._known_matrices = problem, matrices
         self._obstacle: HolonomError | None = None
         self._behind_obstacle = False
         self._evaluate: Evaluation | None = None
@@ -96,7 +101,11 @@ class ProgramEngine:
     @cached_property
     def watch(self) -> Watch:
         """What looks at the constraints where steps shrink."""
-        return Watch(self._problem)
+        return Watch(self._problem, self._matrices)
+
+    @cached_property
+    def _matrices(self) -> MotionMatrices:
+        return self._known_matrices or MotionMatrices(self._problem)
 
     def restart(self, instant: Any, state: Numbers) -> None:
         """Go on from another instant and state, shape (2n,)."""

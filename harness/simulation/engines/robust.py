@@ -50,6 +50,8 @@ class RobustEngine:
     ----------
     tol : float or None
         Tolerance of a step, relative and absolute.
+    matrices : MotionMatrices or None
+        Of the same motion; None to make them.
 
     Attributes
     ----------
@@ -62,9 +64,11 @@ class RobustEngine:
     name = EngineName.ROBUST
     code = ""
 
-    def __init__(self, problem: MotionProblem, tol: float | None = None) -> None:
+    def __init__(
+        self, problem: MotionProblem, tol: float | None = None, matrices: MotionMatrices | None = None
+    ) -> None:
         clock = time.perf_counter()
-        self.matrices = MotionMatrices(problem)
+        self.matrices = matrices or MotionMatrices(problem)
         self.compile_seconds = time.perf_counter() - clock
         self.n, self.steps, self.tol = len(problem.coordinates), 0, max(tol or TOLERANCE, TIGHTEST)
         self.stiff, self._stiffness = False, StiffnessWatch()

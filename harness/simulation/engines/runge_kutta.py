@@ -26,6 +26,7 @@ from ...program.c_source import HELPERS, scalar_statements
 from ...program.motion_problem import MotionProblem, computing
 from ...program.motion_program import Program
 from ...program.precision import read_precision
+from ..matrices import MotionMatrices
 from ..parts_of_scipy import dormand_prince
 from ..request import EngineName, Stabilization
 from .program_engine import SHRUNK, ProgramEngine, decay_in
@@ -59,6 +60,8 @@ class RungeKuttaEngine(ProgramEngine):
     drift : Stabilization
     decay : float or None
         gamma of Baumgarte's cure and Gear's, as for `TaylorEngine`.
+    matrices : MotionMatrices or None
+        Of the same motion; None to make them.
 
     Raises
     ------
@@ -74,8 +77,9 @@ class RungeKuttaEngine(ProgramEngine):
         tol: float | None = None,
         drift: Stabilization = Stabilization.PROJECTION,
         decay: float | None = None,
+        matrices: MotionMatrices | None = None,
     ) -> None:
-        super().__init__(problem, read_precision("double"), failed=True)
+        super().__init__(problem, read_precision("double"), True, matrices)
         if tol is not None and not FINEST <= tol < 1:
             holds = f"the Runge-Kutta engine holds tolerances from {FINEST:g} to 1, not {tol:g}"
             raise HolonomError(Failure.TOLERANCE_UNHELD, detail=holds)

@@ -20,6 +20,7 @@ from ...program.precision import GUARD_DIGITS, Precision
 from ...program.sign_pattern import with_values_in
 from ..diagnosis import HardCase
 from ..evaluation import Numbers, as_floats
+from ..matrices import MotionMatrices
 from ..request import EngineName, SimulationRequest
 from .choice import TRIAL, Between, Choice, comparable, quicker_engine
 from .engine import Engine, Obstacle, Piece, Solutions
@@ -49,6 +50,8 @@ class SwitchingEngine:
     ----------
     end : number
         The last instant.
+    matrices : MotionMatrices
+        Of the same motion.
     between : Between or None
         What is wanted between the steps; None where the motion goes on after this one, so that engines cannot be
         weighed by what is ahead.
@@ -72,9 +75,10 @@ class SwitchingEngine:
         request: SimulationRequest,
         precision: Precision,
         end: Any,
+        matrices: MotionMatrices,
         between: Between | None = None,
     ) -> None:
-        self._problem, self._request, self._precision = problem, request, precision
+        self._problem, self._request, self._precision, self._matrices = problem, request, precision, matrices
         self.choice: Choice | None = None
         self._current = self._first = self._first_engine(end, between)
         self._begun, self.legs = float(self.time), []
@@ -149,10 +153,10 @@ class SwitchingEngine:
         if obstacle is not None or asked is EngineName.ROBUST:
             if self._precision.name != "double":
                 raise HolonomError(Failure.ROBUST_IS_DOUBLE, detail=obstacle or "--engine asks for it")
-            return _robust(self._problem, self._request)
+            return _robust(self._problem, self._request, self._matrices)
         if asked is EngineName.RUNGE_KUTTA:
-            return _runge_kutta(self._problem, self._request, self._precision, end)
-        taylor = _taylor(self._problem, self._request, self._precision, end)
+            return _runge_kutta(self._problem, self._request, self._precision, end, self._matrices)
+        taylor = _taylor(self._problem, self._request, self._precision, end, self._matrices)
         if between is None or not self._either:
             return taylor
         steps = taylor.steps_ahead(end, TRIAL)
@@ -161,7 +165,7 @@ class SwitchingEngine:
         self.choice = quicker_engine(steps, self._problem.motion.operations, taylor.tol, between)
         if self.choice.engine is EngineName.TAYLOR:
             return taylor
-        return _runge_kutta(self._problem, self._request, self._precision, end)
+        return _runge_kutta(self._problem, self._request, self._precision, end, self._matrices)
 
     @property
     def _either(self) -> bool:
@@ -174,7 +178,7 @@ class SwitchingEngine:
         """The robust engine, where the first one needs it."""
         from .robust import RobustEngine
 
-        return RobustEngine(self._problem, FINE if self._request.tol is None else self._request.tol)
+        return RobustEngine(self._problem, FINE if self._request.tol is None else self._request.tol, self._matrices)
 
     @property
     def _set_up(self) -> list[Engine]:
@@ -247,23 +251,27 @@ def _without_pieces(engine: Engine, until: Any) -> Iterator[Piece]:
     yield from ()
 
 
-def _taylor(problem: MotionProblem, request: SimulationRequest, precision: Precision, end: Any) -> "TaylorEngine":
+def _taylor(
+    problem: MotionProblem, request: SimulationRequest, precision: Precision, end: Any, matrices: MotionMatrices
+) -> "TaylorEngine":
     from ...program.expense import order_for, require_means
     from .taylor import TaylorEngine, held
 
     digits = precision.digits + GUARD_DIGITS if request.tol is None else -log10(held(request.tol, precision))
     require_means(problem, precision, order_for(digits), end)
     decay = decay_until(end, problem, precision)
-    return TaylorEngine(problem, request.tol, precision, request.drift, request.compact, decay)
+    return TaylorEngine(problem, request.tol, precision, request.drift, request.compact, decay, matrices)
 
 
-def _runge_kutta(problem: MotionProblem, request: SimulationRequest, precision: Precision, end: Any) -> Engine:
+def _runge_kutta(
+    problem: MotionProblem, request: SimulationRequest, precision: Precision, end: Any, matrices: MotionMatrices
+) -> Engine:
     from .runge_kutta import RungeKuttaEngine
 
     if precision.name != "double":
         raise HolonomError(Failure.RUNGE_KUTTA_IS_DOUBLE, detail=precision.name)
     closed = with_values_in(problem)
-    return RungeKuttaEngine(closed, request.tol, request.drift, decay_until(end, problem, precision))
+    return RungeKuttaEngine(closed, request.tol, request.drift, decay_until(end, problem, precision), matrices)
 
 
 def decay_until(end: Any, problem: MotionProblem, precision: Precision) -> float:
@@ -271,10 +279,10 @@ def decay_until(end: Any, problem: MotionProblem, precision: Precision) -> float
     return DECAYS_IN_A_RUN / float(end - precision.number(problem.start["t"]))
 
 
-def _robust(problem: MotionProblem, request: SimulationRequest) -> Engine:
+def _robust(problem: MotionProblem, request: SimulationRequest, matrices: MotionMatrices) -> Engine:
     from .robust import TIGHTEST, RobustEngine
 
     if request.tol is not None and not TIGHTEST <= request.tol < 1:
         holds = f"the robust engine holds tolerances from {TIGHTEST:.1e} to 1, not {request.tol:g}"
         raise HolonomError(Failure.TOLERANCE_UNHELD, detail=holds)
-    return RobustEngine(problem, request.tol)
+    return RobustEngine(problem, request.tol, matrices)

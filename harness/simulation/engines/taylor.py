@@ -19,6 +19,7 @@ from ...program.precision import Precision, read_precision
 from ..constraints.program_projection import ProgramProjection
 from ..constraints.stabilization import Equations, equations_of_motion, stabilized_equations
 from ..evaluation import Numbers
+from ..matrices import MotionMatrices
 from ..request import EngineName, Stabilization
 from .code import Code, better_code, pays
 from .program_engine import FIRST_BLOCK, ProgramEngine, decay_in
@@ -42,6 +43,8 @@ class TaylorEngine(ProgramEngine):
         code when what is left of a run earns that back.
     decay : float or None
         gamma of Baumgarte's cure and Gear's; None for `DECAYS_IN_A_RUN` by the length of the scene's time span.
+    matrices : MotionMatrices or None
+        Of the same motion; None to make them.
 
     Raises
     ------
@@ -59,9 +62,10 @@ class TaylorEngine(ProgramEngine):
         drift: Stabilization = Stabilization.PROJECTION,
         compact: bool | None = None,
         decay: float | None = None,
+        matrices: MotionMatrices | None = None,
     ) -> None:
         numbers = read_precision(precision) if isinstance(precision, str) else precision
-        super().__init__(problem, numbers, import_heyoka().taylor_outcome.err_nf_state)
+        super().__init__(problem, numbers, import_heyoka().taylor_outcome.err_nf_state, matrices)
         self._tolerance = {} if tol is None else {"tol": self.precision.number(repr(held(tol, self.precision)))}
         self._chosen = compact is not None
         self._program = computing(problem.motion, {f"ddot({name})" for name in problem.coordinates})
@@ -71,7 +75,7 @@ class TaylorEngine(ProgramEngine):
         start = np.array([number(problem.start[name]) for name in problem.state])
         self._set_up(code, number(problem.start["t"]), start)
         kept = drift is Stabilization.PROJECTION and problem.multipliers
-        self._keeper = ProgramProjection(problem, self.precision, waits=not self._chosen) if kept else None
+        self._keeper = ProgramProjection(problem, self.precision, self._matrices, not self._chosen) if kept else None
         self.compile_seconds = time.perf_counter() - begun
         self.tol = float(self._integrator.tol)
         longest = FINE_BLOCK if self.tol <= FINE else FIRST_BLOCK
