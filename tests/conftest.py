@@ -34,7 +34,16 @@ settings.load_profile("patient")
 ScenesWriter = Callable[[str], Path]
 # Fixtures that take long, and are made once: the group of all tests that ask for them.
 MADE_ONCE = {"results": "companion", "browser": "companion", "printed_equations": "errata"}
-LONGEST = ("companion", "test_rigid_bodies", "test_preloaded", "test_names", "test_study", "errata", "test_wheel")
+LONGEST = (
+    "companion",
+    "test_rtests",
+    "test_rigid_bodies",
+    "test_preloaded",
+    "test_names",
+    "test_study",
+    "test_wheel",
+    "errata",
+)
 
 
 @pytest.fixture(scope="session")

@@ -132,6 +132,7 @@ def test_a_closed_chain_of_any_number_of_bodies_keeps_momentum_and_energy(N):
 # ---- Bricard's linkage --------------------------------------------------------------------------------------------
 
 
+@pytest.mark.long
 def test_bricards_linkage_moves_as_its_closure_says_with_forces_that_are_unique():
     motion = followed("hard/bricard_linkage", samples=21)
     joints = [values(motion, [f"{x}{k}" for x in "xyz"]) for k in range(1, 5)]

@@ -23,7 +23,9 @@ def test_a_four_bar_linkage_goes_through_its_dead_centres():
     assert all(abs(linkage_tip(1, instant)[1]) < 1e-5 for instant in motion.passages)  # rods in line
 
 
-@pytest.mark.parametrize(("bars", "revolutions"), [pytest.param(1, 25, marks=pytest.mark.long), (4, 5), (12, 1)])
+@pytest.mark.parametrize(
+    ("bars", "revolutions"), [(4, 5), *(pytest.param(*each, marks=pytest.mark.long) for each in ((1, 25), (12, 1)))]
+)
 def test_it_stays_on_its_branch_for_many_revolutions(bars, revolutions):
     motion = RobustEngine(problem("linkage.mac", N=str(bars)))
     motion.advance(revolutions * linkage_period(bars) + 0.1)
