@@ -24,7 +24,7 @@
   '(mplus mtimes mexpt mlist mequal rat $matrix
     mcond mgreaterp mgeqp mlessp mleqp mand mor mnot mnotequal $equal $kind
     $max %max $min %min $unit_step %unit_step $hstep %hstep
-    $cubic_spline $point $segment $polyline $circle $mechanical_system $motion_scene $servo_motion)
+    $cubic_spline $table_value $point $segment $polyline $circle $mechanical_system $motion_scene $servo_motion)
   "What a description may hold besides the functions that documents know.")
 
 ;;; The first fields of the structures in system.mac and scene.mac
@@ -33,8 +33,8 @@
 (defun system-of (scene) (third scene))
 
 (defun without-systems (scene)
-  "SCENE as it would be if it held no systems: they are described by themselves."
-  (list* (first scene) (second scene) nil nil (nthcdr 4 scene)))
+  "SCENE as it would be if it held no systems, which are described by themselves, and no splines of its tables."
+  (list* (first scene) (second scene) nil nil nil (nthcdr 5 scene)))
 
 ;;; Written by the process that ran the scene file
 

@@ -104,7 +104,7 @@ void {name}_values(double *p)
 {values}
 }}
 
-void {name}_law(double t, const double *p, double *u)
+{tables}void {name}_law(double t, const double *p, double *u)
 {{
 {law}
 }}
@@ -178,6 +178,21 @@ int {name}_project(double t, double *q, double *v, const double *u, const double
     for (int s = 0; s < {n}; s++) q[s] = x[s], v[s] += dv[s];
     return 0;
 }}
+"""
+
+SEARCH = """\
+/* Of the polynomials {t_k, c_0, c_1, c_2, c_3} of a table, in order, the last that begins no later than t. */
+static const double *piece_at(double t, const double (*pieces)[5], size_t count)
+{
+    size_t first = 0;
+    while (count > 1) {
+        size_t half = count/2;
+        if (pieces[first + half][0] <= t) first += half, count -= half;
+        else count = half;
+    }
+    return pieces[first];
+}
+
 """
 
 DRIVER = """\
@@ -308,6 +323,7 @@ def _source(model: Model, written: Mapping[str, str]) -> str:
         names="\n".join(_names(model, written["name"])),
         start=_body(_start(model), "t q v"),
         values=_body((f"p[{i}] = {model.values.get(p, UNKNOWN)};" for i, p in enumerate(model.parameters)), "p"),
+        tables="".join(_tables(model)),
         law=_law(model),
         operations=model.motion.operations,
         motion=one(model.motion, _results(model, "{array}[{index}]"), "t q v u p a lambda"),
@@ -373,17 +389,32 @@ def _start(model: Model) -> Iterator[str]:
     yield from (f"v[{s}] = {value(f'dot({name})')};" for s, name in enumerate(model.coordinates))
 
 
+def _tables(model: Model) -> Iterator[str]:
+    """The tables of the law as data, with the search for the polynomial that counts."""
+    for number, table in enumerate(model.tables):
+        rows = ",\n".join(f"    {{{', '.join(map(repr, map(float, row)))}}}" for row in table.numbers.T)
+        yield f"static const double table{number}[][{len(table.inputs)}] = {{\n{rows}}};\n\n"
+    if model.tables:
+        yield SEARCH
+
+
 def _law(model: Model) -> str:
     if model.law is None:
         return _body((), "t p u")
     inputs = ["t", *(f"p[{index}]" for index in range(len(model.parameters)))]
+    found = []
+    for number, table in enumerate(model.tables):
+        size = f"sizeof table{number}/sizeof *table{number}"
+        found.append(f"const double *const piece{number} = piece_at(t, table{number}, {size});")
+        inputs += [f"piece{number}[{place}]" for place in range(len(table.inputs))]
     histories = ("{}", "dot({})", "ddot({})")
     indices = {
         history.format(name): f"u[{k * len(model.controls) + index}]"
         for index, name in enumerate(model.controls)
         for k, history in enumerate(histories)
     }
-    return _function(model.law, [indices[name] for name in model.law.outputs], "t p u", inputs)
+    results = [f"{indices[name]} = {{value}};" for name in model.law.outputs]
+    return _body([*found, *statements(model.law, ONE, inputs, results)], "t p u")
 
 
 def _residual(model: Model, function: Callable[..., str]) -> str:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from .motion_program import Program
 from .numpy_function import NumpyFunction
+from .table import Table
 
 
 class Shape(StrEnum):
@@ -30,6 +31,7 @@ class Drawing:
     shapes: tuple[Shape, ...]
     # of t, the coordinates and more; ``drawing[i,k]`` is the k-th number of the i-th shape, indices from 1
     program: Program
+    tables: tuple[Table, ...] = ()  # whose polynomials it takes
 
     def numbers(self, instants: NDArray, coordinates: Mapping[str, NDArray]) -> list[NDArray[np.float64]]:
         """The numbers of each shape along a motion.
@@ -45,6 +47,8 @@ class Drawing:
             x and y of its places in their order, then, of a circle, the radius.
         """
         known = {"t": instants, **coordinates}
+        for table in self.tables:
+            known |= dict(zip(table.inputs, table.at(instants), strict=True))
         given = [np.asarray(known.get(name, 0.0), dtype=float) for name in self.program.inputs]
         found = dict(zip(self.program.outputs, NumpyFunction(self.program)(given), strict=True))
         return [

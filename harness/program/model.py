@@ -12,6 +12,7 @@ from ..documents import NAME, Document, ask, read
 from ..failures import Failure, HolonomError
 from .motion_program import Program, program_of
 from .request import Request
+from .table import Table, read_tables
 
 
 @dataclass(frozen=True)
@@ -31,8 +32,10 @@ class Model:
     # the time, coordinates and velocities at the start, as decimal digits; None where they depend on a parameter
     # without value
     start: Mapping[str, str] | None
-    # u, ``dot(u)``, ``ddot(u)`` of (t, parameters), of the controls that have a law; None without one
+    # u, ``dot(u)``, ``ddot(u)`` of (t, parameters, what the tables are at t), of the controls that have a law; None
+    # without one
     law: Program | None
+    tables: tuple[Table, ...]  # of the law, each of more polynomials than one
     # ``ddot(q)`` and the multipliers by name. This and the next two take (t, q, dot q, u, dot u, ddot u, parameters).
     motion: Program
     # ``residual[beta]``, ``residual_rate[beta]`` and those ``J[beta,s]`` that are not zero by structure; None without a
@@ -88,6 +91,7 @@ def read_model(text: str) -> Model:
         title=document["title"],
         values=document["values"],
         start=document["start"],
+        tables=read_tables(document["tables"]),
         **names,
         **programs,
     )

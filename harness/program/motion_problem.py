@@ -16,6 +16,7 @@ from ..documents import Document, ask, read
 from ..failures import Failure, HolonomError
 from .motion_program import Program, count_operations, names_in, program_of
 from .request import Request
+from .table import Table, read_tables
 
 if TYPE_CHECKING:
     from .drawing import Drawing
@@ -67,8 +68,8 @@ class ParametricStart:
 class MotionProblem:
     """A motion to follow.
 
-    Every program takes t, the coordinates, the velocities, the multipliers, the signs and the open parameters, in this
-    order.
+    Every program takes t, the coordinates, the velocities, the multipliers, the signs, the open parameters and what
+    the tables are at t, in this order.
     """
 
     # system, source: title of the system, and where it comes from
@@ -113,27 +114,33 @@ class MotionProblem:
     # ``switch[i]``, the functions, with what decides how the motion passes their zeros, ``switch_rate[i]``,
     # ``drive[i]`` and ``grip[i]``, and ``momentum[s]``; None without signs
     switching: Program | None = None
+    tables: tuple[Table, ...] = ()  # of the law, each of more polynomials than one
     parameters: tuple[str, ...] = ()  # those that stay open
     # their values in this motion; some may be missing where none is followed
     values: Mapping[str, Fraction] = field(default_factory=dict)
     parametric_start: ParametricStart | None = None  # None without open parameters
     _compiled: dict[Hashable, tuple[object, Any]] = field(default_factory=dict, compare=False, repr=False)
 
-    def once(self, what: Hashable, program: Program, build: "Callable[[], Built]") -> "Built":
-        """What is built of a program, once for all values of the open parameters; anew where there are none.
+    def once(self, what: Hashable, part: object, build: "Callable[[], Built]") -> "Built":
+        """What is built of a part, a program mostly, once for all values of what is open; anew where nothing is.
 
-        `what` tells apart what is built of the same program.
+        `what` tells apart what is built of the same part.
         """
-        if not self.parameters:
+        if not self.open_inputs:
             return build()
-        key = (what, id(program))
+        key = (what, id(part))
         if key not in self._compiled:
-            self._compiled[key] = program, build()  # with the program, so that no other one takes its id
+            self._compiled[key] = part, build()  # with the part, so that no other one takes its id
         return self._compiled[key][1]
 
     def __getstate__(self) -> dict[str, Any]:
         """What another process gets: not what is compiled for this one."""
         return {**vars(self), "_compiled": {}}
+
+    @property
+    def open_inputs(self) -> tuple[str, ...]:
+        """Inputs behind the time, the state, the multipliers and the signs: open parameters, and what tables are."""
+        return (*self.parameters, *(name for table in self.tables for name in table.inputs))
 
     @property
     def numbers(self) -> tuple[float, ...]:
@@ -162,10 +169,23 @@ class MotionProblem:
         return self.multipliers[: len(self.multipliers) - self.servo]
 
 
-def require_analytic(problem: MotionProblem) -> None:
-    """Refuse a motion whose signs are still open to whoever follows one analytic motion alone."""
+def require_signs_known(problem: MotionProblem) -> None:
+    """Refuse a motion whose signs are still open."""
     if problem.signs:
         raise HolonomError(Failure.NOT_ANALYTIC, problem.scene, problem.signs[0].of)
+
+
+def require_analytic(problem: MotionProblem) -> None:
+    """Refuse a motion that is not analytic to whoever follows one analytic motion alone."""
+    require_signs_known(problem)
+    if problem.tables:
+        knot = min(table.knots[0] for table in problem.tables)
+        raise HolonomError(Failure.NOT_ANALYTIC, problem.scene, function_of_knot(knot))
+
+
+def function_of_knot(knot: Fraction) -> str:
+    """The function whose sign tells on which side of an instant the time is, as Maxima prints it."""
+    return f"t{'+' if knot < 0 else '-'}{abs(knot)}" if knot else "t"
 
 
 def require_expandable(problem: MotionProblem) -> None:
@@ -211,7 +231,7 @@ def read_problem(text: str) -> MotionProblem:
         It is no such document, or one of its programs is no program.
     """
     document = read(Document.MOTION_PROBLEM, text)
-    span = document["time_span"]
+    span, tables = document["time_span"], read_tables(document.get("tables", ()))
     return MotionProblem(
         system=document["system"]["title"],
         source=document["system"]["source"],
@@ -228,7 +248,7 @@ def read_problem(text: str) -> MotionProblem:
         projection=_optional(document["projection"]),
         matrices=program_of(document["matrices"]),
         energy=program_of(document["energy"]),
-        drawing=_drawing(document["drawing"]),
+        drawing=_drawing(document["drawing"], tables),
         law_end=document.get("law_end"),
         written_out=tuple(document.get("written_out", ())),
         controls=_optional(document.get("controls")),
@@ -238,6 +258,7 @@ def read_problem(text: str) -> MotionProblem:
         events=_optional(document.get("events")),
         signs=tuple(Sign(sign["name"], sign["of"], By(sign["by"])) for sign in document["signs"]),
         switching=_optional(document["switching"]),
+        tables=tables,
         parameters=tuple(document["parameters"]),
         values={name: Fraction(value) for name, value in document["values"].items()},
         parametric_start=_parametric_start(document["parametric_start"]),
@@ -268,9 +289,9 @@ def _parametric_start(document: Any) -> ParametricStart | None:
     return ParametricStart(_optional(document["program"]), origins, document["obstacle"])
 
 
-def _drawing(document: Any) -> "Drawing | None":
+def _drawing(document: Any, tables: tuple[Table, ...]) -> "Drawing | None":
     if document is None:
         return None
     from .drawing import Drawing, Shape
 
-    return Drawing(tuple(map(Shape, document["shapes"])), program_of(document["program"]))
+    return Drawing(tuple(map(Shape, document["shapes"])), program_of(document["program"]), tables)

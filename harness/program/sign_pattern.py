@@ -86,6 +86,20 @@ def with_values_in(problem: MotionProblem) -> MotionProblem:
     )
 
 
+def at_start(problem: MotionProblem) -> MotionProblem:
+    """The motion as it begins: each table is the polynomial around the start."""
+    if not problem.tables:
+        return problem
+
+    def build() -> MotionProblem:
+        numbers = {name: number for table in problem.tables for name, number in table.first.items()}
+        begun = _with_programs(problem, lambda program: with_numbers(program, numbers))
+        return replace(begun, switching=problem.switching and with_numbers(problem.switching, numbers), tables=())
+
+    begun = problem.once("at start", problem.matrices, build)
+    return replace(begun, start=problem.start, values=problem.values, correction=problem.correction)
+
+
 def sharing_programs(problem: MotionProblem, known: dict[Hashable, MotionProblem]) -> MotionProblem:
     """A motion with the numbers of its laws as values of parameters.
 
@@ -116,7 +130,8 @@ def sharing_programs(problem: MotionProblem, known: dict[Hashable, MotionProblem
         return replace(program, assignments=tuple(assignments))
 
     def taking(program: Program) -> Program:
-        return replace(program, inputs=(*program.inputs, *numbers))
+        before = len(program.inputs) - len(problem.open_inputs) + len(problem.parameters)
+        return replace(program, inputs=(*program.inputs[:before], *numbers, *program.inputs[before:]))
 
     shared = _with_programs(_with_programs(problem, opened), taking)
     shared = replace(shared, parameters=(*problem.parameters, *numbers), values={**problem.values, **numbers})

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from ..program.arithmetic import Arithmetic, run_program
 from ..program.motion_problem import By, MotionProblem, computing
-from ..program.motion_program import Constant, Operation, Program
+from ..program.motion_program import Constant, Operation, Program, names_in
 from ..program.sign_pattern import in_numbers
 
 
@@ -47,18 +47,16 @@ def ticks(problem: MotionProblem) -> Mapping[str, Tick]:
 
 def _affine(program: Program) -> Affine | None:
     """The one output of a program as a function of t; None where it is no such function."""
+    used = set().union(
+        *(names_in(expression) for _, expression in program.assignments), *map(names_in, program.outputs.values())
+    )
+    if used & set(program.inputs) - {"t"}:
+        return None
     try:
-        (value,) = run_program(program, _Inputs(t=Affine(Fraction(0), Fraction(1))), AFFINE).values()
+        (value,) = run_program(program, {"t": Affine(Fraction(0), Fraction(1))}, AFFINE).values()
     except _Otherwise:
         return None
     return value
-
-
-class _Inputs(dict):
-    """Inputs of which only some may be asked for."""
-
-    def __missing__(self, name: str) -> Affine:
-        raise _Otherwise
 
 
 def _constant(value: Fraction) -> Affine:

@@ -13,6 +13,7 @@ from ..confined import Limits
 from ..failures import Failure, HolonomError
 from ..program.motion_problem import DOUBLE_DIGITS, MotionProblem, motion_problem
 from ..program.request import Request
+from ..program.sign_pattern import at_start
 
 
 class Derivations:
@@ -67,7 +68,8 @@ def stands(problem: MotionProblem) -> bool:
 
     from ..program.numpy_function import NumpyFunction
 
-    function = problem.once("start", problem.motion, lambda: NumpyFunction(problem.motion))
+    motion = at_start(problem).motion
+    function = problem.once("start", motion, lambda: NumpyFunction(motion))
     state = [float(problem.start[name]) for name in ("t", *problem.state)]
     unused = [0.0] * len(problem.multipliers) + [1.0] * len(problem.signs)
     with np.errstate(all="ignore"):

@@ -20,6 +20,7 @@ from ..program.precision import Precision, read_precision
 from .constraints.directions import weighted_constraints
 from .evaluation import Numbers, evaluation_once, zeros
 from .matrices import Matrices, Vector
+from .open_values import OpenValues
 from .trust import may_hide
 
 if TYPE_CHECKING:
@@ -85,12 +86,12 @@ class EnergyBalance:
     ) -> None:
         self._precision = read_precision(precision) if isinstance(precision, str) else precision
         self._evaluate = evaluation_once(problem, problem.energy, self._precision)
-        self._values = np.array([[self._precision.ratio(problem.values[name])] for name in problem.parameters])
+        self._values = OpenValues(problem, self._precision)
         self._rows = {name: row for row, name in enumerate(problem.energy.outputs)}
         self._points, self._weights = 1 + self._numbers(POINTS), self._numbers(WEIGHTS)
         self._g, self._multipliers = len(problem.multipliers), multipliers
         self._moving = _constraints_move(problem)
-        hidden = may_hide(computing(problem.energy, {"power"}), problem.parameters)
+        hidden = bool(problem.tables) or may_hide(computing(problem.energy, {"power"}), problem.parameters)
         self.conservative = not self._moving and not hidden and self._without_power(2 * len(problem.coordinates))
 
     def energy(self, instants: Numbers, states: Numbers) -> Numbers:
@@ -113,10 +114,7 @@ class EnergyBalance:
         return [half * (self._weights * row).sum() for half, row in zip(halves, power, strict=True)]
 
     def _output(self, name: str, instants: Numbers, states: Numbers, multipliers: Numbers) -> Numbers:
-        parts = [np.reshape(instants, (1, -1)), states, multipliers]
-        if len(self._values):
-            parts.append(np.repeat(self._values, len(instants), axis=1))
-        inputs = np.concatenate(parts)
+        inputs = np.concatenate([np.reshape(instants, (1, -1)), states, multipliers, self._values(instants)])
         return self._evaluate(np.ascontiguousarray(inputs))[self._rows[name]]
 
     def _no_multipliers(self, points: int) -> Numbers:

@@ -72,7 +72,7 @@ def may_wait(problem: MotionProblem, program: Program, precision: Precision) -> 
     It has no numbers but doubles; and what is kept for motions to come would have them hang on those before, in their
     last bits.
     """
-    return precision.name == "double" and not problem.parameters and not needs_scipy(program)
+    return precision.name == "double" and not problem.open_inputs and not needs_scipy(program)
 
 
 def _by_numpy(program: Program) -> Evaluation:
@@ -161,12 +161,6 @@ def zeros(precision: Precision, *shape: int) -> Numbers:
     array = np.empty(shape, dtype=np.asarray([precision.number("0")]).dtype)
     array[...] = precision.number("0")
     return array
-
-
-def beside_state(problem: MotionProblem, precision: Precision) -> Numbers:
-    """What programs take behind the time and the state where multipliers do not matter: these, and the parameters."""
-    unused = [precision.number("0")] * len(problem.multipliers)
-    return np.array([*unused, *(precision.ratio(problem.values[name]) for name in problem.parameters)])
 
 
 def as_floats(numbers: Numbers) -> NDArray[np.float64]:

@@ -14,7 +14,8 @@ from ..program.motion_problem import MotionProblem
 from ..program.motion_program import names_in
 from ..program.precision import Precision
 from .engines.engine import Piece, Solutions
-from .evaluation import Numbers, as_floats, beside_state, evaluation_once
+from .evaluation import Numbers, as_floats, evaluation_once
+from .open_values import BesideState
 from .piecewise import PiecewiseMotion
 from .surfaces import NODES, Crossing, SignedFunctions
 
@@ -64,7 +65,7 @@ class Events(SignedFunctions):
         self, problem: MotionProblem, precision: Precision, solutions: Callable[[Numbers, Numbers], Solutions]
     ) -> None:
         super().__init__(precision)
-        self._names, self._others = problem.until, beside_state(problem, precision)
+        self._names, self._others = problem.until, BesideState(problem, precision)
         program = problem.events
         used = set().union(*(names_in(value) for _, value in program.assignments))
         used |= set().union(*map(names_in, program.outputs.values()))
@@ -102,7 +103,7 @@ class Events(SignedFunctions):
         HolonomError
             One has no real, finite value.
         """
-        others = np.repeat(self._others[:, None], len(instants), axis=1)
+        others = self._others(instants)
         if self._solutions is not None:
             multipliers = self._solutions(instants, states).multipliers
             others[: len(multipliers)] = multipliers

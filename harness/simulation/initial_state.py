@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ..failures import Failure, HolonomError
 from ..program.motion_problem import By, MotionProblem, Origin, computing
-from ..program.sign_pattern import problem_in
+from ..program.sign_pattern import at_start, problem_in
 from .diagnostics import scaled_residual
 from .evaluation import Numbers, lane_evaluation
 from .matrices import LaneMatrices
@@ -206,7 +206,8 @@ class InitialStatesBySign:
 
 def initial_states_of(problem: MotionProblem) -> InitialStates | InitialStatesBySign:
     """The states that a problem's motions start from; raises as these do."""
-    return InitialStatesBySign(problem) if problem.signs else InitialStates(problem)
+    begun = at_start(problem)
+    return InitialStatesBySign(begun) if begun.signs else InitialStates(begun)
 
 
 class _Group:

@@ -11,9 +11,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..program.motion_problem import MotionProblem, require_analytic
+from ..program.motion_problem import MotionProblem, require_signs_known
 from ..program.precision import read_precision
 from .evaluation import Numbers, evaluation_once, lane_evaluation
+from .open_values import OpenValues
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -48,11 +49,13 @@ class MotionMatrices:
     """
 
     def __init__(self, problem: MotionProblem) -> None:
-        require_analytic(problem)
+        require_signs_known(problem)
         self.coordinates, self._kept = len(problem.coordinates), problem.independent
         self._layout = _Layout(problem)
         self._evaluate = evaluation_once(problem, problem.matrices, read_precision("double"))
         self._others = np.array([0.0] * len(problem.multipliers) + list(problem.numbers))
+        self._values, self._lasting = OpenValues(problem, read_precision("double")), len(problem.parameters)
+        self._tables = bool(problem.tables)
 
     def __call__(self, t: float | Vector, state: Vector) -> Matrices:
         """Evaluate the matrices.
@@ -69,7 +72,10 @@ class MotionMatrices:
             At k states, each with a first axis more, of length k.
         """
         rest = state.shape[:-1]
-        parts = [np.broadcast_to(t, rest)[..., None], state, np.broadcast_to(self._others, (*rest, len(self._others)))]
+        instants = np.broadcast_to(t, rest)
+        parts = [instants[..., None], state, np.broadcast_to(self._others, (*rest, len(self._others)))]
+        if self._tables:
+            parts.append(self._values(instants.ravel())[self._lasting :].T.reshape(*rest, -1))
         inputs = np.concatenate(parts, axis=-1)
         return self._layout.matrices_at_each(self._evaluate(np.ascontiguousarray(inputs.T)).T)
 
@@ -82,7 +88,7 @@ class LaneMatrices:
     """The matrices of many motions of one problem, each with its own values of the open parameters."""
 
     def __init__(self, problem: MotionProblem) -> None:
-        require_analytic(problem)
+        require_signs_known(problem)
         self._layout, self._g = _Layout(problem), len(problem.multipliers)
         self._evaluate = lane_evaluation(problem, problem.matrices)
 

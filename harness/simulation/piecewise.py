@@ -26,7 +26,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..failures import Failure, HolonomError
-from ..program.motion_problem import By, MotionProblem, Sign, computing
+from ..program.motion_problem import By, MotionProblem, Sign, computing, function_of_knot
 from ..program.precision import Precision
 from ..program.sign_pattern import (
     HELD,
@@ -47,8 +47,9 @@ from .diagnostics import POINTS, EnergyBalance, residuals
 from .engines.choice import Between, Choice
 from .engines.engine import Piece, Solutions
 from .engines.switching import Leg, SwitchingEngine
-from .evaluation import Evaluation, Numbers, as_floats, beside_state, evaluation, evaluation_once
+from .evaluation import Evaluation, Numbers, as_floats, evaluation, evaluation_once
 from .matrices import Matrices, MotionMatrices, Vector, start_of
+from .open_values import BesideState
 from .request import SimulationRequest
 from .surfaces import Crossing, Surfaces
 from .time_dependence import time_dependence
@@ -110,11 +111,13 @@ class Part:
         self.problem = replace(analytic, obstacle=obstacle)
         self.balance = EnergyBalance(self.problem, self._multipliers, precision)
         inner = 0 if self.balance.conservative else len(POINTS)
-        between = None if problem.signs else Between(request.samples or 0, inner)
+        between = None if problem.signs or problem.tables else Between(request.samples or 0, inner)
         self.engine = SwitchingEngine(self.problem, request, precision, end, self.matrices, between)
         self._start, self._end = float(problem.start["t"]), float(end)
         self.doubtful = vanishing_instants(self.problem, self.matrices, self._end)
-        self.by_time = time_dependence(in_numbers(self.problem, self.problem.matrices), self._start, self._end)
+        self.by_time = time_dependence(
+            in_numbers(self.problem, self.problem.matrices), self._start, self._end, self.problem.tables
+        )
         ends = () if self.by_time.end is None else (self.by_time.end,)
         before = (shortly_before(t, self._start) for t in self.doubtful)
         self.stops = sorted({*self.by_time.stops, *ends, *before})
@@ -137,8 +140,8 @@ class Part:
 
     def controls(self, instants: Numbers, states: Numbers) -> Numbers:
         """The controls at instants, shape (k,), and states, shape (2n, k)."""
-        others = np.repeat(beside_state(self.problem, self._precision)[:, None], len(instants), axis=1)
-        return self._controls(np.ascontiguousarray(np.concatenate([instants[None, :], states, others])))
+        beside = BesideState(self.problem, self._precision)(instants)
+        return self._controls(np.ascontiguousarray(np.concatenate([instants[None, :], states, beside])))
 
     @cached_property
     def _controls(self) -> Evaluation:
@@ -185,12 +188,13 @@ class PiecewiseMotion:
         self._signs = {sign.name: sign for sign in problem.signs}
         self._clock = ticks(problem)
         self._to_come = deque(sorted({tick.t for tick in self._clock.values()}))
+        self._knots = _knots_of(problem, precision)
         self._parts: dict[tuple[Any, ...], Part] = {}
         self._known: dict[Hashable, MotionProblem] = problem.once("parts", problem.matrices, dict)
         self._functions: dict[Hashable, Evaluation] = problem.once(
             ("switching", precision.name), problem.matrices, dict
         )
-        self._others = beside_state(problem, precision)
+        self._others = BesideState(problem, precision)
         self._span = float(end) - float(problem.start["t"])
         self._left: tuple[str, ...] = ()
         self._jump = precision.number("0")
@@ -271,12 +275,14 @@ class PiecewiseMotion:
             return
         while self.time != until:
             self.part.engine.advance(self._next_stop(until))
+            self._pass_knots()
             self._require_way_on(until)
 
     def pieces(self, until: Any) -> Iterator[Piece]:
         """Follow the motion to an instant, step by step; raises as `advance`."""
         while self.time != until:
             yield from self._to_stop(self._next_stop(until))
+            self._pass_knots()
             self._require_way_on(until)
 
     def solutions(self, instants: Numbers, states: Numbers) -> Solutions:
@@ -320,10 +326,16 @@ class PiecewiseMotion:
 
     def _next_stop(self, until: Any) -> Any:
         stops, step = self.part.stops, self._request.max_step
-        ticking = [self._precision.ratio(t) for t in islice(self._to_come, 1)]
+        ticking = [self._precision.ratio(t) for t in islice(self._to_come, 1)] + [t for t, _ in self._knots[-1:]]
         ahead = stops[bisect_right(stops, float(self.time)) :][:1]
         limits = [self.time + self._precision.number(repr(step))] if step is not None else []
         return min([until, *limits, *ticking, *(self._precision.number(repr(t)) for t in ahead)])
+
+    def _pass_knots(self) -> None:
+        """At a knot a law goes on with the same value and rates up to the second, and so does the motion."""
+        while self._knots and self._knots[-1][0] <= self.time != self._end:
+            t, exact = self._knots.pop()
+            self.switchings.append(Switching(float(t), function_of_knot(exact), Passage.CROSSED))
 
     def _require_way_on(self, until: Any) -> None:
         by_time = self.part.by_time
@@ -489,7 +501,7 @@ class PiecewiseMotion:
         return part.balance.energy(np.array([t]), state[:, None])[0]
 
     def _inputs(self, t: Any, state: Numbers) -> Numbers:
-        return np.array([t, *state, *self._others])
+        return np.array([t, *state, *self._others(np.array([t]))[:, 0]])
 
     # ---- parts ----
 
@@ -504,6 +516,13 @@ class PiecewiseMotion:
     def _started_at(self, t: Any, state: Numbers) -> MotionProblem:
         numbers = (self._precision.text(number) for number in (t, *state))
         return replace(self._problem, start=dict(zip(("t", *self._problem.state), numbers, strict=True)))
+
+
+def _knots_of(problem: MotionProblem, precision: Precision) -> list[tuple[Any, Fraction]]:
+    """The knots of the tables behind the start, the last first."""
+    knots = sorted({knot for table in problem.tables for knot in table.knots}, reverse=True)
+    behind = precision.number(problem.start["t"])
+    return [(t, knot) for t, knot in ((precision.ratio(knot), knot) for knot in knots) if t > behind]
 
 
 def _size(state: Numbers) -> float:

@@ -17,8 +17,9 @@ from ..program.motion_program import Program
 from ..program.precision import Precision
 from ..program.sign_pattern import HELD, Pattern, switching_function
 from .engines.engine import Piece
-from .evaluation import Numbers, as_floats, beside_state, evaluation
+from .evaluation import Numbers, as_floats, evaluation
 from .matrices import Vector
+from .open_values import BesideState
 
 DEGREE, FINE = 32, 256
 NODES = np.concatenate([[0.0], np.sort(1 + chebyshev.chebpts1(DEGREE + 1)) / 2, [1.0]])
@@ -121,7 +122,7 @@ class Surfaces(SignedFunctions):
         self, problem: MotionProblem, pattern: Pattern, precision: Precision, known: Collection[str] = ()
     ) -> None:
         super().__init__(precision)
-        self._others = beside_state(problem, precision)
+        self._others = BesideState(problem, precision)
         for sign in problem.signs:
             if sign.name not in known:
                 value = pattern[sign.name]
@@ -135,8 +136,8 @@ class Surfaces(SignedFunctions):
 
     def values(self, instants: Numbers, states: Numbers) -> Numbers:
         """How far inside of its pattern the motion is, by each surface; negative outside."""
-        others = np.repeat(self._others[:, None], len(instants), axis=1)
-        inputs = np.ascontiguousarray(np.concatenate([np.reshape(instants, (1, -1)), states, others]))
+        beside = self._others(instants)
+        inputs = np.ascontiguousarray(np.concatenate([np.reshape(instants, (1, -1)), states, beside]))
         found = [as_floats(function(inputs)[0]) for function in self._functions]
         inside = np.array([side for *_, side in self._rows], dtype=float)
         return inside[:, None] * np.reshape(found, (len(self._rows), len(instants)))

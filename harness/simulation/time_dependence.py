@@ -10,7 +10,7 @@ What is guaranteed: no feature of such an expression is passed over that lasts l
 is larger than `RESOLVED` of the expression's largest value. Shorter ones show if they come near one of the samples.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import NamedTuple
@@ -19,7 +19,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from ..program.motion_program import Call, Expression, Name, Program, names_in
-from ..program.numpy_function import NumpyFunction
+from ..program.table import OfTime, Table
 from .matrices import Vector
 
 DEGREE = 32
@@ -30,6 +30,7 @@ FRESH = 64  # samples of a part, at least
 RESOLVED = 1e-11
 FINEST = 40  # halvings; what is not resolved then is no smooth function
 MOST = 2**13  # parts of the same length that are looked at
+BLOCK = 2**13  # parts that are looked at together
 MUCH = 8  # times shorter than the longest part
 EPSILON = 1e-14  # relative rounding of a time, with a margin
 JUMP = 1e-3  # of the largest value: an error that is no rounding
@@ -49,20 +50,22 @@ class TimeDependence(NamedTuple):
     reason: str = ""  # a clause about that instant
 
 
-def time_dependence(program: Program, start: float, end: float) -> TimeDependence:
-    """Look at what a program computes from the time alone, its input ``t``."""
-    expressions = time_expressions(program)
-    if not start < end:
+def time_dependence(program: Program, start: float, end: float, tables: Sequence[Table] = ()) -> TimeDependence:
+    """Look at what a program computes from the time alone, its input ``t``, and from what tables are then."""
+    expressions = time_expressions(program, tables)
+    if not start < end or not expressions.outputs:
         return TimeDependence()
-    return _Scan(NumpyFunction(expressions), start, end).result() if expressions.outputs else TimeDependence()
+    knots = sorted({t for table in tables for t in map(float, table.knots) if start < t < end})
+    return _Scan(OfTime(expressions, tables), start, end, np.array(knots)).result()
 
 
-def time_expressions(program: Program) -> Program:
+def time_expressions(program: Program, tables: Sequence[Table] = ()) -> Program:
     """What a program computes from the time alone, as far as anything else is computed from it.
 
-    Its one input is ``t``.
+    Its inputs are ``t`` and those of the tables.
     """
-    known, kept, used = {"t"}, [], {}
+    inputs = ("t", *(name for table in tables for name in table.inputs))
+    known, kept, used = set(inputs), [], {}
     for name, expression in program.assignments:
         if (names := names_in(expression)) and names <= known:
             known.add(name)
@@ -71,11 +74,12 @@ def time_expressions(program: Program) -> Program:
             used |= dict.fromkeys(_largest_parts(expression, known))
     outputs = {name: value for name, value in program.outputs.items() if names_in(value) & known}
     used |= dict.fromkeys(outputs.values())
-    used.pop(Name("t"), None)
+    for name in inputs:
+        used.pop(Name(name), None)
     named = [(f"of_time[{index}]", expression) for index, expression in enumerate(used)]
     return replace(
         program,
-        inputs=("t",),
+        inputs=inputs,
         assignments=(*kept, *named),
         outputs={name: Name(name) for name, _ in named},
     )
@@ -92,59 +96,86 @@ def _largest_parts(expression: Expression, known: set[str]) -> Iterator[Expressi
 
 
 class _Scan:
-    """Halves the time span until every part is resolved."""
+    """Halves the time span until every part is resolved; it is cut at knots before, where steps end anyway."""
 
-    def __init__(self, function: NumpyFunction, start: float, end: float) -> None:
-        self._function, self._start, self._last = function, start, end
+    def __init__(self, function: OfTime, start: float, end: float, knots: Vector) -> None:
+        self._function, self._start, self._last, self._knots = function, start, end, knots
         self._ending: tuple[float, str] | None = None
         cells = (np.arange(SAMPLES) + 0.5) / SAMPLES
-        values = function([start + (end - start) * cells])
+        values = function(start + (end - start) * cells)
         finite = np.isfinite(values).all(axis=0)
         if not finite.all():
             first = int(np.argmin(finite))
             self._last = self._last_value(start + (end - start) * max(0.0, cells[first] - 1 / SAMPLES), cells[first])
             self._ending = self._last, "an expression of the time in the equations of motion has no real, finite value"
-            values = function([start + (self._last - start) * cells])
+            values = function(start + (self._last - start) * cells)
         self._grid = values
         self._scale = np.max(np.abs(values), axis=1)
         self._usual = np.partition(np.abs(values), SAMPLES // 2, axis=1)[:, SAMPLES // 2]
+        self._bases, self._spans = self._cut()
 
     def result(self) -> TimeDependence:
         parts = sorted(self._parts())
-        longest = max((length for _, length in parts), default=0.0)
+        longest, knots = max((length for _, length in parts), default=0.0), set(self._knots.tolist())
         stops = [
             start
             for (_, before), (start, length) in pairwise(parts)
-            if before != length or min(before, length) * MUCH <= longest
+            if (before != length or min(before, length) * MUCH <= longest) and start not in knots
         ]
         end, reason = self._ending or (None, "")
         return TimeDependence(tuple(float(t) for t in stops if end is None or t < end), end and float(end), reason)
 
+    def _cut(self) -> tuple[Vector, Vector]:
+        """Beginnings and lengths of what is halved; between knots, what so many fresh samples are enough for."""
+        inner = self._knots[self._knots < self._last]
+        edges = np.array([self._start, *inner, self._last])
+        lengths = np.diff(edges)
+        if not inner.size:
+            return edges[:1], lengths
+        counts = np.ceil(lengths * (SAMPLES / FRESH) / (self._last - self._start)).astype(int)
+        lengths = np.repeat(lengths / counts, counts)
+        within = np.arange(len(lengths)) - np.repeat(np.cumsum(counts) - counts, counts)
+        return np.repeat(edges[:-1], counts) + within * lengths, lengths
+
     def _parts(self) -> Iterator[tuple[float, float]]:
         """Start and length of each part."""
-        places = np.array([0])
+        owners = np.arange(len(self._bases))
+        places, most = np.zeros_like(owners), MOST + 2 * len(self._bases)
         for level in range(FINEST + 1):
-            length = (self._last - self._start) / 2**level
-            error, open_ = self._errors(places, level)
+            starts, lengths = self._starts(owners, places, level)
+            error, open_ = self._errors(owners, places, level)
             if level == FINEST:
-                self._look_at(places[open_], length, error[:, open_])
-            if level == FINEST or 2 * open_.sum() > MOST:
+                self._look_at(starts[open_], error[:, open_])
+            if level == FINEST or 2 * open_.sum() > most:
                 open_[:] = False
-            yield from ((self._start + place * length, length) for place in places[~open_])
+            yield from zip(starts[~open_], lengths[~open_], strict=True)
+            owners = np.tile(owners[open_], 2)
             places = np.concatenate([2 * places[open_], 2 * places[open_] + 1])
             if not places.size:
                 return
 
-    def _errors(self, places: np.ndarray, level: int) -> tuple[np.ndarray, np.ndarray]:
-        """Errors of the polynomials on parts of one length, shape (expressions, parts); which are to be halved."""
-        values = self._values(places, level, (NODES + 1) / 2)
+    def _starts(self, owners: np.ndarray, places: np.ndarray, level: int) -> tuple[Vector, Vector]:
+        """Starts and lengths of parts."""
+        lengths = self._spans[owners] / 2**level
+        return self._bases[owners] + places * lengths, lengths
+
+    def _errors(self, owners: np.ndarray, places: np.ndarray, level: int) -> tuple[np.ndarray, np.ndarray]:
+        """Errors of the polynomials on parts, shape (expressions, parts); which are to be halved."""
+        blocks = range(0, len(places), BLOCK)
+        found = [self._errors_in(owners[at : at + BLOCK], places[at : at + BLOCK], level) for at in blocks]
+        errors, open_ = zip(*found, strict=True)
+        return np.concatenate(errors, axis=1), np.concatenate(open_)
+
+    def _errors_in(self, owners: np.ndarray, places: np.ndarray, level: int) -> tuple[np.ndarray, np.ndarray]:
+        starts, lengths = self._starts(owners, places, level)
+        values = self._values(starts, lengths, (NODES + 1) / 2)
         count = SAMPLES >> level
-        if count >= FRESH:
+        if count >= FRESH and len(self._bases) == 1:
             cells = (np.arange(count) + 0.5) / count
             expected = self._grid.reshape(len(self._grid), 2**level, count)[:, places]
         else:
             cells = (np.arange(FRESH) + 0.5) / FRESH
-            expected = self._values(places, level, cells)
+            expected = self._values(starts, lengths, cells)
         with np.errstate(all="ignore"):
             found = (values @ TO_COEFFICIENTS.T) @ chebyshev.chebvander(2 * cells - 1, DEGREE).T
             error = np.max(np.abs(found - expected), axis=2)
@@ -152,21 +183,21 @@ class _Scan:
             counts = np.isfinite(largest) & (error <= SHOWN * largest)  # a pole's values never do
             self._scale = np.fmax(self._scale, np.max(np.where(counts, largest, 0.0), axis=1))
             scale = np.fmax(largest, self._scale[:, None])
-            rounding = EPSILON * max(abs(self._start), abs(self._last)) * np.ptp(values, axis=2) * 2**level
-            allowed = RESOLVED * scale + rounding / (self._last - self._start)
+            rounding = EPSILON * max(abs(self._start), abs(self._last)) * np.ptp(values, axis=2)
+            allowed = RESOLVED * scale + rounding / lengths
             early, late = (np.ptp(half, axis=2) for half in (values[..., : DEGREE // 2], values[..., DEGREE // 2 :]))
             hidden = (early < HIDDEN * late) & (late > FAINT * scale)
         error = np.where(np.isfinite(error), error, np.inf)
         return error, ((error > np.where(np.isfinite(allowed), allowed, 0.0)) | hidden).any(axis=0)
 
-    def _values(self, places: np.ndarray, level: int, cells: Vector) -> np.ndarray:
+    def _values(self, starts: Vector, lengths: Vector, cells: Vector) -> np.ndarray:
         """At the same places in each part, shape (expressions, parts, cells)."""
-        return self._function([self._start + (self._last - self._start) * (places[:, None] + cells) / 2**level])
+        return self._function(starts[:, None] + lengths[:, None] * cells)
 
-    def _look_at(self, places: np.ndarray, length: float, error: np.ndarray) -> None:
+    def _look_at(self, starts: Vector, error: np.ndarray) -> None:
         """Where no polynomial comes near, tell a pole and a jump from rounding."""
-        for place, missed in sorted(zip(places, error.T, strict=True)):
-            t = self._start + place * length
+        for place in np.argsort(starts, kind="stable"):
+            t, missed = starts[place], error[:, place]
             if (missed > BEYOND * self._usual).any():
                 reason = "an expression of the time in the equations of motion grows beyond all bounds"
             elif (missed > JUMP * self._scale).any():
@@ -181,7 +212,7 @@ class _Scan:
         """The last instant at which all is finite, from one at which it is to one at which it is not."""
         after = self._start + (self._last - self._start) * cell
         while before < (middle := (before + after) / 2) < after:
-            if np.isfinite(self._function([np.array([middle])])).all():
+            if np.isfinite(self._function(np.array([middle]))).all():
                 before = middle
             else:
                 after = middle

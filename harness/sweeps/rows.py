@@ -157,7 +157,7 @@ class RowMaker:
     @property
     def _batched(self) -> bool:
         """Whether lanes can follow motions of the problem at all."""
-        return not self._problem.signs and self._problem.obstacle is None and not self._hides
+        return not (self._problem.signs or self._problem.tables) and self._problem.obstacle is None and not self._hides
 
     def _together(self, rows: "_Rows", there: NDArray, states: Floats, stops: Sequence[float]) -> NDArray:
         """Follow motions in lanes; those that this does not do for."""

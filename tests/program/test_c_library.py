@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from scipy.interpolate import CubicSpline
 
 from holonom.cli import holonom
 from holonom.confined import Limits
@@ -163,6 +164,26 @@ def test_the_law_and_the_values_are_those_of_the_scene(pendulum):
     pendulum.bob_law(5.0, p, u)
     assert p.tolist() == [1.0, 9.81]
     assert u.tolist() == [1.0, 0.0, 0.0]
+
+
+def test_the_law_of_a_table_is_the_spline_between_all_its_points(write_scene, tmp_path):
+    rows = [(0, 0), (1, 2), (1.3, 0.5), (3.5, 1), (4, -1)]
+    file = write_scene(f"""load("holonom.mac")$
+system : holonomic_system(coordinates = [x], controls = [u], kinetic_energy = dot(x)^2/2, forces = [u])$
+drive : holonomic_scene(system, control_law = [u = u0*table({list(map(list, rows))})], parameter_values = [u0 = 2],
+  initial_state = [x = 0, dot(x) = 0], time_span = [0, 4])$""")
+    directory = write_library(tmp_path / "library", file, "winch", "u0")
+    compiled = run(
+        "cc", "-std=c11", *STRICT, "-shared", "-fPIC", "winch.c", "-lm", "-o", "winch.so", directory=directory
+    )
+    assert (compiled.returncode, compiled.stderr) == (0, "")
+    library = ctypes.CDLL(str(directory / "winch.so"))
+    library.winch_law.argtypes = [ctypes.c_double, *[DOUBLES] * 2]
+    spline = CubicSpline(*np.array(rows).T, bc_type="natural")
+    for t in (0.0, 0.2, 1.0, 1.1, 1.3, 2.0, 3.5, 3.75, 4.0):
+        u = np.empty(3)
+        library.winch_law(t, np.array([3.0]), u)
+        assert u == pytest.approx([3 * spline(t, rate) for rate in range(3)], rel=1e-13, abs=1e-13)
 
 
 def test_names_that_c_does_not_know_stay_apart():

@@ -6,16 +6,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.integrate import cumulative_simpson
 from scipy.interpolate import CubicSpline
 
 import holonom
-from holonom.confined import Limits
 from holonom.failures import HolonomError
 from holonom.program.model import scene_model
-from holonom.program.motion_problem import motion_problem
-from holonom.program.numpy_function import NumpyFunction
 from holonom.program.request import Request
-from holonom.program.sign_pattern import problem_in, sharing_programs
+from holonom.program.table import OfTime
 from holonom.series.power_series import values_at
 from holonom.simulation.clock import ticks
 
@@ -150,26 +148,40 @@ def test_a_library_takes_the_law_in_all_its_parts(driven, law):
     scene = driven(law)
     model = scene_model(scene.file, Request(), (), scene.limits)
     instants = np.array([0.2, 1.1, 2.0, 3.75])
-    found = dict(zip(model.law.outputs, NumpyFunction(model.law)([instants]), strict=True))
+    found = dict(zip(model.law.outputs, OfTime(model.law, model.tables)(instants), strict=True))
     spline = CubicSpline(*np.array(POINTS, dtype=float).T, bc_type="natural")
     truth = spline(instants) if law.startswith("table") else [0.04, 1.21, 5, 7.5]
     assert found["u"] == pytest.approx(truth, rel=1e-14)
 
 
-def test_the_pieces_of_a_table_share_what_is_compiled(write_scene):
-    # each of hundreds of pieces was compiled anew
-    file = write_scene("""load("holonom.mac")$
-system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
-  constraints = [y - u*x])$
-pushed : holonomic_scene(system, control_law = [u = table([[0, 0], [1, 2], [2, 1], [3, 5], [4, 1]])],
-  initial_state = [x = 1, dot(x) = 0], time_span = [0, 4])$""")
-    problem, known = motion_problem(file, Request(), Limits()), {}
-    order = sorted(problem.signs, key=lambda sign: float(sign.of.removeprefix("t-")))
-    pieces = [
-        sharing_programs(
-            problem_in(problem, {sign.name: 1 if place < passed else -1 for place, sign in enumerate(order)}), known
-        )
-        for passed in range(4)
-    ]
-    assert pieces[1].motion is pieces[2].motion  # at the ends of a natural spline coefficients are zero
-    assert len({tuple(piece.values.items()) for piece in pieces}) == 4
+def test_one_program_serves_all_polynomials_of_a_table(driven):
+    # each of hundreds of pieces was compiled anew, of a law that named them all
+    short, long = (
+        driven(f"table({points([(k / 8, k % 3) for k in range(count)])})", span="0, 1")._problem("direct", 17)
+        for count in (9, 90)
+    )
+    assert short.motion == long.motion
+    assert [len(problem.tables[0].pieces) for problem in (short, long)] == [8, 89]
+    assert not long.signs
+
+
+def test_two_tables_one_inside_of_abs_and_a_law_in_parts(driven):
+    # the sign of a function of a table named signs that had no value yet, which ended in a KeyError
+    rows = [(0, 1), (1, -1), (2.5, -1), (4, 1)]
+    law = f"table({points()}) + abs(table({points(rows)}, clamped)) + if t < 2 then 0 else t - 2"
+    motion = driven(law).simulate(samples=5)
+    instants = np.linspace(0, 4, 20001)
+    first, second = (
+        CubicSpline(*np.array(each, dtype=float).T, bc_type=ends)(instants)
+        for each, ends in ((POINTS, "natural"), (rows, "clamped"))
+    )
+    push = first + np.abs(second) + np.maximum(instants - 2, 0)
+    rate = cumulative_simpson(push, x=instants, initial=0)
+    place = cumulative_simpson(rate, x=instants, initial=0)
+    assert motion["x"] == pytest.approx((1 - 2 * instants + place)[::5000], abs=1e-7)
+
+
+def test_a_motion_under_a_table_in_quadruple_precision(driven):
+    motion = driven(f"table({points()})").simulate(samples=3, precision="quadruple")
+    found = np.array([float(x) for x in motion["x"]])
+    assert found == pytest.approx(truth(np.linspace(0, 4, 3)), rel=1e-14)

@@ -16,6 +16,7 @@ from ...program.numpy_function import NumpyFunction
 from ...program.precision import Precision
 from ..evaluation import OPERATION, CompiledIfItPays, Evaluation, Numbers, may_wait, zeros
 from ..matrices import MotionMatrices
+from ..open_values import OpenValues
 from ..parts_of_scipy import lapack
 
 SOLVED, SOLVED_UNKNOWN = 5e-5, 5e-11  # seconds that LAPACK takes for a solve, and for the cube of its unknowns
@@ -41,10 +42,10 @@ class ProgramProjection:
         else:
             build = partial(nearest_state, problem, precision, opt_level=0)
         self._nearest = problem.once(("projection", precision.name), problem.projection, build)
-        self._inputs = zeros(precision, 1 + len(problem.state) + len(problem.parameters))
-        self._moving = slice(1, 1 + len(problem.state))
-        for place, name in enumerate(problem.parameters, start=1 + len(problem.state)):
-            self._inputs[place] = precision.ratio(problem.values[name])
+        self._inputs = zeros(precision, 1 + len(problem.state) + len(problem.open_inputs))
+        self._moving, self._open = slice(1, 1 + len(problem.state)), slice(1 + len(problem.state), None)
+        self._values, self._lasting = OpenValues(problem, precision), not problem.tables
+        self._inputs[self._open] = self._values.after(precision.number(problem.start["t"]))
 
     def project(self, instant: Any, state: Numbers) -> float:
         """Move a state, in place, to the nearest one that keeps the constraints.
@@ -60,6 +61,8 @@ class ProgramProjection:
         """
         self._inputs[0] = instant
         self._inputs[self._moving] = state
+        if not self._lasting:
+            self._inputs[self._open] = self._values.at(instant)
         found = self._nearest(self._inputs)
         state[:] = found[:-1]
         return float(found[-1]) ** 0.5
@@ -130,11 +133,11 @@ def nearest_state(problem: MotionProblem, precision: Precision, **options: Any) 
     Returns
     -------
     heyoka.cfunc
-        From t, the state and the open parameters to the nearest state that keeps the constraints, and the square of
+        From t, the state and what is open to the nearest state that keeps the constraints, and the square of
         its distance, relative to (1 + x^2)^(1/2) of each number x.
     """
     heyoka = import_heyoka()
-    variables = {name: heyoka.expression(name) for name in ("t", *problem.state, *problem.parameters)}
+    variables = {name: heyoka.expression(name) for name in ("t", *problem.state, *problem.open_inputs)}
     inputs = {**variables, **dict.fromkeys(problem.multipliers, heyoka.expression(precision.number("0")))}
     velocities = problem.state[len(problem.coordinates) :]
     one = heyoka.expression(precision.number("1"))

@@ -18,8 +18,8 @@ import numpy as np
 from ...failures import Failure, HolonomError
 from ...program.motion_problem import MotionProblem, computing
 from ...program.motion_program import Name
-from ...program.numpy_function import NumpyFunction
 from ...program.sign_pattern import in_numbers
+from ...program.table import OfTime
 from ..diagnosis import Instant
 from ..evaluation import Numbers, as_floats
 from ..matrices import MotionMatrices, Vector, start_of
@@ -165,14 +165,15 @@ def zeros_of_controls(problem: MotionProblem, start: float, end: float) -> list[
     laws = {name: Name(name) for name in assigned if f"dot({name})" in assigned}
     if not laws:
         return []
-    law = computing(replace(matrices, inputs=("t",), outputs=laws), laws)
-    values, grid = NumpyFunction(law), np.linspace(start, end, POINTS)
-    signs = np.sign(values([grid]))
+    of_tables = (name for table in problem.tables for name in table.inputs)
+    law = computing(replace(matrices, inputs=("t", *of_tables), outputs=laws), laws)
+    values, grid = OfTime(law, problem.tables), np.linspace(start, end, POINTS)
+    signs = np.sign(values(grid))
     controls, places = np.nonzero(signs[:, :-1] * signs[:, 1:] < 0)
     left, right = grid[places], grid[places + 1]
     for _ in range(HALVINGS):
         middle = (left + right) / 2
-        same = np.sign(values([middle])[controls, np.arange(len(places))]) == signs[controls, places]
+        same = np.sign(values(middle)[controls, np.arange(len(places))]) == signs[controls, places]
         left, right = np.where(same, middle, left), np.where(same, right, middle)
     touched = grid[1:-1][np.any(signs[:, 1:-1] == 0, axis=0)]
     return sorted({*map(float, right), *map(float, touched)})

@@ -25,10 +25,10 @@ Equations = list[tuple[Any, Any]]
 def equations_of_motion(problem: MotionProblem, program: Program, precision: Precision) -> Equations:
     """The first-order equations as they are.
 
-    Each coordinate and each velocity with its rate; the open parameters are heyoka's.
+    Each coordinate and each velocity with its rate; what is open are heyoka's parameters.
     """
     heyoka = import_heyoka()
-    parameters = {name: heyoka.par[place] for place, name in enumerate(problem.parameters)}
+    parameters = {name: heyoka.par[place] for place, name in enumerate(problem.open_inputs)}
     unused = zero_multipliers(problem.multipliers, precision.number("0"))
     return dynamics(program, parameters | unused, precision.ratio)
 

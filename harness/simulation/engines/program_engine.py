@@ -17,12 +17,13 @@ from numpy.typing import NDArray
 
 from ...failures import Failure, HolonomError
 from ...language import translatable
-from ...program.motion_problem import MotionProblem, require_analytic
+from ...program.motion_problem import MotionProblem, require_signs_known
 from ...program.precision import Precision
 from ..constraints.singularity import Watch, no_gradient
 from ..diagnosis import HardCase
 from ..evaluation import Evaluation, Numbers, evaluation_once, zeros
 from ..matrices import MotionMatrices
+from ..open_values import OpenValues
 from ..request import EngineName
 from .engine import Obstacle, Piece, Solutions
 
@@ -85,7 +86,7 @@ class ProgramEngine:
     def __init__(
         self, problem: MotionProblem, precision: Precision, failed: object, matrices: MotionMatrices | None
     ) -> None:
-        require_analytic(problem)
+        require_signs_known(problem)
         self.precision, self._failed = precision, failed
         self.steps, self._longest, self._usual = 0, 0.0, 0.0
         self._problem, self._known_matrices = problem, matrices
@@ -97,6 +98,11 @@ class ProgramEngine:
     def time(self) -> Any:
         """The instant that is reached, a number of the precision."""
         return self._integrator.time
+
+    @cached_property
+    def open_values(self) -> OpenValues:
+        """Values of what the programs leave open."""
+        return OpenValues(self._problem, self.precision)
 
     @cached_property
     def watch(self) -> Watch:
@@ -148,10 +154,7 @@ class ProgramEngine:
             self._evaluate = evaluation_once(self._problem, self._problem.motion, self.precision)
             self.compile_seconds += time.perf_counter() - begun
         parts = [np.reshape(instants, (1, -1)), states, zeros(self.precision, g, len(instants))]
-        if self._problem.parameters:
-            values = [self.precision.ratio(self._problem.values[name]) for name in self._problem.parameters]
-            parts.append(np.repeat(np.array(values)[:, None], len(instants), axis=1))
-        inputs = np.concatenate(parts)
+        inputs = np.concatenate([*parts, self.open_values(instants)])
         found = self._evaluate(np.ascontiguousarray(inputs))
         return Solutions(found[:n], found[n : n + g], found[n + g :])
 

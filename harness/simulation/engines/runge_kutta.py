@@ -96,12 +96,22 @@ class RungeKuttaEngine(ProgramEngine):
         Raises as `ProgramEngine.advance`.
         """
         integrator = self._integrator
+        self._set_values()
         if self._obstacle is None:
             self.steps += integrator.quiet_steps(until, self._first_block)
             if integrator.time == until:
                 return
             self._usual = max(self._usual, integrator.usual)
         super().advance(until)
+
+    def _begin(self) -> None:
+        super()._begin()
+        self._set_values()
+
+    def _set_values(self) -> None:
+        """Give the program the polynomials that tables are from this instant on."""
+        if self._problem.tables:
+            self._integrator.open_values[:] = self.open_values.after(self._integrator.time)
 
     @property
     def evaluations(self) -> int:
@@ -134,6 +144,8 @@ class DormandPrince(ctypes.Structure):
     quiet_steps : callable
         Takes an instant and a number of steps, and that many steps, or those to the instant, if there is nothing to
         watch on the way; returns their number, 0 where the motion is left as it was.
+    open_values : sequence of float
+        Of `MotionProblem.open_inputs`, in place.
     usual : float
         Length of the longest step that `quiet_steps` took since the motion began anew.
 
@@ -164,6 +176,7 @@ class DormandPrince(ctypes.Structure):
         self._address = ctypes.addressof(self)
         self.quiet_steps = partial(library.advance_quietly, self._address)
         self._evaluations = ctypes.c_long.in_dll(library, "evaluations")
+        self.open_values = (ctypes.c_double * len(problem.open_inputs)).in_dll(library, "open_values")
         library.begin.argtypes = (ctypes.c_double,)
         if library.begin(tol) != 0:
             raise MemoryError
@@ -230,6 +243,7 @@ class Steps:
 def _source(problem: MotionProblem, drift: Stabilization, decay: float) -> Iterator[str]:
     places = range(1, len(problem.coordinates) + 1)
     yield from ("#include <math.h>", "#include <stddef.h>", "#include <string.h>", HELPERS)
+    yield f"double open_values[{max(1, len(problem.open_inputs))}];"
     yield _function(problem, "accelerations", problem.motion, {f"ddot({name})" for name in problem.coordinates})
     if drift is not Stabilization.NONE:
         for kind in ("position", "velocity"):
@@ -270,7 +284,8 @@ def _keeping(drift: Stabilization, decay: float) -> Iterator[str]:
 def _function(problem: MotionProblem, name: str, program: Program, outputs: set[str]) -> str:
     state = [f"state[{place}]" for place in range(len(problem.state))]
     unused = ["0.0"] * len(problem.multipliers)
-    statements = scalar_statements(computing(program, outputs), ["t", *state, *unused])
+    open_values = [f"open_values[{place}]" for place in range(len(problem.open_inputs))]
+    statements = scalar_statements(computing(program, outputs), ["t", *state, *unused, *open_values])
     return FUNCTION.format(name=name, body=indent("\n".join(statements), " " * 4))
 
 

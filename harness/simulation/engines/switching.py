@@ -17,7 +17,7 @@ import numpy as np
 from ...failures import Failure, HolonomError
 from ...program.motion_problem import MotionProblem
 from ...program.precision import GUARD_DIGITS, Precision
-from ...program.sign_pattern import with_values_in
+from ...program.sign_pattern import at_start, with_values_in
 from ..diagnosis import HardCase
 from ..evaluation import Numbers, as_floats
 from ..matrices import MotionMatrices
@@ -258,7 +258,7 @@ def _taylor(
     from .taylor import TaylorEngine, held
 
     digits = precision.digits + GUARD_DIGITS if request.tol is None else -log10(held(request.tol, precision))
-    require_means(problem, precision, order_for(digits), end)
+    require_means(at_start(problem), precision, order_for(digits), end)
     decay = decay_until(end, problem, precision)
     return TaylorEngine(problem, request.tol, precision, request.drift, request.compact, decay, matrices)
 

@@ -98,8 +98,16 @@ class TaylorEngine(ProgramEngine):
             return None
         return ceil(trial * float(until - begun) / covered)
 
+    def _set_values(self) -> None:
+        """Give the equations the values of what is open from this instant on, as far as they contain it."""
+        contained = len(self._integrator.pars)
+        if contained:
+            self._integrator.pars[:] = self.open_values.after(self._integrator.time)[:contained]
+
     def _begin(self) -> None:
         self._length = self._first_block
+        if self._problem.tables:
+            self._set_values()
         if not self._chosen:
             self._clock = time.perf_counter(), self.time
 
@@ -132,11 +140,10 @@ class TaylorEngine(ProgramEngine):
         self.code = code
         kind = ("taylor", code, self._drift, self.precision.name, *self._tolerance.values())
         built = self._problem.once(kind, self._problem.motion, lambda: self._compiled(code, state))
-        self._integrator = copy(built) if self._problem.parameters else built
+        self._integrator = copy(built) if self._problem.open_inputs else built
         self._integrator.time = instant
         self._integrator.state[:] = state
-        for place in range(len(self._integrator.pars)):  # those that the equations contain, and all before them
-            self._integrator.pars[place] = self.precision.ratio(self._problem.values[self._problem.parameters[place]])
+        self._set_values()
         self.state = self._integrator.state  # a view: what the integrator does shows in it
 
     def _compiled(self, code: Code, state: Numbers) -> Any:

@@ -1,0 +1,185 @@
+;;; The cubic polynomials of a spline, from the points that it runs through       (table.mac)
+;;;
+;;; The tridiagonal system for the second rates is eliminated from the first row down, then back. Its matrix is made of
+;;; times, which are fractions; heights may be other constants, as sqrt(2). With few points the solution is exact, but for
+;;; fractions of more than spline_digits digits, which are rounded: exact ones gain some with every point. With many points
+;;; it is computed in integers, multiples of a unit so small that as many digits are right: that is forty times as quick.
+
+(in-package :maxima)
+
+(defvar *few-points* 64 "Up to which the solution is exact.")
+
+(defun $spline_curvatures (rows ends)
+  "Second rates at the points; ENDS is false, or the list of the rates at both ends."
+  (let* ((times (mapcar #'(lambda (row) (exact-number (second row))) (cdr rows)))
+         (h (mapcar #'- (cdr times) times))
+         (clamped (if ends 1 0)))
+    (funcall (if (<= (length times) *few-points*) #'exact-curvatures #'curvatures-in-units)
+             rows
+             h
+             (append (butlast h) (list (* clamped (car (last h)))))
+             (append (list (if ends (* 2 (first h)) 1))
+                     (mapcar #'(lambda (before after) (* 2 (+ before after))) h (cdr h))
+                     (list (if ends (* 2 (car (last h))) 1)))
+             (cons (* clamped (first h)) (cdr h))
+             (cdr ends))))
+
+;;; LOWER's k-th number stands in row k + 1 of the matrix, UPPER's in row k.
+
+(defun exact-curvatures (rows h lower diagonal upper ends)
+  (let* ((heights (mapcar #'(lambda (row) (exact-number (third row))) (cdr rows)))
+         (slopes (mapcar #'(lambda (h low high) (weighted-sum (/ h) high (- (/ h)) low)) h heights (cdr heights)))
+         (right (differences-of-slopes slopes (mapcar #'exact-number ends)
+                                       #'(lambda (before after) (weighted-sum 6 after -6 before))))
+         (pivots (list (first diagonal))) (rests (list (first right))) (solution nil))
+    (mapc #'(lambda (below pivot above side)
+              (let ((ratio (/ below (first pivots))))
+                (push (of-short-fractions (- pivot (* ratio above))) pivots)
+                (push (of-short-fractions (weighted-sum 1 side (- ratio) (first rests))) rests)))
+          lower (cdr diagonal) upper (cdr right))
+    (push (of-short-fractions (weighted-sum (/ (first pivots)) (first rests) 0 0)) solution)
+    (mapc #'(lambda (above pivot side)
+              (push (of-short-fractions (weighted-sum (/ pivot) side (- (/ above pivot)) (first solution))) solution))
+          (reverse upper) (cdr pivots) (cdr rests))
+    (cons '(mlist simp) (mapcar #'fraction-or-constant solution))))
+
+(defun curvatures-in-units (rows h lower diagonal upper ends)
+  (let* ((bits (unit-bits rows))
+         (heights (mapcar #'(lambda (row) (in-units (third row) bits)) (cdr rows)))
+         (slopes (mapcar #'(lambda (h low high) (floor (* (- high low) (denominator h)) (numerator h)))
+                         h heights (cdr heights)))
+         (right (differences-of-slopes slopes (mapcar #'(lambda (rate) (in-units rate bits)) ends)
+                                       #'(lambda (before after) (* 6 (- after before)))))
+         (lower (mapcar #'(lambda (x) (in-units x bits)) lower))
+         (diagonal (mapcar #'(lambda (x) (in-units x bits)) diagonal))
+         (upper (mapcar #'(lambda (x) (in-units x bits)) upper))
+         (pivots (list (first diagonal))) (rests (list (first right))) (solution nil))
+    (flet ((over (x pivot) (floor (ash x bits) pivot))
+           (times (x y) (ash (* x y) (- bits))))
+      (mapc #'(lambda (below pivot above side)
+                (let ((ratio (over below (first pivots))))
+                  (push (- pivot (times ratio above)) pivots)
+                  (push (- side (times ratio (first rests))) rests)))
+            lower (cdr diagonal) upper (cdr right))
+      (push (over (first rests) (first pivots)) solution)
+      (mapc #'(lambda (above pivot side) (push (over (- side (times above (first solution))) pivot) solution))
+            (reverse upper) (cdr pivots) (cdr rests)))
+    (cons '(mlist simp) (mapcar #'(lambda (units) (maxima-fraction (/ units (ash 1 bits)))) solution))))
+
+(defun differences-of-slopes (slopes ends difference)
+  "The right side: at the ends zero, or what the rates there, ENDS, ask for."
+  (append (list (if ends (funcall difference (first ends) (first slopes)) 0))
+          (mapcar difference slopes (cdr slopes))
+          (list (if ends (funcall difference (car (last slopes)) (second ends)) 0))))
+
+;;; ---- the polynomials ---------------------------------------------------------------------------------
+
+(defun $spline_from (rows curvatures instant)
+  "[points, second rates] from the last point that is no later, if any is but the last, and of all after it."
+  (let ((rows (cdr rows)) (curvatures (cdr curvatures)) (instant (exact-number instant)))
+    (do () ((or (null (cddr rows)) (> (exact-number (second (second rows))) instant)))
+      (setq rows (cdr rows) curvatures (cdr curvatures)))
+    (list '(mlist simp) (cons '(mlist simp) rows) (cons '(mlist simp) curvatures))))
+
+(defun $first_piece (rows curvatures)
+  "[t_k, c0, c1, c2, c3]: from t_k to the next point  c0 + c1 tau + c2 tau^2 + c3 tau^3,  tau = t - t_k."
+  (let* ((row (second rows)) (next-row (third rows))
+         (begin (exact-number (second row))) (h (- (exact-number (second next-row)) begin))
+         (low (exact-number (third row))) (high (exact-number (third next-row)))
+         (bend (exact-number (second curvatures))) (next-bend (exact-number (third curvatures)))
+         (slope (weighted-sum (/ h) high (- (/ h)) low)))
+    (cons '(mlist simp)
+          (mapcar #'fraction-or-constant
+                  (list begin low
+                        (weighted-sum 1 slope (- (/ h 6)) (weighted-sum 2 bend 1 next-bend))
+                        (weighted-sum 1/2 bend 0 0)
+                        (weighted-sum (/ (* 6 h)) next-bend (- (/ (* 6 h))) bend))))))
+
+(defun $json_pieces (rows curvatures digits)
+  "The same of all points but the last, t_k as a fraction, the others as decimals of so many digits."
+  (let ((bits (unit-bits rows)))
+    (cons '($json_array)
+          (mapcar #'(lambda (row next-row bend next-bend)
+                      (let ((h (- (exact-number (second next-row)) (exact-number (second row)))))
+                        (list* '($json_array) ($exact_text (second row))
+                               (mapcar #'(lambda (units) (decimal-of-units units bits digits))
+                                       (coefficients-in-units h (in-units (third row) bits) (in-units (third next-row) bits)
+                                                              (in-units bend bits) (in-units next-bend bits))))))
+                  (cdr rows) (cddr rows) (cdr curvatures) (cddr curvatures)))))
+
+(defun coefficients-in-units (h low high bend next-bend)
+  (flet ((times-h (x) (floor (* x (numerator h)) (denominator h)))
+         (over-h (x) (floor (* x (denominator h)) (numerator h))))
+    (list low
+          (- (over-h (- high low)) (floor (times-h (+ bend bend next-bend)) 6))
+          (floor bend 2)
+          (floor (over-h (- next-bend bend)) 6))))
+
+(defun decimal-of-units (units bits digits)
+  "UNITS 2^-BITS, rounded to so many decimal digits: \"-123e-2\"."
+  (if (eql units 0)
+      "0"
+      (let ((exponent (- (floor (* (- (integer-length units) bits) (log 2d0 10d0))) digits)))
+        (format nil "~de~d" (if (minusp exponent)
+                                (round (* units (expt 10 (- exponent))) (ash 1 bits))
+                                (round units (* (ash 1 bits) (expt 10 exponent))))
+                exponent))))
+
+;;; ---- points ----------------------------------------------------------------------------------------------
+
+(defun $pairs_p (rows)
+  (and ($listp rows) (every #'(lambda (row) (and ($listp row) (= (length row) 3))) (cdr rows))))
+
+(defun $point_without_numbers (rows)
+  "The first one whose time is no fraction, or whose height is no constant; false where there is none."
+  (find-if-not #'(lambda (row) (and (rationalp (exact-number (second row)))
+                                    (or (rationalp (exact-number (third row))) ($constantp (third row)))))
+               (cdr rows)))
+
+(defun $point_out_of_order (rows)
+  "The place of the first point that is not later than the one before; false where there is none."
+  (let ((place 1) (found nil))
+    (do ((left (cdr rows) (cdr left))) ((or found (null (cdr left))) found)
+      (incf place)
+      (unless (< (exact-number (second (first left))) (exact-number (second (second left)))) (setq found place)))))
+
+;;; ---- numbers: fractions of Lisp, or constants of Maxima that are none ------------------------------------
+
+(defun exact-number (x)
+  (if (and (consp x) (eq (caar x) 'rat)) (/ (second x) (third x)) x))
+
+(defun fraction-or-constant (x) (if (rationalp x) (maxima-fraction x) x))
+
+(defun weighted-sum (a x b y)
+  "a x + b y, with fractions a and b."
+  (if (and (rationalp x) (rationalp y))
+      (+ (* a x) (* b y))
+      (exact-number ($expand (add (mul (maxima-fraction a) (fraction-or-constant x))
+                                  (mul (maxima-fraction b) (fraction-or-constant y)))))))
+
+(defun of-short-fractions (x)
+  (if (and (rationalp x) (> (integer-length (denominator x)) (spline-bits))) (rounded-to-bits x (spline-bits)) x))
+
+(defun spline-bits () (ceiling (* $spline_digits (log 10d0 2d0))))
+
+(defun rounded-to-bits (x bits)
+  (let ((scale (expt 2 (- bits (- (integer-length (numerator x)) (integer-length (denominator x)))))))
+    (/ (round (* x scale)) scale)))
+
+(defun in-units (x bits)
+  "The multiple of 2^-BITS that is next below."
+  (cond ((integerp x) (ash x bits))
+        ((rationalp x) (floor (ash (numerator x) bits) (denominator x)))
+        ((eq (caar x) 'rat) (floor (ash (second x) bits) (third x)))
+        (t (in-units (mfuncall '$nearest_fraction x) bits))))
+
+(defun unit-bits (rows)
+  "What no height and no time loses spline_digits by: cubes of times are divided by."
+  (let ((bits 0))
+    (dolist (row (cdr rows) (+ (spline-bits) bits))
+      (setq bits (max bits (+ (length-in-bits (third row)) (* 3 (length-in-bits (second row)))))))))
+
+(defun length-in-bits (x)
+  (cond ((integerp x) (integer-length x))
+        ((and (consp x) (eq (caar x) 'rat)) (+ (integer-length (second x)) (integer-length (third x))))
+        (t 0)))
