@@ -344,6 +344,7 @@ def test_effects_in_parts_and_special_functions_were_refused_an_answer(write_sce
         ("x^2 + y^4 + cos(y) - 1 - cos(0)", 1, "not free", "none", "none"),  # "undecided" was said of all laws
         ("x - 1", 1, "free", "all", "any control"),
         ("x - cosh(t^50)", 1, "undecided", "none", "not determined"),
+        ("sin(x) - sin(1) + t^50", 1, "undecided", "undecided", "not determined"),
     ],
 )
 def test_a_system_without_controls_has_the_laws_that_its_motions_show(
