@@ -280,8 +280,8 @@ def _confinement(run: Run, maxima: Path) -> Confinement:
         "GCL_MEM_MULTIPLE": f"{run.limits.memory_mib * MIB / _memory_of_the_machine():.6f}",
         # So large a share of its memory GCL allocates between two collections of garbage. With its own twentieth it
         # collects more than a hundred times while it writes the program of a thousand bodies, with a tenth nine
-        # times, with this four times, and takes the same memory (measured).
-        "GCL_GC_ALLOC_MIN": "0.3",
+        # times, with this five times in the same memory. With more, a ring of 64 bodies takes over 2 GiB (measured).
+        "GCL_GC_ALLOC_MIN": "0.2",
     }
     readable = (*surroundings(maxima), LIBRARY, _own_folder(run.file))
     return Confinement(run.directory, environment, readable, run.limits)
