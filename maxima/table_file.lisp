@@ -16,7 +16,7 @@
     (with-open-file (in path)
       (do ((line (read-line in nil) (read-line in nil))) ((null line))
         (incf number)
-        (let ((text (trimmed line)))
+        (let ((text (trimmed (if (= number 1) (without-byte-order-mark line) line))))
           (unless (or (string= text "") (char= (char text 0) #\#))
             (let* ((cells (mapcar #'trimmed (split-at-commas text)))
                    (numbers (mapcar #'decimal-fraction cells)))
@@ -36,6 +36,10 @@
   (if (or (not (stringp $load_pathname)) (char= (char (concatenate 'string name " ") 0) #\/))
       name
       (concatenate 'string ($pathname_directory $load_pathname) name)))
+
+(defun without-byte-order-mark (line)
+  "What spreadsheets write before the first character, as one character or as the three bytes of UTF-8."
+  (subseq line (or (position-if-not #'(lambda (c) (member (char-code c) '(239 187 191 65279))) line) (length line))))
 
 (defun trimmed (text) (string-trim '(#\Space #\Tab #\Return #\Newline) text))
 

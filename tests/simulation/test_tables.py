@@ -69,6 +69,12 @@ def test_a_csv_file_beside_the_scene_gives_the_same_motion(driven):
     assert motion["x"] == pytest.approx(truth(motion.instants), rel=1e-14, abs=1e-14)
 
 
+def test_a_byte_order_mark_was_taken_for_a_part_of_the_first_number(driven):
+    csv = "\ufeff" + "\r\n".join(f"{t},{u}" for t, u in POINTS) + "\r\n\r\n"
+    motion = driven('table("drive.csv")', csv=csv).simulate(samples=2)
+    assert motion["x"] == pytest.approx(truth(motion.instants), rel=1e-14)
+
+
 def test_steps_end_at_every_point_and_on_the_number_nearest_to_it(driven):
     motion = driven(f"table({points()})").simulate()
     assert {1.0, 1.3, 3.5} <= set(motion.instants.tolist())
