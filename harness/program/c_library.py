@@ -392,7 +392,7 @@ def _start(model: Model) -> Iterator[str]:
 def _tables(model: Model) -> Iterator[str]:
     """The tables of the law as data, with the search for the polynomial that counts."""
     for number, table in enumerate(model.tables):
-        rows = ",\n".join(f"    {{{', '.join(map(repr, map(float, row)))}}}" for row in table.numbers.T)
+        rows = ",\n".join(f"    {{{', '.join(map(repr, row))}}}" for row in table.rows)
         yield f"static const double table{number}[][{len(table.inputs)}] = {{\n{rows}}};\n\n"
     if model.tables:
         yield SEARCH

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from .motion_program import Program
 from .numpy_function import NumpyFunction
 from .table import Table
+from .table_numbers import PiecesOfTable
 
 
 class Shape(StrEnum):
@@ -48,7 +49,7 @@ class Drawing:
         """
         known = {"t": instants, **coordinates}
         for table in self.tables:
-            known |= dict(zip(table.inputs, table.at(instants), strict=True))
+            known |= dict(zip(table.inputs, PiecesOfTable(table).at(instants), strict=True))
         given = [np.asarray(known.get(name, 0.0), dtype=float) for name in self.program.inputs]
         found = dict(zip(self.program.outputs, NumpyFunction(self.program)(given), strict=True))
         return [

@@ -4,18 +4,11 @@ Programs have the letters of such a polynomial among their inputs, t_k and the c
 (`maxima/table.mac`); its numbers are data, and found by the time.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
-
-from .motion_program import Program
-from .numpy_function import NumpyFunction
-from .precision import Precision
 
 Piece = tuple[str, str, str, str, str]  # t_k, c0, c1, c2, c3, exact or in decimal digits
 
@@ -37,37 +30,10 @@ class Table:
         """The first polynomial."""
         return dict(zip(self.inputs, map(Fraction, self.pieces[0]), strict=True))
 
-    def numbers_in(self, precision: Precision) -> NDArray[Any]:
-        """All polynomials, shape (5, pieces), in numbers of a precision."""
-        begins = [precision.ratio(Fraction(piece[0])) for piece in self.pieces]
-        rows = ([precision.number(piece[place]) for piece in self.pieces] for place in range(1, len(self.inputs)))
-        return np.array([begins, *rows])
-
-    def at(self, instants: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The polynomials that count at instants, shape (5, k), at a knot the one that ends there."""
-        return self.numbers[:, np.searchsorted(self.numbers[0, 1:], instants)]
-
-    @cached_property
-    def numbers(self) -> NDArray[np.float64]:
-        """All polynomials, shape (5, pieces)."""
-        return np.array([[float(Fraction(piece[0])), *map(float, piece[1:])] for piece in self.pieces]).T
-
-
-class OfTime:
-    """A program of the time, and of what tables are then, as a function of the time alone.
-
-    Parameters
-    ----------
-    program : Program
-        Its inputs are ``t`` and, in order, those of the tables.
-    """
-
-    def __init__(self, program: Program, tables: Sequence[Table]) -> None:
-        self._function, self._tables = NumpyFunction(program), tables
-
-    def __call__(self, instants: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The outputs at instants, shape (outputs, ...)."""
-        return self._function([instants, *(row for table in self._tables for row in table.at(instants))])
+    @property
+    def rows(self) -> Iterator[tuple[float, ...]]:
+        """The polynomials in double precision."""
+        return ((float(Fraction(begin)), *map(float, coefficients)) for begin, *coefficients in self.pieces)
 
 
 def read_tables(document: Sequence[Mapping[str, Any]]) -> tuple[Table, ...]:

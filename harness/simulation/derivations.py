@@ -13,7 +13,6 @@ from ..confined import Limits
 from ..failures import Failure, HolonomError
 from ..program.motion_problem import DOUBLE_DIGITS, MotionProblem, motion_problem
 from ..program.request import Request
-from ..program.sign_pattern import at_start
 
 
 class Derivations:
@@ -67,6 +66,7 @@ def stands(problem: MotionProblem) -> bool:
     import numpy as np
 
     from ..program.numpy_function import NumpyFunction
+    from ..program.sign_pattern import at_start
 
     motion = at_start(problem).motion
     function = problem.once("start", motion, lambda: NumpyFunction(motion))

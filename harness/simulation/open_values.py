@@ -1,5 +1,6 @@
 """Values of what the programs of a motion leave open: of parameters lasting ones, of tables others by the time."""
 
+from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
@@ -67,5 +68,7 @@ class BesideState:
 
 
 def _polynomials(table: Table, precision: Precision) -> _Polynomials:
-    numbers = table.numbers_in(precision)
+    begins = [precision.ratio(Fraction(piece[0])) for piece in table.pieces]
+    rows = ([precision.number(piece[place]) for piece in table.pieces] for place in range(1, len(table.inputs)))
+    numbers = np.array([begins, *rows])
     return _Polynomials(as_floats(numbers[0, 1:]), numbers)

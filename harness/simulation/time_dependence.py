@@ -19,7 +19,8 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from ..program.motion_program import Call, Expression, Name, Program, names_in
-from ..program.table import OfTime, Table
+from ..program.table import Table
+from ..program.table_numbers import OfTime
 from .matrices import Vector
 
 DEGREE = 32

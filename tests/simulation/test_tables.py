@@ -13,7 +13,7 @@ import holonom
 from holonom.failures import HolonomError
 from holonom.program.model import scene_model
 from holonom.program.request import Request
-from holonom.program.table import OfTime
+from holonom.program.table_numbers import OfTime
 from holonom.series.power_series import values_at
 from holonom.simulation.clock import ticks
 

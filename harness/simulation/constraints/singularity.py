@@ -19,7 +19,7 @@ from ...failures import Failure, HolonomError
 from ...program.motion_problem import MotionProblem, computing
 from ...program.motion_program import Name
 from ...program.sign_pattern import in_numbers
-from ...program.table import OfTime
+from ...program.table_numbers import OfTime
 from ..diagnosis import Instant
 from ..evaluation import Numbers, as_floats
 from ..matrices import MotionMatrices, Vector, start_of
