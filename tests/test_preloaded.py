@@ -184,6 +184,7 @@ def test_an_image_that_a_process_uses_stays(images):
     assert not files[9].exists()
 
 
+@pytest.mark.long
 def test_another_library_has_another_image_and_compiled_functions_serve_until_they_are_torn_or_changed(made, tmp_path):
     compiled = made.with_name("functions.o")
     before = compiled.stat().st_mtime_ns

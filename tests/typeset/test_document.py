@@ -41,7 +41,14 @@ def complaints(text: str, directory: Path) -> list[str]:
 
 
 @needs_tex
-@pytest.mark.parametrize("example", ["paper/paper.mac", "andrews.mac", "spherical_pendulum.mac", "linkage.mac"])
+@pytest.mark.parametrize(
+    "example",
+    [
+        "paper/paper.mac",
+        "andrews.mac",
+        *(pytest.param(name, marks=pytest.mark.long) for name in ("spherical_pendulum.mac", "linkage.mac")),
+    ],
+)
 def test_tex_compiles_every_kind_of_example_without_complaint(example, tmp_path):
     assert complaints(document(EXAMPLES / example), tmp_path) == []
 

@@ -53,7 +53,7 @@ def at_a_point(example: str) -> tuple[dict[str, float], list[tuple[Relation, lis
     ("example", "width"),
     [
         *[(example, width) for example in ("paper/paper.mac", "bead.mac") for width in (math.inf, 70, 33)],
-        ("spherical_pendulum.mac", 70),
+        pytest.param("spherical_pendulum.mac", 70, marks=pytest.mark.long),
     ],
 )
 def test_a_formula_read_letter_by_letter_and_row_by_row_has_the_value_of_the_equation(example, width):
