@@ -175,7 +175,17 @@ def free_motion(
     ----------
     Chen, Guo & Mei (2019), section 2, eq. (10).
     """
-    text = ask(Document.FREE_MOTION, file, scene, order, settings=settings, limits=limits)
+    return read_free_motion(ask(Document.FREE_MOTION, file, scene, order, settings=settings, limits=limits))
+
+
+def read_free_motion(text: str) -> FreeMotion:
+    """Read what Maxima wrote, and check the laws in it.
+
+    Raises
+    ------
+    HolonomError
+        As `holonom.documents.read`.
+    """
     document = read(Document.FREE_MOTION, text)
     motion, trajectory, prescribed, left_open = (
         document[part] for part in ("motion", "trajectory", "prescribed", "open")

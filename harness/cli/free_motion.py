@@ -9,6 +9,7 @@ import click
 
 from ..confined import Limits
 from .group import holonom
+from .meanwhile import meanwhile
 from .options import DISAGREEMENT, asks_one_scene, present, runs_scenes, writes_json
 
 if TYPE_CHECKING:
@@ -37,14 +38,25 @@ def free(
 
     The exit status is 1 where SymPy's own evaluation contradicts a law that was found.
     """
+    from ..documents import Document, ask
+
+    with meanwhile(_import_what_follows):
+        text = ask(Document.FREE_MOTION, scene_file, request.scene, order, settings=request.settings, limits=limits)
+
     from ..crosscheck import Verdict
-    from ..free_motion import free_motion
+    from ..free_motion import read_free_motion
     from .tables.free_motion import show_free_motion
 
-    found = free_motion(scene_file, request.scene, request.settings, limits, order)
+    found = read_free_motion(text)
     present(_free_motion_document(found), json_file, show_free_motion, found)
     contradicted = any(law.check.verdict is Verdict.DISAGREES for law in found.universal.laws)
     return DISAGREEMENT if contradicted else 0
+
+
+def _import_what_follows() -> None:
+    """Import SymPy, and what needs it."""
+    from ..free_motion import read_free_motion  # noqa: F401
+    from .tables.free_motion import show_free_motion  # noqa: F401
 
 
 def _free_motion_document(found: "FreeMotion") -> dict[str, Any]:

@@ -1,10 +1,9 @@
 """The commands about one motion: as a power series, and in numbers."""
 
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
+from functools import partial
 from pathlib import Path
-from threading import Thread
 from typing import TYPE_CHECKING
 
 import click
@@ -12,6 +11,7 @@ import click
 from ..confined import Limits
 from ..failures import HolonomError
 from .group import OWN_PROCESS, holonom
+from .meanwhile import meanwhile
 from .options import asks_one_scene, chooses_solve, json_text, present, publish, read_instant, runs_scenes, writes_json
 from .outputs import STANDARD_OUTPUT, OutputFile
 
@@ -141,7 +141,7 @@ def simulate(
     from ..simulation.derivations import open_names, stands
 
     digits = _digits_of(precision)
-    with _imported_meanwhile():
+    with meanwhile(partial(_import_what_follows, click.get_current_context().obj is OWN_PROCESS)):
         document = problem_document(scene_file, request, limits, digits, open_names(request, digits))
     problem = read_problem(document)
     if not stands(problem):
@@ -202,19 +202,8 @@ def _digits_of(precision: str) -> int:
     return read_precision(precision).digits
 
 
-@contextmanager
-def _imported_meanwhile() -> Iterator[None]:
-    """Import what is needed next while the block waits for Maxima; the block itself must import nothing."""
-    own_process = click.get_current_context().obj is OWN_PROCESS
-    importing = Thread(target=_import_what_follows, args=(own_process,))
-    importing.start()
-    try:
-        yield
-    finally:
-        importing.join()
-
-
 def _import_what_follows(own_process: bool) -> None:
+    """Import what is needed next."""
     with suppress(ImportError, HolonomError):  # what is missing is told when it is needed
         import jsonschema_rs  # noqa: F401
 
