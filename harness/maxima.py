@@ -279,9 +279,9 @@ def _confinement(run: Run, maxima: Path) -> Confinement:
         # under the limit: what garbage there is depends on the limit then, and not on the machine.
         "GCL_MEM_MULTIPLE": f"{run.limits.memory_mib * MIB / _memory_of_the_machine():.6f}",
         # So large a share of its memory GCL allocates between two collections of garbage. With its own twentieth it
-        # collects more than a hundred times while it writes the program of a thousand bodies, with a tenth nine
-        # times, with this five times in the same memory. With more, a ring of 64 bodies takes over 2 GiB (measured).
-        "GCL_GC_ALLOC_MIN": "0.2",
+        # collects more than a hundred times while it writes the program of a thousand bodies, with this a few times in
+        # the same memory. With a fifth, 24 derivatives of a gamma function take 3.7 GiB, with this 1.3 (measured).
+        "GCL_GC_ALLOC_MIN": "0.13",
     }
     readable = (*surroundings(maxima), LIBRARY, _own_folder(run.file))
     return Confinement(run.directory, environment, readable, run.limits)
