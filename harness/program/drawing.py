@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from .motion_program import Program
 from .numpy_function import NumpyFunction
 from .table import Table
-from .table_numbers import PiecesOfTable
+from .table_numbers import pieces_of_tables
 
 
 class Shape(StrEnum):
@@ -48,8 +48,8 @@ class Drawing:
             x and y of its places in their order, then, of a circle, the radius.
         """
         known = {"t": instants, **coordinates}
-        for table in self.tables:
-            known |= dict(zip(table.inputs, PiecesOfTable(table).at(instants), strict=True))
+        for table, pieces in zip(self.tables, pieces_of_tables(self.tables), strict=True):
+            known |= dict(zip(table.inputs, pieces.at(instants), strict=True))
         given = [np.asarray(known.get(name, 0.0), dtype=float) for name in self.program.inputs]
         found = dict(zip(self.program.outputs, NumpyFunction(self.program)(given), strict=True))
         return [

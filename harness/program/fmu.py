@@ -135,10 +135,10 @@ def _inputs_at_start(model: Model) -> list[str]:
     values = {}
     if model.law is not None:
         from .numpy_function import NumpyFunction
-        from .table_numbers import PiecesOfTable
+        from .table_numbers import pieces_of_tables
 
         numbers = [float(model.start["t"]), *(float(model.values[name]) for name in model.parameters)]
-        numbers += [float(number) for table in model.tables for number in PiecesOfTable(table).at(numbers[:1])[:, 0]]
+        numbers += [float(c) for pieces in pieces_of_tables(model.tables) for c in pieces.at(numbers[0])]
         values = dict(zip(model.law.outputs, NumpyFunction(model.law)(numbers), strict=True))
     return [repr(float(values.get(history, 0))) for history in _histories(model)]
 

@@ -1,15 +1,18 @@
 """What tables are at instants: their polynomials as arrays, and programs of the time that take them."""
 
 from collections.abc import Sequence
+from fractions import Fraction
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .motion_program import Program
 from .numpy_function import NumpyFunction
+from .precision import Precision, read_precision
 from .table import Table
 
-Numbers = NDArray[np.float64]
+Numbers = NDArray[Any]
 
 
 class OfTime:
@@ -22,7 +25,7 @@ class OfTime:
     """
 
     def __init__(self, program: Program, tables: Sequence[Table]) -> None:
-        self._function, self._tables = NumpyFunction(program), [PiecesOfTable(table) for table in tables]
+        self._function, self._tables = NumpyFunction(program), pieces_of_tables(tables)
 
     def __call__(self, instants: Numbers) -> Numbers:
         """The outputs at instants, shape (outputs, ...)."""
@@ -30,11 +33,22 @@ class OfTime:
 
 
 class PiecesOfTable:
-    """The polynomials of a table as an array, shape (5, pieces)."""
+    """The polynomials of a table, in the numbers of a precision."""
 
-    def __init__(self, table: Table) -> None:
-        self._numbers = np.array(list(table.rows)).T
+    def __init__(self, table: Table, precision: Precision) -> None:
+        begins = [precision.ratio(Fraction(piece[0])) for piece in table.pieces]
+        rows = ([precision.number(piece[place]) for piece in table.pieces] for place in range(1, len(table.inputs)))
+        self._numbers = np.array([begins, *rows])  # shape (5, pieces)
+        self._knots = np.array([float(t) for t in begins[1:]])
 
-    def at(self, instants: Numbers) -> Numbers:
-        """The polynomials that count at instants, shape (5, k), at a knot the one that ends there."""
-        return self._numbers[:, np.searchsorted(self._numbers[0, 1:], instants)]
+    def at(self, instants: Numbers, side: Literal["left", "right"] = "left") -> Numbers:
+        """The polynomials that count at instants in double precision, shape (5, k); one for one instant.
+
+        At a knot it is the one that ends there, on its right side the one that begins.
+        """
+        return self._numbers[:, self._knots.searchsorted(instants, side)]
+
+
+def pieces_of_tables(tables: Sequence[Table]) -> list[PiecesOfTable]:
+    """Those of each table, in double precision."""
+    return [PiecesOfTable(table, read_precision("double")) for table in tables]

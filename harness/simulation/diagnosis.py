@@ -128,8 +128,7 @@ def stiffness(matrices: MotionMatrices, at: Instant) -> float:
 
 def _accelerations(matrices: MotionMatrices, at: Instant, move: Vector) -> Vector:
     moved = matrices(at.t, at.state + move)
-    rank = rank_of(weighted_constraints(moved.mass, moved.jacobian).singular_values())
-    factored = factored_constraints(moved.mass, moved.jacobian, rank)
+    factored = factored_constraints(moved.mass, moved.jacobian)
     return factored.accelerations(moved.force, moved.curvature)
 
 

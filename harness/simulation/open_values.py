@@ -1,22 +1,13 @@
 """Values of what the programs of a motion leave open: of parameters lasting ones, of tables others by the time."""
 
-from fractions import Fraction
-from typing import NamedTuple
+from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..program.motion_problem import MotionProblem
 from ..program.precision import Precision
-from ..program.table import Table
+from ..program.table_numbers import PiecesOfTable
 from .evaluation import Numbers, as_floats, zeros
-
-
-class _Polynomials(NamedTuple):
-    """Those of a table."""
-
-    knots: NDArray[np.float64]  # instants at which one follows on another
-    numbers: Numbers  # shape (5, knots + 1)
 
 
 class OpenValues:
@@ -26,7 +17,7 @@ class OpenValues:
         lasting = [precision.ratio(problem.values[name]) for name in problem.parameters]
         self._lasting = np.array(lasting) if lasting else zeros(precision, 0)
         self._tables = [
-            problem.once(("table", precision.name), table, lambda table=table: _polynomials(table, precision))
+            problem.once(("table", precision.name), table, lambda table=table: PiecesOfTable(table, precision))
             for table in problem.tables
         ]
 
@@ -36,8 +27,7 @@ class OpenValues:
         if not self._tables:
             return lasting
         floats = as_floats(instants)
-        found = (numbers[:, np.searchsorted(knots, floats)] for knots, numbers in self._tables)
-        return np.concatenate([lasting, *found])
+        return np.concatenate([lasting, *(pieces.at(floats) for pieces in self._tables)])
 
     def at(self, instant: Numbers) -> Numbers:
         """The same at one instant."""
@@ -47,12 +37,11 @@ class OpenValues:
         """The values from an instant on."""
         return self._at(instant, "right")
 
-    def _at(self, instant: Numbers, side: str) -> Numbers:
+    def _at(self, instant: Numbers, side: Literal["left", "right"]) -> Numbers:
         if not self._tables:
             return self._lasting
         t = float(instant)
-        found = (numbers[:, knots.searchsorted(t, side)] for knots, numbers in self._tables)
-        return np.concatenate([self._lasting, *found])
+        return np.concatenate([self._lasting, *(pieces.at(t, side) for pieces in self._tables)])
 
 
 class BesideState:
@@ -65,10 +54,3 @@ class BesideState:
     def __call__(self, instants: Numbers) -> Numbers:
         """At instants, shape (k,), as columns."""
         return np.concatenate([zeros(self._precision, self._multipliers, len(instants)), self._values(instants)])
-
-
-def _polynomials(table: Table, precision: Precision) -> _Polynomials:
-    begins = [precision.ratio(Fraction(piece[0])) for piece in table.pieces]
-    rows = ([precision.number(piece[place]) for piece in table.pieces] for place in range(1, len(table.inputs)))
-    numbers = np.array([begins, *rows])
-    return _Polynomials(as_floats(numbers[0, 1:]), numbers)

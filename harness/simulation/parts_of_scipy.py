@@ -23,6 +23,7 @@ def lapack() -> ModuleType:
     return lapack
 
 
+@cache
 def superlu() -> ModuleType:
     """SuperLU, which factors sparse matrices."""
     if (compiled := _alone("scipy.sparse.linalg._dsolve._superlu")) is not None:
@@ -32,7 +33,6 @@ def superlu() -> ModuleType:
     return _superlu
 
 
-@cache
 def dormand_prince() -> Any:
     """Coefficients of the method of Dormand and Prince, 8(5,3), as its attributes A, B, C, E3 and E5."""
     if (coefficients := _alone("scipy.integrate._ivp.dop853_coefficients")) is not None:

@@ -12,7 +12,6 @@ from ...language import translatable
 from ...program.motion_problem import MotionProblem
 from ...program.motion_program import Solve
 from ...program.numpy_function import NumpyFunction
-from ...simulation.constraints.directions import rank_of, weighted_constraints
 from ...simulation.constraints.factorization import factored_constraints
 from ...simulation.matrices import Matrices, MotionMatrices, Vector
 from .case import Result, ours, theirs
@@ -68,8 +67,7 @@ def textbook(matrices: Matrices) -> Solved:
 
 def pivoted(matrices: Matrices) -> Solved:
     """As the robust engine solves."""
-    rank = rank_of(weighted_constraints(matrices.mass, matrices.jacobian).singular_values())
-    factored = factored_constraints(matrices.mass, matrices.jacobian, rank)
+    factored = factored_constraints(matrices.mass, matrices.jacobian)
     sides = matrices.force, matrices.curvature
     return Solved(factored.accelerations(*sides), factored.multipliers(*sides))
 

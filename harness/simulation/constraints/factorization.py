@@ -30,7 +30,7 @@ import numpy as np
 
 from ..matrices import Matrix, Vector
 from ..parts_of_scipy import superlu
-from .directions import EPSILON, or_one, weighted_constraints
+from .directions import EPSILON, or_one, rank_of, weighted_constraints
 
 ALPHA = 2.0**-10
 REFINEMENTS = 5
@@ -225,7 +225,7 @@ class DependentConstraintsAtEach(FactoredConstraints):
         return np.array([method(each, *parts) for each, *parts in zip(self._each, *sides, strict=True)])
 
 
-def factored_constraints(mass: Matrix, jacobian: Matrix, rank: int) -> FactoredConstraints:
+def factored_constraints(mass: Matrix, jacobian: Matrix, rank: int | None = None) -> FactoredConstraints:
     """Factor the equations of motion.
 
     Parameters
@@ -234,14 +234,16 @@ def factored_constraints(mass: Matrix, jacobian: Matrix, rank: int) -> FactoredC
         A, symmetric; positive definite together with the constraints.
     jacobian : ndarray, shape (g, n) or (k, g, n)
         J; its rows may be dependent, and of any scale.
-    rank : int
-        How many of the constraints count as independent.
+    rank : int or None
+        How many of the constraints count as independent; None to count them, at one state.
 
     Raises
     ------
     HolonomError
         As `weighted_constraints`, where the equations are found to be singular.
     """
+    if rank is None:
+        rank = rank_of(weighted_constraints(mass, jacobian).singular_values())
     if rank == jacobian.shape[-2]:
         return IndependentConstraints(mass, jacobian)
     return (DependentConstraints if mass.ndim == 2 else DependentConstraintsAtEach)(mass, jacobian, rank)

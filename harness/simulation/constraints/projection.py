@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...failures import Failure, HolonomError
-from ..matrices import Matrices, MotionMatrices, Vector
-from .directions import EPSILON, rank_of, weighted_constraints
+from ..matrices import MotionMatrices, Vector
+from .directions import EPSILON
 from .factorization import FactoredConstraints, factored_constraints
 
 ROUNDING = 8 * EPSILON  # relative size of a correction that is none
@@ -76,7 +76,7 @@ def settle(
         if not np.all(at.finite):
             first = _where_not(at.finite, t)[0]
             raise HolonomError(Failure.NO_WAY_ON, detail=f"{first:.10g}, where numbers overflow")
-        factored = _factored(at, rank)
+        factored = factored_constraints(at.mass, at.jacobian, rank)
         change = factored.correction(at.residual)
         size, extent = factored.length(change), _extent(factored, state[..., :n])
         settled |= (size <= ROUNDING * extent) | ((CONTRACTION * last < size) & (size <= CONSISTENT * extent))
@@ -89,12 +89,6 @@ def settle(
     left = at.residual_rate + np.matvec(at.jacobian, change)
     _require_small(t, left, factored, _extent(factored, state[..., n:]))
     return np.concatenate([state[..., :n], state[..., n:] + change], axis=-1), factored
-
-
-def _factored(at: Matrices, rank: int | None) -> FactoredConstraints:
-    if rank is None:
-        rank = rank_of(weighted_constraints(at.mass, at.jacobian).singular_values())
-    return factored_constraints(at.mass, at.jacobian, rank)
 
 
 def _extent(factored: FactoredConstraints, numbers: Vector) -> Vector:
