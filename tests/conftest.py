@@ -13,6 +13,7 @@ from subprocess import CompletedProcess
 import pytest
 from hypothesis import HealthCheck, settings
 from particle import PARTICLE
+from walls import without_notice
 
 from holonom.cli import run
 from holonom.documents import Document, ask
@@ -84,7 +85,7 @@ def holonom_here(monkeypatch: pytest.MonkeyPatch) -> Callable[..., CompletedProc
         for stream in (out, err):
             stream.flush()
             printed.append(stream.buffer.getvalue().decode())
-        return CompletedProcess(arguments, status, *printed)
+        return CompletedProcess(arguments, status, printed[0], without_notice(printed[1]))
 
     return run_here
 

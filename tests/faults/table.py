@@ -321,9 +321,6 @@ ENVIRONMENTS = [
     Fault("a dozen descriptors and one", "derive scene.mac --trust", "", 0, shell='ulimit -n 13; "$@"'),
     Fault("small files", DERIVE, "", MACHINE_AT_FAULT, shell='ulimit -f 4; "$@"'),
     Fault(
-        "no bubblewrap", DERIVE, "bubblewrap is missing", 0, environment={"HOLONOM_TEST_PATH": "no bwrap"}, long=True
-    ),
-    Fault(
         "no bubblewrap where it is demanded",
         "derive scene.mac --sandbox",
         "bubblewrap is missing",

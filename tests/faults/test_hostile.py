@@ -13,12 +13,12 @@ from pathlib import Path
 import pytest
 from particle import PARTICLE
 from shell import SHELL
+from walls import walled
 
-from holonom.confined import Limits, Sandbox, bubblewrap
+from holonom.cli.options import UNWALLED
+from holonom.confined import Limits, Sandbox
 from holonom.documents import Document, ask
 from holonom.failures import Failure, HolonomError
-
-walled = pytest.mark.skipif(bubblewrap() is None, reason="bubblewrap is missing or forbidden")
 
 
 def scene(tmp_path: Path, deed: str, *, before: str = "") -> Path:
@@ -157,14 +157,25 @@ def test_a_trusted_scene_is_run_in_the_open(tmp_path):
     assert target.read_text().strip() == "here"
 
 
-def test_a_command_says_that_nothing_is_walled_in(tmp_path):
+FORBIDDEN = "#!/bin/sh\necho 'bwrap: No permissions to create new namespace' >&2\nexit 1\n"
+
+
+@pytest.mark.parametrize("bubblewrap", ["missing", "forbidden"])
+def test_without_walls_one_line_says_so_and_the_derivation_is_the_same(bubblewrap, tmp_path, particle_record):
     programs = tmp_path / "programs"
     programs.mkdir()
+    found = {each.name: each for folder in reversed(os.get_exec_path()) for each in Path(folder).glob("*")}
+    for name in found.keys() - {"bwrap"}:
+        (programs / name).symlink_to(found[name])
+    if bubblewrap == "forbidden":
+        (programs / "bwrap").write_text(FORBIDDEN)
+        (programs / "bwrap").chmod(0o755)
     done = subprocess.run(
-        [sys.executable, "-m", "holonom", "derive", "nowhere.mac"],
-        env=os.environ | {"PATH": str(programs)},
+        [sys.executable, "-m", "holonom", "derive", str(scene(tmp_path, "")), "--json", "-"],
+        env=os.environ | {"PATH": str(programs), "XDG_CACHE_HOME": os.devnull},  # no image of Maxima is made for this
         capture_output=True,
         text=True,
         check=False,
     )
-    assert done.stderr.splitlines()[0].startswith("holonom: bubblewrap is missing or forbidden here")
+    assert (done.returncode, done.stderr) == (0, f"{UNWALLED}\n")
+    assert derivations(done.stdout) == derivations(particle_record)

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from walls import without_notice
 
 from holonom.record import derived_record, read_record
 from holonom.typeset.document import tex_document
@@ -76,7 +77,7 @@ def test_derive_writes_the_document(particle_scene, tmp_path):
     file = tmp_path / "particle.tex"
     command = [sys.executable, "-m", "holonom", "derive", str(particle_scene), "--tex", str(file)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120)
-    assert (done.returncode, done.stderr) == (0, "")
+    assert (done.returncode, without_notice(done.stderr)) == (0, "")
     assert file.read_text(encoding="utf-8") == document(particle_scene)
     assert "Lagrange's equations" in done.stdout
 

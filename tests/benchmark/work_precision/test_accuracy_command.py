@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from walls import without_notice
 
 from holonom.benchmark.work_precision import study
 from holonom.cli import holonom
@@ -34,7 +35,7 @@ def test_a_scene_that_cannot_be_measured_is_refused_in_one_sentence(write_scene,
     done = subprocess.run(command, capture_output=True, text=True, timeout=120)
     assert done.returncode == 2
     assert said in done.stderr
-    assert len(done.stderr.splitlines()) == 1
+    assert len(without_notice(done.stderr).splitlines()) == 1
     assert done.stdout == ""
     assert not written.exists()
 
