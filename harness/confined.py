@@ -214,7 +214,7 @@ def _watch(process: subprocess.Popen[bytes], limits: Limits, printed: bytearray)
 def resident_memory(pid: int) -> int:
     """Resident memory of a process and all that it started, in bytes.
 
-    What has ended, even while it was looked at, counts for nothing.
+    What has ended, even while it was looked at, counts for nothing, nor does what nobody lets this process look at.
     """
     return sum(map(_own_memory, _tree(pid)))
 
@@ -251,7 +251,7 @@ def _own_memory(process: "psutil.Process") -> int:
 
     try:
         return process.memory_info().rss
-    except psutil.NoSuchProcess:
+    except psutil.Error:
         return 0
 
 
@@ -260,9 +260,9 @@ def _end(process: subprocess.Popen[bytes]) -> None:
     import psutil
 
     for each in _tree(process.pid):
-        with suppress(psutil.NoSuchProcess):
+        with suppress(psutil.Error):  # it has ended, or has other rights by now
             each.kill()
-    with suppress(ProcessLookupError):  # perhaps nobody is left
+    with suppress(ProcessLookupError, PermissionError):  # nobody is left, or for macOS only what has ended
         os.killpg(process.pid, signal.SIGKILL)
     process.wait()
     process.stdout.close()

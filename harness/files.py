@@ -95,11 +95,12 @@ def _locked_directory() -> tuple[Path, int]:
             raise HolonomError(Failure.NO_PRIVATE_DIRECTORY, detail=error.strerror or str(error)) from None
         try:
             lock = os.open(path, os.O_RDONLY)
+            fcntl.flock(lock, fcntl.LOCK_EX)
         except FileNotFoundError:  # swept before it was opened
             continue
-        except OSError as error:
+        except OSError as error:  # as of a file system without locks
+            _remove(path)
             raise HolonomError(Failure.NO_PRIVATE_DIRECTORY, detail=error.strerror or str(error)) from None
-        fcntl.flock(lock, fcntl.LOCK_EX)
         if path.exists():  # and was not swept before it was locked
             return path, lock
         os.close(lock)

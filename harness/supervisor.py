@@ -2,7 +2,7 @@
 
 The command runs in a child process. This one only waits: it ends the command at a signal or when its time is over, sees
 it end by itself or crash, ends what is left of it, and removes its directory for temporary files. Where this process is
-killed, the kernel kills the child, and the next command removes the directory.
+killed, the child is killed, and the next command removes the directory.
 """
 
 import ctypes
@@ -18,6 +18,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Thread
 from types import FrameType
 
 from .files import private_directory, sweep_private_directories
@@ -115,10 +116,21 @@ def _write(what: str) -> None:
 
 
 def die_with_parent(parent: int) -> None:
-    """Have the kernel kill this process when its parent ends, where it can do that; a parent that is gone counts."""
-    _control_process(SET_PDEATHSIG, signal.SIGKILL)
-    if os.getppid() != parent:
-        os._exit(SIGNALLED + signal.SIGKILL)
+    """Have this process killed when its parent ends, by the kernel or else a thread; a parent that is gone counts."""
+
+    def end_without_parent() -> None:
+        if os.getppid() != parent:
+            os._exit(SIGNALLED + signal.SIGKILL)
+
+    def look_for_parent() -> None:
+        while True:
+            end_without_parent()
+            time.sleep(TICK)
+
+    if _control_process(SET_PDEATHSIG, signal.SIGKILL):
+        end_without_parent()
+    else:
+        Thread(target=look_for_parent, daemon=True).start()
 
 
 def _run(command: Callable[[], int], directory: Path, supervisor: int) -> int:
@@ -177,7 +189,7 @@ def _end_descendants() -> None:
         import psutil  # a command that ends as it should does without
 
         for process in psutil.Process().children(recursive=True):
-            with suppress(psutil.NoSuchProcess):
+            with suppress(psutil.Error):
                 process.kill()
         time.sleep(0.01)
 
@@ -192,7 +204,6 @@ def _reap() -> bool:
     return True
 
 
-def _control_process(option: int, value: int) -> None:
-    """Linux's prctl; nothing elsewhere."""
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(option, ctypes.c_ulong(value), 0, 0, 0)
+def _control_process(option: int, value: int) -> bool:
+    """Linux's prctl; whether there is one, and it did so."""
+    return sys.platform == "linux" and ctypes.CDLL(None).prctl(option, ctypes.c_ulong(value), 0, 0, 0) == 0

@@ -48,6 +48,23 @@ def test_a_limit_ends_the_process(program, seconds, failure, tmp_path):
     assert exceeded.value.failure is failure
 
 
+def test_a_process_that_may_not_be_ended_was_a_traceback(monkeypatch, tmp_path):
+    """What runs with other rights; and macOS refuses the signal to a group of which nobody lives any more."""
+
+    def denied(_: psutil.Process) -> None:
+        raise psutil.AccessDenied
+
+    def killed_and_denied(group: int, number: int) -> None:
+        kill_group(group, number)
+        raise PermissionError
+
+    kill_group = os.killpg
+    monkeypatch.setattr(psutil.Process, "kill", denied)
+    monkeypatch.setattr(os, "killpg", killed_and_denied)
+    with pytest.raises(LimitExceeded):
+        run("import time; time.sleep(60)", tmp_path, Limits(seconds=0.5, sandbox=Sandbox.TRUSTED))
+
+
 def test_no_file_grows_beyond_its_limit(tmp_path):
     run("with open('large', 'wb') as file:\n    while True: file.write(bytes(10**6))", tmp_path)
     assert (tmp_path / "large").stat().st_size <= 2**20
@@ -81,7 +98,10 @@ def test_a_killed_parent_takes_all_with_it(sandbox, tmp_path):
     assert soon(lambda: not living(mark))
 
 
-def test_memory_counts_what_was_started_too():
+@pytest.mark.parametrize("system", ["this one", "one without /proc"])
+def test_memory_counts_what_was_started_too(system, monkeypatch):
+    if system == "one without /proc":
+        monkeypatch.setattr("holonom.confined._kernel_lists_children", lambda: False)
     hog = "held = bytearray(10**8); print(flush=True); import time; time.sleep(60)"
     started = f"import subprocess, sys; subprocess.run([sys.executable, '-c', {hog!r}])"
     process = subprocess.Popen([sys.executable, "-c", started], stdout=subprocess.PIPE)

@@ -1,5 +1,6 @@
 """Files that appear whole or not at all."""
 
+import errno
 import os
 from pathlib import Path
 
@@ -111,3 +112,14 @@ def test_what_a_killed_run_left_is_swept_and_what_is_in_use_stays(tmp_path, monk
     with private_directory() as used:
         sweep_private_directories()
         assert sorted(tmp_path.iterdir()) == sorted([used, foreign])
+
+
+def test_a_file_system_without_locks_for_temporary_files_is_one_sentence(monkeypatch, tmp_path):
+    def refuse(*_: object) -> None:
+        raise OSError(errno.ENOLCK, os.strerror(errno.ENOLCK))
+
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    monkeypatch.setattr("fcntl.flock", refuse)
+    with pytest.raises(HolonomError, match="no directory for temporary files can be made: No locks available"):
+        private_directory().__enter__()
+    assert list(tmp_path.iterdir()) == []

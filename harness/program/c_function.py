@@ -21,7 +21,8 @@ from .motion_program import Program
 COMPILERS = ("cc", "gcc", "clang")
 # Not less than -O2: below it GCC leaves the upper halves of vector registers in use, and code without AVX that runs
 # afterwards waits for them again and again; GSL took 2 to 8 times as long.
-OPTIONS = ("-std=c99", "-O2", "-ffp-contract=fast", "-march=native", "-shared", "-fPIC")
+OPTIONS = ("-std=c99", "-O2", "-ffp-contract=fast", "-shared", "-fPIC")
+NATIVE = "-march=native"  # for the processor at hand; compilers for some kinds of processors know no such option
 COMPILER_LIMITS = Limits(sandbox=Sandbox.TRUSTED)
 SHOWN = 200  # characters of what the compiler says
 POINTERS = (ctypes.c_void_p, ctypes.c_void_p)
@@ -90,7 +91,12 @@ def load_c(source: str, *options: str) -> ctypes.CDLL:
     with private_directory() as directory:
         source_file, library = directory / "motion.c", directory / "motion.so"
         source_file.write_text(source, encoding="utf-8")
-        compile_shared([source_file], library, *OPTIONS, *options)
+        try:
+            compile_shared([source_file], library, NATIVE, *OPTIONS, *options)
+        except HolonomError as refused:
+            if "-march" not in refused.detail:
+                raise
+            compile_shared([source_file], library, *OPTIONS, *options)
         try:
             return ctypes.CDLL(str(library))
         except OSError as error:

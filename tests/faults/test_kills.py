@@ -95,6 +95,21 @@ def test_the_supervisor_tells_a_crash_of_its_command(tmp_path):
     assert "ended by SIGSEGV while compiling" in done.stdout
 
 
+def test_where_the_kernel_kills_no_child_of_a_killed_parent_the_child_ends_all_the_same():
+    """As on macOS, which has no prctl."""
+    command = "lambda: print(flush=True) or time.sleep(200)"
+    script = (
+        f"import sys, time; from holonom.supervisor import supervise; sys.platform = 'darwin'; supervise({command})"
+    )
+    process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE)
+    process.stdout.readline()
+    started = running(process)
+    process.kill()
+    process.communicate()
+    assert started
+    assert soon(lambda: not any(each.is_running() and each.status() != psutil.STATUS_ZOMBIE for each in started))
+
+
 def running(process: subprocess.Popen[bytes]) -> list[psutil.Process]:
     try:
         return psutil.Process(process.pid).children(recursive=True)

@@ -1,6 +1,7 @@
 """What is particular to the C form: the compiler, names, and shapes."""
 
 import ctypes
+import shutil
 
 import numpy as np
 import pytest
@@ -27,6 +28,21 @@ def test_the_compiler_that_cc_names_is_the_one_used(monkeypatch):
 def test_what_the_compiler_says_is_passed_on():
     with pytest.raises(HolonomError, match="the C compiler refused the motion program: .*unknown_type"):
         load_c("unknown_type x;")
+
+
+def test_a_compiler_that_knows_no_native_processor_was_no_compiler(monkeypatch, tmp_path):
+    """GCC for RISC-V and POWER: what it says there."""
+    refusing = tmp_path / "riscv64-gcc"
+    refusing.write_text(
+        '#!/bin/sh\ncase " $* " in *" -march=native "*)\n'
+        "  echo \"cc1: error: '-march=native': ISA string must begin with rv32 or rv64\" >&2; exit 1 ;;\nesac\n"
+        f'exec {shutil.which("cc")} "$@"\n'
+    )
+    refusing.chmod(0o755)
+    points = np.random.default_rng(2).normal(size=(6, 5))
+    native = compile_c(PENDULUM)(points)
+    monkeypatch.setenv("CC", str(refusing))
+    assert compile_c(PENDULUM)(points) == pytest.approx(native, rel=1e-12)
 
 
 def test_names_from_the_program_stay_inside_the_comment():

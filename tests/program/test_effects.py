@@ -134,14 +134,14 @@ def effects_of(name):
 
 
 def costs_of(*arguments):
-    result = CliRunner().invoke(holonom, ["effects", *map(str, arguments), "--json", "-"])
+    result = CliRunner(mix_stderr=False).invoke(holonom, ["effects", *map(str, arguments), "--json", "-"])
     return json.loads(result.stdout)
 
 
 def refusal_of(file, *options):
-    result = CliRunner().invoke(holonom, ["effects", str(file), *options], standalone_mode=False)
+    result = CliRunner(mix_stderr=False).invoke(holonom, ["effects", str(file), *options], standalone_mode=False)
     assert result.return_value == 2
-    said = without_notice(result.output)
+    said = without_notice(result.stderr)
     assert said.startswith("holonom: ")
     assert said.count("\n") == 1
     return said
@@ -226,7 +226,7 @@ def test_costs_are_those_of_the_programs():
 
 
 def test_the_table_shows_every_term_and_effect():
-    result = CliRunner().invoke(holonom, ["effects", str(SPHERICAL), "--scene", "swinging_scene"])
+    result = CliRunner(mix_stderr=False).invoke(holonom, ["effects", str(SPHERICAL), "--scene", "swinging_scene"])
     for said in ("[k,m;s] dot(q_k)", "absent by structure", "absent by choice", "indispensable", "20 operations"):
         assert said in result.stdout
 

@@ -56,7 +56,7 @@ def test_settings_reach_the_scene_file():
 
 
 def test_the_command_writes_json_by_default():
-    result = CliRunner().invoke(holonom, ["program", str(EXAMPLES / "chain.mac"), "--set", "N=2"])
+    result = CliRunner(mix_stderr=False).invoke(holonom, ["program", str(EXAMPLES / "chain.mac"), "--set", "N=2"])
     document = json.loads(result.stdout)
     assert document["operations"] == count_operations(read_program(result.stdout))
     assert document["inputs"][0] == "t"
