@@ -76,7 +76,8 @@
 (defun unknown-operator (e)
   (cond ((or (atom e) (eq (caar e) 'bigfloat)) nil)
         ((eq (caar e) 'mrat) (unknown-operator ($totaldisrep e)))
-        ((or (member 'array (car e)) (known-operator-p (caar e))) (some #'unknown-operator (cdr e)))
+        ((or (member 'array (car e)) (known-operator-p (caar e)))
+         (dolist (part (cdr e)) (let ((unknown (unknown-operator part))) (when unknown (return unknown)))))
         (t (caar e))))
 
 (defun listed (&rest items) (listed* items))

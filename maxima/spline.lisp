@@ -128,13 +128,13 @@
 ;;; ---- points ----------------------------------------------------------------------------------------------
 
 (defun $pairs_p (rows)
-  (and ($listp rows) (every #'(lambda (row) (and ($listp row) (= (length row) 3))) (cdr rows))))
+  (and ($listp rows) (all-of-p #'(lambda (row) (and ($listp row) (= (length row) 3))) (cdr rows))))
 
 (defun $point_without_numbers (rows)
   "The first one whose time is no fraction, or whose height is no constant; false where there is none."
-  (find-if-not #'(lambda (row) (and (rationalp (exact-number (second row)))
-                                    (or (rationalp (exact-number (third row))) ($constantp (third row)))))
-               (cdr rows)))
+  (car (member-if-not #'(lambda (row) (and (rationalp (exact-number (second row)))
+                                           (or (rationalp (exact-number (third row))) ($constantp (third row)))))
+                      (cdr rows))))
 
 (defun $point_out_of_order (rows)
   "The place of the first point that is not later than the one before; false where there is none."

@@ -42,7 +42,7 @@
               ((member operator '($unit_step %unit_step $hstep %hstep))
                (weight-of-sign (sign-of-function (with-signs (second e)))))
               (t (let ((parts (mapcar #'with-signs (cdr e))))
-                   (if (every #'eq parts (cdr e))
+                   (if (same-items-p parts (cdr e))
                        e
                        (simplifya (cons (list operator) parts) t))))))))
 

@@ -7,13 +7,11 @@ through it. Behind an obstacle the next one may be near, and the first steps are
 """
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import cached_property
-from itertools import pairwise
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...failures import Failure, HolonomError
 from ...language import translatable
@@ -34,13 +32,8 @@ DECAYS_IN_A_RUN = 50.0  # gamma of Baumgarte's cure and Gear's, times the length
 SHORTEST = 1e-10  # of the longest: a step that leads nowhere
 
 
-class Dense(Protocol):
-    """Steps, and the states between them."""
-
-    times: NDArray[Any]
-
-    def __call__(self, instants: NDArray[Any]) -> NDArray[Any]:
-        """The states at instants, shape (k, 2n)."""
+Taken = tuple[Any, Any, Any, int]
+"""An outcome, the shortest and the longest of the steps, and their number."""
 
 
 class Integrator(Protocol):
@@ -52,10 +45,8 @@ class Integrator(Protocol):
     state: Numbers  # shape (2n,): at that instant, in place
     tol: Any
 
-    def propagate_until(
-        self, until: Any, max_steps: int, *, c_output: bool = False
-    ) -> tuple[Any, Any, Any, int, Dense | None, None]:
-        """Take steps: to an instant, or so many, or until one fails.
+    def propagate_until(self, until: Any, max_steps: int) -> tuple[Any, ...]:
+        """Take steps: to an instant, or so many, or until one fails; `Taken`, and what else the integrator says.
 
         A step that the last instant cut short is neither the shortest nor the longest.
         """
@@ -140,10 +131,8 @@ class ProgramEngine:
         self._begin()
         ended = self._integrator.time == until
         while not ended:
-            ended, outputs = self._block(until, dense=True)
-            for dense in outputs:
-                for start, end in pairwise(dense.times):
-                    yield Piece(start, end, _states_of(dense))
+            ended, pieces = self._block(until, dense=True)
+            yield from pieces
         self._keep_constraints()
 
     def solutions(self, instants: Numbers, states: Numbers) -> Solutions:
@@ -167,47 +156,54 @@ class ProgramEngine:
     def _prepare_next(self, until: Any) -> None:
         """What has to be done after a block that is not the last."""
 
-    def _block(self, until: Any, dense: bool) -> tuple[bool, list[Dense | None]]:
-        """Take a block of steps; whether it was the last, and its dense outputs where they are asked for."""
+    def _with_states(self, until: Any, most: int) -> tuple[Taken, list[Piece]]:
+        """Take steps as the integrator does, each with its states."""
+        raise NotImplementedError
+
+    def _block(self, until: Any, dense: bool) -> tuple[bool, list[Piece]]:
+        """Take a block of steps; whether it was the last, and its pieces where they are asked for."""
         if self._obstacle is not None:
             raise self._obstacle
         if self._behind_obstacle:
             self._behind_obstacle = False
-            outputs = self._watched(until, dense, WATCHED)
-            return self.time == until, outputs
+            pieces = self._watched(until, dense, WATCHED)
+            return self.time == until, pieces
         integrator = self._integrator
         instant, before = integrator.time, self.state.copy()
-        take = integrator.propagate_until  # by position: heyoka takes a microsecond for a keyword
-        block = take(until, self._length, c_output=True) if dense else take(until, self._length)
-        _, shortest, longest, steps, output, _ = block
+        (_, shortest, longest, steps), pieces = self._take(until, self._length, dense)
         ended = integrator.time == until
         broken_off = steps < self._length and not ended
         longest = max(self._usual, longest)
         if broken_off or shortest * SHRUNK < longest:
             reached = until if broken_off else integrator.time
             self._go_back(instant, before)
-            outputs = self._watched(reached, dense, self._length)
-            return self.time == until, outputs
+            pieces = self._watched(reached, dense, self._length)
+            return self.time == until, pieces
         self.steps += steps
         self._usual = longest
         if not ended:
             self._prepare_next(until)
-        return ended, [output]
+        return ended, pieces
 
-    def _watched(self, until: Any, dense: bool, steps: int) -> list[Dense | None]:
+    def _take(self, until: Any, most: int, dense: bool) -> tuple[Taken, list[Piece]]:
+        if dense:
+            return self._with_states(until, most)
+        return self._integrator.propagate_until(until, most)[:4], []
+
+    def _watched(self, until: Any, dense: bool, steps: int) -> list[Piece]:
         """Single steps, so many, until an instant or until the motion program is about to fail."""
         self.watch.begin(self.time, self.state)
-        outputs = []
+        pieces = []
         for _ in range(steps):
             if self.time == until or self._obstacle is not None:
                 break
-            outputs += self._watched_step(until, dense)
+            pieces += self._watched_step(until, dense)
         self._length = self._first_block
-        return outputs
+        return pieces
 
-    def _watched_step(self, until: Any, dense: bool) -> list[Dense | None]:
+    def _watched_step(self, until: Any, dense: bool) -> list[Piece]:
         instant, before = self.time, self.state.copy()
-        outcome, _, step, _, output, _ = self._integrator.propagate_until(until, 1, c_output=dense)
+        (outcome, _, step, _), pieces = self._take(until, 1, dense)
         if outcome == self._failed:
             self._go_back(instant, before)
             reason = translatable("numbers leave the range of %(precision)s precision", precision=self.precision.name)
@@ -217,7 +213,7 @@ class ProgramEngine:
         self._keep_constraints()
         self._longest, self._usual = max(self._longest, self._usual, step), step or self._usual
         self._obstacle = self._found_ahead(until)
-        return [output]
+        return pieces
 
     def _found_ahead(self, until: Any) -> HolonomError | None:
         """What the constraints' directions, the gradients and the length of the last step say about the next ones."""
@@ -241,10 +237,6 @@ class ProgramEngine:
     def _go_back(self, instant: Any, state: Numbers) -> None:
         self._integrator.time = instant
         self.state[:] = state
-
-
-def _states_of(dense: Dense) -> Callable[[NDArray[Any]], NDArray[Any]]:
-    return lambda instants: dense(instants).T.copy()
 
 
 def decay_in(problem: MotionProblem, decay: float | None) -> float:

@@ -13,6 +13,7 @@ import subprocess
 import time
 from collections.abc import Iterator
 from functools import partial
+from itertools import pairwise
 from pathlib import Path
 from textwrap import indent
 from typing import Any
@@ -29,7 +30,8 @@ from ...program.precision import read_precision
 from ..matrices import MotionMatrices
 from ..parts_of_scipy import dormand_prince
 from ..request import EngineName, Stabilization
-from .program_engine import SHRUNK, ProgramEngine, decay_in
+from .engine import Piece
+from .program_engine import SHRUNK, ProgramEngine, Taken, decay_in
 
 FINEST, USUAL = 1e-14, 1e-12  # tolerances; below the first, rounding decides about the steps
 PROJECTED = 16  # steps after which the state is projected: to project takes as long as a fifth of a step
@@ -113,6 +115,9 @@ class RungeKuttaEngine(ProgramEngine):
         if self._problem.tables:
             self._integrator.open_values[:] = self.open_values.after(self._integrator.time)
 
+    def _with_states(self, until: Any, most: int) -> tuple[Taken, list[Piece]]:
+        return self._integrator.with_states(until, most)
+
     @property
     def evaluations(self) -> int:
         """How often the motion program has been evaluated so far."""
@@ -186,58 +191,37 @@ class DormandPrince(ctypes.Structure):
         """How often the accelerations have been evaluated."""
         return self._evaluations.value
 
-    def propagate_until(
-        self, until: float, max_steps: int, *, c_output: bool = False
-    ) -> tuple[bool, float, float, int, "Steps | None", None]:
+    def propagate_until(self, until: float, max_steps: int) -> tuple[bool, float, float, int]:
         """Take steps: to an instant, or so many, or until one fails.
 
         Returns
         -------
-        (bool, float, float, int, Steps or None, None)
+        (bool, float, float, int)
             Whether a step has failed, the shortest step of those that are shorter than the one before and the longest
-            one, without one that `until` cut short, their number, the states between them.
+            one, without one that `until` cut short, and their number.
         """
         self._until, self._most = until, max_steps
-        if c_output:
-            return self._with_steps(max_steps)
         failed = self._advance(self._address) != 0
-        return failed, self._shortest, self._longest, self._taken, None, None
+        return failed, self._shortest, self._longest, self._taken
 
-    def _with_steps(self, most: int) -> tuple[bool, float, float, int, "Steps", None]:
+    def with_states(self, until: float, most: int) -> tuple[Taken, list[Piece]]:
+        """Take steps likewise, each with its states."""
         instants, states = np.empty(most + 1), np.empty((most, len(self.state)))
         self._instants, self._states = instants.ctypes.data, states.ctypes.data
-        failed = self._advance(self._address) != 0
+        taken = self.propagate_until(until, most)
         self._instants = None
-        taken = self._taken
-        instants[taken] = self.time
-        steps = Steps(self._go_between, instants[: taken + 1], states[:taken])
-        return failed, self._shortest, self._longest, taken, steps, None
+        instants[taken[3]] = self.time
+        ends = pairwise(instants[: taken[3] + 1].tolist())
+        between = (partial(self._states_between, begin, state) for begin, state in zip(instants, states, strict=False))
+        return taken, [Piece(*step, found) for step, found in zip(ends, between, strict=False)]
 
-
-class Steps:
-    """States between steps: each is reached by a step of its own, as exact as those of the motion.
-
-    Parameters
-    ----------
-    go_between : callable
-        Takes an instant, a later one and the address of the state at the first; returns zero.
-    times : ndarray, shape (steps + 1,)
-    states : ndarray, shape (steps, 2n)
-        At the beginnings.
-    """
-
-    def __init__(self, go_between: Any, times: Floats, states: Floats) -> None:
-        self._go_between, self._states = go_between, states
-        self.times = times
-
-    def __call__(self, instants: Floats) -> Floats:
-        """The states at instants of the steps, shape (k, 2n)."""
-        steps = np.clip(np.searchsorted(self.times, instants, side="right") - 1, 0, len(self._states) - 1)
-        found = self._states[steps]
-        for begin, instant, state in zip(self.times[steps], instants, found, strict=True):
-            if self._go_between(begin, instant, state.ctypes.data) != 0:
+    def _states_between(self, begin: float, state: Floats, instants: Floats) -> Floats:
+        """States at instants of a step, shape (2n, k), each reached by a step of its own, as exact as the motion."""
+        found = np.repeat(state[None, :], len(instants), axis=0)
+        for instant, reached in zip(instants, found, strict=True):
+            if self._go_between(begin, instant, reached.ctypes.data) != 0:
                 raise HolonomError(Failure.NO_WAY_ON, detail=f"{begin:.10g}, where a step between two others fails")
-        return found
+        return found.T.copy()
 
 
 def _source(problem: MotionProblem, drift: Stabilization, decay: float) -> Iterator[str]:

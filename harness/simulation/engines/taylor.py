@@ -6,7 +6,8 @@ short.
 
 import time
 from copy import copy
-from math import ceil
+from functools import partial
+from math import ceil, inf
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,8 @@ from ..evaluation import Numbers
 from ..matrices import MotionMatrices
 from ..request import EngineName, Stabilization
 from .code import Code, better_code, pays
-from .program_engine import FIRST_BLOCK, ProgramEngine, decay_in
+from .engine import Piece
+from .program_engine import FIRST_BLOCK, ProgramEngine, Taken, decay_in
 
 DRIFT = 100  # times what rounding does to a number: how far a state may leave the constraints inside a block
 FINE, FINE_BLOCK = 1e-7, 512  # a tolerance whose steps leave the constraints so slowly that a first block may be long
@@ -98,6 +100,24 @@ class TaylorEngine(ProgramEngine):
             return None
         return ceil(trial * float(until - begun) / covered)
 
+    def _with_states(self, until: Any, most: int) -> tuple[Taken, list[Piece]]:
+        """Take steps one by one, each with its Taylor polynomials.
+
+        What heyoka itself gives for the states between is compiled anew for every block: a millisecond for one step.
+        """
+        integrator, pieces = self._integrator, []
+        shortest, longest, outcome = inf, 0, None
+        for _ in range(most):
+            begun, rest = integrator.dtime
+            outcome, least, greatest, taken, *_ = integrator.propagate_until(until, 1, write_tc=True)
+            if outcome == self._failed or not taken:
+                break
+            shortest, longest = min(shortest, least), max(longest, greatest)
+            pieces.append(Piece(begun, integrator.time, partial(states_of, begun, rest, integrator.tc.T.copy())))
+            if integrator.time == until:
+                break
+        return (outcome, shortest, longest, len(pieces)), pieces
+
     def _set_values(self) -> None:
         """Give the equations the values of what is open from this instant on, as far as they contain it."""
         contained = len(self._integrator.pars)
@@ -157,6 +177,22 @@ class TaylorEngine(ProgramEngine):
             gamma = decay_in(self._problem, decay)
             return stabilized_equations(self._problem, self._program, self.precision, drift, gamma)
         return equations_of_motion(self._problem, self._program, self.precision)
+
+
+def states_of(begun: Any, rest: Any, coefficients: Numbers, instants: Numbers) -> Numbers:
+    """States at instants of a step, shape (2n, k), by polynomials of the time since its beginning.
+
+    Parameters
+    ----------
+    begun, rest : number
+        The beginning is their sum, in twice the digits of a number.
+    coefficients : ndarray, shape (order + 1, 2n)
+    """
+    since = instants - begun - rest
+    states = np.multiply.outer(coefficients[-1], np.ones_like(since))
+    for coefficient in coefficients[-2::-1]:
+        states = states * since + coefficient[:, None]
+    return states
 
 
 def block_within(allowed: float, steps: int, drift: float) -> int:
