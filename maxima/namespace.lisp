@@ -86,6 +86,11 @@
   "The name that a private twin stands for; any other name as it is."
   (or (get name 'plain-name) name))
 
+(defun letters-of-name (name)
+  "As the user writes it:  lambda  is a symbol of Lisp's own, without the sign that stands before Maxima's."
+  (let ((letters (print-invert-case (plain-name name))))
+    (if (member (char letters 0) '(#\$ #\%)) (subseq letters 1) letters)))
+
 (defun read-name (name)
   "What a name is read as: decided once, where it is met first."
   (or (gethash name *read-names*)

@@ -50,8 +50,7 @@
 
 (defun $name_around (before name after)
   "The name with letters before it and after it; concat would take  set,  an operator, by its sign {."
-  (let ((letters (subseq (print-invert-case (plain-name name)) 1)))
-    (intern-invert-case (concatenate 'string "$" before letters after))))
+  (intern-invert-case (concatenate 'string "$" before (letters-of-name name) after)))
 
 (defun $contains_floats (e)
   (cond ((atom e) (floatp e))

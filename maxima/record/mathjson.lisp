@@ -143,4 +143,8 @@
 
 (defun mathjson-symbol (symbol)
   (or (cdr (assoc symbol *mathjson-constants*))
-      (maybe-invert-string-case (subseq (symbol-name (plain-name symbol)) 1))))
+      (letters-of-name symbol)))
+
+(defun $reads_as_constant (name)
+  "Whether a document that holds the name says a number or a truth value."
+  (and (member (letters-of-name name) (list* "True" "False" (mapcar #'cdr *mathjson-constants*)) :test #'string=) t))
