@@ -129,7 +129,7 @@ def test_numbers_under_numer_are_exact_in_the_motion(tmp_path: Path):
 
 
 def test_a_scene_may_call_its_coordinates_by_the_papers_letters(tmp_path: Path):
-    letters = {"east": "A", "north": "B", "reach": "T0", "mass": "christoffel", "weight": "Lambda", "fling": "J"}
+    letters = {"east": "A", "north": "lambda", "reach": "T0", "mass": "christoffel", "weight": "Lambda", "fling": "J"}
     scene = BALL
     for word, letter in letters.items():
         scene = re.sub(rf"\b{word}\b", letter, scene)
