@@ -4,7 +4,7 @@ import os
 import shutil
 import signal
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from contextlib import redirect_stderr, redirect_stdout
 from io import BytesIO, TextIOWrapper
 from pathlib import Path
@@ -18,6 +18,7 @@ from walls import without_notice
 from holonom.cli import run
 from holonom.documents import Document, ask
 from holonom.errata import PrintedEquation, errata
+from holonom.failures import Failure, HolonomError
 
 # As the command line has it, and every process that the tests start: with threads of its own in each of the tests'
 # processes, BLAS takes ten times as long. NumPy reads this when it is first imported, which is later.
@@ -47,11 +48,44 @@ LONGEST = (
 )
 
 
+LACKING = pytest.StashKey[frozenset[Failure]]()
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Find out what this machine lacks; without Maxima nothing can be tested."""
+    if shutil.which("maxima") is None:
+        raise pytest.UsageError(HolonomError(Failure.MAXIMA_MISSING).sentence())
+    from holonom.program.c_function import has_compiler
+
+    there = {Failure.COMPILER_MISSING: has_compiler(), Failure.GSL_MISSING: shutil.which("gsl-config") is not None}
+    config.stash[LACKING] = frozenset(failure for failure, found in there.items() if not found)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo) -> Generator[None, pytest.TestReport]:
+    """A test that is refused what this machine lacks is skipped, for that reason."""
+    report = yield
+    error = call.excinfo.value if call.excinfo else None
+    if isinstance(error, HolonomError) and error.failure in item.config.stash[LACKING]:
+        report.outcome, report.longrepr = "skipped", (str(item.path), item.location[1], f"Skipped: {error.said}")
+    return report
+
+
 @pytest.fixture(scope="session")
-def gsl() -> None:
-    """The GNU Scientific Library, which the Runge-Kutta engine needs and nothing else does."""
-    if shutil.which("gsl-config") is None:
-        pytest.skip("the GNU Scientific Library is not installed")
+def c_compiler(pytestconfig: pytest.Config) -> None:
+    """The system's C compiler."""
+    _require(pytestconfig, Failure.COMPILER_MISSING)
+
+
+@pytest.fixture(scope="session")
+def gsl(pytestconfig: pytest.Config, c_compiler: None) -> None:
+    """The GNU Scientific Library, and a C compiler: the Runge-Kutta engine needs them."""
+    _require(pytestconfig, Failure.GSL_MISSING)
+
+
+def _require(config: pytest.Config, failure: Failure) -> None:
+    if failure in config.stash[LACKING]:
+        raise HolonomError(failure)
 
 
 @pytest.fixture

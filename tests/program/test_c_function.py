@@ -25,7 +25,7 @@ def test_the_compiler_that_cc_names_is_the_one_used(monkeypatch):
         compile_c(PENDULUM)
 
 
-def test_what_the_compiler_says_is_passed_on():
+def test_what_the_compiler_says_is_passed_on(c_compiler):
     with pytest.raises(HolonomError, match="the C compiler refused the motion program: .*unknown_type"):
         load_c("unknown_type x;")
 

@@ -35,7 +35,7 @@ def run(*command: str | Path, directory: Path) -> subprocess.CompletedProcess[st
 
 
 @pytest.fixture(scope="module")
-def pendulum(tmp_path_factory) -> ctypes.CDLL:
+def pendulum(tmp_path_factory, c_compiler) -> ctypes.CDLL:
     """The pendulum of controlled length, m and g open."""
     directory = write_library(tmp_path_factory.mktemp("c"), "pendulum.mac", "bob", "m", "g")
     run("cc", "-std=c11", "-O2", "-shared", "-fPIC", "bob.c", "-o", "bob.so", "-lm", directory=directory)
@@ -69,7 +69,7 @@ def random_inputs(points: int) -> tuple[np.ndarray, ...]:
         ("andrews.mac", []),
     ],
 )
-def test_compilers_have_nothing_to_say(tmp_path, scene, parameters):
+def test_compilers_have_nothing_to_say(tmp_path, scene, parameters, c_compiler):
     directory = write_library(tmp_path / "library", scene, "system", *parameters)
     compiled = run("cc", "-std=c11", *STRICT, "system.c", "system_driver.c", "-lm", "-o", "driver", directory=directory)
     assert (compiled.returncode, compiled.stderr) == (0, "")
@@ -79,7 +79,7 @@ def test_compilers_have_nothing_to_say(tmp_path, scene, parameters):
 
 
 @pytest.mark.skipif(shutil.which("g++") is None, reason="no C++ compiler is installed")
-def test_the_header_serves_cpp(tmp_path):
+def test_the_header_serves_cpp(tmp_path, c_compiler):
     directory = write_library(tmp_path / "library", "pendulum.mac", "bob")
     program = '#include "bob.h"\nint main() { double p[1]; bob_values(p); return BOB_COORDINATE_y - 1; }\n'
     (directory / "main.cpp").write_text(program)
@@ -89,7 +89,7 @@ def test_the_header_serves_cpp(tmp_path):
     assert run("./main", directory=directory).returncode == 0
 
 
-def test_two_systems_link_into_one_program(tmp_path):
+def test_two_systems_link_into_one_program(tmp_path, c_compiler):
     directory = write_library(tmp_path / "library", "pendulum.mac", "bob")
     write_library(directory, "car_axis.mac", "axis")
     program = '#include "bob.h"\n#include "axis.h"\nint main(void) { return AXIS_COORDINATES - 2*BOB_COORDINATES; }\n'
@@ -100,7 +100,7 @@ def test_two_systems_link_into_one_program(tmp_path):
 
 
 @pytest.mark.skipif(shutil.which("cmake") is None, reason="CMake is not installed")
-def test_cmake_builds_the_driver(tmp_path):
+def test_cmake_builds_the_driver(tmp_path, c_compiler):
     directory = write_library(tmp_path / "library", "pendulum.mac", "bob")
     assert run("cmake", "-S", ".", "-B", "build", directory=directory).returncode == 0
     assert run("cmake", "--build", "build", directory=directory).returncode == 0
@@ -166,7 +166,7 @@ def test_the_law_and_the_values_are_those_of_the_scene(pendulum):
     assert u.tolist() == [1.0, 0.0, 0.0]
 
 
-def test_the_law_of_a_table_is_the_spline_between_all_its_points(write_scene, tmp_path):
+def test_the_law_of_a_table_is_the_spline_between_all_its_points(write_scene, tmp_path, c_compiler):
     rows = [(0, 0), (1, 2), (1.3, 0.5), (3.5, 1), (4, -1)]
     file = write_scene(f"""load("holonom.mac")$
 system : holonomic_system(coordinates = [x], controls = [u], kinetic_energy = dot(x)^2/2, forces = [u])$

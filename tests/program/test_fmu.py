@@ -26,7 +26,7 @@ UNTIL, SAMPLES = 5, 51
 
 
 @pytest.fixture(scope="module")
-def unit(tmp_path_factory) -> Path:
+def unit(tmp_path_factory, c_compiler) -> Path:
     """The pendulum paid out at constant speed, m open, as the command writes it."""
     file = tmp_path_factory.mktemp("fmu") / "bob.fmu"
     options = ["--scene", "lengthening_scene", "--to", "fmu", "--name", "bob", "--parameters", "m", "-o", str(file)]
