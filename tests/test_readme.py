@@ -58,7 +58,9 @@ def in_a_process(*command: str) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.parametrize("command", commands(), ids=" ".join)
-def test_a_command_of_the_readme_runs(command, place, monkeypatch, holonom_here):
+def test_a_command_of_the_readme_runs(command, place, monkeypatch, holonom_here, request):
+    if "fmu" in command:
+        request.getfixturevalue("c_compiler")
     monkeypatch.chdir(place)
     program, *arguments = command
     if program == "make":

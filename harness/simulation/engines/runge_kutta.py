@@ -275,9 +275,11 @@ def _function(problem: MotionProblem, name: str, program: Program, outputs: set[
 
 def _options_of_gsl() -> list[str]:
     """What the compiler is told about the library."""
-    configuration = shutil.which("gsl-config")
-    if configuration is None:
+    if (configuration := shutil.which("gsl-config")) is None:
         raise HolonomError(Failure.GSL_MISSING)
     command = [configuration, "--cflags", "--libs"]
-    said = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=True).stdout
-    return shlex.split(said)
+    try:
+        said = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=True).stdout
+        return shlex.split(said)
+    except (OSError, ValueError, subprocess.CalledProcessError):  # it does not run, or says what no shell can read
+        raise HolonomError(Failure.GSL_MISSING) from None

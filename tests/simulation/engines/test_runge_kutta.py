@@ -1,5 +1,6 @@
 """What is particular to the Runge-Kutta engine: compiled steps, states between them, the constraints kept in C."""
 
+import os
 from dataclasses import replace
 from fractions import Fraction
 
@@ -133,7 +134,18 @@ def test_what_it_lacks_is_refused(request_, said):
 
 
 def test_a_missing_library_is_named(monkeypatch):
+    pendulum = problem("pendulum.mac")
     monkeypatch.setattr(runge_kutta.shutil, "which", lambda _: None)
     with pytest.raises(HolonomError, match="needs the GNU Scientific Library.*libgsl-dev") as refusal:
-        RungeKuttaEngine(problem("pendulum.mac"))
+        RungeKuttaEngine(pendulum)
     assert refusal.value.failure is Failure.GSL_MISSING
+
+
+@pytest.mark.parametrize("script", ["#!/bin/sh\nexit 1\n", '#!/bin/sh\necho "-L\'here"\n', "#!/bin/nowhere\n"])
+def test_a_library_that_does_not_tell_where_it_is_ended_in_an_internal_error(script, monkeypatch, tmp_path):
+    pendulum = problem("pendulum.mac")
+    (tmp_path / "gsl-config").write_text(script)
+    (tmp_path / "gsl-config").chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+    with pytest.raises(HolonomError, match="needs the GNU Scientific Library"):
+        RungeKuttaEngine(pendulum)
