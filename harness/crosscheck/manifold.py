@@ -8,7 +8,9 @@ import sympy as sp
 from mpmath import mp
 
 from .points import IrregularPoint, Valuation
-from .verdict import DIGITS
+
+SPARE_DIGITS = 10
+"""Of those that are carried, digits to which residuals need not vanish."""
 
 NEWTON_STEPS = 60
 """Steps of Newton's method towards the manifold; quadratic convergence needs a dozen from nearby."""
@@ -43,7 +45,7 @@ def moved_onto(
         value = valuation(state)
         right = mp.matrix([value(residual) for residual in residuals])
         size = max(abs(number) for number in state.values())
-        if max(map(abs, right)) <= mp.mpf(10) ** -(DIGITS + 10) * max(1, size):
+        if max(map(abs, right)) <= mp.mpf(10) ** (SPARE_DIGITS - mp.dps) * max(1, size):
             return
         rows = mp.matrix([[value(entry) for entry in row] for row in jacobian])
         move = rows.T * mp.lu_solve(rows * rows.T, right)

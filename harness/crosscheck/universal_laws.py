@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import sympy as sp
 from mpmath import mp
@@ -20,7 +21,7 @@ from .manifold import moved_onto, valuation
 from .points import IrregularPoint, Valuation, fresh_seed, random_point
 from .report import Verdict
 from .system import MechanicalSystem, dotted
-from .verdict import DIGITS, POINTS, WORKING_DIGITS, Judgement
+from .verdict import DIGITS, POINTS, WORKING_DIGITS, Judgement, confirmed
 
 DRAWS = 40
 """Draws for each state before the search for a regular one is given up."""
@@ -57,7 +58,7 @@ def _residual_at_next_state(moved: _MovedByLaw, draws: Iterator[Mapping[sp.Symbo
     """Tell the first multiplier that is not zero, empty where all are; None where the draws end without a state."""
     for point in draws:
         try:
-            return moved.residual(point)
+            return confirmed(partial(moved.residual, point))
         except (IrregularPoint, ZeroDivisionError):
             continue
     return None

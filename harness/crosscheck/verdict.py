@@ -8,8 +8,9 @@ equations are regular at the points and so have no other.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import NamedTuple
 
 import sympy as sp
@@ -25,6 +26,9 @@ DIGITS = 50
 
 WORKING_DIGITS = DIGITS + 20
 """Digits carried, so that cancellation and a linear solve leave the stated ones untouched."""
+
+CONFIRMING_DIGITS = 3 * WORKING_DIGITS
+"""Digits in which a difference must be found again: of terms that cancel 10^40 is left as a rounding of 10^-30."""
 
 DIGITS_OF_FLOATS = 9
 """Digits to which values agree that come from floating-point data in the scene."""
@@ -81,7 +85,7 @@ def judge(comparison: Comparison, seed: str) -> Judgement:
     with mp.workdps(WORKING_DIGITS):
         while compared < points and (point := next(candidates, None)) is not None:
             try:
-                detail = _difference(comparison, point, digits)
+                detail = confirmed(partial(_difference, comparison, point, digits))
             except ClaimWithoutValue as found:
                 valueless = valueless or str(found)
                 continue
@@ -96,6 +100,14 @@ def judge(comparison: Comparison, seed: str) -> Judgement:
         return Judgement(Verdict.UNDECIDED, None, compared or None, _too_few(compared))
     proved = _is_proved(comparison)
     return Judgement(Verdict.PROVED if proved else Verdict.AGREES, digits, points)
+
+
+def confirmed(difference: Callable[[], str]) -> str:
+    """Tell a difference that is found in more digits too; empty where there is none, or rounding made it."""
+    if not difference():
+        return ""
+    with mp.workdps(CONFIRMING_DIGITS):
+        return difference()
 
 
 def _too_few(compared: int) -> str:

@@ -23,7 +23,7 @@ def system(names: str, force, constraints, controls=(u,), mass=1) -> MechanicalS
     return MechanicalSystem(t, q, tuple(controls), multipliers, energy, sp.Integer(0), tuple(force), tuple(constraints))
 
 
-(q1, q2, q3), (x, y) = real("q1 q2 q3"), real("x y")
+(q1, q2, q3), (x, y, z) = real("q1 q2 q3"), real("x y z")
 CENTRIPETAL = -(dotted("dot", x) ** 2 + dotted("dot", y) ** 2) / (x**2 + y**2)
 PAPER = system(
     "q1 q2 q3", (-q1 - q2, -2 * (dotted("dot", q1) + dotted("dot", q2)), sp.Integer(0)), [q3 - u * (q1 + q2)]
@@ -31,6 +31,7 @@ PAPER = system(
 CIRCLE = system("x y", (CENTRIPETAL * x, CENTRIPETAL * y), [x**2 + y**2 - u**2])
 SPRING = system("x", (-k * x,), [x - u], mass=m)
 PUSHED = system("x", (dotted("dot", x),), [x - u])
+LARGE = system("x y z", (CENTRIPETAL * x, CENTRIPETAL * y, 10**40 * (x**2 + y**2 - 1)), [x**2 + y**2 - 1, z - u])
 SUM = system("x", (sp.Integer(-10),), [x - u - w], controls=(u, w))
 
 
@@ -42,6 +43,7 @@ SUM = system("x", (sp.Integer(-10),), [x - u - w], controls=(u, w))
         (SPRING, {u: u0 * sp.cos(sp.sqrt(k / m) * t)}, (k / m,)),
         (SUM, {u: -w + u0 - 5 * t**2}, ()),
         (PUSHED, {u: u0 * sp.exp(t)}, ()),
+        (LARGE, {u: u0 + u1 * t}, ()),
     ],
     ids=[
         "the paper's law",
@@ -49,6 +51,7 @@ SUM = system("x", (sp.Integer(-10),), [x - u - w], controls=(u, w))
         "for one sign of a parameter",
         "with a free control",
         "only where the velocity is that of the constraint",
+        "where what is zero on the manifold has a large factor",
     ],
 )
 def test_law_that_makes_every_motion_free_passes(moved, law, positive):

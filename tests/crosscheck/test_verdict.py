@@ -26,6 +26,14 @@ def test_identity_that_the_normal_form_does_not_know_agrees() -> None:
     assert judge(compared(sp.log(X**2 * Y**2), sp.log(X**2) + sp.log(Y**2)), "seed").verdict is (Verdict.AGREES)
 
 
+def test_rounding_of_large_terms_that_cancel_was_a_disagreement() -> None:
+    angles = sp.asin(X / 3) + sp.acos(X / 3)  # the normal form does not know their sum
+    assert judge(compared(sp.Integer(0), 10**60 * (2 * angles - sp.pi)), "seed").verdict is Verdict.AGREES
+    found = judge(compared(sp.Integer(0), 10**60 * (2 * angles - sp.pi) + sp.Rational(1, 10**40)), "seed")
+    assert found.verdict is Verdict.DISAGREES
+    assert "the independent evaluation 1.0e-40" in found.detail
+
+
 def test_difference_beyond_double_precision_is_found() -> None:
     found = judge(compared(X + sp.Rational(1, 10**40), X), "seed")
     assert found.verdict is Verdict.DISAGREES
