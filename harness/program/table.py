@@ -21,9 +21,14 @@ class Table:
     pieces: tuple[Piece, ...]
 
     @cached_property
+    def begins(self) -> tuple[Fraction, ...]:
+        """The instants at which the polynomials begin."""
+        return tuple(Fraction(piece[0]) for piece in self.pieces)
+
+    @property
     def knots(self) -> tuple[Fraction, ...]:
         """The instants at which one polynomial follows on another."""
-        return tuple(Fraction(piece[0]) for piece in self.pieces[1:])
+        return self.begins[1:]
 
     @property
     def first(self) -> Mapping[str, Fraction]:
@@ -33,7 +38,7 @@ class Table:
     @property
     def rows(self) -> Iterator[tuple[float, ...]]:
         """The polynomials in double precision."""
-        return ((float(Fraction(begin)), *map(float, coefficients)) for begin, *coefficients in self.pieces)
+        return ((float(t), *map(float, piece[1:])) for t, piece in zip(self.begins, self.pieces, strict=True))
 
 
 def read_tables(document: Sequence[Mapping[str, Any]]) -> tuple[Table, ...]:

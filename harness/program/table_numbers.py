@@ -1,7 +1,6 @@
 """What tables are at instants: their polynomials as arrays, and programs of the time that take them."""
 
 from collections.abc import Sequence
-from fractions import Fraction
 from typing import Any, Literal
 
 import numpy as np
@@ -36,7 +35,7 @@ class PiecesOfTable:
     """The polynomials of a table, in the numbers of a precision."""
 
     def __init__(self, table: Table, precision: Precision) -> None:
-        begins = [precision.ratio(Fraction(piece[0])) for piece in table.pieces]
+        begins = [precision.ratio(t) for t in table.begins]
         rows = ([precision.number(piece[place]) for piece in table.pieces] for place in range(1, len(table.inputs)))
         self._numbers = np.array([begins, *rows])  # shape (5, pieces)
         self._knots = np.array([float(t) for t in begins[1:]])

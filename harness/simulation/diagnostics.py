@@ -9,7 +9,7 @@ integral of the power is an error of the motion (Goldstein, Poole & Safko, secti
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
@@ -22,9 +22,6 @@ from .evaluation import Numbers, evaluation_once, zeros
 from .matrices import Matrices, Vector
 from .open_values import OpenValues
 from .trust import may_hide
-
-if TYPE_CHECKING:
-    from .engines.engine import Piece
 
 POINTS, WEIGHTS = leggauss(10)  # exact to order 20 over a piece, as the Taylor engine is in double precision
 PROBES = (0.3127, -0.7411, 1.2713)  # seeds of states at which power that vanishes identically is told from other power
@@ -103,15 +100,30 @@ class EnergyBalance:
         reactions = self._multipliers(instants, states) if self._moving else self._no_multipliers(len(instants))
         return self._output("power", instants, states, reactions)
 
-    def works(self, piece: "Piece", ends: Sequence[Any]) -> list[Any]:
-        """Integrals of the power over parts of a piece of the motion, given by their ends; the last is the piece's."""
+    def instants_between(self, starts: Sequence[Any], ends: Sequence[Any]) -> Numbers:
+        """Where `works` needs the motion in intervals: ten instants in each, one interval after the other.
+
+        None at all where there is nothing to integrate.
+        """
         if self.conservative:
-            return [self._precision.number("0")] * len(ends)
-        starts = np.array([piece.start, *ends[:-1]])
-        halves = (np.array(ends) - starts) / 2
-        instants = (starts[:, None] + halves[:, None] * self._points).ravel()
-        power = self.power(instants, piece.states(instants)).reshape(len(ends), -1)
-        return [half * (self._weights * row).sum() for half, row in zip(halves, power, strict=True)]
+            return zeros(self._precision, 0)
+        begins = np.array(starts)
+        return (begins[:, None] + (np.array(ends) - begins)[:, None] / 2 * self._points).ravel()
+
+    def works(self, starts: Numbers, ends: Numbers, between: Sequence[tuple[Numbers, Numbers]]) -> Numbers:
+        """Integrals of the power over k intervals of the motion, by what is between their starts and ends.
+
+        Parameters
+        ----------
+        starts, ends : ndarray, shape (k,)
+        between : sequence of (ndarray, ndarray)
+            In all the `instants_between` of these intervals, and the states then, shape (2n, ...).
+        """
+        if self.conservative:
+            return zeros(self._precision, len(starts))
+        instants, states = (np.concatenate(each, axis=-1) for each in zip(*between, strict=True))
+        power = self.power(instants, states).reshape(len(starts), -1)
+        return (ends - starts) / 2 * (power * self._weights).sum(axis=1)
 
     def _output(self, name: str, instants: Numbers, states: Numbers, multipliers: Numbers) -> Numbers:
         inputs = np.concatenate([np.reshape(instants, (1, -1)), states, multipliers, self._values(instants)])

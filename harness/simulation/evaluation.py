@@ -165,6 +165,8 @@ def zeros(precision: Precision, *shape: int) -> Numbers:
 
 def as_floats(numbers: Numbers) -> NDArray[np.float64]:
     """The same numbers in double precision."""
+    if getattr(numbers, "dtype", None) == np.float64:
+        return numbers.copy()
     return np.array([float(number) for number in numbers])
 
 

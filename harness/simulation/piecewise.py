@@ -15,12 +15,13 @@ state, an impulse of a surface whose law of impact nobody has given.
 
 from bisect import bisect_left, bisect_right
 from collections import deque
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import replace
 from enum import StrEnum
 from fractions import Fraction
 from functools import cached_property
-from itertools import islice
+from heapq import merge
+from itertools import groupby, islice
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -308,11 +309,10 @@ class PiecewiseMotion:
         phase = max(0, bisect_left([float(phase.start) for phase in self.phases], t) - 1)
         return self.phases[phase].part.matrices(t, state)
 
-    def works(self, piece: Piece, ends: Sequence[Any]) -> list[Any]:
-        """Works of the parts of a piece of the phase at work, with that of the impulse at its beginning."""
+    def take_impulse(self) -> Any:
+        """Energy that the impulse at the beginning of the phase at work brought; zero when asked again."""
         jump, self._jump = self._jump, self._precision.number("0")
-        first, *others = self.part.balance.works(piece, ends)
-        return [jump + first, *others]
+        return jump
 
     def _by_phase(self, instants: Numbers) -> Iterator[tuple[Part, slice]]:
         """The instants, in order, by the phases that end with them or hold them."""
@@ -341,7 +341,8 @@ class PiecewiseMotion:
         by_time = self.part.by_time
         if by_time.end is not None and float(self.time) >= by_time.end and self.time != until:
             raise HolonomError(Failure.NO_WAY_ON, detail=f"{by_time.end:.10g}, where {by_time.reason}")
-        self.part.require_way_on(Instant(float(self.time), as_floats(self.state)))
+        if self.part.doubtful:
+            self.part.require_way_on(Instant(float(self.time), as_floats(self.state)))
 
     def _to_stop(self, stop: Any) -> Iterator[Piece]:
         part = self.part
@@ -520,9 +521,9 @@ class PiecewiseMotion:
 
 def _knots_of(problem: MotionProblem, precision: Precision) -> list[tuple[Any, Fraction]]:
     """The knots of the tables behind the start, the last first."""
-    knots = sorted({knot for table in problem.tables for knot in table.knots}, reverse=True)
     behind = precision.number(problem.start["t"])
-    return [(t, knot) for t, knot in ((precision.ratio(knot), knot) for knot in knots) if t > behind]
+    knots = [(precision.ratio(knot), knot) for knot, _ in groupby(merge(*(table.knots for table in problem.tables)))]
+    return [(t, knot) for t, knot in reversed(knots) if t > behind]
 
 
 def _size(state: Numbers) -> float:

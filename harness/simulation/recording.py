@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .diagnostics import EnergyBalance
 from .engines.engine import Piece
 from .evaluation import Numbers
 from .piecewise import PiecewiseMotion
@@ -19,6 +20,9 @@ STRETCH = 2**14
 PORTION = 2**10
 """Samples that are looked up together in one piece; the work until each is a sum over ten states."""
 
+TOGETHER = 2**8
+"""Intervals over which the power is integrated together: between two points of a table there may be one alone."""
+
 
 class Stretch(NamedTuple):
     """Consecutive samples of a motion."""
@@ -26,6 +30,15 @@ class Stretch(NamedTuple):
     instants: Numbers  # shape (k,)
     states: Numbers  # shape (2n, k)
     works: Numbers  # shape (k,): work done until each instant
+
+
+class Interval(NamedTuple):
+    """A part of a piece, up to an instant that is wanted or to the piece's end."""
+
+    start: Any
+    end: Any
+    state: Numbers | None  # at the end, where it is wanted
+    impulse: Any  # energy that an impulse at the start brought
 
 
 class Recording:
@@ -54,7 +67,10 @@ class Recording:
         self._instants: list[Any] = []
         self._states: list[Numbers] = []
         self._works: list[Any] = []
-        self.work = zero
+        self._intervals: list[Interval] = []  # of one part of the motion, their works not yet known
+        self._inside: list[tuple[Numbers, Numbers]] = []  # where the power is needed
+        self._balance: EnergyBalance | None = None
+        self.work = self._zero = zero
 
     def begin(self, instant: Any, state: Numbers) -> None:
         """Keep the first state, if it is wanted."""
@@ -67,17 +83,37 @@ class Recording:
         while start != piece.end:
             wanted = [piece.end] if self._steps else list(islice(self._wanted_until(piece.end), PORTION))
             ends = wanted if len(wanted) == PORTION or piece.end in wanted[-1:] else [*wanted, piece.end]
-            works = self._motion.works(Piece(start, ends[-1], piece.states), ends)
-            states = piece.states(np.array(wanted)).T if wanted else ()
-            for instant, state, work in zip(wanted, states, works, strict=False):
-                self.work = self.work + work
-                self._keep(instant, state)
-            for work in works[len(wanted) :]:
-                self.work = self.work + work
+            self._look_up(piece, [start, *ends[:-1]], ends, wanted)
             start = ends[-1]
+
+    def _look_up(self, piece: Piece, starts: list[Any], ends: list[Any], wanted: list[Any]) -> None:
+        balance = self._motion.part.balance
+        if balance is not self._balance or len(self._intervals) >= TOGETHER:
+            self._settle()
+            self._balance = balance
+        inside, at_ends = balance.instants_between(starts, ends), [None] * len(ends)
+        if wanted or len(inside):
+            states = piece.states(np.concatenate([np.array(wanted), inside]) if wanted else inside)
+            at_ends[: len(wanted)] = states[:, : len(wanted)].T
+            self._inside.append((inside, states[:, len(wanted) :]))
+        impulses = [self._motion.take_impulse(), *[self._zero] * (len(ends) - 1)]
+        self._intervals += map(Interval, starts, ends, at_ends, impulses)
+
+    def _settle(self) -> None:
+        """Keep the states that are wanted, with the work done until then."""
+        if not self._intervals:
+            return
+        intervals, inside = self._intervals, self._inside
+        self._intervals, self._inside = [], []
+        starts, ends = (np.array([interval[side] for interval in intervals]) for side in (0, 1))
+        for interval, work in zip(intervals, self._balance.works(starts, ends, inside), strict=True):
+            self.work = self.work + (interval.impulse + work)
+            if interval.state is not None:
+                self._keep(interval.end, interval.state)
 
     def end(self, instant: Any, state: Numbers) -> None:
         """Keep the last state, projected as it is, in the place of the one that the last piece ended with."""
+        self._settle()
         if self._instants and self._instants[-1] == instant:
             self._states[-1] = state.copy()
         else:

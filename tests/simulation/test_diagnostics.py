@@ -24,7 +24,12 @@ def followed(asked, until: float):
     motion = RobustEngine(asked, 1e-12)
     balance = balance_of(motion, asked)
     start = balance.energy(np.array([motion.time]), motion.state[:, None])[0]
-    work = sum(balance.works(piece, [piece.end])[0] for piece in motion.pieces(until))
+    starts, ends, between = [], [], []
+    for piece in motion.pieces(until):
+        inside = balance.instants_between([piece.start], [piece.end])
+        starts, ends = [*starts, piece.start], [*ends, piece.end]
+        between += [(inside, piece.states(inside))] if len(inside) else []
+    work = sum(balance.works(np.array(starts), np.array(ends), between))
     return balance.energy(np.array([motion.time]), motion.state[:, None])[0] - start, work, balance
 
 

@@ -135,8 +135,10 @@ class SwitchingEngine:
     def solutions(self, instants: Numbers, states: Numbers) -> Solutions:
         """What the equations of motion determine, by the engine that followed the motion there or is at work."""
         second = self.__dict__.get("_second")
+        if second is None:
+            return self._first.solutions(instants, states)
         there = self._by(second, as_floats(instants))
-        if there.all() and second is not None:
+        if there.all():
             return second.solutions(instants, states)
         found = self._first.solutions(instants, states)
         if there.any():
@@ -185,9 +187,9 @@ class SwitchingEngine:
         """The engines that have been called for so far."""
         return [self._first, *(self.__dict__[name] for name in ("_second",) if name in self.__dict__)]
 
-    def _by(self, engine: Engine | None, instants: Numbers) -> Numbers:
+    def _by(self, engine: Engine, instants: Numbers) -> Numbers:
         """Which of the instants an engine has followed the motion to."""
-        legs = [leg for leg in self.legs if engine is not None and leg.engine is engine.name]
+        legs = [leg for leg in self.legs if leg.engine is engine.name]
         spans = [(leg.start, leg.end) for leg in legs]
         if engine is self._current:
             spans.append((self._begun, np.inf))

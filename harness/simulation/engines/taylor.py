@@ -113,7 +113,9 @@ class TaylorEngine(ProgramEngine):
             if outcome == self._failed or not taken:
                 break
             shortest, longest = min(shortest, least), max(longest, greatest)
-            pieces.append(Piece(begun, integrator.time, partial(states_of, begun, rest, integrator.tc.T.copy())))
+            pieces.append(
+                Piece(begun, integrator.time, partial(states_of, begun, rest, integrator.tc.T[..., None].copy()))
+            )
             if integrator.time == until:
                 break
         return (outcome, shortest, longest, len(pieces)), pieces
@@ -186,12 +188,14 @@ def states_of(begun: Any, rest: Any, coefficients: Numbers, instants: Numbers) -
     ----------
     begun, rest : number
         The beginning is their sum, in twice the digits of a number.
-    coefficients : ndarray, shape (order + 1, 2n)
+    coefficients : ndarray, shape (order + 1, 2n, 1)
     """
     since = instants - begun - rest
-    states = np.multiply.outer(coefficients[-1], np.ones_like(since))
-    for coefficient in coefficients[-2::-1]:
-        states = states * since + coefficient[:, None]
+    states = coefficients[-1] * since
+    for coefficient in coefficients[-2:0:-1]:
+        states += coefficient
+        states *= since
+    states += coefficients[0]
     return states
 
 
