@@ -29,7 +29,7 @@ class Failure(Enum):
     )
     NO_SANDBOX = (
         "bubblewrap is missing or forbidden here",
-        "install the package `bubblewrap`, or run the scene without --sandbox",
+        "install the package `bubblewrap`, or allow it to make user namespaces, or run the scene without --sandbox",
     )
     MAXIMA_MISSING = (
         "Maxima is not installed",

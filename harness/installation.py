@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
 
+from .confined import bubblewrap
 from .documents import Document, ask, read
 from .failures import Failure, HolonomError
 from .files import shared, write_files, write_whole, written_before
@@ -27,8 +28,9 @@ PROGRAMS = {
     "maxima": "everything: it derives the equations",
     "cc": "compiled programs, --to fmu, the Runge-Kutta engine",
     "gsl-config": "the Runge-Kutta engine",
-    "bwrap": "--sandbox",
+    "bwrap": "walls around scene files",
 }
+ALLOW = "allow bubblewrap to make user namespaces, which this machine forbids"
 NEEDED = "maxima"
 
 
@@ -37,19 +39,22 @@ class Component:
     """Something that Holonom uses."""
 
     name: str
-    version: str | None  # None where it is missing; empty where it does not tell
+    version: str | None  # None where it is missing or does not run; empty where it does not tell
     purpose: str  # what it serves
     needed: bool  # nothing works without it
-    remedy: str  # the command that installs it
+    remedy: str  # the command that installs it, or what else is to be done
 
 
 def components() -> Iterator[Component]:
     """All that Holonom uses, programs of the system first."""
     for program, purpose in PROGRAMS.items():
         version = None if shutil.which(program) is None else ""
+        remedy = _install_program(program)
         if program == "maxima" and version is not None:
             version = maxima_version()
-        yield Component(program, version, purpose, program == NEEDED, _install_program(program))
+        elif program == "bwrap" and version is not None and bubblewrap() is None:
+            version, remedy = None, ALLOW
+        yield Component(program, version, purpose, program == NEEDED, remedy)
     for requirement in metadata.requires("holonom") or ():
         found = REQUIREMENT.match(requirement)
         package, extra = found["package"], found["extra"]

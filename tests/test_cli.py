@@ -201,12 +201,16 @@ def version_of_maxima() -> str:
 
 
 def test_doctor_tells_what_is_missing_and_the_command_that_installs_it(tmp_path):
+    (tmp_path / "bwrap").write_text("#!/bin/sh\nexit 1\n")  # as where the kernel forbids what it needs
+    (tmp_path / "bwrap").chmod(0o755)
     environment = {**os.environ, "PATH": f"{tmp_path}:{Path(sys.executable).parent}"}
     done = holonom("doctor", "--json", "-", env=environment)
     components = {each["name"]: each for each in json.loads(done.stdout)["components"]}
     assert done.returncode == 1
     assert components["maxima"]["version"] is None
     assert "maxima" in components["maxima"]["remedy"]
+    assert components["bwrap"]["version"] is None
+    assert "user namespaces" in components["bwrap"]["remedy"]
     assert components["sympy"]["version"] == metadata.version("sympy")
     assert components["heyoka"]["remedy"] == "pip install 'holonom[motion]'"
 

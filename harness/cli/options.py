@@ -22,7 +22,7 @@ LONGEST = 1e9  # seconds of a time limit: 30 years
 MOST_MEMORY = 2**30  # MiB of a memory limit
 UNWALLED = (
     "holonom: bubblewrap is missing or forbidden here: the scene is confined by limits alone and may reach your files; "
-    "install it, or say --trust."
+    "install or allow it, or say --trust."
 )
 
 
