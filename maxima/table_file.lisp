@@ -1,8 +1,8 @@
 ;;; A table in a CSV file: two numbers a line, t and u
 ;;;
-;;; The file is looked for beside the one that names it. Empty lines and those that begin with # are
-;;; passed over, and so is a first line without any number, which names the columns. A number is
-;;; read as the fraction that its decimal digits say.
+;;; The file is looked for beside the one that names it; lines may end in any way. Empty ones and those
+;;; that begin with # are passed over, and so is a first line without any number, which names the
+;;; columns. A number, which may stand in quotes, is read as the fraction that its decimal digits say.
 
 (in-package :maxima)
 
@@ -10,27 +10,57 @@
 
 (defun $rows_of_csv (name)
   "[[t, u], ...]"
-  (let ((path (beside-the-scene name)) (number 0) (rows nil) (begun nil))
+  (let ((number 0) (rows nil) (begun nil) (before nil))
+    (dolist (line (lines-of-table name))
+      (incf number)
+      (let* ((cells (cells-of line name number)) (numbers (mapcar #'decimal-fraction cells)))
+        (when (or (and begun cells) (some #'identity numbers))
+          (require-row line cells numbers name number)
+          (require-later before cells numbers name number)
+          (push (cons '(mlist simp) (mapcar #'maxima-fraction numbers)) rows)
+          (setq before (cons (first numbers) (first cells))))
+        (if cells (setq begun t))))
+    (cons '(mlist simp) (nreverse rows))))
+
+(defun lines-of-table (name)
+  (let ((path (beside-the-scene name)) (lines nil))
     (unless (and (probe-file path) (pathname-name (probe-file path)))
       (merror "table: there is no file ~M beside the scene" name))
     (with-open-file (in path)
-      (do ((line (read-line in nil) (read-line in nil))) ((null line))
-        (incf number)
-        (let ((text (trimmed (if (= number 1) (without-byte-order-mark line) line))))
-          (unless (or (string= text "") (char= (char text 0) #\#))
-            (let* ((cells (mapcar #'trimmed (split-at-commas text)))
-                   (numbers (mapcar #'decimal-fraction cells)))
-              (when (or begun (some #'identity numbers))
-                (push (row-of-csv cells numbers name number) rows))
-              (setq begun t))))))
-    (cons '(mlist simp) (nreverse rows))))
+      (do ((text (read-line in nil) (read-line in nil))) ((null text))
+        (dolist (line (split-at #\Return (string-right-trim '(#\Return) text))) (push line lines))))
+    (let ((lines (nreverse lines)))
+      (if lines (cons (without-byte-order-mark (first lines)) (rest lines))))))
 
-(defun row-of-csv (cells numbers name line)
+(defun cells-of (line name number)
+  "Nil for a line without any, empty or behind a #."
+  (if (find (code-char 0) line)
+      (merror "table: ~M, line ~M: it holds null characters; save the file as plain text, in UTF-8" name number))
+  (let ((text (trimmed line)))
+    (unless (or (string= text "") (char= (char text 0) #\#))
+      (mapcar #'unquoted (split-at #\, text)))))
+
+(defun require-row (text cells numbers name line)
   (let ((bad (position nil numbers)))
-    (cond (bad (merror "table: ~M, line ~M: '~M' is no number" name line (nth bad cells)))
+    (cond ((some #'separated-otherwise-p cells)
+           (merror "table: ~M, line ~M: two numbers with a comma between them and decimal points, as 0.5,-1.25, must make a line; here it is '~M'"
+                   name line (shortened (trimmed text))))
+          (bad (merror "table: ~M, line ~M: '~M' is no number" name line (shortened (nth bad cells))))
           ((/= (length numbers) 2)
-           (merror "table: ~M, line ~M: a line must hold two numbers, t and u; it holds ~M" name line (length numbers)))
-          (t (cons '(mlist simp) (mapcar #'maxima-fraction numbers))))))
+           (merror "table: ~M, line ~M: a line must hold two numbers, t and u, with decimal points; it holds ~M"
+                   name line (length numbers))))))
+
+(defun require-later (before cells numbers name line)
+  "BEFORE is the time of the row before, with its text; nil for the first row."
+  (if (and before (<= (first numbers) (car before)))
+      (merror "table: ~M, line ~M: the times must increase; ~M comes after ~M"
+              name line (shortened (first cells)) (shortened (cdr before)))))
+
+(defun separated-otherwise-p (cell)
+  "Whether there is a semicolon, a tab or a blank where only a comma may stand."
+  (and (some #'digit-char-p cell) (find-if #'(lambda (c) (find c '(#\; #\Tab #\Space))) cell)))
+
+(defun shortened (text) (if (> (length text) 40) (concatenate 'string (subseq text 0 40) "...") text))
 
 (defun beside-the-scene (name)
   (if (or (not (stringp $load_pathname)) (char= (char (concatenate 'string name " ") 0) #\/))
@@ -43,11 +73,14 @@
 
 (defun trimmed (text) (string-trim '(#\Space #\Tab #\Return #\Newline) text))
 
-(defun split-at-commas (text)
-  (let ((comma (position #\, text)))
-    (if comma
-        (cons (subseq text 0 comma) (split-at-commas (subseq text (1+ comma))))
-        (list text))))
+(defun unquoted (cell) (string-trim '(#\") (trimmed cell)))
+
+(defun split-at (mark text)
+  (let ((parts nil) (begin 0))
+    (do ((place (position mark text) (position mark text :start begin)))
+        ((null place) (nreverse (cons (subseq text begin) parts)))
+      (push (subseq text begin place) parts)
+      (setq begin (1+ place)))))
 
 (defun decimal-fraction (text)
   "-12.5e-3 as the fraction that it is; nil for what is no number."

@@ -75,6 +75,13 @@ def test_a_byte_order_mark_was_taken_for_a_part_of_the_first_number(driven):
     assert motion["x"] == pytest.approx(truth(motion.instants), rel=1e-14)
 
 
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_lines_end_as_they_like_and_numbers_may_stand_in_quotes(driven, end):
+    csv = "\ufeff" + end.join(['"t","u"', *(f'"{t}","{u}"' for t, u in POINTS), "", ""])
+    motion = driven('table("drive.csv")', csv=csv).simulate(samples=2)
+    assert motion["x"] == pytest.approx(truth(motion.instants), rel=1e-14)
+
+
 def test_steps_end_at_every_point_and_on_the_number_nearest_to_it(driven):
     motion = driven(f"table({points()})").simulate()
     assert {1.0, 1.3, 3.5} <= set(motion.instants.tolist())
@@ -122,6 +129,21 @@ def test_many_points(driven):
         ('table("drive.csv")', "0, 1", "0, 0\n1, 2x\n", "drive.csv, line 2: '2x' is no number"),
         ('table("drive.csv")', "0, 1", "0, 0\n1, 2, 3\n", "drive.csv, line 2: a line must hold two numbers"),
         ('table("drive.csv")', "0, 1", "0, 0\n1, 1e999\n", "drive.csv, line 2: '1e999' is no number"),
+        (
+            'table("drive.csv")',
+            "0, 1",
+            "t,u\n\n0,0\n0.50,1\n.5,1\n",
+            "drive.csv, line 5: the times must increase; .5 comes after 0.50",
+        ),
+        (
+            'table("drive.csv")',
+            "0, 1",
+            "t;u\n0;0\n1;2\n",
+            "drive.csv, line 2: two numbers with a comma between them and decimal",
+        ),
+        ('table("drive.csv")', "0, 1", "0,0;1,5\n1,0;2,5\n", "here it is '0,0;1,5'"),
+        ('table("drive.csv")', "0, 1", "0,0,1,5\n1,0,2,5\n", "t and u, with decimal points; it holds 4"),
+        ('table("drive.csv")', "0, 1", "0,\0 0\n", "drive.csv, line 1: it holds null characters"),
         ('table("drive.csv")', "0, 1", "", "drive.csv: a table needs two points at least; it has 0"),
         ('table("other.csv")', "0, 1", "", "there is no file other.csv beside the scene"),
         ("diff(table([[0, 0], [1, 2]]), t)", "0, 1", "", "derivative"),
