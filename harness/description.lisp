@@ -12,13 +12,15 @@
 ;;;   i123      an integer                          s3:abc   a string, its length before it
 ;;;   f3/4      a float, as a quotient              y2:$x    a symbol, the length of its name before it
 ;;;   b53:7:-2  a bigfloat of 53 bits, 7 and -2     ( y5:MPLUS ... )   an operator with its arguments
-;;;                                                 [ y2:$x ... ]      a name with its indices
+;;;   r2        the second table once more          [ y2:$x ... ]      a name with its indices
 ;;;
 ;;; Nothing is evaluated while it is read. An operator that is not known, or a symbol that is no name in Maxima's
 ;;; language, is refused. Files of many bodies are long: they are read from memory, and without `loop', which an
 ;;; interpreter is slow at.
 
 (in-package :maxima)
+
+(defvar *tables-met* nil "The tables that a description holds, as far as it is written or read, the latest first.")
 
 (defvar *described-operators*
   '(mplus mtimes mexpt mlist mequal rat $matrix
@@ -41,7 +43,7 @@
 (defun write-description (file)
   "Write what the scene file described to FILE; nothing where it did not load the library."
   (when (and (boundp '*asked-for*) (symbol-value '*asked-for*))
-    (let ((*print-base* 10) (*print-radix* nil)) ; obase : 8 of a scene is none of a description's
+    (let ((*print-base* 10) (*print-radix* nil) (*tables-met* nil)) ; obase : 8 of a scene is none of a description's
       (with-open-file (out file :direction :output)
         (write-datum (description) out)))))
 
@@ -98,7 +100,10 @@
         ((eq (caar e) 'bigfloat) (format out "b~D:~D:~D " (car (last (car e))) (second e) (third e)))
         ((member 'array (car e)) (write-application #\[ e #\] out))
         ((eq (caar e) 'mrat) (write-datum ($totaldisrep e) out))
-        (t (write-application #\( e #\) out))))
+        ((member e *tables-met* :test #'eq)
+         (format out "r~D " (length (member e *tables-met* :test #'eq))))
+        (t (if (eq (caar e) '$cubic_spline) (push e *tables-met*))
+           (write-application #\( e #\) out))))
 
 (defun write-symbol (symbol out)
   (write-char #\y out)
@@ -117,7 +122,7 @@
 
 (defun describe-anew (file)
   "Describe the systems and scenes in FILE, under their names."
-  (destructuring-bind (used size facts systems names scenes) (cdr (with-input-from-string (in (text-of-file file)) (read-datum in)))
+  (destructuring-bind (used size facts systems names scenes) (cdr (described-in (text-of-file file)))
     (setq $settings_used used)
     (setq $closed_form_size (required-size size))
     (mapc #'assume-anew (cdr facts))
@@ -126,6 +131,10 @@
       (loop for (nil name number) in (cdr names) do (bind-anew name (nth number systems)))
       (loop for (nil name number scene) in (cdr scenes)
             do (bind-anew name (described-anew '$holonomic_scene (cons (nth number systems) (entries-of scene)) scene))))))
+
+(defun described-in (text)
+  (let ((*tables-met* nil))
+    (with-input-from-string (in text) (read-datum in))))
 
 (defun described-anew (describe entries expected)
   "What DESCRIBE makes of ENTRIES, which must be what it made of them before."
@@ -152,9 +161,15 @@
     (#\i (read-char in) (read-whole in))
     (#\s (read-char in) (read-text in))
     (#\y (read-char in) (described-symbol (read-text in)))
+    (#\r (read-char in) (table-met (read-whole in)))
     (#\f (read-char in) (float (/ (read-whole in) (read-whole in)) 1d0))
     (#\b (read-char in) (let ((bits (read-whole in)))
                           (list (list 'bigfloat 'simp bits) (read-whole in) (read-whole in))))))
+
+(defun table-met (number)
+  (if (<= 1 number (length *tables-met*))
+      (nth (- (length *tables-met*) number) *tables-met*)
+      (merror "the description has no table ~M so far" number)))
 
 (defun read-until (closing in)
   (let ((items nil))
@@ -187,9 +202,10 @@
   (destructuring-bind (operator &rest arguments) items
     (unless (known-operator-p operator)
       (merror "the scene describes its system with ~M, which no document can hold" operator))
-    (if (member operator '($mechanical_system $motion_scene $servo_motion))
-        (cons (list operator 'simp) arguments)
-        (simplifya (cons (list operator) (if (eq operator 'mplus) (reverse arguments) arguments)) nil))))
+    (cond ((member operator '($mechanical_system $motion_scene $servo_motion))
+           (cons (list operator 'simp) arguments))
+          ((eq operator '$cubic_spline) (car (push (cons (list operator 'simp) arguments) *tables-met*)))
+          (t (simplifya (cons (list operator) (if (eq operator 'mplus) (reverse arguments) arguments)) nil)))))
 
 (defun indexed-name (items)
   (cons (list (first items) 'simp 'array) (rest items)))

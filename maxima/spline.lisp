@@ -121,9 +121,13 @@
       "0"
       (let ((exponent (- (floor (* (- (integer-length units) bits) (log 2d0 10d0))) digits)))
         (format nil "~de~d" (if (minusp exponent)
-                                (round (* units (expt 10 (- exponent))) (ash 1 bits))
-                                (round units (* (ash 1 bits) (expt 10 exponent))))
+                                (nearest-quotient (* units (expt 10 (- exponent))) (ash 1 bits))
+                                (nearest-quotient units (* (ash 1 bits) (expt 10 exponent))))
                 exponent))))
+
+(defun nearest-quotient (dividend divisor)
+  "A half is rounded up. GCL's own round takes thirty times as long for long integers."
+  (values (floor (+ dividend dividend divisor) (+ divisor divisor))))
 
 ;;; ---- points ----------------------------------------------------------------------------------------------
 

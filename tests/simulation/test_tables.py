@@ -82,6 +82,19 @@ def test_lines_end_as_they_like_and_numbers_may_stand_in_quotes(driven, end):
     assert motion["x"] == pytest.approx(truth(motion.instants), rel=1e-14)
 
 
+@pytest.mark.parametrize("engine", ["taylor", "runge-kutta"])
+def test_a_thousand_points_give_the_splines_motion(driven, engine, gsl):
+    """So many intervals are integrated over, and so many numbers described, in more than one portion."""
+    rows = [(k / 100, round(math.sin(k / 30) + math.cos(k) / 20, 6)) for k in range(1001)]
+    csv = "".join(f"{t},{u}\n" for t, u in rows)
+    law = 'table("drive.csv")*cos(t)^2 + table("drive.csv")*sin(t)^2'
+    scene = driven(law, span="0, 10", csv=csv)
+    motion = scene.simulate(samples=101, engine=engine)
+    assert motion["x"] == pytest.approx(truth(motion.instants, rows=rows), rel=1e-11, abs=1e-11)
+    assert len(motion.report.switchings) == 999
+    assert abs(motion.report.energy_error) < 1e-11
+
+
 def test_steps_end_at_every_point_and_on_the_number_nearest_to_it(driven):
     motion = driven(f"table({points()})").simulate()
     assert {1.0, 1.3, 3.5} <= set(motion.instants.tolist())
