@@ -156,6 +156,14 @@ def test_what_no_control_can_do_is_refused_in_one_sentence(what):
     assert said in str(refused.value)
 
 
+def test_a_course_by_a_long_table_is_refused_before_the_work():
+    """All polynomials of the table stand in the equations, and the motion meets each in equations of its own."""
+    points = ", ".join(f"[{k}/100, {k % 7}]" for k in range(501))
+    scene = holonom.system(ROD.replace("sin(2*t)/5", f"table([{points}])"))
+    with pytest.raises(HolonomError, match="a table in servo_constraints may have 500 points, .* this one has 501"):
+        scene.simulate()
+
+
 def test_what_takes_the_controls_as_given_is_refused():
     with pytest.raises(HolonomError, match="a scene with servo_constraints"):
         holonom.system(ROD).effects()
