@@ -440,6 +440,8 @@ class PiecewiseMotion:
             moved = project(after.matrices, float(t), as_floats(moved))
         else:
             after.projection.project(t, moved)
+        if self._problem.servo and not _close(moved, state):
+            self._require_reactions(new, as_floats(moved - state)[n:], kick, sign, t)
         if sign.by is not By.TIME:
             jump = abs(float(self._energy(after, t, state) - self._energy(before, t, state)))
             if not _close(moved, state):
@@ -447,6 +449,14 @@ class PiecewiseMotion:
             if jump > CONTINUOUS * max(1.0, abs(float(self._energy(before, t, state)))):
                 self._refuse(t, f"the energy jumps as {sign.of} changes its sign")
         return moved
+
+    def _require_reactions(self, at: Matrices, change: Vector, kick: Vector, sign: Sign, t: Any) -> None:
+        """Velocities may change by reactions alone: the controls that servo-constraints find are forces."""
+        reactions = at.jacobian[: len(self._problem.reactions)].T
+        impulse = at.mass @ change - kick
+        left = impulse - reactions @ np.linalg.lstsq(reactions, impulse)[0]
+        if np.max(np.abs(left)) > CONTINUOUS * np.max(np.abs(impulse)):
+            self._refuse(t, f"servo-constraints would take an impulse of the controls as {sign.of} changes its sign")
 
     def _first_pattern(self, t: Any, state: Numbers) -> Pattern:
         """Signs at the start, each function after those that it may contain."""

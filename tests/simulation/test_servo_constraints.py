@@ -164,6 +164,34 @@ def test_a_course_by_a_long_table_is_refused_before_the_work():
         scene.simulate()
 
 
+WINCH = """
+system : holonomic_system(coordinates = [x, y, z], controls = [u, w], forces = [motor = [u, u, 0]],
+  kinetic_energy = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2, constraints = [z - w])$
+driven : holonomic_scene(system, control_law = [w = {law}], servo_constraints = [x - {course}],
+  initial_state = [y = 0, dot(y) = 0], time_span = [0, 2])$
+"""
+
+
+@pytest.mark.parametrize("law", ["1 + abs(t - 1)/4", "table([[0, 5/4], [1, 1], [2, 5/4]])"])
+def test_a_law_in_parts_beside_servo_constraints_was_an_error_of_lisp(law):
+    """In closed form: u moves x and y alike, and the law moves z alone, whose reaction takes the impulse of a kink."""
+    motion = holonom.system(WINCH.format(law=law, course="sin(t)")).simulate(samples=5)
+    t = np.array(motion.instants, dtype=float)
+    assert motion["x"] == pytest.approx(np.sin(t), abs=1e-14)
+    assert motion["y"] == pytest.approx(np.sin(t) - t, abs=1e-14)
+    assert motion["z"][::2] == pytest.approx([5 / 4, 1, 5 / 4], abs=1e-14)
+    assert motion.report.trusted
+
+
+@pytest.mark.parametrize("course", ["abs(t - 1)/4", "z"])
+def test_an_impulse_along_the_course_took_the_place_of_one_of_the_controls(course):
+    """It left y at rest, which u moves as it moves x."""
+    with pytest.raises(
+        HolonomError, match="beyond t = 1, where servo-constraints would take an impulse of the controls"
+    ):
+        holonom.system(WINCH.format(law="1 + abs(t - 1)/4", course=course)).simulate(samples=2)
+
+
 def test_what_takes_the_controls_as_given_is_refused():
     with pytest.raises(HolonomError, match="a scene with servo_constraints"):
         holonom.system(ROD).effects()
