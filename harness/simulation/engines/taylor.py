@@ -7,6 +7,7 @@ short.
 import time
 from copy import copy
 from functools import partial
+from itertools import pairwise
 from math import ceil, inf
 from typing import Any
 
@@ -31,6 +32,7 @@ FINE, FINE_BLOCK = 1e-7, 512  # a tolerance whose steps leave the constraints so
 SHORT, OPERATIONS = 16, 200_000  # steps of a first block at least; operations of its steps at most, beyond these
 LONGEST_BLOCK = 1024  # steps
 GROWTH = 8  # from block to block, at most
+FEW = 16  # steps whose polynomials are evaluated here in less time than heyoka takes to compile that, a millisecond
 
 
 class TaylorEngine(ProgramEngine):
@@ -101,10 +103,18 @@ class TaylorEngine(ProgramEngine):
         return ceil(trial * float(until - begun) / covered)
 
     def _with_states(self, until: Any, most: int) -> tuple[Taken, list[Piece]]:
-        """Take steps one by one, each with its Taylor polynomials.
+        """Take steps: a few one by one, many at once, for which heyoka compiles a function of the states between."""
+        longest = max(self._usual, self._integrator.last_h)
+        few = longest > 0 and until - self.time < FEW * longest
+        return self._one_by_one(until, most) if few else self._at_once(until, most)
 
-        What heyoka itself gives for the states between is compiled anew for every block: a millisecond for one step.
-        """
+    def _at_once(self, until: Any, most: int) -> tuple[Taken, list[Piece]]:
+        *taken, between, _ = self._integrator.propagate_until(until, most, c_output=True)
+        steps = [] if between is None else pairwise(between.times)
+        return tuple(taken), [Piece(*step, lambda instants: between(instants).T.copy()) for step in steps]
+
+    def _one_by_one(self, until: Any, most: int) -> tuple[Taken, list[Piece]]:
+        """Each step with its Taylor polynomials."""
         integrator, pieces = self._integrator, []
         shortest, longest, outcome = inf, 0, None
         for _ in range(most):
