@@ -23,7 +23,7 @@ from truths import linkage_tip
 EXAMPLES = Path(__file__).parents[2] / "examples"
 DERIVED = {"chain": (16, 32, 64, 128), "ring": (4, 8, 16)}
 LOOPS, UNTIL = 40, 20
-POINTS = (100, 200, 400, 800)
+POINTS = (1000, 3000, 10000, 30000)
 DERIVATION, LINKAGE, GROWTH = 2.0, 9.0, 1.1  # bars: derive to program; seconds; exponent
 TABLE = """
 load("holonom.mac")$
@@ -75,7 +75,11 @@ def tables() -> list[str]:
             asked = (("program", "-o", written), ("derive",), ("simulate", "--final"))
             costs.append([cost_of_command(command, str(scene), *rest)[0] for command, *rest in asked])
         lines.append(f"{points:<6}  " + "  ".join(f"{seconds:.2f}" for seconds in costs[-1]))
-    exponents = [log(b / a) / log(2) for first, second in pairwise(costs) for a, b in zip(first, second, strict=True)]
+    exponents = [
+        log(later / earlier) / log(more / points)
+        for (points, first), (more, second) in pairwise(zip(POINTS, costs, strict=True))
+        for earlier, later in zip(first, second, strict=True)
+    ]
     return [*lines, bar("power of the points that the time grows with, at most", max(exponents), GROWTH)]
 
 
