@@ -170,7 +170,10 @@ class ProgramEngine:
             return self.time == until, pieces
         integrator = self._integrator
         instant, before = integrator.time, self.state.copy()
-        (_, shortest, longest, steps), pieces = self._take(until, self._length, dense)
+        if dense:
+            (_, shortest, longest, steps), pieces = self._with_states(until, self._length)
+        else:
+            (_, shortest, longest, steps, *_), pieces = integrator.propagate_until(until, self._length), []
         ended = integrator.time == until
         broken_off = steps < self._length and not ended
         longest = max(self._usual, longest)
@@ -185,11 +188,6 @@ class ProgramEngine:
             self._prepare_next(until)
         return ended, pieces
 
-    def _take(self, until: Any, most: int, dense: bool) -> tuple[Taken, list[Piece]]:
-        if dense:
-            return self._with_states(until, most)
-        return self._integrator.propagate_until(until, most)[:4], []
-
     def _watched(self, until: Any, dense: bool, steps: int) -> list[Piece]:
         """Single steps, so many, until an instant or until the motion program is about to fail."""
         self.watch.begin(self.time, self.state)
@@ -203,7 +201,10 @@ class ProgramEngine:
 
     def _watched_step(self, until: Any, dense: bool) -> list[Piece]:
         instant, before = self.time, self.state.copy()
-        (outcome, _, step, _), pieces = self._take(until, 1, dense)
+        if dense:
+            (outcome, _, step, _), pieces = self._with_states(until, 1)
+        else:
+            (outcome, _, step, *_), pieces = self._integrator.propagate_until(until, 1), []
         if outcome == self._failed:
             self._go_back(instant, before)
             reason = translatable("numbers leave the range of %(precision)s precision", precision=self.precision.name)
