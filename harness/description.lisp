@@ -44,8 +44,7 @@
   "Write what the scene file described to FILE; nothing where it did not load the library."
   (when (and (boundp '*asked-for*) (symbol-value '*asked-for*))
     (let ((*print-base* 10) (*print-radix* nil) (*tables-met* nil)) ; obase : 8 of a scene is none of a description's
-      (with-open-file (out file :direction :output)
-        (write-datum (description) out)))))
+      (write-file file (with-output-to-string (out) (write-datum (description) out))))))
 
 (defun description ()
   (let* ((named (structures-of-kind '$mechanical_system))

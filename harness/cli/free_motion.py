@@ -40,7 +40,7 @@ def free(
     """
     from ..documents import Document, ask
 
-    with meanwhile(_import_what_follows):
+    with meanwhile(scene_file, limits, _import_what_follows):
         text = ask(Document.FREE_MOTION, scene_file, request.scene, order, settings=request.settings, limits=limits)
 
     from ..crosscheck import Verdict

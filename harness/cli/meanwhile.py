@@ -2,12 +2,21 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from threading import Thread
+
+from ..confined import Limits
 
 
 @contextmanager
-def meanwhile(work: Callable[[], None]) -> Iterator[None]:
-    """Do some work, imports mostly, while the block waits for Maxima; the block itself must import nothing."""
+def meanwhile(file: Path, limits: Limits, work: Callable[[], None]) -> Iterator[None]:
+    """Do some work, imports mostly, while the block has Maxima run about a file; the block itself must import nothing.
+
+    Raises as `get_ready`.
+    """
+    from ..maxima import get_ready
+
+    get_ready(file, limits)
     working = Thread(target=work)
     working.start()
     try:

@@ -1,5 +1,6 @@
 """The commands about one motion: as a power series, and in numbers."""
 
+import gc
 import sys
 from contextlib import suppress
 from functools import partial
@@ -141,7 +142,8 @@ def simulate(
     from ..simulation.derivations import open_names, stands
 
     digits = _digits_of(precision)
-    with meanwhile(partial(_import_what_follows, click.get_current_context().obj is OWN_PROCESS)):
+    imports = partial(_import_what_follows, click.get_current_context().obj is OWN_PROCESS)
+    with meanwhile(scene_file, limits, imports):
         document = problem_document(scene_file, request, limits, digits, open_names(request, digits))
     problem = read_problem(document)
     if not stands(problem):
@@ -211,12 +213,16 @@ def _import_what_follows(own_process: bool) -> None:
             _import_heyoka_alone()
 
         from ..simulation import output, simulate  # noqa: F401
-        from ..simulation.engines import taylor  # noqa: F401
+        from ..simulation.engines import runge_kutta, taylor  # noqa: F401
         from ..simulation.evaluation import wake_compiler
-        from ..simulation.parts_of_scipy import lapack
+        from ..simulation.parts_of_scipy import lapack, superlu
+        from .tables import motion, progress  # noqa: F401
 
         wake_compiler()
         lapack()
+        superlu()
+        if own_process:
+            gc.freeze()  # all this stays: to look through it for garbage again and again takes a tenth of a short run
 
 
 def _import_heyoka_alone() -> None:

@@ -25,9 +25,12 @@
   '(($%pi . "Pi") ($%e . "ExponentialE") ($%i . "ImaginaryUnit") ($%gamma . "EulerGamma")))
 
 (defun $write_json (tree file)
+  (write-file file (with-output-to-string (out) (write-json tree out) (terpri out))))
+
+;;; All at once: a Lisp that hands each piece to the system as it comes takes longer for that than for the pieces.
+(defun write-file (file text)
   (with-open-file (out file :direction :output :if-exists :supersede)
-    (write-json tree out)
-    (terpri out))
+    (write-string text out))
   file)
 
 (defun write-json (tree out)

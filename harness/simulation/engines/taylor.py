@@ -105,7 +105,7 @@ class TaylorEngine(ProgramEngine):
     def _with_states(self, until: Any, most: int) -> tuple[Taken, list[Piece]]:
         """Take steps: a few one by one, many at once, for which heyoka compiles a function of the states between."""
         longest = max(self._usual, self._integrator.last_h)
-        few = longest > 0 and until - self.time < FEW * longest
+        few = most < FEW or until - self.time < FEW * longest
         return self._one_by_one(until, most) if few else self._at_once(until, most)
 
     def _at_once(self, until: Any, most: int) -> tuple[Taken, list[Piece]]:
