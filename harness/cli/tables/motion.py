@@ -125,7 +125,10 @@ def _quality(report: "Report") -> Iterator[str]:
 def _choice(choice: "Choice") -> str:
     """Why an engine was taken."""
     seconds = f"{choice.taylor:.2g} s by taylor, {choice.runge_kutta:.2g} s by runge-kutta with the C compiler"
-    return f"{choice.engine} is quicker for {choice.steps} steps of {choice.operations} operations: {seconds}"
+    work = f"{choice.steps} steps of {choice.operations} operations"
+    if choice.refused:
+        return f"{choice.engine} is slower for {work}: {seconds}; but {choice.refused}"
+    return f"{choice.engine} is quicker for {work}: {seconds}"
 
 
 def _ending(report: "Report") -> str:

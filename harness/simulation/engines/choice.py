@@ -36,6 +36,7 @@ class Choice:
     # taylor, runge_kutta: seconds that each is expected to take for the motion, with what has yet to be compiled
     taylor: float
     runge_kutta: float
+    refused: str = ""  # why the other could not be compiled, where it would have been quicker
 
 
 def comparable(tol: float | None) -> bool:

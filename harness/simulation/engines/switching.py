@@ -8,6 +8,7 @@ constraints are as independent again as they were when it did.
 
 from collections import deque
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import cached_property
 from math import log10
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from .taylor import TaylorEngine
 
 BY_PROGRAM = (EngineName.TAYLOR, EngineName.RUNGE_KUTTA)
+UNCOMPILED = (Failure.COMPILER_UNUSABLE, Failure.COMPILER_REFUSED, Failure.GSL_MISSING)
 FINE = 1e-13  # tolerance of the robust engine between two legs of a Taylor engine that nobody gave one
 
 
@@ -167,7 +169,13 @@ class SwitchingEngine:
         self.choice = quicker_engine(steps, self._problem.motion.operations, taylor.tol, between)
         if self.choice.engine is EngineName.TAYLOR:
             return taylor
-        return _runge_kutta(self._problem, self._request, self._precision, end, self._matrices)
+        try:
+            return _runge_kutta(self._problem, self._request, self._precision, end, self._matrices)
+        except HolonomError as refusal:
+            if refusal.failure not in UNCOMPILED:
+                raise
+            self.choice = replace(self.choice, engine=EngineName.TAYLOR, refused=str(refusal))
+            return taylor
 
     @property
     def _either(self) -> bool:

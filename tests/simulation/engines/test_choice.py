@@ -1,5 +1,6 @@
 """Which engine ``auto`` takes, and that either is relieved where the configuration is singular."""
 
+import os
 from dataclasses import replace
 from fractions import Fraction
 
@@ -53,6 +54,21 @@ def test_what_runge_kutta_cannot_hold_is_not_weighed(tol, precision):
 def test_without_a_compiler_there_is_no_choice(monkeypatch):
     monkeypatch.setattr(choice, "which", lambda _: None)
     assert not choice.comparable(1e-6)
+
+
+@pytest.mark.usefixtures("gsl")
+def test_where_the_library_is_named_and_missing_taylor_follows_the_motion_and_the_report_says_why(
+    monkeypatch, tmp_path
+):
+    """Truth: the motion that the Taylor engine follows where it alone is asked, to the last bit."""
+    named = tmp_path / "gsl-config"
+    named.write_text("#!/bin/sh\necho -lno_such_library\n")
+    named.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    done, asked = report(LONG, tol=1e-6), report(LONG, tol=1e-6, engine=EngineName.TAYLOR)
+    assert done.choice.engine is EngineName.TAYLOR
+    assert "no_such_library" in done.choice.refused
+    assert done.coordinates == asked.coordinates
 
 
 def test_states_wanted_between_the_steps_count():
