@@ -3,7 +3,7 @@
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,9 +17,10 @@ from holonom.benchmark.work_precision.engines import prepare_taylor
 from holonom.benchmark.work_precision.measurement import State, relative_error
 from holonom.benchmark.work_precision.reference import find_reference
 from holonom.confined import Limits
-from holonom.program.motion_problem import MotionProblem, motion_problem
+from holonom.program.motion_problem import DOUBLE_DIGITS, MotionProblem, motion_problem, problem_document
 from holonom.program.request import Request
 from holonom.program.timing import python_batch, shortest_times
+from holonom.simulation.derivations import open_names
 from holonom.simulation.request import EngineName, SimulationRequest, Stabilization
 from holonom.simulation.simulate import simulate
 
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 BY_HEYOKA, BEST_BY_HAND, SUNDIALS_TIMES = 1.25, 1.1, 12.0
 SCIPY_TIMES = {"paper": 100.0, "pendulum": 100.0, "chain_8": 12.0, "car_axis": 12.0, "andrews": 12.0}
 ONE_SHOT, HELP, LOADING = 0.5, 0.1, 0.2  # of the time of SymPy and solve_ivp; seconds; seconds
+MAXIMA_SECONDS = {"andrews": 0.45}
 RESIDUAL, PROJECTION_SHARE = 1e-12, 0.25
 MPMATH_TIMES, MPMATH_DIGITS = 300.0, 30
 OUR_DIGITS, OUR_TOLERANCE = "34", 1e-34
@@ -106,6 +108,7 @@ def bars_of(motion: Motion, problem: MotionProblem, rows: Mapping[str, "Row"], r
     first, theirs = _shortest([_ours_in_one_shot(motion), _sympy_in_one_shot(motion, problem)])
     yield Bar(name, "`holonom simulate` to SymPy and solve_ivp, whole processes", first / theirs, ONE_SHOT)
     yield Bar(name, "seconds of `holonom simulate`, whole process", first)
+    yield Bar(name, "seconds that Maxima takes of it", _maxima_part(motion), MAXIMA_SECONDS.get(name))
     yield Bar(name, "seconds of SymPy and solve_ivp, whole process", theirs)
 
 
@@ -152,6 +155,13 @@ def _ours_in_one_shot(motion: Motion) -> list[str]:
     return [_holonom(), "simulate", *scene, "--until", str(motion.until), "--tol", TOLERANCE, "--final", "--json", "-"]
 
 
+def _maxima_part(motion: Motion) -> float:
+    """Seconds until the motion program is there, as the command has it made: confined, in two processes."""
+    request = Request(motion.scene, settings=motion.settings)
+    asked = request, Limits(), DOUBLE_DIGITS, open_names(request, DOUBLE_DIGITS)
+    return min(_seconds_of(lambda: problem_document(motion.file, *asked)) for _ in range(ONE_SHOT_REPEATS))
+
+
 def _sympy_in_one_shot(motion: Motion, problem: MotionProblem) -> list[str]:
     script = str(HERE / "simulation_sympy.py")
     start = map(repr, map(float, start_of(problem)))
@@ -175,6 +185,12 @@ def _shortest(commands: Sequence[Sequence[str]]) -> list[float]:
 
 
 def _seconds(command: Sequence[str]) -> float:
+    return _seconds_of(
+        lambda: subprocess.run(command, cwd=ROOT, env=as_installed(), stdout=subprocess.DEVNULL, check=True)
+    )
+
+
+def _seconds_of(work: Callable[[], object]) -> float:
     begun = time.perf_counter()
-    subprocess.run(command, cwd=ROOT, env=as_installed(), stdout=subprocess.DEVNULL, check=True)
+    work()
     return time.perf_counter() - begun
