@@ -368,7 +368,8 @@
 ;;; What rounding leaves of a zero shrinks with the digits of the arithmetic: a coefficient that
 ;;; falls by as many digits as were added, but for a few, is none. The coarser expansion may have come
 ;;; out smaller by luck, or as zero; then there is none where both are as small as what is left of others,
-;;; measured by the largest coefficients of orders around.
+;;; measured by the largest coefficients of orders around, and smaller by the digits added at least. Coefficients of
+;;; an entire motion, too, fall below what rounding leaves: where a series fades, only more digits tell.
 
 (defvar *few-digits* 5)
 
@@ -400,8 +401,8 @@
 
 (defun rounding-levels (coarse fine added)
   "For each order binary magnitudes of what is left of a zero at most, by the coarse and by the fine expansion."
-  (let ((sizes (sizes-by-order coarse fine)) (of-coarse nil) (of-fine nil)
-        (few (ceiling (* *few-digits* (log 10d0 2d0)))))
+  (let* ((sizes (sizes-by-order coarse fine)) (of-coarse nil) (of-fine nil)
+         (few (binary-digits *few-digits*)) (most (- (binary-digits added))))
     (map-coefficients coarse fine
                       #'(lambda (a b order)
                           (if (and (not (eql a 0)) (not (eql b 0)) (shrinks-p a b added))
@@ -410,22 +411,44 @@
                           0))
     (map 'vector
          #'(lambda (size)
-             (if of-coarse (cons (+ of-coarse size few) (+ of-fine size few)) (cons nil nil)))
+             (if of-coarse
+                 (cons (+ (min (+ of-coarse few) most) size) (+ (min (+ of-fine few) most) size))
+                 (cons nil nil)))
          sizes)))
+
+(defun binary-digits (decimal-digits) (ceiling (* decimal-digits (log 10d0 2d0))))
 
 (defun larger (x y) (if x (max x y) y))
 
 (defun sizes-by-order (coarse fine)
-  "Binary magnitude of the largest coefficient of each order and the orders beside it."
-  (let* ((orders (length (cdr (third (second coarse))))) (sizes (make-array orders :initial-element nil)))
+  "Binary magnitude of the largest coefficient that both expansions know of each order and the orders beside it;
+where there is none, of the nearest order before, or else after."
+  (let* ((orders (length (cdr (third (second coarse))))) (sizes (make-array orders :initial-element nil)) (last nil))
     (map-coefficients coarse fine
                       #'(lambda (a b order)
-                          (declare (ignore a))
-                          (if (not (eql b 0))
+                          (if (known-p a b)
                               (loop for k from (max 0 (1- order)) to (min (1- orders) (1+ order))
                                     do (setf (svref sizes k) (larger (svref sizes k) (binary-magnitude b)))))
                           0))
-    (map 'vector #'(lambda (size) (or size 0)) sizes)))
+    (setq last (or (find-if #'identity sizes) 0))
+    (map 'vector #'(lambda (size) (setq last (or size last))) sizes)))
+
+(defun known-p (a b) (and (not (eql b 0)) (>= (shared-digits a b) *few-digits*)))
+
+(defun $fading (coarse fine)
+  "Whether one of the series ends in what may be zeros of rounding, or coefficients that are smaller than rounding:
+more of them in a row than between coefficients that both expansions know."
+  (some #'(lambda (x y) (fading-p (mapcar #'rational-of (cdr (third x))) (mapcar #'rational-of (cdr (third y)))))
+        (cdr coarse) (cdr fine)))
+
+(defun fading-p (as bs)
+  (let ((longest 0) (run 0) (begun nil) (rounded nil))
+    (mapc #'(lambda (a b)
+              (if (known-p a b)
+                  (setq longest (if begun (max longest run) 0) run 0 begun t rounded nil)
+                  (setq run (1+ run) rounded (or rounded (not (eql b 0))))))
+          as bs)
+    (and begun rounded (> run longest))))
 
 (defun map-coefficients (coarse fine function)
   (cons '(mlist)

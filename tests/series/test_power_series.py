@@ -73,6 +73,26 @@ def test_entire_motion_loses_no_digits():
     assert relative_digits(series(PAPER, 40, 20, free), series(PAPER, 40, "exact", free)) >= 19
 
 
+@pytest.mark.parametrize("order", [24, 60])
+def test_coefficients_that_fall_faster_than_rounding_are_no_zeros(order, tmp_path):
+    """Those of cos(sqrt(1 + t)), by 4 (1 + t) y'' + 2 y' + y = 0, end below 1e-180: all of them were given as 0."""
+    scene = tmp_path / "scene.mac"
+    scene.write_text(
+        'load("holonom.mac")$'
+        "system : holonomic_system(coordinates = [z], controls = [u], kinetic_energy = dot(z)^2/2, constraints = [z-u])$"
+        "entire_scene : holonomic_scene(system, control_law = [u = cos(sqrt(t))], time_span = [1, 2],"
+        "  initial_state = [])$"
+    )
+    found = compute_series(scene, SeriesRequest(order), Limits())
+    with mpmath.workdps(400):
+        true = [mpmath.cos(1), -mpmath.sin(1) / 2]
+        for n in range(order - 1):
+            true.append(-(true[n] + (4 * n + 2) * (n + 1) * true[n + 1]) / (4 * (n + 2) * (n + 1)))
+        row = numbers(found.coordinates["z"])
+        assert all(abs(a - b) <= abs(b) * mpmath.mpf(10) ** -29 for a, b in zip(row, true, strict=True))
+    assert "entire" in found.radius.remark
+
+
 PRECISIONS = [
     ("double", 12),
     pytest.param("extended", 15, marks=needs_extended),
