@@ -79,7 +79,8 @@ def test_coefficients_that_fall_faster_than_rounding_are_no_zeros(order, tmp_pat
     scene = tmp_path / "scene.mac"
     scene.write_text(
         'load("holonom.mac")$'
-        "system : holonomic_system(coordinates = [z], controls = [u], kinetic_energy = dot(z)^2/2, constraints = [z-u])$"
+        "system : holonomic_system(coordinates = [z], controls = [u], kinetic_energy = dot(z)^2/2,"
+        "  constraints = [z - u])$"
         "entire_scene : holonomic_scene(system, control_law = [u = cos(sqrt(t))], time_span = [1, 2],"
         "  initial_state = [])$"
     )
