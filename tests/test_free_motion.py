@@ -10,7 +10,7 @@ import pytest
 import sympy
 from sympy import Function, Symbol, cos, exp, symbols
 
-from holonom.cli.tables.free_motion import power_series
+from holonom.cli.tables.free_motion import formula, power_series
 from holonom.confined import Limits
 from holonom.failures import HolonomError
 from holonom.free_motion import FirstCoefficient, Free, free_motion
@@ -313,6 +313,12 @@ def test_a_truncated_series_was_printed_highest_power_first_and_added_up(write_s
     written = power_series(law)
     assert written.startswith("3/2 + (t - 1) + 23*(t - 1)^2/24 ")
     assert written.index("^2") < written.index("^3") < written.index("^8")
+
+
+def test_laws_were_printed_by_names_that_maxima_does_not_know():
+    law = sympy.Abs(t) * sympy.sign(t) + sympy.pi * sympy.besselj(0, t) + sympy.E * sympy.exp(t) ** 2
+    assert formula(law) == "%e*exp(2*t) + abs(t)*signum(t) + %pi*bessel_j(0, t)"
+    assert power_series(sympy.Add(sympy.Float(0), 2 * t, sympy.Float(0), evaluate=False)) == "2*t"
 
 
 @pytest.mark.parametrize(

@@ -60,8 +60,7 @@ def _import_what_follows() -> None:
 
 
 def _free_motion_document(found: "FreeMotion") -> dict[str, Any]:
-    from .tables.free_motion import power_series
-    from .tables.text import formula
+    from .tables.free_motion import formula, power_series
 
     def law_text(law: Mapping[str, Any]) -> dict[str, str]:
         return {control: formula(value) for control, value in law.items()}

@@ -5,14 +5,15 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.text import Text
+from sympy import Expr, Function
+from sympy.printing.str import StrPrinter
 
+from ... import notation
+from ...mathjson import CONSTANT_NAMES, HEADS
 from .condition import condition_lines
 from .motion import short_number
-from .text import formula
 
 if TYPE_CHECKING:
-    from sympy import Expr
-
     from ...free_motion import FreeMotion, Law, MotionVerdict, OpenAccelerations, UniversalControls, UniversalLaw
 
 
@@ -115,10 +116,35 @@ def _sample(sample: Iterable[float], law: "Law") -> str:
     return "  ".join(f"{name} = {value:<12.6g}" for name, value in zip(("t", *law), sample, strict=True)).rstrip()
 
 
-def power_series(value: "Expr") -> str:
+def formula(expression: object) -> str:
+    """One line in the notation of the scene files."""
+    return SceneNotation().doprint(expression).replace("**", "^")
+
+
+class SceneNotation(StrPrinter):
+    """SymPy's one-line notation, with Maxima's names of constants and functions."""
+
+    def _print_Function(self, call: Function) -> str:
+        name = FUNCTION_NAMES.get(HEADS.get(call.func), call.func.__name__)
+        return f"{name}({self.stringify(call.args, ', ')})"
+
+    def _print_constant(self, constant: Expr) -> str:
+        return notation.CONSTANTS[CONSTANT_NAMES[constant]]
+
+    _print_Pi = _print_Exp1 = _print_ImaginaryUnit = _print_EulerGamma = _print_constant
+
+
+FUNCTION_NAMES = notation.FUNCTIONS | notation.OF_TWO
+
+
+def power_series(value: Expr) -> str:
     """A truncated series, its terms in the order that they have."""
-    terms = (f"({formula(term)})" if term.is_Add else formula(term) for term in value.args)
-    return " + ".join(terms).replace("+ -", "- ") if value.is_Add else formula(value)
+    terms = [formula(term) if not term.is_Add else f"({formula(term)})" for term in _terms(value)]
+    return " + ".join(terms).replace("+ -", "- ") if terms else "0"
+
+
+def _terms(value: Expr) -> list[Expr]:
+    return [term for term in (value.args if value.is_Add else (value,)) if not term.is_zero]
 
 
 def _series(law: "Law", order: int) -> str:

@@ -48,11 +48,6 @@ def text_of(show: Callable[[Console], None]) -> str:
     return "\n".join(line.rstrip() for line in _shown(show).export_text().splitlines())
 
 
-def formula(expression: object) -> str:
-    """One line in the notation of the scene files."""
-    return str(expression).replace("**", "^")
-
-
 def styled(verdict: str) -> Text:
     """A verdict in its colour."""
     return Text(translated(verdict), style=STYLES[verdict])
