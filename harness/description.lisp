@@ -188,10 +188,11 @@
     text))
 
 (defun described-symbol (name)
-  "Names of Maxima's language begin with $ or %, but for true, false, lambda and the operators."
+  "Names of Maxima's language begin with $ or %, but for true, false, the operators, and those that Maxima reads as
+symbols of its own: lambda, go, return."
   (let ((symbol (find-symbol name :maxima)))
     (cond ((and (plusp (length name)) (find (char name 0) "$%")) (intern name :maxima))
-          ((or (member symbol '(t nil lambda)) (known-operator-p symbol)) symbol)
+          ((or (member symbol '(t nil)) (known-operator-p symbol) (get symbol 'reversealias)) symbol)
           (t (merror "the scene describes its system with ~M, which no document can hold" name)))))
 
 (defun known-operator-p (symbol)

@@ -87,8 +87,8 @@
   (or (get name 'plain-name) name))
 
 (defun letters-of-name (name)
-  "As the user writes it:  lambda  is a symbol of Lisp's own, without the sign that stands before Maxima's."
-  (let ((letters (print-invert-case (plain-name name))))
+  "As the user writes it: Maxima reads  lambda  and  go  as symbols of its own, without the sign that stands before names."
+  (let ((letters (print-invert-case (plain-name (or (get name 'reversealias) name)))))
     (if (member (char letters 0) '(#\$ #\%)) (subseq letters 1) letters)))
 
 (defun read-name (name)

@@ -128,13 +128,22 @@ def test_numbers_under_numer_are_exact_in_the_motion(tmp_path: Path):
     assert ours == theirs
 
 
-def test_a_scene_may_call_its_coordinates_by_the_papers_letters(tmp_path: Path):
-    letters = {"east": "A", "north": "lambda", "reach": "T0", "mass": "christoffel", "weight": "Lambda", "fling": "J"}
+@pytest.mark.parametrize(
+    "letters",
+    [
+        {"east": "A", "north": "lambda", "reach": "T0", "mass": "christoffel", "weight": "Lambda", "fling": "J"},
+        # Maxima reads them as symbols of its own, as `mgo`, which no document could hold
+        {"east": "go", "north": "box", "reach": "return", "mass": "block", "ball": "factorial", "fling": "labox"},
+    ],
+)
+def test_a_scene_may_call_its_coordinates_by_letters_of_the_paper_and_of_maxima(letters, tmp_path: Path):
     scene = BALL
     for word, letter in letters.items():
         scene = re.sub(rf"\b{word}\b", letter, scene)
     (file := tmp_path / "scene.mac").write_text(HOLONOM + scene)
-    report = check_record(derived_record(file))
+    record = derived_record(file)
+    report = check_record(record)
+    assert set(record.system.coordinates) == {letters["east"], letters["north"]}
     assert report.verdicts
     assert report.disagreements == 0
 
