@@ -149,6 +149,22 @@ def test_record(written, record):
     )
 
 
+def test_as_laws_tangents_and_reciprocals_of_functions_were_refused():
+    """A law's rates are Maxima's, among them sec of a tangent: of ddot(x) = f(a + t/4), dot(x) is an integral of f."""
+    controls = [f"u{index}" for index in range(1, len(FUNCTIONS) + 1)]
+    names = NAMES.values()
+    motion = holonom.system(f"""
+        system : holonomic_system(coordinates = [{", ".join(names)}], controls = [{", ".join(controls)}],
+          kinetic_energy = {" + ".join(f"dot({x})^2/2" for x in names)}, forces = [{", ".join(controls)}])$
+        driven : holonomic_scene(system, time_span = [0, 1],
+          control_law = [{", ".join(f"{u} = {at(f, 't')}" for u, f in zip(controls, FUNCTIONS, strict=True))}],
+          initial_state = [{", ".join(f"{x} = 0, dot({x}) = 0" for x in names)}])$""").simulate(samples=2)
+    for written, name in NAMES.items():
+        function, a = exact(written)
+        truth = mpmath.quad(lambda t, f=function, a=a: f(a + t / 4), [0, 1])
+        assert float(motion.report.velocities[f"dot({name})"]) == pytest.approx(float(truth), rel=1e-13), written
+
+
 def test_check(verdicts):
     equations_of_motion = [found for found in verdicts if found.id == "lagrange_equations"]
     assert len(equations_of_motion) == 2  # of each scene's effects

@@ -104,6 +104,7 @@ static int take_step(void *unused, size_t size, double t, double h, double *y, d
                      double *k13, const gsl_odeiv2_system *system)
 {
     (void)unused, (void)size, (void)system;
+    h = (t + h) - t;    /* as far as the time then is: far from zero it is rounded by much of a short step */
     double k2[STATE], k3[STATE], k4[STATE], k5[STATE], k6[STATE], k7[STATE], k8[STATE], k9[STATE], k10[STATE];
     double k11[STATE], k12[STATE], w[STATE], five = 0, three = 0;
     STAGES

@@ -4,6 +4,7 @@ import os
 from dataclasses import replace
 from fractions import Fraction
 
+import mpmath
 import numpy as np
 import pytest
 import scipy.integrate
@@ -36,6 +37,20 @@ def test_a_parabola_is_followed_to_rounding(write_scene):
     motion = RungeKuttaEngine(motion_problem(write_scene(THROWN), Request(), Limits()), 1e-6)
     motion.advance(1.0)
     assert motion.state == pytest.approx([1, 0, 1, -5], abs=1e-13)
+
+
+def test_far_from_zero_a_step_was_longer_or_shorter_than_the_time_it_took(write_scene):
+    """Of ddot(x) = sin(t) from t = 10^9, where instants are 1e-7 apart, dot(x) had an error of 1e-5 after 0.1."""
+    driven = write_scene("""
+        load("holonom.mac")$
+        system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [sin(t)])$
+        scene : holonomic_scene(system, initial_state = [x = 0, dot(x) = 0], time_span = [10^9, 10^9 + 1/10])$""")
+    motion = RungeKuttaEngine(motion_problem(driven, Request(), Limits()))
+    motion.advance(1e9 + 0.1)
+    end = Fraction(motion.time)
+    with mpmath.workdps(30):
+        truth = mpmath.cos(10**9) - mpmath.cos(mpmath.mpf(end.numerator) / end.denominator)
+    assert motion.state[1] == pytest.approx(float(truth), abs=2e-8)
 
 
 def test_the_error_follows_the_tolerance():
