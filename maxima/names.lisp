@@ -10,11 +10,10 @@
 
 (defun $unused_name (letters names)
   "The letters, as often as it takes until with a number behind them they name none of the names."
-  (let* ((once (text-of-expression letters)) (prefix once))
-    (dolist (name (cdr names) (intern-invert-case (concatenate 'string "$" prefix)))
-      (let ((text (text-of-expression name)))
-        (do () ((not (numbered-name-p text prefix)))
-          (setq prefix (concatenate 'string prefix once)))))))
+  (let ((once (text-of-expression letters)) (texts (mapcar #'text-of-expression (cdr names))))
+    (do ((prefix once (concatenate 'string prefix once)))
+        ((notany #'(lambda (text) (numbered-name-p text prefix)) texts)
+         (intern-invert-case (concatenate 'string "$" prefix))))))
 
 (defun numbered-name-p (text prefix)
   (and (> (length text) (length prefix))
