@@ -401,18 +401,21 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
 
 ;;; ---- an initial state --------------------------------------------------------------------
 
-(defun $values_near (point constraints jacobian metric names)
-  "Values of the names, near those of the point in the metric, that make the constraints vanish;
-false where Newton's method does not get there."
-  (let ((*zero-share* *zero-share-of-constraints*) (*small-coordinate* *zero-share-of-constraints*))
+(defvar *kept-digits* 60)
+
+(defun $values_near (point constraints jacobian metric names digits)
+  "Values of the names in so many digits, near those of the point in the metric, that make the constraints
+vanish; false where Newton's method does not get there."
+  (let* ((*kept-digits* digits)
+         (*digits-at-point* (+ digits 20))
+         (*zero-share* (expt 10 (- 5 digits)))
+         (*small-coordinate* *zero-share*))
     (catch 'irregular-point
       (let ((found (newton-iteration point constraints jacobian names metric)))
         (if found
             (cons '(mlist)
                   (mapcar #'(lambda (x) (maxima-number (plain-number (gethash x (sample-point-symbols found)))))
                           (cdr names))))))))
-
-(defvar *kept-digits* 60)
 
 (defun plain-number (number)
   "The fraction of few digits that the number agrees with; else its decimal digits."
