@@ -1,6 +1,6 @@
 """The end of a motion at an event: the first instant at which one of the scene's expressions crosses zero.
 
-They are looked at step by step, as switching functions are (`surfaces.py`), through the engine's dense output. The
+They are looked at part by part, as switching functions are (`surfaces.py`), through the engine's dense output. The
 motion is followed to its end once before it is recorded, so that the recording ends with a step of the engine.
 """
 
@@ -20,6 +20,7 @@ from .piecewise import PiecewiseMotion
 from .surfaces import NODES, Crossing, SignedFunctions
 
 ZERO = 1e-12  # of an expression at the start, beside what it is in the first step: no sign
+POLE = 1e3  # times what an expression is nearby: at a change of its sign it has no zero
 
 
 class Ending(NamedTuple):
@@ -40,10 +41,11 @@ def first_event(motion: PiecewiseMotion, precision: Precision, end: Any) -> Cros
     """
     sides: dict[str, int] = {}
     parts: dict[int, Events] = {}
+    span = float(end - motion.time)
     for piece in motion.pieces(end):
         part = motion.part
         if id(part) not in parts:
-            parts[id(part)] = Events(part.problem, precision, part.engine.solutions)
+            parts[id(part)] = Events(part.problem, precision, span, part.engine.solutions)
         found = parts[id(part)].first_event(piece, sides)
         if found is not None:
             return found
@@ -57,14 +59,20 @@ class Events(SignedFunctions):
     ----------
     problem : MotionProblem
         Without signs.
+    span : float
+        The time span.
     solutions : callable
         As an engine's.
     """
 
     def __init__(
-        self, problem: MotionProblem, precision: Precision, solutions: Callable[[Numbers, Numbers], Solutions]
+        self,
+        problem: MotionProblem,
+        precision: Precision,
+        span: float,
+        solutions: Callable[[Numbers, Numbers], Solutions],
     ) -> None:
-        super().__init__(precision)
+        super().__init__(precision, span)
         self._names, self._others = problem.until, BesideState(problem, precision)
         program = problem.events
         used = set().union(*(names_in(value) for _, value in program.assignments))
@@ -76,18 +84,37 @@ class Events(SignedFunctions):
         """The first crossing within a step.
 
         `sides` are the signs that expressions have had since they left zero; what this step shows is added.
-        """
-        begun = self._see_sides(piece, sides) if len(sides) < len(self._names) else ()
-        self._rows = [(name, -sides[name], sides[name]) for name in self._names if name in sides]
-        return self.first_crossing(piece, begun)
 
-    def _see_sides(self, piece: Piece, sides: dict[str, int]) -> list[str]:
-        """Add the sides that are seen for the first time; those of expressions that are zero at the beginning."""
-        self._rows = [(name, -1, 1) for name in self._names]
+        Raises
+        ------
+        HolonomError
+            An expression has no real, finite value before.
+        """
+        all_rows = self._rows = [(name, -1, 1) for name in self._names]
+        sizes = self._sizes_in(piece) if len(sides) < len(self._names) else None
+        for part, places, values in self._looked_at(piece):
+            begun = () if sizes is None else self._see_sides(values, sizes, sides)
+            known = [row for row, name in enumerate(self._names) if name in sides]
+            self._rows = [(self._names[row], -sides[self._names[row]], sides[self._names[row]]) for row in known]
+            signed = values[known] * np.array([[side] for *_, side in self._rows]).reshape(-1, 1)
+            found = self._first_in(part, places, signed, begun)
+            self._require_values(places, values, found)
+            if found is not None:
+                self._require_crossing(found, part, values)
+                return found
+            self._rows = all_rows
+        return None
+
+    def _sizes_in(self, piece: Piece) -> Numbers:
+        """How large expressions are in a step."""
         _, values = self._samples(piece, NODES)
+        return np.max(np.abs(np.where(np.isfinite(values), values, 0.0)), axis=1)
+
+    def _see_sides(self, values: Numbers, sizes: Numbers, sides: dict[str, int]) -> list[str]:
+        """Add the sides that are seen for the first time; those of expressions that are zero at the beginning."""
         begun = []
-        for name, row in zip(self._names, values, strict=True):
-            seen = np.flatnonzero(np.abs(row) > ZERO * np.max(np.abs(row)))
+        for name, row, size in zip(self._names, values, sizes, strict=True):
+            seen = np.flatnonzero(np.abs(row) > ZERO * size)
             if name in sides or not seen.size:
                 continue
             sides[name] = 1 if row[seen[0]] > 0 else -1
@@ -95,24 +122,30 @@ class Events(SignedFunctions):
                 begun.append(name)
         return begun
 
-    def values(self, instants: Numbers, states: Numbers) -> Numbers:
-        """As `SignedFunctions.values`; expressions whose side is not known are left out.
+    def _require_values(self, places: Numbers, values: Numbers, found: Crossing | None) -> None:
+        """Refuse what has no real, finite value at an instant that the motion reaches."""
+        for row, place in np.argwhere(~np.isfinite(values)):
+            if found is None or places[place] <= found.t:
+                self._refuse(self._names[row], places[place])
 
-        Raises
-        ------
-        HolonomError
-            One has no real, finite value.
-        """
+    def _require_crossing(self, found: Crossing, part: Piece, values: Numbers) -> None:
+        """Refuse a change of sign through infinity, which is no zero."""
+        row = [name for name, *_ in self._rows].index(found.name)
+        at = np.array([found.t])
+        seen = np.abs(values[self._names.index(found.name)])
+        if abs(self.values(at, part.states(at))[row, 0]) > POLE * np.max(seen, where=np.isfinite(seen), initial=0.0):
+            self._refuse(found.name, found.t)
+
+    def _refuse(self, name: str, t: Any) -> None:
+        raise HolonomError(Failure.NO_EVENT_VALUE, detail=f"{name} at t = {float(t):.10g}")
+
+    def values(self, instants: Numbers, states: Numbers) -> Numbers:
+        """As `SignedFunctions.values`; expressions whose side is not known are left out."""
         others = self._others(instants)
         if self._solutions is not None:
             multipliers = self._solutions(instants, states).multipliers
             others[: len(multipliers)] = multipliers
         inputs = np.ascontiguousarray(np.concatenate([np.reshape(instants, (1, -1)), states, others]))
         found = np.array([as_floats(row) for row in self._evaluate(inputs)])
-        if not np.isfinite(found).all():
-            row, place = np.argwhere(~np.isfinite(found))[0]
-            raise HolonomError(
-                Failure.NO_EVENT_VALUE, detail=f"{self._names[row]} at t = {float(instants[place]):.10g}"
-            )
         places = [self._names.index(name) for name, *_ in self._rows]
         return np.array([side for *_, side in self._rows], dtype=float)[:, None] * found[places]

@@ -126,7 +126,7 @@ class Part:
     @cached_property
     def surfaces(self) -> Surfaces:
         """The surfaces on which the pattern ends."""
-        return Surfaces(self._whole, self.pattern, self._precision, self._clock)
+        return Surfaces(self._whole, self.pattern, self._precision, self._end - self._start, self._clock)
 
     @cached_property
     def momenta(self) -> Any:

@@ -1,12 +1,17 @@
 """Switching functions along a motion: where the first of them changes its sign within a step.
 
-They are sampled at Chebyshev's points of a step and interpolated between, by polynomials of degree 32; a step of an
-engine is resolved by fewer. Two zeros close together show by the polynomial's minimum between them. The instant is
-found by halving, to the last bit of its numbers.
+A step is looked at in parts, each a small part of the time span, and shorter where a function is not resolved: it is
+sampled at Chebyshev's points of a part and interpolated between, by a polynomial of degree 32, whose last coefficients
+tell. So nothing is passed over that lasts longer than 1/2048 of the time span; a step says only how smooth the state
+is, not what a function makes of it. Two zeros close together show by the polynomial's minimum between them. The instant
+is found by halving, to the last bit of its numbers.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
+from fractions import Fraction
+from itertools import pairwise
+from math import ceil
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,6 +32,9 @@ PLACES = np.linspace(0.0, 1.0, FINE + 1)
 TO_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(2 * NODES[1:-1] - 1, DEGREE))
 BETWEEN = chebyshev.chebvander(2 * PLACES - 1, DEGREE)
 CORRECTIONS = 4  # of a minimum, by Newton's method
+PARTS, SHORTEST = 128, 1 / 1024  # of the time span: parts that are looked at, at least; parts that are not halved
+SURE = 2  # digits that a function loses beside its largest value: what touches zero may be that much below
+LAST, RESOLVED = 4, 1e-8  # coefficients of a polynomial, and what they are of the largest where it is near
 
 
 class Crossing(NamedTuple):
@@ -40,9 +48,10 @@ class Crossing(NamedTuple):
 class SignedFunctions(ABC):
     """Functions along a motion, each with the sign that it has until its first crossing."""
 
-    def __init__(self, precision: Precision) -> None:
-        self._precision = precision
+    def __init__(self, precision: Precision, span: float) -> None:
+        self._precision, self._span = precision, span
         self._rows: list[tuple[str, int, int]] = []  # name, value after the crossing, sign before it
+        self._sizes: dict[str, float] = {}  # the largest that each function has been
 
     @abstractmethod
     def values(self, instants: Numbers, states: Numbers) -> Numbers:
@@ -63,10 +72,36 @@ class SignedFunctions(ABC):
         """
         if not self._rows:
             return None
-        places, values = self._samples(piece, NODES)
+        for part, places, values in self._looked_at(piece):
+            found = self._first_in(part, places, values, left if part.start == piece.start else ())
+            if found is not None:
+                return found
+        return None
+
+    def _looked_at(self, piece: Piece) -> Iterator[tuple[Piece, Numbers, Numbers]]:
+        """The parts of a step in order, each with its samples."""
+        waiting = list(reversed(self._cut(piece, ceil(float(piece.end - piece.start) / self._span * PARTS))))
+        while waiting:
+            part = waiting.pop()
+            places, values = self._samples(part, NODES)
+            if float(part.end - part.start) > SHORTEST * self._span and not _is_resolved(values):
+                waiting += reversed(self._cut(part, 2))
+            else:
+                yield part, places, values
+
+    def _cut(self, piece: Piece, count: int) -> list[Piece]:
+        """A step in parts of the same length."""
+        if count <= 1:
+            return [piece]
+        numbers = np.array([self._precision.ratio(Fraction(place, count)) for place in range(count)])
+        edges = [*(piece.start + (piece.end - piece.start) * numbers), piece.end]
+        return [Piece(start, end, piece.states) for start, end in pairwise(edges)]
+
+    def _first_in(self, piece: Piece, places: Numbers, values: Numbers, left: Sequence[str]) -> Crossing | None:
         for row, (name, *_) in enumerate(self._rows):
             if name in left:
                 values[row, 0] = max(values[row, 0], 0.0)
+            self._sizes[name] = max(self._sizes.get(name, 0.0), np.max(np.abs(values[row])))
         found = [self._in_row(piece, row, places, values[row]) for row in range(len(self._rows))]
         return min((crossing for crossing in found if crossing), key=lambda crossing: crossing.t, default=None)
 
@@ -94,7 +129,8 @@ class SignedFunctions(ABC):
         if around is None:
             return None
         instants, found = self._samples(piece, around)
-        return tuple(instants) if found[row, 0] >= 0 > found[row, 1] else None
+        rounding = 10.0 ** (SURE - self._precision.sure_digits) * self._sizes[self._rows[row][0]]
+        return tuple(instants) if found[row, 0] >= 0 and found[row, 1] < -rounding else None
 
     def _samples(self, piece: Piece, places: Numbers) -> tuple[Numbers, Numbers]:
         """Instants of a step, and the functions there, shape (surfaces, k)."""
@@ -119,9 +155,9 @@ class Surfaces(SignedFunctions):
     """The surfaces on which a pattern of signs ends, but for signs whose changes are known without looking."""
 
     def __init__(
-        self, problem: MotionProblem, pattern: Pattern, precision: Precision, known: Collection[str] = ()
+        self, problem: MotionProblem, pattern: Pattern, precision: Precision, span: float, known: Collection[str] = ()
     ) -> None:
-        super().__init__(precision)
+        super().__init__(precision, span)
         self._others = BesideState(problem, precision)
         for sign in problem.signs:
             if sign.name not in known:
@@ -148,6 +184,15 @@ def _inside(problem: MotionProblem, pattern: Pattern, name: str, to: int) -> Pro
     if pattern[name] == HELD:
         return switching_function(problem, "drive", name, {**pattern, name: to})
     return switching_function(problem, "switch", name, pattern)
+
+
+def _is_resolved(values: Numbers) -> bool:
+    """Whether polynomials through the samples, shape (functions, samples), are near the functions everywhere."""
+    inner = values[:, 1:-1]
+    if not np.isfinite(inner).all():
+        return False
+    sizes = np.abs(inner @ TO_COEFFICIENTS.T)
+    return bool((sizes[:, -LAST:].max(axis=1) <= RESOLVED * sizes.max(axis=1)).all())
 
 
 def _narrow_dip(coefficients: Vector, between: Vector, end: float) -> Vector | None:

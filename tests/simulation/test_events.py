@@ -68,6 +68,24 @@ def test_two_crossings_within_one_step_are_seen():
     assert float(report.t) == pytest.approx(0.999, rel=1e-14)
 
 
+@pytest.mark.parametrize(
+    ("until", "truth"),
+    [
+        ("cos(1000*x) + 99/100", mpmath.acos(mpmath.mpf("-0.99")) / 3000),
+        ("1/2 - exp(-(1000*(t - 16/5))^2)", 3.2 - mpmath.sqrt(mpmath.log(2)) / 1000),
+        ("sqrt(1 - x) - 1/2", 0.25),  # it has no value soon after
+    ],
+)
+def test_what_turns_within_one_step_of_the_engine_was_passed_over_or_found_late(until, truth):
+    """The step is as long as the motion is smooth: the parabola is one, whatever is made of it."""
+    assert float(thrown(until).simulate(samples=2, engine="taylor").report.t) == pytest.approx(float(truth), rel=1e-13)
+
+
+def test_a_change_of_sign_through_infinity_was_a_zero():
+    with pytest.raises(HolonomError, match=r"no real, finite value: tan\(t\+1\) at t = 0.5707963268"):
+        thrown("tan(t + 1)").simulate(samples=2)
+
+
 def test_a_switched_motion_ends_in_a_later_part():
     """Pushed by 1 until t = 1 and by -1 from there, a body is at 1/2 and as fast as 1 at t = 1, and rests at t = 2."""
     scene = holonom.system("""

@@ -4,7 +4,9 @@ The pendulum of the README in the angle phi, x = u sin(phi): between switchings 
 a kink of u the impulse is radial, so that dot(phi) does not jump.
 """
 
+import math
 from functools import cache
+from itertools import count
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -97,6 +99,20 @@ def test_friction_that_sticks_from_the_start_gave_0_46239(engine):
     report = end_of(pendulum(forces="-12*signum(dot(x)), 0"), engine)
     assert report.coordinates["x"] == pytest.approx(0.6, abs=DIGITS[engine])
     assert report.velocities["dot(x)"] == pytest.approx(0.0, abs=DIGITS[engine])
+
+
+def test_surfaces_that_lie_closer_than_a_step_samples_were_missed():
+    """Over bands of 1/100 pi that push forward and back by turns: v^2 changes by 2 a d over each, t by 2 d/(v + v')."""
+    force, band, t, x, v = 1e-3, math.pi / 100, 0.0, 0.0, 1.0
+    for index in count():
+        width, push = band / 2 if index == 0 else band, force * (-1) ** index
+        left, rest = math.sqrt(v**2 + 2 * push * width), 2 - t
+        if 2 * width / (v + left) > rest:
+            break
+        t, x, v = t + 2 * width / (v + left), x + width, left
+    report = end_of(mass(force="signum(cos(100*x))/1000", v="1", end="2"))
+    assert len(report.switchings) == index
+    assert report.coordinates["x"] == pytest.approx(x + v * rest + push * rest**2 / 2, rel=1e-12)
 
 
 @pytest.mark.parametrize("engine", ENGINES)
