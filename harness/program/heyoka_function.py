@@ -127,7 +127,10 @@ def _arithmetic(heyoka: ModuleType, number: Callable[[Fraction], object]) -> Ari
         return heyoka.expression(number(value))
 
     def power(base: expression, exponent: Fraction) -> expression:
-        return base ** constant(exponent)
+        if exponent.denominator == 1 and exponent > 2:  # heyoka's powers, but squares, divide by the base
+            square = power(base, exponent // 2) ** constant(Fraction(2))
+            return square * base if exponent % 2 else square
+        return base if exponent == 1 else base ** constant(exponent)
 
     def sign(x: expression) -> expression:
         zero, one = constant(Fraction(0)), constant(Fraction(1))

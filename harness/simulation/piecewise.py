@@ -15,7 +15,7 @@ state, an impulse of a surface whose law of impact nobody has given.
 
 from bisect import bisect_left, bisect_right
 from collections import deque
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from enum import StrEnum
 from fractions import Fraction
@@ -289,7 +289,7 @@ class PiecewiseMotion:
     def solutions(self, instants: Numbers, states: Numbers) -> Solutions:
         """What the equations of motion determine at states of the motion, each in its phase."""
         found = [part.engine.solutions(instants[here], states[:, here]) for part, here in self._by_phase(instants)]
-        return Solutions(*(np.concatenate(rows, axis=1) for rows in zip(*found, strict=True)))
+        return Solutions(*(_side_by_side(rows) for rows in zip(*found, strict=True)))
 
     def energy(self, instants: Numbers, states: Numbers) -> Numbers:
         """The energy function at states of the motion, shape (k,)."""
@@ -534,6 +534,12 @@ def _knots_of(problem: MotionProblem, precision: Precision) -> list[tuple[Any, F
     behind = precision.number(problem.start["t"])
     knots = [(precision.ratio(knot), knot) for knot, _ in groupby(merge(*(table.knots for table in problem.tables)))]
     return [(t, knot) for t, knot in reversed(knots) if t > behind]
+
+
+def _side_by_side(parts: Sequence[Numbers]) -> Numbers:
+    """Rows that all parts have: the robust engine adds constraint forces that the scene does not observe."""
+    shared = min(len(rows) for rows in parts)
+    return np.concatenate([rows[:shared] for rows in parts], axis=1)
 
 
 def _size(state: Numbers) -> float:

@@ -7,7 +7,7 @@ import sys
 import heyoka
 import numpy as np
 import pytest
-from programs import PENDULUM, chain
+from programs import PENDULUM, chain, program
 
 from holonom.failures import HolonomError
 from holonom.program.heyoka_function import dynamics, heyoka_expressions, heyoka_function
@@ -35,6 +35,16 @@ def test_control_law_is_a_function_of_time():
     integrator = heyoka.taylor_adaptive(dynamics(chain(1), law), [1.0, 0.0, 0.0, 0.0])
     integrator.propagate_until(1.0)
     assert integrator.state == pytest.approx([2.0, 0.0, 2.0, 0.0], abs=1e-12)
+
+
+@pytest.mark.parametrize("n", [3, 4, 7])
+def test_powers_of_what_is_zero_were_no_numbers(n):
+    """Truth: ddot(x) = (t - x)^n starts as t^n. heyoka's own powers beyond squares divide by their base."""
+    assignments = [("w1", ["Power", ["Subtract", "t", "x"], n])]
+    fall = program(["t", "x", "dot(x)"], assignments, {"ddot(x)": "w1"})
+    integrator = heyoka.taylor_adaptive(dynamics(fall, {}), [0.0, 0.0])
+    integrator.propagate_until(1 / 64)
+    assert integrator.state[0] == pytest.approx(2.0 ** (-6 * (n + 2)) / ((n + 1) * (n + 2)), rel=1e-3)
 
 
 def test_rationals_take_the_precision_asked_for():

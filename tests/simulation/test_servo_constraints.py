@@ -59,23 +59,207 @@ def test_a_two_link_arm_whose_tip_follows_a_circle_needs_the_torques_of_inverse_
     assert max(motion["residual.acceleration"]) < 100 * ENGINES[engine]
 
 
+T = sp.Symbol("t")
+CRANE = """
+hook : [x + l*sin(phi), -l*cos(phi)]$
+system : holonomic_system(coordinates = [x, l, phi], controls = [F, W], parameters = [M, m, g],
+  kinetic_energy = M*dot(x)^2/2 + m*((dot(x) + dot(l)*sin(phi) + l*cos(phi)*dot(phi))^2
+    + (dot(l)*cos(phi) - l*sin(phi)*dot(phi))^2)/2,
+  potential_energy = [gravity = -m*g*l*cos(phi)], forces = [drives = [F, W, 0]])$
+carried : holonomic_scene(system, servo_constraints = [{course}], parameter_values = [M = 2, m = 1, g = 981/100],
+  initial_state = [], initial_guess = [x = 0, l = 2, phi = {phi}, dot(x) = 0, dot(l) = 0, dot(phi) = 0],
+  time_span = [0, 1])$
+"""
+
+
+def flat_crane(across, below):
+    """Of M = 2 and m = 1: the rope points along the load's acceleration less gravity."""
+    pull = sp.diff(across, T, 2), sp.Rational(981, 100) - sp.diff(below, T, 2)
+    phi = -sp.atan(pull[0] / pull[1])
+    tension = sp.sqrt(pull[0] ** 2 + pull[1] ** 2)
+    trolley = across - below * sp.tan(phi)
+    return [trolley, phi, 2 * sp.diff(trolley, T, 2) - tension * sp.sin(phi), -tension]
+
+
+def values(formulas, instants):
+    return np.array([np.broadcast_to(row, len(instants)) for row in sp.lambdify(T, formulas)(instants)])
+
+
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_crane_whose_load_follows_a_line_is_flat(engine, gsl):
     """The rope points along the load's acceleration less gravity, which gives angle, tension and both forces."""
     motion = holonom.load(EXAMPLES / "overhead_crane.mac").simulate(samples=6, engine=engine)
-    t = sp.Symbol("t")
-    across, below = (1 - sp.cos(t)) / 2, 2 - t / 5
-    pull = sp.diff(across, t, 2), sp.Rational(981, 100) - sp.diff(below, t, 2)
-    phi = -sp.atan(pull[0] / pull[1])
-    tension = sp.sqrt(pull[0] ** 2 + pull[1] ** 2)
-    trolley = across - below * sp.tan(phi)
-    force = 2 * sp.diff(trolley, t, 2) - tension * sp.sin(phi)
-    truth = np.array(
-        [np.broadcast_to(row, 6) for row in sp.lambdify(t, [trolley, phi, force, -tension])(motion.instants)]
-    )
+    truth = values(flat_crane((1 - sp.cos(T)) / 2, 2 - T / 5), motion.instants)
     found = np.array([motion[name] for name in ("x", "phi", "F", "W")])
     assert sorted(motion.report.relative_degrees) == [2, 4]
     assert found == pytest.approx(truth, rel=ENGINES[engine], abs=ENGINES[engine])
+
+
+COURSES = {
+    "from rest, under a rope that hangs straight": ("hook[1] = t^5, hook[2] = -2", 0, T**5, 2 + 0 * T),
+    "the outputs in the other order": (
+        "hook[2] = t/5 - 2, hook[1] = (1 - cos(t))/2",
+        0,
+        (1 - sp.cos(T)) / 2,
+        2 - T / 5,
+    ),
+    "along a parabola, an output in terms of the other": (
+        "hook[1] = t^2*(3 - 2*t), hook[2] = hook[1]^2/8 - 3",
+        -0.5,
+        T**2 * (3 - 2 * T),
+        3 - (T**2 * (3 - 2 * T)) ** 2 / 8,
+    ),
+}
+
+
+@pytest.mark.parametrize("course", COURSES)
+def test_a_crane_was_refused(course):
+    """From rest, for one output that is not moved there; along a parabola, for velocities that the outputs fix."""
+    outputs, phi, across, below = COURSES[course]
+    motion = holonom.system(CRANE.format(course=outputs, phi=phi)).simulate(samples=5)
+    found = np.array([motion[name] for name in ("x", "phi", "F", "W")])
+    assert found == pytest.approx(values(flat_crane(across, below), motion.instants), rel=1e-11, abs=1e-11)
+    assert motion.report.trusted
+    assert [leg.engine for leg in motion.report.legs] == ["taylor"]
+
+
+def test_a_rope_that_would_have_to_push_ends_the_motion_in_one_sentence():
+    """It lies level where the course falls as a stone does, X'^2 + X X'' = -g/2; that was LinAlgError."""
+    course = "hook[1] = t^2*(3 - 2*t), hook[2] = hook[1]^2 - 3"
+    across = T**2 * (3 - 2 * T)
+    falls = float(sp.nsolve(2 * sp.diff(across, T) ** 2 + 2 * across * sp.diff(across, T, 2) + 9.81, T, 0.9))
+    with pytest.raises(HolonomError, match=f"beyond t = {falls:.3f}.*, where numbers overflow"):
+        holonom.system(CRANE.format(course=course, phi=-0.5).replace("l = 2", "l = 3")).simulate(samples=2)
+
+
+def test_a_crane_in_space_needs_two_outputs_more():
+    """Rope and load in a plane at any angle to the rails: x and y share what the plane's trolley does."""
+    scene = holonom.system("""
+hook : [x + l*sin(a), y + l*cos(a)*sin(b), -l*cos(a)*cos(b)]$
+system : holonomic_system(coordinates = [x, y, l, a, b], controls = [Fx, Fy, W], parameters = [M, m, g],
+  kinetic_energy = M*(dot(x)^2 + dot(y)^2)/2 + m*sum('diff(hook[k], t)^2, k, 1, 3)/2,
+  potential_energy = [gravity = m*g*hook[3]], forces = [drives = [Fx, Fy, W, 0, 0]])$
+carried : holonomic_scene(system, servo_constraints = [hook[1] = 3*t^4/5, hook[2] = 4*t^4/5, hook[3] = t/5 - 2],
+  parameter_values = [M = 2, m = 1, g = 981/100], initial_state = [], initial_guess = [x = 0, y = 0, l = 2, a = 0,
+  b = 0, dot(x) = 0, dot(y) = 0, dot(l) = 0, dot(a) = 0, dot(b) = 0], time_span = [0, 1])$""")
+    motion = scene.simulate(samples=5)
+    trolley, _, force, pull = values(flat_crane(T**4, 2 - T / 5), motion.instants)
+    assert sorted(motion.report.relative_degrees) == [2, 4, 4]
+    for share, name, along in (0.6, "x", "Fx"), (0.8, "y", "Fy"):
+        assert motion[name] == pytest.approx(share * trolley, rel=1e-11, abs=1e-11)
+        assert motion[along] == pytest.approx(share * force, rel=1e-11, abs=1e-11)
+    assert motion["W"] == pytest.approx(pull, rel=1e-11)
+
+
+QUADROTOR = """
+system : holonomic_system(coordinates = [x, z, th], controls = [F, tau], parameters = [m, J, g],
+  kinetic_energy = (m*(dot(x)^2 + dot(z)^2) + J*dot(th)^2)/2, potential_energy = [gravity = m*g*z],
+  forces = [rotors = [-F*sin(th), F*cos(th), tau]])$
+flown : holonomic_scene(system, servo_constraints = [{outputs}], parameter_values = [m = 1, J = 1/10, g = 981/100],
+  initial_state = [], initial_guess = [x = 0, z = 1/2, th = 0, dot(x) = 1, dot(z) = 0, dot(th) = 0],
+  time_span = [0, 4])$
+"""
+IN_TURN = [("x", "x = sin(t)"), ("z", "z = cos(2*t)/2")]
+NATURAL = (
+    QUADROTOR.replace("[x, z, th]", "[x, z, c, s]")
+    .replace("dot(th)^2", "(dot(c)^2 + dot(s)^2)")
+    .replace("[-F*sin(th), F*cos(th), tau]", "[-F*s, F*c, -tau*s, tau*c]")
+    .replace("tau*c]])", "tau*c]], constraints = [c^2 + s^2 - 1])")
+    .replace("th = 0, ", "c = 1, s = 0, ", 1)
+    .replace("dot(th) = 0", "dot(c) = 0, dot(s) = 0")
+)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        pytest.param(text.format(outputs=", ".join(said for _, said in order)), id=f"{name} {order[0][0]} first")
+        for name, text in (("angle", QUADROTOR), ("natural coordinates", NATURAL))
+        for order in (IN_TURN, IN_TURN[::-1])
+    ],
+)
+def test_a_quadrotor_in_the_plane_is_flat_in_whatever_order_its_outputs_are_named(scene):
+    """Thrust points along the acceleration less gravity; one order was refused, for a start that contradicts."""
+    motion = holonom.system(scene).simulate(samples=9)
+    x, z = sp.sin(T), sp.cos(2 * T) / 2
+    pull = sp.diff(x, T, 2), sp.diff(z, T, 2) + sp.Rational(981, 100)
+    th = -sp.atan(pull[0] / pull[1])
+    truth = values([sp.sqrt(pull[0] ** 2 + pull[1] ** 2), sp.diff(th, T, 2) / 10], motion.instants)
+    assert np.array([motion["F"], motion["tau"]]) == pytest.approx(truth, rel=1e-11, abs=1e-11)
+
+
+TURNING = """
+system : holonomic_system(coordinates = [x, y{more}], controls = [u1, u2{sought}],
+  kinetic_energy = (dot(x)^2 + dot(y)^2{energy})/2, forces = [thrust = [{forces}]])$
+flown : holonomic_scene(system, servo_constraints = [x = sin(t), y = cos(t){course}], initial_state = [],
+  time_span = [0, 2])$
+"""
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_pivot_that_vanishes_on_the_way_made_the_controls_no_numbers(engine, gsl):
+    """M = [[1 - t, -t], [t, 1 - t]] is regular throughout, and its first entry zero at t = 1."""
+    text = TURNING.format(more="", sought="", energy="", course="", forces="u1*(1 - t) - u2*t, u1*t + u2*(1 - t)")
+    motion = holonom.system(text).simulate(samples=5, engine=engine)
+    t = motion.instants
+    truth = [np.linalg.solve([[1 - at, -at], [at, 1 - at]], [-np.sin(at), -np.cos(at)]) for at in t]
+    found = np.array([motion["u1"], motion["u2"]]).T
+    assert found == pytest.approx(np.array(truth), rel=ENGINES[engine])
+
+
+def test_rows_of_any_size_and_outputs_that_one_control_moves_alone():
+    """Of three outputs the third belongs to u3, and what it does to x is known when the others are sought."""
+    text = TURNING.format(
+        more=", z",
+        sought=", u3",
+        energy=" + dot(z)^2",
+        course=", z = t^3",
+        forces="u1*(1 - t) - u2*t + u3, 10^9*(u1*t + u2*(1 - t)), u3*(2 + t)",
+    )
+    motion = holonom.system(text).simulate(samples=5)
+    t = np.asarray(motion.instants)
+    third = 6 * t / (2 + t)
+    right = np.array([-np.sin(t) - third, -np.cos(t) / 1e9])
+    truth = [np.linalg.solve([[1 - at, -at], [at, 1 - at]], both) for at, both in zip(t, right.T, strict=True)]
+    assert motion["u3"] == pytest.approx(third, rel=1e-14)
+    found = np.array([motion["u1"], motion["u2"]]).T
+    assert found == pytest.approx(np.array(truth), rel=1e-13, abs=1e-13)
+
+
+MASSES = """
+system : holonomic_system(coordinates = [x, y], controls = [u{more}], parameters = [m, n, k],
+  kinetic_energy = (m*dot(x)^2 + n*dot(y)^2)/2, potential_energy = [spring = k*(x - y)^2/2],
+  forces = [drive = [u, 0]{forces}]{entries})$
+led : holonomic_scene(system, servo_constraints = [{course}], parameter_values = [m = 2, n = 3, k = 5],
+  {law}initial_state = [], time_span = [0, 2])$
+"""
+
+
+def masses(course, more="", forces="", entries="", law=""):
+    return holonom.system(MASSES.format(course=course, more=more, forces=forces, entries=entries, law=law))
+
+
+def test_two_masses_and_a_spring_have_the_known_feedforward():
+    motion = masses("y = sin(t)").simulate(samples=5)
+    y = np.sin(motion.instants)
+    assert motion["u"] == pytest.approx(2 * 3 / 5 * y - (2 + 3) * y, abs=1e-14)
+    assert motion.report.relative_degrees == (4,)
+
+
+def test_a_course_by_if_was_refused_for_a_function_that_no_program_has():
+    """At rest, then y = (t - 1)^5: four rates are continuous, and so are all controls but one kink."""
+    motion = masses("y = if t < 1 then 0 else (t - 1)^5").simulate(samples=9)
+    s = np.maximum(np.asarray(motion.instants) - 1, 0)
+    assert motion["u"] == pytest.approx(6 / 5 * 120 * s + 5 * 20 * s**3, abs=1e-12)
+    assert motion["x"] == pytest.approx(s**5 + 3 / 5 * 20 * s**3, abs=1e-13)
+
+
+def test_a_course_that_asks_for_third_rates_of_a_law_was_followed_without_them():
+    """Relative degree 4, and w has two rates: dot(x) was given without the third, and the energy was lost."""
+    with pytest.raises(HolonomError, match="contains further rates of w than a control has; write its law"):
+        masses("y = w", ", w", entries=", drawing = [point([w, 0])]", law="control_law = [w = sin(2*t)], ").simulate(
+            samples=2
+        )
 
 
 def test_a_reaction_stays_where_a_constraint_is_the_systems_own():
@@ -131,6 +315,26 @@ REFUSED = {
     "the same output twice": (
         ARM.replace("l*sin(a) + l*sin(b) = sin(t)/4", "2*l*cos(a) + 2*l*cos(b) = 3"),
         "servo_constraints cannot be kept: no control reaches them",
+    ),
+    "outputs that fix what a constraint fixes": (
+        ROD.replace("x - sin(2*t)/5", "(p - x)^2 + q^2 = 1"),
+        "leave the controls F undetermined: the constraints, or some of the outputs, imply",
+    ),
+    "what holds on the constraints alone": (
+        ROD.replace("x - sin(2*t)/5", "sqrt((p - x)^2 + q^2) = 1"),
+        "leave the controls F undetermined: the constraints, or some of the outputs, imply",
+    ),
+    "the same output twice, in agreement": (
+        ARM.replace("l*sin(a) + l*sin(b) = sin(t)/4", "2*l*cos(a) + 2*l*cos(b) = 2*({across})"),
+        "leave the controls tau1, tau2 undetermined: the constraints, or some of the outputs, imply",
+    ),
+    "a damper on the way, whose relative degree of four was called three": (
+        """
+        system : holonomic_system(coordinates = [x, y, z], controls = [F],
+          kinetic_energy = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2, forces = [push = [F, 0, 0],
+          damping = [dot(y) - dot(x), dot(x) - 2*dot(y) + dot(z), dot(y) - dot(z)]])$
+        odd : holonomic_scene(system, servo_constraints = [z - t^4], initial_state = [x = 0])$""",
+        "have a relative degree above 3",
     ),
     "a relative degree of three": (
         """

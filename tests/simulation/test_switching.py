@@ -10,8 +10,10 @@ from itertools import count
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import numpy as np
 import pytest
 
+import holonom
 from holonom.confined import Limits
 from holonom.failures import Failure, HolonomError
 from holonom.program.motion_problem import MotionProblem, motion_problem
@@ -216,3 +218,13 @@ def test_a_drawing_takes_each_sign_as_it_is_where_it_is_drawn():
     draw = NumpyFunction(drawing_at_any_time(problem).program)
     assert draw([0.5, 0.0, 0.0, 0.0]).tolist() == [0.0, 1.0]
     assert draw([2.0, 0.0, 0.0, 0.0]).tolist() == [0.0, 2.0]
+
+
+def test_phases_that_different_engines_follow_could_not_be_put_together():
+    """In closed form, (t - 1)^(9/2)/(63/4): heyoka has no powers of zero that are not whole, the robust engine has."""
+    motion = holonom.system("""
+system : holonomic_system(coordinates = [x], controls = [u], kinetic_energy = dot(x)^2/2, forces = [u])$
+pushed : holonomic_scene(system, control_law = [u = if t < 1 then 0 else (t - 1)^(5/2)],
+  initial_state = [x = 0, dot(x) = 0], time_span = [0, 2], observe = [trajectory, residuals])$""").simulate(samples=9)
+    assert {leg.engine for leg in motion.report.legs} == {"taylor", "robust"}
+    assert motion["x"] == pytest.approx(np.maximum(motion.instants - 1, 0) ** 4.5 * 4 / 63, abs=1e-10)

@@ -22,7 +22,7 @@ from ...program.sign_pattern import in_numbers
 from ...program.table_numbers import OfTime
 from ..diagnosis import Instant
 from ..evaluation import Numbers, as_floats
-from ..matrices import MotionMatrices, Vector, start_of
+from ..matrices import Matrices, MotionMatrices, Vector, start_of
 from .directions import DEPENDENT, WeightedConstraints, rank_of, weighted_constraints
 from .projection import InconsistentConstraints, settle
 
@@ -88,8 +88,13 @@ def least_of(singular_values: Vector, rank: int) -> float:
 
 def singular_values_at(matrices: MotionMatrices, t: float, state: Vector) -> Vector:
     """Singular values of the scaled constraints at a state, the largest first."""
-    at = matrices(t, state)
-    return weighted_constraints(at.mass, at.jacobian).singular_values()
+    return _scaled(matrices(t, state), t).singular_values()
+
+
+def _scaled(at: Matrices, t: float) -> WeightedConstraints:
+    if not at.finite:
+        raise HolonomError(Failure.NO_WAY_ON, detail=f"{t:.10g}, where numbers overflow")
+    return weighted_constraints(at.mass, at.jacobian)
 
 
 class Watch:
@@ -128,8 +133,7 @@ class Watch:
         return self._names[left.argmin()] if left.min(initial=1.0) < VANISHED else None
 
     def _constraints(self, t: float, state: Numbers) -> WeightedConstraints:
-        at = self._matrices.independent(float(t), as_floats(state))
-        return weighted_constraints(at.mass, at.jacobian)
+        return _scaled(self._matrices.independent(float(t), as_floats(state)), float(t))
 
 
 def vanishing_instants(problem: MotionProblem, matrices: MotionMatrices, end: float) -> list[float]:
