@@ -19,7 +19,7 @@ EPSILON = float(np.finfo(float).eps)
 DEPENDENT = 1e-12  # singular values of the scaled constraints, relative to the largest, that count as rounding
 INVOLVED = 1e-6  # share of a constraint in a vanishing combination that is more than rounding
 NEGATIVE = 1e-12  # masses below zero, relative to the largest, that are more than rounding
-SINGULAR_MASS = 64 * EPSILON  # what elimination may leave of a diagonal entry of A before A counts as singular
+SINGULAR_MASS = 64 * EPSILON  # reciprocal condition number of A, its diagonal one, below which A counts as singular
 
 
 @dataclass(frozen=True)
@@ -96,10 +96,21 @@ def rank_of(singular_values: Vector, negligible: float = DEPENDENT) -> int:
 
 
 def _cholesky(metric: Matrix) -> Matrix | None:
-    """L, lower triangular; None where the metric is singular."""
-    factor, failed = lapack().dpotrf(metric, lower=1, clean=1)
-    regular = not failed and np.all(factor.diagonal() ** 2 > SINGULAR_MASS * metric.diagonal())
-    return factor if regular else None
+    """L, lower triangular; None where the metric, its diagonal scaled to one, is singular.
+
+    What elimination leaves of the last entry alone does not tell: rounding there grows as the pivots before it shrink.
+    """
+    lengths = np.sqrt(or_one(metric.diagonal()))
+    scaled = metric / np.outer(lengths, lengths)
+    factor, failed = lapack().dpotrf(scaled, lower=1, clean=1)
+    if failed or _reciprocal_condition(factor, scaled) < SINGULAR_MASS:
+        return None
+    return lengths[:, None] * factor
+
+
+def _reciprocal_condition(factor: Matrix, metric: Matrix) -> float:
+    """1/(|A| |A^-1|) in the norm of the largest column."""
+    return lapack().dpocon(factor, np.abs(metric).sum(axis=0).max(initial=0.0), uplo="L")[0]
 
 
 def or_one(lengths: Vector) -> Vector:

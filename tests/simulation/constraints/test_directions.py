@@ -1,0 +1,28 @@
+"""The metric of the constraints' directions, where A is singular: by the symmetry of Euler parameters."""
+
+import numpy as np
+import pytest
+
+from holonom.simulation.constraints.directions import weighted_constraints
+
+
+@pytest.mark.parametrize("small", [0.1, 1e-2, 1e-4, 1e-8, 0.0])
+@pytest.mark.parametrize("place", range(4))
+def test_the_mass_of_a_body_in_euler_parameters_is_singular_whichever_of_them_is_small(place, small):
+    """A = 4 L^T I L knows no inertia along e. Rounding was taken for one where the last parameter is small."""
+    e = np.insert(np.sqrt((1 - small**2) / np.array([2.0, 3.0, 6.0])), place, small)
+    L = np.array([[-e[1], e[0], e[3], -e[2]], [-e[2], -e[3], e[0], e[1]], [-e[3], e[2], -e[1], e[0]]])
+    weighted = weighted_constraints(4 * L.T @ np.diag([1.0, 2.0, 3.0]) @ L, np.array([2 * e, L[0] + e]))
+    assert weighted.stiffening is not None
+    values = weighted.singular_values()
+    assert values[0] < 10 * values[-1]
+
+
+def test_units_of_the_coordinates_make_no_mass_singular():
+    """Masses of 1 and 10^-30 on a diagonal, and coupled as strongly as those of a pendulum of two links."""
+    units = np.array([1.0, 1e-15])
+    for coupling in (0.0, 0.9):
+        mass = np.array([[1.0, coupling], [coupling, 1.0]]) * np.outer(units, units)
+        weighted = weighted_constraints(mass, np.ones((1, 2)))
+        assert weighted.stiffening is None
+        np.testing.assert_allclose(weighted.factor @ weighted.factor.T, mass, rtol=1e-14)
