@@ -1,8 +1,9 @@
 """Largest values and zeros of what is followed along motions, from its polynomials step by step.
 
-A Taylor step ends well inside the circle of convergence, so the polynomial of a step falls off like a geometric series:
-its coefficients bound it and its slope, few steps can hold the largest value, and a few samples tell the shape of it in
-one. Polynomials are evaluated by functions that heyoka compiles, many at a time.
+A Taylor step ends well inside the circle of convergence of the state, so the polynomial of a step falls off like a
+geometric series, if what is made of the state does not change much faster: its coefficients bound it and its slope, few
+steps can hold the largest value, and a few samples tell the shape of it in one. Polynomials are evaluated by functions
+that heyoka compiles, many at a time.
 
 Every operation is done element by element: what comes out for a motion does not hang on the others beside it.
 """
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 from .polynomials import peak_of, root_of, sizes_of, values_at
 
 SAMPLES = 17  # of a step
+LAST, RESOLVED = 2, 1e-6  # coefficients of a step, and what they are of the largest where the polynomial is near
 MARGIN = 1e-9  # of the sizes of the coefficients: rounding of the bound, generously
 
 Floats = NDArray[np.float64]
@@ -34,6 +36,11 @@ class Steps(NamedTuple):
     def negative(self) -> "Steps":
         """The quantity with the opposite sign."""
         return self._replace(coefficients=-self.coefficients)
+
+    def resolved(self) -> NDArray[np.bool_]:
+        """Whether polynomials are near the quantity, their last coefficients small, in each lane, shape (lanes,)."""
+        sizes = np.abs(self.coefficients)
+        return sizes[-LAST:].max(axis=(0, 1)) <= RESOLVED * sizes.max(axis=(0, 1))
 
     def of(self, lanes: Any) -> "Steps":
         """Some of the lanes."""

@@ -12,7 +12,8 @@ Runge-Kutta engine in C takes tens of times as long, and heyoka's single integra
 integrator for each batch, which takes longer than to follow it.
 
 After a block of steps the states are projected onto the constraints. A lane whose steps shrink suddenly, that leaves
-the constraints too far inside a block, or that takes too many steps, is left to `holonom.sweeps.single`.
+the constraints too far inside a block, that takes too many steps, or whose steps are too long for what is looked at, is
+left to `holonom.sweeps.single`.
 """
 
 from collections.abc import Callable, Sequence
@@ -49,7 +50,7 @@ class Followed(NamedTuple):
     """Motions as far as they were followed."""
 
     states: Floats  # shape (stops, 2n, k): at each instant asked for; the last is the end
-    arrived: NDArray[np.bool_]  # shape (k,): where the states mean something
+    arrived: NDArray[np.bool_]  # shape (k,): where the states mean something, and the polynomials along the motion
     seen: Floats  # shape (numbers, k): what was made of the quantities along the motions
 
 
@@ -127,6 +128,7 @@ class LaneEngine:
             found[:, :, here], arrived[here], steps = self._batch(starts[:, here], values[:, here], _of(stops, here))
             if self._along:
                 seen.append(self._look(steps))
+                arrived[here] &= np.logical_and.reduce([each.resolved() for each in steps])
         found = self._on_constraints(found, values, stops, arrived)
         return Followed(found, arrived, np.concatenate(seen, axis=1) if seen else np.empty((0, k)))
 

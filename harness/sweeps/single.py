@@ -25,7 +25,7 @@ from ..simulation.simulate import end_of, followable
 from .extremes import Steps
 from .quantities import expressions_of, solved_names
 
-PARTS = 4  # of a step, each with a polynomial of its own
+PARTS, MOST_PARTS, FINER = 4, 4096, 4  # of a step, each with a polynomial of its own; that are tried next
 NODES = -np.cos(np.pi * (np.arange(9) + 0.5) / 9)  # of Chebyshev
 TO_POWERS = np.linalg.inv(polynomial.polyvander(NODES, len(NODES) - 1))
 
@@ -91,12 +91,19 @@ class SingleMotions:
         return SingleMotion(end, np.array(states), np.array(points), _steps(taken), _residual(motion), missed)
 
     def _polynomials(self, motion: PiecewiseMotion, problem: MotionProblem, piece: Piece) -> list[tuple]:
-        """The quantities on the parts of a step: middle, half length, coefficients."""
-        edges = np.linspace(float(piece.start), float(piece.end), PARTS + 1)
+        """The quantities on parts of a step so short that coefficients fall off: middle, half length, coefficients."""
+        count, found = PARTS, self._in_parts(motion, problem, piece, PARTS)
+        while count < MOST_PARTS and not all(each.resolved().all() for each in _steps(found)):
+            count *= FINER
+            found = self._in_parts(motion, problem, piece, count)
+        return found
+
+    def _in_parts(self, motion: PiecewiseMotion, problem: MotionProblem, piece: Piece, count: int) -> list[tuple]:
+        edges = np.linspace(float(piece.start), float(piece.end), count + 1)
         middles, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2
         instants = (middles[:, None] + half[:, None] * NODES).ravel()
         values = self._values(motion, problem, instants, piece.states(instants))[: self._along]
-        parts = values.reshape(self._along, PARTS, len(NODES)) @ TO_POWERS.T
+        parts = values.reshape(self._along, count, len(NODES)) @ TO_POWERS.T
         return list(zip(middles, half, np.moveaxis(parts, 1, 0), strict=True))
 
     def _values(self, motion: PiecewiseMotion, problem: MotionProblem, instants: Floats, states: Floats) -> Floats:

@@ -150,6 +150,15 @@ def test_a_narrow_smooth_feature_was_stepped_over(engine):
     assert report.trusted
 
 
+def test_a_law_with_a_far_pulse_took_all_memory():
+    """exp(-2500000000) is no fraction to be written out. Truth: the pulse gives a velocity of sqrt(pi)."""
+    text = MASS.replace("coordinates = [x]", "coordinates = [x], controls = [u]").replace(
+        "(system, ", "(system, control_law = [u = 10^4*exp(-((t - 5)/10^-4)^2)], "
+    )
+    report = end_of(asked(text.format(potential="0", force="u", x="0", v="0", end="10")))
+    assert report.velocities["dot(x)"] == pytest.approx(math.sqrt(math.pi), rel=1e-12)
+
+
 def test_a_law_that_decays_like_one_over_cosh_overflowed():
     report = end_of(pendulum(law="1 + 1/cosh(1000*(t - 1/2))"))
     assert report.coordinates["x"] == pytest.approx(-0.5979952624087093629942783, abs=1e-12)

@@ -35,6 +35,7 @@ system : holonomic_system(coordinates = [x, z], parameters = [g],
   kinetic_energy = (dot(x)^2 + dot(z)^2)/2, potential_energy = g*z, constraints = [])$
 thrown : holonomic_scene(system, parameter_values = [g = 10],
   initial_state = [x = 0, z = 0, dot(x) = 1, dot(z) = 5], time_span = [0, 3], until = [z = 0, x = 5/2])$"""
+TURNING = THROWN.replace("z = 0, x = 5/2", "cos(1000*x) = -99/100")
 SKIDDING = FRICTION.replace("time_span = [0, 3]", "time_span = [0, 3], until = [x = 1/4]")
 PUSHED = """load("holonom.mac")$
 system : holonomic_system(coordinates = [x], parameters = [k, m, q],
@@ -63,6 +64,7 @@ def scenes(tmp_path_factory):
         "hanging": HANGING,
         "friction": FRICTION,
         "thrown": THROWN,
+        "turning": TURNING,
         "skidding": SKIDDING,
         "pushed": PUSHED,
         "names": NAMES,
@@ -70,6 +72,18 @@ def scenes(tmp_path_factory):
     }.items():
         (folder / f"{name}.mac").write_text(text)
     return folder
+
+
+def test_what_turns_within_one_step_ended_rows_late_and_had_another_largest_value(rows_of, scenes):
+    """A body thrown is one step of the engine for all of its way; x = t."""
+    ended = columns(rows_of(scenes / "turning.mac", "final", "g=9:10:2").table(0, 2))
+    ends = np.arccos(-0.99) / 1000
+    assert ended["x"] == pytest.approx([ends, ends], rel=1e-12)
+    t = np.linspace(0, 0.9, 10**6)
+    thrown = columns(rows_of(scenes / "thrown.mac", "max(cos(100*x + 1/3) + z/100)", "g=9:10:2").table(0, 2))
+    (seen,) = [values for name, values in thrown.items() if name.startswith("max")]
+    for g, found in zip((9, 10), seen, strict=True):
+        assert found == pytest.approx(np.max(np.cos(100 * t + 1 / 3) + (5 * t - g * t**2 / 2) / 100), abs=1e-8)
 
 
 def test_the_oscillator_is_the_cosine(rows_of, scenes):
