@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ..failures import Failure, HolonomError
 from ..program.heyoka_function import import_heyoka
 from ..program.motion_problem import MotionProblem, require_analytic
-from ..program.motion_program import Expression, Name
+from ..program.motion_program import Expression, Name, Operation, Program, calls_in
 from ..program.precision import read_precision
 from ..simulation.diagnostics import scaled_residual
 from ..simulation.evaluation import in_full_vectors
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 
 TOLERANCE = 1e-12  # of a step
 FEW = 10  # steps
+KINKED = frozenset({Operation.ABS, Operation.SIGN, Operation.ARCTAN2})  # with kinks, or jumps
 GROUP = 10_000  # rows that are held in memory at a time, whatever the chunk
 
 OWN = ("row", str(Kind.RESIDUAL), "status", "remark")  # columns of every sweep
@@ -157,7 +158,9 @@ class RowMaker:
     @property
     def _batched(self) -> bool:
         """Whether lanes can follow motions of the problem at all."""
-        return not (self._problem.signs or self._problem.tables) and self._problem.obstacle is None and not self._hides
+        problem = self._problem
+        ends_smoothly = problem.events is None or not _has_kinks(problem.events)
+        return ends_smoothly and not (problem.signs or problem.tables) and problem.obstacle is None and not self._hides
 
     def _together(self, rows: "_Rows", there: NDArray, states: Floats, stops: Sequence[float]) -> NDArray:
         """Follow motions in lanes; those that this does not do for."""
@@ -314,6 +317,12 @@ class RowMaker:
     @cached_property
     def _watch(self) -> TimeWatch:
         return TimeWatch(self._problem, self._end)
+
+
+def _has_kinks(program: Program) -> bool:
+    """Whether a program computes what polynomials of steps go beyond: they know one side of a sign, or of a cut."""
+    expressions = [*(expression for _, expression in program.assignments), *program.outputs.values()]
+    return any(call.operation in KINKED for expression in expressions for call in calls_in(expression))
 
 
 class _Rows:

@@ -57,6 +57,28 @@
 
 (defun weight-of-sign (sign) (div (add 1 sign) 2))
 
+;; Of an if that it cannot decide Maxima evaluates the first condition alone: what is called behind it is not called yet.
+(defun $with_branches_evaluated (e)
+  "The expression with the functions called that the branches of an if in it call."
+  (cond ((or (atom e) (member 'array (car e))) e)
+        ((eq (caar e) 'mcond)
+         (cons (car e) (mapcar #'(lambda (part) ($with_branches_evaluated (if (calls-p part) (meval part) part))) (cdr e))))
+        (t (let ((parts (mapcar #'$with_branches_evaluated (cdr e))))
+             (if (same-items-p parts (cdr e)) e (simplifya (cons (car e) parts) t))))))
+
+(defun calls-p (e)
+  "Whether an expression calls a function that Maxima, the library or the scene defines, and does not only simplify."
+  (and (consp e)
+       (consp (car e))
+       (or (let ((operator (caar e)))
+             (and (symbolp operator)
+                  (not (get operator 'operators))
+                  (not (eq operator 'mcond))
+                  (or (mgetl operator '(mexpr mmacro))
+                      (getl operator '(mfexpr mfexpr* mfexpr*s))
+                      (and (char= (char (symbol-name operator) 0) #\$) (fboundp operator)))))
+           (some #'calls-p (cdr e)))))
+
 ;; A branch of weight zero is dropped by whoever puts the signs in.
 (defun conditional-with-signs (clauses)
   "Clauses are condition, value, condition, value, ... as Maxima keeps them."

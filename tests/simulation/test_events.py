@@ -74,6 +74,8 @@ def test_two_crossings_within_one_step_are_seen():
         ("cos(1000*x) + 99/100", mpmath.acos(mpmath.mpf("-0.99")) / 3000),
         ("1/2 - exp(-(1000*(t - 16/5))^2)", 3.2 - mpmath.sqrt(mpmath.log(2)) / 1000),
         ("sqrt(1 - x) - 1/2", 0.25),  # it has no value soon after
+        ("max(x, y + 3) - 39/10", 1.3),
+        ("if x < 1 then -1 else x - 5/4", 5 / 12),
     ],
 )
 def test_what_turns_within_one_step_of_the_engine_was_passed_over_or_found_late(until, truth):

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.integrate import cumulative_simpson
+from scipy.integrate import cumulative_simpson, quad
 from scipy.interpolate import CubicSpline
 
 import holonom
@@ -160,6 +160,12 @@ def test_many_points(driven):
         ('table("drive.csv")', "0, 1", "", "drive.csv: a table needs two points at least; it has 0"),
         ('table("other.csv")', "0, 1", "", "there is no file other.csv beside the scene"),
         ("diff(table([[0, 0], [1, 2]]), t)", "0, 1", "", "derivative"),
+        (
+            "subst(t = 2*t, table([[0, 0], [2, 2]]))",
+            "0, 1",
+            "",
+            "the table of u is put at 2*t, and a table is of t alone",
+        ),
     ],
 )
 def test_a_bad_table_is_refused_in_one_sentence(driven, law, span, csv, said):
@@ -176,6 +182,26 @@ def test_a_series_was_summed_up_where_the_law_is_another(driven):
     with pytest.raises(HolonomError, match="where t-1 changes its sign the motion is another"):
         values_at(series, Fraction(3, 2))
     assert driven("t^2").series(order=4).switch is None
+
+
+def test_what_an_if_calls_in_its_branches_was_left_uncalled_and_refused(driven):
+    """A table, a function of the scene, a derivative, behind conditions that nobody decides beforehand."""
+    law = f"if t < 1 then table({points()}) elseif later(t) < 5 then diff(sin(t), t) else later(t)"
+    scene = driven(f"block(define(later(s), s^2), {law})")
+    motion = scene.simulate(samples=9)
+
+    spline = CubicSpline(*np.array(POINTS).T, bc_type="natural")
+
+    def push(t):
+        if t < 1:
+            return float(spline(t))
+        return math.cos(t) if t * t < 5 else t * t
+
+    def moved(t):
+        inner = [(max(a, 0), min(b, t)) for a, b in ((0, 1), (1, math.sqrt(5)), (math.sqrt(5), 4)) if a < t]
+        return 1 - 2 * t + sum(quad(lambda s: (t - s) * push(s), a, b, epsabs=1e-13)[0] for a, b in inner)
+
+    assert motion["x"] == pytest.approx([moved(t) for t in motion.instants], rel=1e-11)
 
 
 def test_no_motion_leads_beyond_the_last_point(driven):

@@ -36,6 +36,7 @@ system : holonomic_system(coordinates = [x, z], parameters = [g],
 thrown : holonomic_scene(system, parameter_values = [g = 10],
   initial_state = [x = 0, z = 0, dot(x) = 1, dot(z) = 5], time_span = [0, 3], until = [z = 0, x = 5/2])$"""
 TURNING = THROWN.replace("z = 0, x = 5/2", "cos(1000*x) = -99/100")
+BEYOND_A_KINK = THROWN.replace("z = 0, x = 5/2", "abs(x - 1) + x = 3/2")
 SKIDDING = FRICTION.replace("time_span = [0, 3]", "time_span = [0, 3], until = [x = 1/4]")
 PUSHED = """load("holonom.mac")$
 system : holonomic_system(coordinates = [x], parameters = [k, m, q],
@@ -65,6 +66,7 @@ def scenes(tmp_path_factory):
         "friction": FRICTION,
         "thrown": THROWN,
         "turning": TURNING,
+        "beyond_a_kink": BEYOND_A_KINK,
         "skidding": SKIDDING,
         "pushed": PUSHED,
         "names": NAMES,
@@ -84,6 +86,12 @@ def test_what_turns_within_one_step_ended_rows_late_and_had_another_largest_valu
     (seen,) = [values for name, values in thrown.items() if name.startswith("max")]
     for g, found in zip((9, 10), seen, strict=True):
         assert found == pytest.approx(np.max(np.cos(100 * t + 1 / 3) + (5 * t - g * t**2 / 2) / 100), abs=1e-8)
+
+
+def test_an_end_beyond_a_kink_was_never_met(rows_of, scenes):
+    """abs(x - 1) + x is 1 up to x = 1, and 3/2 at x = 5/4."""
+    found = columns(rows_of(scenes / "beyond_a_kink.mac", "final", "g=9:10:2").table(0, 2))
+    assert found["x"] == pytest.approx([5 / 4, 5 / 4], rel=1e-12)
 
 
 def test_the_oscillator_is_the_cosine(rows_of, scenes):
