@@ -41,8 +41,8 @@ ADVICE = {
         "digits of the phase for every tenfold time, or take quadruple precision."
     ),
     HardCase.FREE_CANCELLATION: translatable(
-        "The motion is free: every multiplier is a difference that cancels, so read values below 1e-13 of the forces "
-        "as zero, and let `holonom free` prove it."
+        "At the instants that were kept the constraints exert no force: every multiplier is a difference that cancels, "
+        "so read values below 1e-13 of the forces as zero, and let `holonom free` tell whether the motion is free."
     ),
     HardCase.VANISHING_LENGTH: translatable(
         "A controlled length goes through zero, where its constraint has no gradient and no reaction can act: "

@@ -64,7 +64,7 @@ def hard_cases(
     independent : sequence of int
         Constraints, from 0, that are not known to follow from the others.
     multipliers : ndarray, shape (g,)
-        At the end.
+        The largest sizes that they had at the instants that were kept.
     steps : int
         That the motion took.
 
@@ -142,7 +142,7 @@ def _largest(at: Matrices) -> float:
 
 
 def _free(ends: Sequence[Matrices], multipliers: Vector) -> bool:
-    """Whether the constraints make no force to speak of at the end, although there are other forces."""
+    """Whether the constraints made no force to speak of, although there are other forces."""
     forces = max(float(np.abs(at.force).max(initial=0.0)) for at in ends)
-    reaction = float(np.abs(ends[-1].jacobian.T @ multipliers).max(initial=0.0))
-    return forces > 0 and len(multipliers) > 0 and reaction <= FREE * forces
+    reaction = max(float((np.abs(at.jacobian.T) @ multipliers).max(initial=0.0)) for at in ends)
+    return 0 < forces < np.inf and len(multipliers) > 0 and reaction <= FREE * forces

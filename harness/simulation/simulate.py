@@ -17,7 +17,7 @@ from .diagnostics import condition, residuals
 from .engines.engine import Piece, Solutions
 from .evaluation import Numbers, as_floats, one_blas_thread
 from .events import Ending, first_event
-from .matrices import Matrices, Vector
+from .matrices import Matrices
 from .passed_over import StepsHeldAgainstTheEquations
 from .piecewise import PiecewiseMotion
 from .recording import Recording, Stretch
@@ -56,7 +56,7 @@ def follow(
     HolonomError
         The request cannot be met: its precision, tolerance, engine or end; or the motion cannot be followed so far.
     """
-    with one_blas_thread():
+    with one_blas_thread(), np.errstate(all="ignore"):  # numbers that leave their range are doubted in the report
         end, ending = end_of(problem, request)
         with doing("compiling the motion"):
             prepared = _Simulation(followable(problem, request), request, take, end, ending)
@@ -125,6 +125,7 @@ class _Simulation:
         zero = self.precision.number("0")
         self.recording = Recording(self.motion, self._wanted_instants(), zero, self._hand_on)
         self.exchange = Exchange()
+        self.reactions = np.zeros(len(problem.multipliers))  # the largest multipliers so far
         self.steps = (
             StepsHeldAgainstTheEquations(self.motion, self.end - self.start, self.precision)
             if may_hide(problem.matrices, problem.parameters)
@@ -144,6 +145,9 @@ class _Simulation:
         """Work out what is observed at samples, and what the report needs of them."""
         instants, states, works = stretch
         self.solutions = self.motion.solutions(instants, states)
+        self.reactions = np.array(
+            [_largest(row, known) for row, known in zip(self.solutions.multipliers, self.reactions, strict=True)]
+        )
         energies = self._energies(instants, states, works)
         self.exchange.add(works, energies["energy"], energies["energy_error"])
         self.take(
@@ -237,7 +241,7 @@ class _Simulation:
             compile_seconds=self.compile_seconds + self.motion.compile_seconds,
             run_seconds=seconds,
             correction=self.problem.correction,
-            cases=self._cases(state, as_floats(multipliers)),
+            cases=self._cases(state),
             switchings=tuple(self.motion.switchings),
             ending=self.ending,
             choice=self.motion.choice,
@@ -253,7 +257,7 @@ class _Simulation:
         error, scale = self._energy_missed(at)
         within = {} if self.steps is None else {"acceleration": self.steps.missed}
         kept = {name: left[name] for name in ("position", "velocity")}
-        return {**kept, "energy": error / scale if scale > 0 else error, **within}
+        return {**kept, "energy": error / scale if 0 < scale < np.inf else error, **within}
 
     def _energy_missed(self, at: Matrices) -> tuple[float, float]:
         """The largest energy error on the way, and the size of the energies that it is an error of."""
@@ -261,11 +265,13 @@ class _Simulation:
         scale = max(energy_scale(self.motion.matrices(float(self.start), first), first), energy_scale(at, last))
         return self.exchange.error, max(scale, self.exchange.work, self.exchange.exchanged)
 
-    def _cases(self, state: Numbers, multipliers: Vector) -> tuple[HardCase, ...]:
+    def _cases(self, state: Numbers) -> tuple[HardCase, ...]:
         """Those that the robust engine was called for, then those that the ends tell; each once."""
         start, end = Instant(float(self.start), as_floats(self.first)), Instant(float(self.end), as_floats(state))
         called_for = [leg.case for leg in self.motion.legs if leg.case is not None]
-        found = hard_cases(self.motion.matrices, self.problem.independent, start, end, multipliers, self.motion.steps)
+        found = hard_cases(
+            self.motion.matrices, self.problem.independent, start, end, self.reactions, self.motion.steps
+        )
         answering = self.problem.reactions or not self.problem.servo  # servo-constraints have no reaction by themselves
         found = (case for case in found if answering or case is not HardCase.FREE_CANCELLATION)
         return tuple(dict.fromkeys([*called_for, *found]))

@@ -158,6 +158,49 @@ def test_the_taylor_engine_alone_stops_before_a_singular_configuration():
     assert refusal.value.failure is Failure.NO_WAY_ON
 
 
+CROSS = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2, constraints = [x*y])$
+s : holonomic_scene(system, time_span = [0, 1], initial_state = [x = -1, y = 0, dot(x) = 1])$"""
+
+
+def test_a_run_that_ended_in_a_singular_configuration_was_an_internal_error(write_scene):
+    """Truth: x = t - 1, which the last step takes to the crossing of both lines."""
+    cross = motion_problem(write_scene(CROSS), Request(), Limits())
+    report = final(cross)
+    assert report.coordinates["x"] == pytest.approx(0, abs=1e-12)
+    assert HardCase.SINGULAR_PASSAGE in report.cases
+    with pytest.raises(HolonomError, match="nears a singular one"):
+        final(cross, engine=EngineName.TAYLOR)
+
+
+PULSE = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  potential_energy = x^2/2, constraints = [y - u])$
+s : holonomic_scene(system, control_law = [u = exp(-t^2)], time_span = [-10, 10],
+  initial_state = [x = 1, dot(x) = 0])$"""
+
+
+def test_a_motion_was_called_free_for_a_multiplier_that_is_zero_at_its_end(write_scene):
+    """Truth: the multiplier is 2 (2 t^2 - 1) exp(-t^2), which is -2 at t = 0 and 1e-41 at the ends."""
+    pulse = motion_problem(write_scene(PULSE), Request(), Limits())
+    assert HardCase.FREE_CANCELLATION not in simulate(pulse, SimulationRequest(samples=101)).report.cases
+    report = final(pulse)  # which keeps the ends alone
+    assert not any("motion is free:" in line for line in remarks(report.legs, report.cases))
+
+
+WALL = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  potential_energy = exp(1000*(x - 1)), constraints = [y - x])$
+s : holonomic_scene(system, time_span = [0, 1000], initial_state = [x = 0, dot(x) = 1])$"""
+
+
+@pytest.mark.filterwarnings("error")
+def test_forces_beyond_all_numbers_were_warnings_of_numpy_and_a_free_motion(write_scene):
+    report = final(motion_problem(write_scene(WALL), Request(), Limits()))
+    assert not report.trusted
+    assert HardCase.FREE_CANCELLATION not in report.cases
+
+
 def test_redundant_constraints_are_told_and_followed():
     """Truth: a constraint given twice changes nothing but its own multiplier, by every engine."""
     engines = (EngineName.TAYLOR, EngineName.ROBUST)

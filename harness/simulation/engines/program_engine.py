@@ -19,7 +19,7 @@ from ...program.motion_problem import MotionProblem, require_signs_known
 from ...program.precision import Precision
 from ..constraints.singularity import Watch, no_gradient
 from ..diagnosis import HardCase
-from ..evaluation import Evaluation, Numbers, evaluation_once, zeros
+from ..evaluation import Evaluation, Numbers, as_floats, evaluation_once, zeros
 from ..matrices import MotionMatrices
 from ..open_values import OpenValues
 from ..request import EngineName
@@ -30,6 +30,7 @@ WATCHED = 32  # steps behind an obstacle
 SHRUNK = 32  # times shorter than the longest: a step that calls for a closer look; 16 occurs in quiet motions
 DECAYS_IN_A_RUN = 50.0  # gamma of Baumgarte's cure and Gear's, times the length of the time span
 SHORTEST = 1e-10  # of the longest: a step that leads nowhere
+NEARS_SINGULAR = translatable("the configuration nears a singular one")
 
 
 Taken = tuple[Any, Any, Any, int]
@@ -124,7 +125,6 @@ class ProgramEngine:
         ended = False
         while not ended:
             ended, _ = self._block(until, dense=False)
-        self._keep_constraints()
 
     def pieces(self, until: Any) -> Iterator[Piece]:
         """Follow the motion to an instant, with its states between the steps; raises as `advance`."""
@@ -133,7 +133,6 @@ class ProgramEngine:
         while not ended:
             ended, pieces = self._block(until, dense=True)
             yield from pieces
-        self._keep_constraints()
 
     def solutions(self, instants: Numbers, states: Numbers) -> Solutions:
         """What the equations of motion determine at instants, shape (k,), and states, shape (2n, k)."""
@@ -176,17 +175,24 @@ class ProgramEngine:
             (_, shortest, longest, steps, *_), pieces = integrator.propagate_until(until, self._length), []
         ended = integrator.time == until
         broken_off = steps < self._length and not ended
-        longest = max(self._usual, longest)
-        if broken_off or shortest * SHRUNK < longest:
-            reached = until if broken_off else integrator.time
+        longest, reached = max(self._usual, longest), until if broken_off else integrator.time
+        quiet = not broken_off and shortest * SHRUNK >= longest
+        if quiet and ended:
+            self._keep_constraints()
+        elif quiet:
+            self._prepare_next(until)
+        if not quiet or not self._in_numbers:
             self._go_back(instant, before)
             pieces = self._watched(reached, dense, self._length)
             return self.time == until, pieces
         self.steps += steps
         self._usual = longest
-        if not ended:
-            self._prepare_next(until)
         return ended, pieces
+
+    @property
+    def _in_numbers(self) -> bool:
+        """Whether the state is one: in a singular configuration no pivots put it onto the constraints."""
+        return bool(np.isfinite(as_floats(self.state)).all())
 
     def _watched(self, until: Any, dense: bool, steps: int) -> list[Piece]:
         """Single steps, so many, until an instant or until the motion program is about to fail."""
@@ -210,8 +216,12 @@ class ProgramEngine:
             reason = translatable("numbers leave the range of %(precision)s precision", precision=self.precision.name)
             self._obstacle = self._obstacle_here(HardCase.OVERFLOW, reason)
             return []
-        self.steps += 1
         self._keep_constraints()
+        if not self._in_numbers:
+            self._go_back(instant, before)
+            self._obstacle = self._obstacle_here(HardCase.SINGULAR_PASSAGE, NEARS_SINGULAR)
+            return []
+        self.steps += 1
         self._longest, self._usual = max(self._longest, self._usual, step), step or self._usual
         self._obstacle = self._found_ahead(until)
         return pieces
@@ -220,9 +230,7 @@ class ProgramEngine:
         """What the constraints' directions, the gradients and the length of the last step say about the next ones."""
         t = float(self.time)
         if self.watch.singular_ahead(t, self.state):
-            return self._obstacle_here(
-                HardCase.SINGULAR_PASSAGE, translatable("the configuration nears a singular one")
-            )
+            return self._obstacle_here(HardCase.SINGULAR_PASSAGE, NEARS_SINGULAR)
         if self.time == until or abs(self._integrator.last_h) >= SHORTEST * self._longest:
             return None
         vanished = self.watch.vanished(t, self.state)
