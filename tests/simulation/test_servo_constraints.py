@@ -246,6 +246,39 @@ def test_two_masses_and_a_spring_have_the_known_feedforward():
     assert motion.report.relative_degrees == (4,)
 
 
+SATELLITE = """
+de : [dot(e0), dot(e1), dot(e2), dot(e3)]$
+system : holonomic_system(coordinates = [e0, e1, e2, e3], controls = [t1, t2, t3], parameters = [J1, J2, J3],
+  kinetic_energy = 2*(J1*([-e1, e0, e3, -e2] . de)^2 + J2*([-e2, -e3, e0, e1] . de)^2 + J3*([-e3, e2, -e1, e0] . de)^2),
+  forces = [wheels = 2*(t1*[-e1, e0, e3, -e2] + t2*[-e2, -e3, e0, e1] + t3*[-e3, e2, -e1, e0])],
+  constraints = [e0^2 + e1^2 + e2^2 + e3^2 - 1])$
+turned : holonomic_scene(system, servo_constraints = [e1 = 0, e2 = 0, e3 = sin(t^3/6)],
+  parameter_values = [J1 = 1, J2 = 2, J3 = 3], initial_state = [],
+  initial_guess = [e0 = 1, e1 = 0, e2 = 0, e3 = 0, dot(e0) = 0, dot(e1) = 0, dot(e2) = 0, dot(e3) = 0],
+  time_span = [0, 1])$
+"""
+
+
+@pytest.mark.parametrize("engine", ["taylor", "robust"])
+def test_a_satellite_at_rest_was_a_singular_configuration_that_it_starts_from(engine):
+    """About its third axis by t^3/3, so that t3 = 2 J3 t. The outputs cannot make up for the singular A at e0 = 1."""
+    motion = holonom.system(SATELLITE).simulate(samples=5, engine=engine)
+    t = np.asarray(motion.instants)
+    assert motion["t3"] == pytest.approx(6 * t, abs=ENGINES[engine])
+    assert motion["e0"] == pytest.approx(np.cos(t**3 / 6), abs=ENGINES[engine])
+
+
+def test_redundant_constraints_under_a_relative_degree_of_four():
+    """x and y together, 2 ddot(x) = F - (x - z) and ddot(z) = x - z: z = sin(2 t) takes F = 20 sin(2 t)."""
+    motion = holonom.system("""
+system : holonomic_system(coordinates = [x, y, z], controls = [F], potential_energy = [spring = (x - z)^2/2],
+  kinetic_energy = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2, forces = [drive = [F, 0, 0]], constraints = [x - y, 2*x - 2*y])$
+led : holonomic_scene(system, servo_constraints = [z = sin(2*t)], initial_state = [], time_span = [0, 1])$""").simulate(
+        samples=5
+    )
+    assert motion["F"] == pytest.approx(20 * np.sin(2 * motion.instants), abs=1e-13)
+
+
 def test_a_course_by_if_was_refused_for_a_function_that_no_program_has():
     """At rest, then y = (t - 1)^5: four rates are continuous, and so are all controls but one kink."""
     motion = masses("y = if t < 1 then 0 else (t - 1)^5").simulate(samples=9)
@@ -335,6 +368,10 @@ REFUSED = {
           damping = [dot(y) - dot(x), dot(x) - 2*dot(y) + dot(z), dot(y) - dot(z)]])$
         odd : holonomic_scene(system, servo_constraints = [z - t^4], initial_state = [x = 0])$""",
         "have a relative degree above 3",
+    ),
+    "a control in no force that is called for": (
+        ROD.replace("servo_constraints = ", "effects = [], servo_constraints = "),
+        "no force that the scene calls for contains F",
     ),
     "a relative degree of three": (
         """

@@ -28,6 +28,7 @@ from .projection import InconsistentConstraints, settle
 
 PROBE = 1e-4  # of a unit, the way that the coordinates go to see which constraints stay dependent
 NEXT_TO = 3e-4  # of a unit, the way to a singular configuration that is no way
+AT_REST = 1e-8  # speed below which the time, not the way, tells how near a singular configuration is
 GROWN = 3.0  # times, on this way, that a singular value grows from next to a singular configuration
 REACH = 2.0  # steps ahead within which a singular configuration counts as near
 SMALL = 0.5  # least singular value above which none is near, however fast it falls
@@ -72,7 +73,7 @@ def probed(matrices: MotionMatrices, t: float, state: Vector) -> tuple[int, floa
     rank = max(rank_of(here), rank_of(there, max(way**1.5, DEPENDENT)))
     until = extrapolated_zero(t, least_of(here, rank), later, least_of(there, rank)) - t
     grown = least_of(there, rank) > GROWN * least_of(here, rank)
-    next_to = until < np.inf and until * speed < NEXT_TO
+    next_to = until * (speed if speed > AT_REST else 1.0) < NEXT_TO
     return rank, 0.0 if grown or next_to else until
 
 
