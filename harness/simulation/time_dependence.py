@@ -35,6 +35,8 @@ BLOCK = 2**13  # parts that are looked at together
 MUCH = 8  # times shorter than the longest part
 EPSILON = 1e-14  # relative rounding of a time, with a margin
 JUMP = 1e-3  # of the largest value: an error that is no rounding
+NOT_SMOOTH = "an expression of the time in the equations of motion is not smooth"
+BESIDE, NEARER = 1e-9, 1e-3  # of the lengths of two parts: how near to their boundary they are compared; and of that
 SHOWN = 1e-6  # relative error of a polynomial that shows how large an expression is
 BEYOND = 1e6  # times what an expression usually is: it has no bound
 
@@ -117,6 +119,7 @@ class _Scan:
 
     def result(self) -> TimeDependence:
         parts = sorted(self._parts())
+        self._look_between(parts)
         longest, knots = max((length for _, length in parts), default=0.0), set(self._knots.tolist())
         stops = [
             start
@@ -202,12 +205,31 @@ class _Scan:
             if (missed > BEYOND * self._usual).any():
                 reason = "an expression of the time in the equations of motion grows beyond all bounds"
             elif (missed > JUMP * self._scale).any():
-                reason = "an expression of the time in the equations of motion is not smooth"
+                reason = NOT_SMOOTH
             else:
                 continue
             if self._ending is None or t < self._ending[0]:
                 self._ending = float(t), reason
             return
+
+    def _look_between(self, parts: list[tuple[float, float]]) -> None:
+        """A jump at the boundary of two parts is in neither of them; nearer to it a steep function changes less."""
+        starts, lengths = np.array(parts).T
+        beside = BESIDE * np.minimum(lengths[:-1], lengths[1:])
+        seen = NEARER * beside > EPSILON * np.abs(starts[1:])
+        edges, beside = starts[1:][seen], beside[seen]
+        if not edges.size:
+            return
+        change, nearer = (self._change_across(edges, width) for width in (beside, NEARER * beside))
+        jumps = ((change > JUMP * self._scale[:, None]) & (nearer > change / 2)).any(axis=0)
+        if jumps.any():
+            t = edges[jumps][0]
+            if self._ending is None or t < self._ending[0]:
+                self._ending = float(t), NOT_SMOOTH
+
+    def _change_across(self, edges: Vector, beside: Vector) -> np.ndarray:
+        with np.errstate(all="ignore"):
+            return np.abs(self._function(edges + beside) - self._function(edges - beside))
 
     def _last_value(self, before: float, cell: float) -> float:
         """The last instant at which all is finite, from one at which it is to one at which it is not."""

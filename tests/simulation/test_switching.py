@@ -201,6 +201,8 @@ def test_a_mass_rests_at_the_bottom_of_a_kink():
         (lambda: pendulum(law="1/(2 - t)", start="x = 3/10, y = -2/5", end="3"), "2, where"),
         (lambda: pendulum(law="1 + sqrt(1 - t)", start="x = 6/5, y = -8/5", end="3"), "1, where"),
         (lambda: mass(force="sqrt(1 - t)", end="3"), "1, where an expression of the time"),
+        # on the boundary of two halves of the time span, with a wrong number and exit status 1
+        (lambda: mass(force="atan2(t - 1, -1)", end="2"), "1, where an expression of the time"),
     ],
 )
 def test_what_mechanics_does_not_decide_is_refused_with_its_instant(problem, said):
