@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..language import translatable
-from .constraints.directions import rank_of, weighted_constraints
+from .constraints.directions import Matrix, rank_of, weighted_constraints
 from .constraints.factorization import factored_constraints
 from .diagnostics import condition
 from .matrices import Matrices, MotionMatrices, Vector
@@ -24,6 +24,7 @@ FREE = 1e-13  # constraint forces, in terms of the others
 STIFF = 1e5  # squares of frequencies, one in terms of another
 AT_REST = 1e-8  # squares of frequencies, in terms of the largest, that differences do not tell from zero
 DIFFERENCE = 1e-5  # in coordinates: the cube root of a double's rounding error
+AT_ONCE = 32  # states whose matrices are held together
 
 
 class HardCase(StrEnum):
@@ -117,19 +118,35 @@ def stiffness(matrices: MotionMatrices, at: Instant) -> float:
     weighted = weighted_constraints(here.mass, here.jacobian)
     left, values, _ = np.linalg.svd(weighted.directions)
     free = np.linalg.solve(weighted.factor.T, left[:, rank_of(values) :])
-    moves = DIFFERENCE * np.concatenate([free, np.zeros_like(free)])
-    change = [_accelerations(matrices, at, move) - _accelerations(matrices, at, -move) for move in moves.T]
-    if not change:
+    if not free.size:
         return 1.0
-    squares = np.abs(np.linalg.eigvals(free.T @ here.mass @ np.array(change).T / (2 * DIFFERENCE)))
+    squares = np.abs(np.linalg.eigvals(free.T @ here.mass @ _change_of_accelerations(matrices, at, free)))
     moving = squares[squares > AT_REST * squares.max()]
     return float(moving.max() / moving.min()) if moving.size else 1.0
 
 
-def _accelerations(matrices: MotionMatrices, at: Instant, move: Vector) -> Vector:
-    moved = matrices(at.t, at.state + move)
-    factored = factored_constraints(moved.mass, moved.jacobian)
-    return factored.accelerations(moved.force, moved.curvature)
+def _change_of_accelerations(matrices: MotionMatrices, at: Instant, moves: Matrix) -> Matrix:
+    """Derivatives of the accelerations along moves of the coordinates, both of shape (n, k).
+
+    A a - J^T lambda = h, J a = -c, differentiated: one factorization solves for all of them.
+    """
+    here = matrices(*at)
+    factored = factored_constraints(here.mass, here.jacobian)
+    accelerations, multipliers = (
+        solve(here.force, here.curvature) for solve in (factored.accelerations, factored.multipliers)
+    )
+    changes = []
+    steps = DIFFERENCE * np.concatenate([moves, np.zeros_like(moves)]).T
+    for some in np.array_split(steps, -(-len(steps) // AT_ONCE)):
+        ahead, behind = (
+            (
+                moved.force - moved.mass @ accelerations + multipliers @ moved.jacobian,
+                moved.curvature + moved.jacobian @ accelerations,
+            )
+            for moved in (matrices(at.t, at.state + some), matrices(at.t, at.state - some))
+        )
+        changes += map(factored.accelerations, ahead[0] - behind[0], ahead[1] - behind[1])
+    return np.array(changes).T / (2 * DIFFERENCE)
 
 
 def _mass_ratio(at: Matrices) -> float:
