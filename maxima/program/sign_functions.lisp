@@ -35,6 +35,7 @@
       e
       (let ((operator (caar e)))
         (cond ((eq operator 'mcond) (conditional-with-signs (cdr e)))
+              ((odd-root-of-size-p e) (power '$%e (mul (third e) (take '(%log) (with-signs (second e))))))
               ((eq operator 'mabs) (absolute-value (with-signs (second e))))
               ((eq operator '%signum) (sign-of-function (with-signs (second e))))
               ((member operator '($max %max)) (extremum 1 (mapcar #'with-signs (cdr e))))
@@ -45,6 +46,16 @@
                    (if (same-items-p parts (cdr e))
                        e
                        (simplifya (cons (list operator) parts) t))))))))
+
+;; (s g)^(1/3) would become s^(1/3) g^(1/3), in which neither is a real number to a program where g is negative.
+(defun odd-root-of-size-p (e)
+  (and (not *written-openly*)
+       (eq (caar e) 'mexpt)
+       (consp (second e))
+       (eq (caar (second e)) 'mabs)
+       ($ratnump (third e))
+       (not (integerp (third e)))
+       (oddp ($denom (third e)))))
 
 (defun extremum (side arguments)
   (reduce #'(lambda (a b)

@@ -150,6 +150,13 @@ def test_a_narrow_smooth_feature_was_stepped_over(engine):
     assert report.trusted
 
 
+def test_an_odd_root_of_a_size_had_no_real_value_before_the_zero():
+    """x(2) is the integral of (2 - t) abs(t - 1)^(5/3) from 0 on, 3/4."""
+    report = end_of(mass(force="abs(t - 1)^(5/3)", end="2"), EngineName.RUNGE_KUTTA)
+    assert report.coordinates["x"] == pytest.approx(0.75, rel=1e-11)
+    assert [s.t for s in report.switchings] == [1.0]
+
+
 def test_a_law_with_a_far_pulse_took_all_memory():
     """exp(-2500000000) is no fraction to be written out. Truth: the pulse gives a velocity of sqrt(pi)."""
     text = MASS.replace("coordinates = [x]", "coordinates = [x], controls = [u]").replace(
