@@ -25,8 +25,8 @@ ADVICE = {
         "and look at the energy error, which tells whether it left on the right branch."
     ),
     HardCase.STIFF: translatable(
-        "The motion is stiff: keep the Taylor engine where its fast oscillation matters, and where it does not, "
-        "replace the stiff part by a constraint."
+        "The motion is stiff: keep the Taylor engine where its fast oscillation matters; where it does not, replace "
+        "the stiff part by a constraint, or, where it is damped, take the robust engine, which has a method for that."
     ),
     HardCase.OVERFLOW: translatable(
         "Numbers come near the end of the range of double precision: divide the constraint by what grows in it, "

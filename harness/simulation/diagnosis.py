@@ -23,7 +23,8 @@ MANY_STEPS = 10_000
 FREE = 1e-13  # constraint forces, in terms of the others
 STIFF = 1e5  # squares of frequencies, one in terms of another
 AT_REST = 1e-8  # squares of frequencies, in terms of the largest, that differences do not tell from zero
-DIFFERENCE = 1e-5  # in coordinates: the cube root of a double's rounding error
+DIFFERENCE = 1e-5  # in coordinates and velocities: the cube root of a double's rounding error
+DECAYED = 4.0  # times the length of a step, a rate of decay: what follows such a decay may take longer steps
 AT_ONCE = 32  # states whose matrices are held together
 
 
@@ -88,7 +89,7 @@ def hard_cases(
         yield HardCase.FREE_CANCELLATION
     if steps > MANY_STEPS:
         yield HardCase.LONG_RUN
-    if stiffness(matrices, start) > STIFF:
+    if stiffness(matrices, start) > STIFF or _held_back(matrices, start, end, steps):
         yield HardCase.STIFF
 
 
@@ -115,18 +116,50 @@ def stiffness(matrices: MotionMatrices, at: Instant) -> float:
         free, in the mass metric.
     """
     here = matrices(*at)
-    weighted = weighted_constraints(here.mass, here.jacobian)
-    left, values, _ = np.linalg.svd(weighted.directions)
-    free = np.linalg.solve(weighted.factor.T, left[:, rank_of(values) :])
+    free = _free_directions(here)
     if not free.size:
         return 1.0
-    squares = np.abs(np.linalg.eigvals(free.T @ here.mass @ _change_of_accelerations(matrices, at, free)))
+    moves = np.concatenate([free, np.zeros_like(free)])
+    squares = np.abs(np.linalg.eigvals(free.T @ here.mass @ _change_of_accelerations(matrices, at, moves)))
     moving = squares[squares > AT_REST * squares.max()]
     return float(moving.max() / moving.min()) if moving.size else 1.0
 
 
+def fastest_decay(matrices: MotionMatrices, at: Instant) -> float:
+    """Largest rate at which small deviations from a motion decay more than they oscillate; zero where none does.
+
+    Returns
+    -------
+    float
+        From the derivatives of the accelerations with respect to coordinates and velocities, as `stiffness`.
+    """
+    here = matrices(*at)
+    free = _free_directions(here)
+    if not free.size:
+        return 0.0
+    nothing, one = np.zeros_like(free), np.eye(free.shape[1])
+    moves = np.block([[free, nothing], [nothing, free]])
+    change = free.T @ here.mass @ _change_of_accelerations(matrices, at, moves)
+    if not np.isfinite(change).all():
+        return 0.0
+    exponents = np.linalg.eigvals(np.block([[0 * one, one], [change]]))
+    return float(-exponents.real[-exponents.real >= np.abs(exponents.imag)].min(initial=0.0))
+
+
+def _held_back(matrices: MotionMatrices, start: Instant, end: Instant, steps: int) -> bool:
+    """Whether many steps were as short as a decay demands that is over long ago."""
+    return steps > MANY_STEPS and fastest_decay(matrices, end) * (end.t - start.t) > DECAYED * steps
+
+
+def _free_directions(at: Matrices) -> Matrix:
+    """What the constraints leave free, in columns orthonormal in the mass metric."""
+    weighted = weighted_constraints(at.mass, at.jacobian)
+    left, values, _ = np.linalg.svd(weighted.directions)
+    return np.linalg.solve(weighted.factor.T, left[:, rank_of(values) :])
+
+
 def _change_of_accelerations(matrices: MotionMatrices, at: Instant, moves: Matrix) -> Matrix:
-    """Derivatives of the accelerations along moves of the coordinates, both of shape (n, k).
+    """Derivatives, shape (n, k), of the accelerations along moves of the state, shape (2n, k).
 
     A a - J^T lambda = h, J a = -c, differentiated: one factorization solves for all of them.
     """
@@ -136,7 +169,7 @@ def _change_of_accelerations(matrices: MotionMatrices, at: Instant, moves: Matri
         solve(here.force, here.curvature) for solve in (factored.accelerations, factored.multipliers)
     )
     changes = []
-    steps = DIFFERENCE * np.concatenate([moves, np.zeros_like(moves)]).T
+    steps = DIFFERENCE * moves.T
     for some in np.array_split(steps, -(-len(steps) // AT_ONCE)):
         ahead, behind = (
             (

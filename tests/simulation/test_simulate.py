@@ -12,7 +12,8 @@ from holonom.explanations import engine_text, remarks
 from holonom.failures import Failure, HolonomError
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request
-from holonom.simulation.diagnosis import HardCase
+from holonom.simulation.diagnosis import HardCase, Instant, fastest_decay
+from holonom.simulation.matrices import MotionMatrices
 from holonom.simulation.request import EngineName, SimulationRequest, Stabilization
 from holonom.simulation.result import Report, Simulation
 from holonom.simulation.simulate import simulate
@@ -186,6 +187,25 @@ def test_a_motion_was_called_free_for_a_multiplier_that_is_zero_at_its_end(write
     assert HardCase.FREE_CANCELLATION not in simulate(pulse, SimulationRequest(samples=101)).report.cases
     report = final(pulse)  # which keeps the ends alone
     assert not any("motion is free:" in line for line in remarks(report.legs, report.cases))
+
+
+DAMPED = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], parameters = [c], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  forces = [-2*c*(x + dot(x)), 0], constraints = [y - x])$
+s : holonomic_scene(system, parameter_values = [c = 10], time_span = [0, 6], initial_state = [x = 1, dot(x) = 0])$"""
+
+
+@pytest.mark.parametrize(("c", "stiff"), [(10, False), (20000, True)])
+def test_a_decay_that_holds_back_all_steps_was_a_long_run_alone(c, stiff, write_scene):
+    """Truth: x'' = -c (x + x'), whose deviations decay with two rates; steps of order 20 reach 8.2 times the faster."""
+    motion = motion_problem(write_scene(DAMPED), Request(settings={"c": str(c)}), Limits())
+    report = final(motion)
+    slow, fast = c / 2 - np.sqrt(c * c / 4 - c), c / 2 + np.sqrt(c * c / 4 - c)
+    truth = (fast * np.exp(-6 * slow) - slow * np.exp(-6 * fast)) / (fast - slow)
+    assert report.coordinates["x"] == pytest.approx(truth, rel=1e-8)
+    assert (HardCase.STIFF in report.cases) is stiff
+    end = Instant(6.0, np.array([*report.coordinates.values(), *report.velocities.values()]))
+    assert fastest_decay(MotionMatrices(motion), end) == pytest.approx(fast, rel=1e-6)
 
 
 WALL = """load("holonom.mac")$
