@@ -128,7 +128,7 @@ class _Simulation:
         self.reactions = np.zeros(len(problem.multipliers))  # the largest multipliers so far
         self.steps = (
             StepsHeldAgainstTheEquations(self.motion, self.end - self.start, self.precision)
-            if may_hide(problem.matrices, problem.parameters)
+            if may_hide(problem.matrices, ("t", *problem.parameters))
             else None
         )
 

@@ -55,9 +55,9 @@ FAINT = frozenset({Operation.EXP, Operation.SINH, Operation.COSH, Operation.TANH
 HIGH = 16  # exponents from which a power is as faint as an exponential
 
 
-def may_hide(program: Program, parameters: Collection[str] = ()) -> bool:
-    """Whether a program, of the time, the state and parameters, contains such a function of the state."""
-    moving = set(program.inputs) - {"t", *parameters}
+def may_hide(program: Program, apart: Collection[str] = ("t",)) -> bool:
+    """Whether a program contains such a function of the state, or of any other of its inputs but those apart."""
+    moving = set(program.inputs).difference(apart)
     for name, expression in program.assignments:
         if any(_is_faint(call) and names_in(call) & moving for call in calls_in(expression)):
             return True

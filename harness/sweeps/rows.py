@@ -93,7 +93,7 @@ class RowMaker:
         free = any(kept.kind is Kind.FREE for kept in plan.kept)
         self._free = (constraint_forces(problem), other_forces(problem)) if free else ([], [])
         self._along: list[Expression] = [*(kept.quantity for kept in self._looks), *self._free[0], *self._free[1]]
-        self._hides = may_hide(problem.matrices, problem.parameters)
+        self._hides = may_hide(problem.matrices, ("t", *problem.parameters))
         if taken := [name for name in (*plan.axes.names, *self.columns) if name in OWN]:
             raise HolonomError(
                 Failure.NOT_KEPT, detail=f"{taken[0]} is a column of every sweep; give another name to it"
