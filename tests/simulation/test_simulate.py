@@ -288,6 +288,19 @@ def test_the_cures_in_the_equations_let_an_error_die_out():
     assert left[Stabilization.GGL] < 1e-13
 
 
+def test_a_start_that_is_found_has_as_many_digits_as_the_motion(write_scene):
+    """Uniform motion on a circle from y = -sqrt(3)/2, which was known to 60 digits of 80."""
+    scene = write_scene("""
+load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2, constraints = [x^2 + y^2 - 1])$
+turning : holonomic_scene(system, initial_state = [x = 1/2, dot(x) = 1], initial_guess = [y = -1, dot(y) = 0])$
+""")
+    motion = motion_problem(scene, Request(), Limits(), 80)
+    with mpmath.workdps(90):
+        y = mpmath.mpf(str(final(motion, precision=80, until=Fraction(1)).coordinates["y"]))
+        assert abs(y - mpmath.sin(2 / mpmath.sqrt(3) - mpmath.pi / 3)) < mpmath.mpf("1e-77")
+
+
 def test_quadruple_precision_agrees_with_fifty_digits():
     reports = [
         final(problem("pendulum.mac", "lengthening_scene", digits), precision=precision, until=Fraction(3, 2))
