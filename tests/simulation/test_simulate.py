@@ -292,7 +292,8 @@ def test_a_start_that_is_found_has_as_many_digits_as_the_motion(write_scene):
     """Uniform motion on a circle from y = -sqrt(3)/2, which was known to 60 digits of 80."""
     scene = write_scene("""
 load("holonom.mac")$
-system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2, constraints = [x^2 + y^2 - 1])$
+system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  constraints = [x^2 + y^2 - 1])$
 turning : holonomic_scene(system, initial_state = [x = 1/2, dot(x) = 1], initial_guess = [y = -1, dot(y) = 0])$
 """)
     motion = motion_problem(scene, Request(), Limits(), 80)
