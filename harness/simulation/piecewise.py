@@ -298,11 +298,22 @@ class PiecewiseMotion:
         )
 
     def controls(self, instants: Numbers, states: Numbers) -> dict[str, Numbers]:
-        """The controls at states of the motion, by name, each of shape (k,); empty where they are not observed."""
+        """The controls at states of the motion, by name, each of shape (k,); empty where they are not observed.
+
+        Raises
+        ------
+        HolonomError
+            One has no value at one of the instants.
+        """
         if self._problem.controls is None:
             return {}
-        found = [part.controls(instants[here], states[:, here]) for part, here in self._by_phase(instants)]
-        return dict(zip(self._problem.controls.outputs, np.concatenate(found, axis=1), strict=True))
+        found = np.concatenate(
+            [part.controls(instants[here], states[:, here]) for part, here in self._by_phase(instants)], axis=1
+        )
+        names, missing = list(self._problem.controls.outputs), np.argwhere(~np.isfinite(as_floats(found)).T)
+        if len(missing):
+            self._refuse(instants[missing[0, 0]], f"the control {names[missing[0, 1]]} has no value")
+        return dict(zip(names, found, strict=True))
 
     def matrices(self, t: float, state: Vector) -> Matrices:
         """The matrices at a state of the motion, in its phase."""

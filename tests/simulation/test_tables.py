@@ -232,6 +232,22 @@ def test_one_program_serves_all_polynomials_of_a_table(driven):
     assert not long.signs
 
 
+@pytest.mark.parametrize(
+    ("entry", "said"),
+    [
+        ("until = [x - table([[0, 1], [1, 1], [2, 3]])]", "until contains a table, which may stand in"),
+        ("prescribed_reactions = [lambda1 = table([[0, 1], [2, 3]])]", "prescribed_reactions contains a table, which"),
+    ],
+)
+def test_a_table_elsewhere_was_a_function_called_bracket(entry, said):
+    scene = holonom.system(f"""
+system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  constraints = [x - u])$
+led : holonomic_scene(system, {entry}{", control_law = [u = t]" if "until" in entry else ""}, initial_state = [])$""")
+    with pytest.raises(HolonomError, match=said):
+        scene.simulate(until=2)
+
+
 def test_two_tables_one_inside_of_abs_and_a_law_in_parts(driven):
     # the sign of a function of a table named signs that had no value yet, which ended in a KeyError
     rows = [(0, 1), (1, -1), (2.5, -1), (4, 1)]
