@@ -16,9 +16,11 @@ from walls import without_notice
 from holonom.cli import holonom as cli
 from holonom.cli import run
 from holonom.cli.tables.condition import condition_lines
+from holonom.cli.tables.derivation import why_left_out
 from holonom.crosscheck import Verdict
 from holonom.crosscheck.verdict import Judgement
 from holonom.failures import Failure, HolonomError
+from holonom.record import LeftOut
 
 HOLONOM = [sys.executable, "-m", "holonom"]
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -239,6 +241,12 @@ def test_check_and_derive_were_silent_about_equations_that_are_not_made(holonom_
     assert "--closed-form-size 3288 makes them" in holonom_here("derive", chain).stdout
     made = holonom_here("derive", chain, "--set", "N=2", "--closed-form-size", "1")
     assert "(4), (5), (8), (9), (10), (11) not made" in made.stdout
+
+
+def test_closed_forms_that_no_memory_holds_were_promised_by_an_option_of_thirty_digits():
+    """--closed-form-size 220755541336686592524288000000 was advised for a slider-crank of three bodies in space."""
+    said = why_left_out(LeftOut(("4",), 220755541336686592524288000000, 500))
+    assert said == "closed forms of 2e+29 terms are expected, more than closed_form_size = 500 and than memory holds"
 
 
 def test_equations_left_out_for_a_small_limit_were_called_missing(particle_scene, holonom_here):

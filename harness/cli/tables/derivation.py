@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from ...errata import PrintedEquation
     from ...record import Equation, LeftOut, Record, Relation
 
+HELD_IN_MEMORY = 10**12  # terms of closed forms: some bytes each, and no machine has so many
+
 
 def show_record(console: Console, record: "Record") -> None:
     """Print a derivation, equation by equation, under the paper's numbers."""
@@ -101,9 +103,12 @@ def _show_left_out(console: Console, left_out: "LeftOut | None") -> None:
 
 def why_left_out(left_out: "LeftOut") -> str:
     """The sentence that says why equations were not made, and how to get them."""
+    size, limit = left_out.size, f"more than closed_form_size = {left_out.limit}"
+    if size > HELD_IN_MEMORY:
+        return f"closed forms of {size:.0e} terms are expected, {limit} and than memory holds"
     return (
-        f"closed forms of {left_out.size} terms are expected, more than closed_form_size = {left_out.limit}; "
-        f"--closed-form-size {left_out.size} makes them, if time and memory suffice"
+        f"closed forms of {size} terms are expected, {limit}; "
+        f"--closed-form-size {size} makes them, if time and memory suffice"
     )
 
 
