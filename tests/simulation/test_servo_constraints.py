@@ -260,6 +260,13 @@ led : holonomic_scene(system, servo_constraints = [x = sin(t - 1)], initial_stat
         scene.simulate(samples=3, engine="taylor")
 
 
+def test_an_arm_stretched_out_was_a_reaction_that_cannot_act():
+    """At t = 1 its tip is as far as it reaches, and no multiplier is the arm's own."""
+    stretching = ARM.replace("sin(t)/4", "0").format(across="1 + t")
+    with pytest.raises(HolonomError, match="beyond t = .*, where the controls move .* in fewer directions"):
+        holonom.system(stretching).simulate(samples=2)
+
+
 SATELLITE = """
 de : [dot(e0), dot(e1), dot(e2), dot(e3)]$
 system : holonomic_system(coordinates = [e0, e1, e2, e3], controls = [t1, t2, t3], parameters = [J1, J2, J3],

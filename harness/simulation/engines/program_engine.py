@@ -236,6 +236,9 @@ class ProgramEngine:
         vanished = self.watch.vanished(t, self.state)
         if vanished is None:
             return HolonomError(Failure.NO_WAY_ON, detail=f"{t:.10g}, where steps become too short")
+        if vanished not in self._problem.reactions:
+            reason = "the controls move what servo-constraints prescribe in fewer directions"
+            return HolonomError(Failure.NO_WAY_ON, detail=f"{t:.10g}, where {reason}")
         return no_gradient(t, vanished)
 
     def _obstacle_here(self, case: HardCase, reason: str) -> Obstacle:
