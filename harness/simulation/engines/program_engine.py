@@ -9,6 +9,7 @@ through it. Behind an obstacle the next one may be near, and the first steps are
 import time
 from collections.abc import Iterator
 from functools import cached_property
+from math import isfinite
 from typing import Any, Protocol
 
 import numpy as np
@@ -192,7 +193,8 @@ class ProgramEngine:
     @property
     def _in_numbers(self) -> bool:
         """Whether the state is one: in a singular configuration no pivots put it onto the constraints."""
-        return bool(np.isfinite(as_floats(self.state)).all())
+        quickly = isfinite(self.state.dot(self.state))  # a square beyond the range is looked at closely
+        return quickly or bool(np.isfinite(as_floats(self.state)).all())
 
     def _watched(self, until: Any, dense: bool, steps: int) -> list[Piece]:
         """Single steps, so many, until an instant or until the motion program is about to fail."""

@@ -103,15 +103,10 @@ class RungeKuttaEngine(ProgramEngine):
         integrator = self._integrator
         self._set_values()
         if self._obstacle is None:
-            instant, before = integrator.time, self.state.copy()
-            steps = integrator.quiet_steps(until, self._first_block)
-            if self._in_numbers:
-                self.steps += steps
-                self._usual = max(self._usual, integrator.usual)
-            else:
-                self._go_back(instant, before)
+            self.steps += integrator.quiet_steps(until, self._first_block)
             if integrator.time == until:
                 return
+            self._usual = max(self._usual, integrator.usual)
         super().advance(until)
 
     def _begin(self) -> None:
