@@ -3,7 +3,7 @@
 BIN     := .venv/bin
 STAMP   := .venv/installed
 TEST    := $(BIN)/pytest -q --numprocesses auto --dist loadgroup --no-loadscope-reorder
-SCENES  := $(filter-out %/printed.mac examples/hard/%,$(shell find examples -name '*.mac' | sort))
+SCENES  := $(filter-out %/printed.mac %/by_hand.mac examples/hard/%,$(shell find examples -name '*.mac' | sort))
 RECORDS := $(SCENES:%.mac=build/%.json)
 SOURCES := $(shell find maxima harness -type f -not -path '*/__pycache__/*')
 PRINTED := examples/paper/printed.mac
@@ -14,7 +14,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := paper
 .DELETE_ON_ERROR:
-.PHONY: paper companion book catalog check check-long check-lisps mutants bench setup install pictures clean help have-programs have-chinese-letters
+.PHONY: paper companion book catalog check check-long check-lisps mutants tampering bench setup install pictures clean help have-programs have-chinese-letters
 
 paper: $(RECORDS) build/check.json build/errata.json companion ## Derive and check every scene, compare the paper as printed (the default)
 	@echo "The derivations are in build/examples/, the verdicts in build/check.json, the misprints in build/errata.json, the textbook companion in build/companion/index.html."
@@ -55,6 +55,9 @@ check-lisps: setup ## Ask Debian's Maxima on ECL, maxima-sage, for the same prog
 
 mutants: setup ## Make wrong programs of a fixed list, one at a time, and tell which of them no test finds
 	nice $(BIN)/python tests/mutants/run.py build/mutants.json
+
+tampering: setup ## Make wrong records of twenty scenes, and tell how many of each class `holonom check` finds
+	nice $(BIN)/python tests/crosscheck/tampering/tamper.py $(SEED)
 
 setup: have-programs $(STAMP) ## Install what is missing: Maxima, a C compiler, GSL, bubblewrap, and the Python packages in .venv
 

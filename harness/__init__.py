@@ -8,13 +8,13 @@ Importing the package imports nothing else and changes nothing; what a name need
 """
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
 
+TYPE_CHECKING = False  # as in `typing`, which takes longer to import than all that is here
 if TYPE_CHECKING:
-    from .confined import Limits
     from .equations import Equations
     from .failures import HolonomError
     from .program.forms import MotionProgram
+    from .sandbox import Limits, Sandbox
     from .scene import Scene, load, sweep, system
 
 PUBLIC = {
@@ -24,13 +24,14 @@ PUBLIC = {
     "Scene": ".scene",
     "Equations": ".equations",
     "MotionProgram": ".program.forms",
-    "Limits": ".confined",
+    "Limits": ".sandbox",
+    "Sandbox": ".sandbox",
     "HolonomError": ".failures",
 }
-__all__ = ["Equations", "HolonomError", "Limits", "MotionProgram", "Scene", "load", "sweep", "system"]
+__all__ = ["Equations", "HolonomError", "Limits", "MotionProgram", "Sandbox", "Scene", "load", "sweep", "system"]
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> object:
     if name not in PUBLIC:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(PUBLIC[name], __name__), name)

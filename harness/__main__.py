@@ -1,6 +1,16 @@
-"""``python -m holonom``: the same commands as ``holonom``."""
+"""``python -m holonom``, and the command ``holonom``."""
 
-from .cli import main
+import signal
+
+
+def main() -> None:
+    """Run the command line; an interruption before it begins ends this process without a word."""
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+    from .cli import main as command
+
+    command()
+
 
 if __name__ == "__main__":
     main()

@@ -7,6 +7,8 @@ from enum import Enum
 from pathlib import Path
 from typing import Any
 
+from .hidden import visible
+
 OPTION = re.compile(r"--[a-z-]+")
 LIMITS = frozenset({"--time-limit", "--memory-limit", "--sandbox"})  # options that are one argument in Python
 
@@ -16,6 +18,10 @@ class Failure(Enum):
 
     FILE_MISSING = ("there is no such file{detail}", "give the path of a scene, for instance examples/paper/paper.mac")
     FILE_UNREADABLE = ("the file cannot be read: {detail}", "give the path of a readable Maxima file")
+    TOO_MUCH_BESIDE = (
+        "{detail} that end in .mac, .lisp or .csv are beside the scene",
+        "put the scene and the files that it reads into a folder of their own",
+    )
     NOT_UTF8 = ("the file is not UTF-8 text: byte {detail}", "save it as UTF-8")
     NOT_MAXIMA = (
         "this does not run as Maxima: {detail}",
@@ -30,6 +36,10 @@ class Failure(Enum):
     NO_SANDBOX = (
         "bubblewrap is missing or forbidden here",
         "install the package `bubblewrap`, or allow it to make user namespaces, or run the scene without --sandbox",
+    )
+    SANDBOX_FAILED = (
+        "the sandbox failed: {detail}",
+        "run it again when the machine is less busy or has more processes and descriptors, or run it with --trust",
     )
     MAXIMA_MISSING = (
         "Maxima is not installed",
@@ -49,7 +59,20 @@ class Failure(Enum):
     )
     TOO_LONG = ("Maxima took longer than {detail}", "ask for less, or raise --time-limit")
     TOO_LARGE = ("Maxima took more memory than {detail}", "ask for less, or raise --memory-limit")
+    TOO_MANY_PROCESSES = ("the scene started more than {detail} processes", "start fewer")
     TOO_MUCH_TEXT = ("Maxima printed more than {detail}", "print less")
+    FILE_TOO_LARGE = ("the file is larger than {detail}", "describe less, or read data from tables")
+    NAME_TOO_LONG = ("the name {detail}... has more than 200 letters", "give it a shorter one")
+    TOO_MANY_SCENES = ("the file describes {detail} scenes, and 1000 are the most", "put them into several files")
+    DESCRIPTION_TOO_LARGE = ("the description is longer than {detail}", "describe less")
+    HIDDEN_CHARACTER = (
+        "a title or a source holds the character {detail}, which hides or reverses text",
+        "leave it out",
+    )
+    NOT_SETTABLE = (
+        "{detail} is no parameter of this description",
+        "set what else the scene file leaves open where the file is described: holonom describe --set",
+    )
     NOT_A_DOCUMENT = ("this is no document {detail}", "write it anew with this version of holonom")
     NOT_A_RECORD = ("this is not a derivation record: {detail}", "derive it anew with `holonom derive`")
     NOT_AN_EXPRESSION = ("{detail} is not an expression that a derivation record can hold", "")
@@ -58,7 +81,7 @@ class Failure(Enum):
     COMPILER_UNUSABLE = ("the C compiler cannot be run: {detail}", "name one that works in the variable CC")
     OUTPUT_TAKEN = ("this output would take the place of {detail}", "give it a name of its own")
     FOREIGN_FILE = (
-        "there is a file of that name which is no earlier output of this kind",
+        "there is a file of that name, which is not replaced unasked",
         "give another name, or say --force to replace it",
     )
     FOREIGN_IN_MAXIMA = (
@@ -83,8 +106,14 @@ class Failure(Enum):
         "{detail}",
         "ask for fewer digits, a lower order or an earlier end, or allow it the time with --time-limit",
     )
+    TOO_MANY_STEPS = ("{detail}", "ask for an earlier end with --until, or for longer steps")
+    NOT_A_STEP = ("{detail} is no length of a step", "give a number greater than 0 with --max-step")
     MEMORY_TOO_SMALL = ("{detail}", "ask for fewer digits or a lower order")
     SETTING_TOO_LARGE = ("{detail} is beyond what a double holds", "set a smaller number, or one less close to zero")
+    NUMBER_TOO_LARGE = (
+        "a number of the motion is larger than a double can be",
+        "describe the system in units in which its numbers are smaller",
+    )
     NOT_A_SCENE_NAME = ("{detail} cannot be the name of a scene", "give the name that the scene is assigned to")
     NOT_A_PROGRAM = ("this is not a motion program: {detail}", "write it anew with `holonom program`")
     NOT_AN_IDENTIFIER = ("{detail} cannot name a function in C and Python", "use letters, digits and underscores")
@@ -121,6 +150,14 @@ class Failure(Enum):
     FOLDER_TAKEN = ("another command is at work in this folder", "wait until it ends")
     NOTHING_TO_RESUME = ("there is no sweep to resume", "leave --resume out to begin one")
     WORKERS_LOST = ("the workers are gone: {detail}", "run the same command again; what is finished stays")
+    NOT_A_SCHEDULER = (
+        "{detail} is no address of a Dask scheduler",
+        "write for instance --dask tcp://127.0.0.1:8786",
+    )
+    WORKER_ENDED = (
+        "a process that computes was ended",
+        "see what ends it, perhaps a lack of memory, and run the same command again",
+    )
     NO_END = ("the scene has no time span", "give it one, or the last instant with --until")
     NO_COMMON_END = (
         "the scene ends where an expression of its until vanishes, and methods are compared at one instant",
@@ -198,14 +235,20 @@ FAULTS_OF_THE_MACHINE = frozenset(
         "KILLED",
         "NO_PRIVATE_DIRECTORY",
         "NO_SANDBOX",
+        "SANDBOX_FAILED",
         "DISK_FULL",
         "COMPILER_MISSING",
         "COMPILER_UNUSABLE",
         "EXTRA_MISSING",
         "GSL_MISSING",
         "WORKERS_LOST",
+        "WORKER_ENDED",
     }
 )
+
+
+class HolonomWarning(UserWarning):
+    """What a scene file says without effect, and what is done all the same."""
 
 
 class HolonomError(Exception):
@@ -273,7 +316,7 @@ class HolonomError(Exception):
 
     def _told(self, remedy: str) -> str:
         located = f"{self.place}: {self.said}" if self.place else self.said
-        return located.rstrip(".") + (f"; {remedy}." if remedy else ".")
+        return visible(located.rstrip(".") + (f"; {remedy}." if remedy else "."))
 
 
 NO_ROOM = ("failed to map segment", "annot allocate memory")  # what the loader of libraries says

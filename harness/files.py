@@ -1,23 +1,21 @@
 """Files and directories that appear whole or not at all."""
 
 import errno
-import fcntl
 import os
-import re
+import secrets
 import shutil
 import tempfile
-import weakref
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
 
 from .failures import Failure, HolonomError
+from .temporary import remove_tree
 
 MANIFEST = ".holonom-written"
-DRAFT = "draft-"
-PRIVATE = ".holonom-run-"
-PRIVATE_NAME = re.compile(re.escape(PRIVATE) + r"[a-z0-9_]{8}")
+DRAFTS = ".holonom-*.new"  # names of files that are about to get their own
+LINKS = 40  # that lead from one to the next, which is what Linux follows
 
 
 def shared(folder: str) -> Path:
@@ -38,122 +36,6 @@ def scene_file(path: str | Path) -> Path:
     return file
 
 
-@contextmanager
-def private_directory() -> Iterator[Path]:
-    """A directory for temporary files, gone at the end. While it is in use it is locked."""
-    path, lock = _locked_directory()
-    try:
-        yield path
-    finally:
-        _remove_private_directory(path)
-        os.close(lock)
-
-
-class KeptDirectory:
-    """A private directory that is there for as long as somebody refers to this object.
-
-    Raises
-    ------
-    HolonomError
-        It cannot be made.
-    """
-
-    def __init__(self) -> None:
-        held = ExitStack()
-        self.path = held.enter_context(private_directory())
-        weakref.finalize(self, held.close)
-
-
-def sweep_private_directories() -> None:
-    """Remove the directories that killed runs left: those that nobody has locked."""
-    with suppress(OSError):
-        for name in filter(PRIVATE_NAME.fullmatch, os.listdir(tempfile.gettempdir())):
-            _sweep(Path(tempfile.gettempdir(), name))
-
-
-def remove_tree(path: Path) -> None:
-    """Remove a directory, whatever its permissions, and all that it holds."""
-
-    def make_writable(function: Callable[..., object], name: str, _: object) -> None:
-        with suppress(OSError):
-            os.chmod(os.path.dirname(name), 0o700)
-            if os.path.isdir(name) and not os.path.islink(name):
-                os.chmod(name, 0o700)
-                shutil.rmtree(name, ignore_errors=True)
-            else:
-                function(name)
-
-    shutil.rmtree(path, onerror=make_writable)
-
-
-def _locked_directory() -> tuple[Path, int]:
-    """A new directory, and the descriptor that holds its lock."""
-    while True:
-        try:
-            path = Path(tempfile.mkdtemp(prefix=PRIVATE)).resolve()
-        except OSError as error:
-            raise HolonomError(Failure.NO_PRIVATE_DIRECTORY, detail=error.strerror or str(error)) from None
-        try:
-            lock = os.open(path, os.O_RDONLY)
-            fcntl.flock(lock, fcntl.LOCK_EX)
-        except FileNotFoundError:  # swept before it was opened
-            continue
-        except OSError as error:  # as of a file system without locks
-            _remove(path)
-            raise HolonomError(Failure.NO_PRIVATE_DIRECTORY, detail=error.strerror or str(error)) from None
-        if path.exists():  # and was not swept before it was locked
-            return path, lock
-        os.close(lock)
-
-
-def _remove_private_directory(path: Path) -> None:
-    """Remove a private directory, and first the unfinished files that it has links to."""
-    for link in path.glob(f"{DRAFT}*"):
-        if link.is_symlink():
-            _remove(link.readlink())
-    remove_tree(path)
-
-
-@contextmanager
-def draft_of(target: Path) -> Iterator[Path]:
-    """A name beside a file or directory, for what is to take its place. At the end nothing has that name.
-
-    A command that runs under supervision links to it from its private directory: should it be killed, the draft is
-    removed with that.
-    """
-    draft = target.with_name(f".{target.name}.{os.getpid()}.new")
-    home = Path(tempfile.gettempdir())
-    link = home / f"{DRAFT}{os.urandom(8).hex()}" if PRIVATE_NAME.fullmatch(home.name) else None
-    if link is not None:
-        link.symlink_to(draft)
-    try:
-        yield draft
-    finally:
-        _remove(draft)
-        if link is not None:
-            link.unlink(missing_ok=True)
-
-
-def _remove(path: Path) -> None:
-    if path.is_dir() and not path.is_symlink():
-        remove_tree(path)
-    else:
-        with suppress(OSError):  # there may be no such place at all
-            path.unlink()
-
-
-def _sweep(path: Path) -> None:
-    with suppress(OSError):
-        if path.is_symlink() or path.stat().st_uid != os.getuid():
-            return
-        lock = os.open(path, os.O_RDONLY)
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            _remove_private_directory(path)
-        finally:
-            os.close(lock)
-
-
 def near_file(missing: Path) -> str:
     """What a file that is missing may have been meant to be, as the end of a sentence; empty where nothing is near."""
     try:
@@ -166,13 +48,32 @@ def near_file(missing: Path) -> str:
     return f", but there is {missing.with_name(near[0])}" if near else ""
 
 
+def require_writable(path: Path) -> None:
+    """Refuse a file that cannot be written, before there is anything to write.
+
+    Raises
+    ------
+    HolonomError
+        It is a directory, or nothing can be put beside it.
+    """
+    try:
+        if path.is_dir():
+            raise IsADirectoryError(None, "it is a directory")
+        if not path.exists() or path.is_file():
+            target = _target(path)
+            _status(target)
+            _unnamed(target.parent).close()
+    except OSError as error:
+        raise _unwritable(path, error) from None
+
+
 def write_whole(path: Path, content: str | bytes) -> None:
     """Write a file so that nobody ever sees half of it.
 
     Parameters
     ----------
     path : Path
-        The file; what it held is replaced. A device or a pipe is written to as it is.
+        The file. What it held is replaced, and its permissions stay. A device or a pipe is written to as it is.
     content : str or bytes
         What it is to hold; text becomes UTF-8.
 
@@ -199,16 +100,33 @@ def whole_file(path: Path) -> Iterator[BinaryIO]:
     HolonomError
         The file cannot be written; what it held is still there, as after any other exception of the block.
     """
-    target = path.resolve()
     try:
-        if target.exists() and not target.is_file():
-            with target.open("wb") as file:
+        if path.exists() and not path.is_file():
+            with path.open("wb") as file:
                 yield file
-        else:
-            with draft_of(target) as draft:
-                with draft.open("wb") as file:
-                    yield file
-                draft.replace(target)
+            return
+        target = _target(path)
+        with _unnamed(target.parent) as file:
+            yield file
+            _to_disk(file)
+            _put_in_place(file, target)
+    except OSError as error:
+        raise _unwritable(path, error) from None
+
+
+def append_line(path: Path, line: str) -> None:
+    """Append a line to a file, which is made where it is missing. A line that was cut off before ends here.
+
+    Raises
+    ------
+    HolonomError
+        The file cannot be written.
+    """
+    try:
+        descriptor = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_NOFOLLOW, 0o666)
+        with open(descriptor, "ab") as file:
+            file.write(f"\n{line}\n".encode())
+            _to_disk(file)
     except OSError as error:
         raise _unwritable(path, error) from None
 
@@ -226,7 +144,7 @@ def write_files(directory: Path, files: Mapping[str, str]) -> None:
     except OSError as error:
         raise _unwritable(directory, error) from None
     manifest = _manifest({*written_before(directory), *files})
-    for name, text in {**files, MANIFEST: manifest}.items():
+    for name, text in {MANIFEST: manifest, **files}.items():
         write_whole(directory / name, text)
 
 
@@ -248,12 +166,13 @@ def require_own_files(directory: Path, names: Iterable[str]) -> None:
 
 
 def write_whole_directory(path: Path, files: Mapping[str, str | bytes]) -> None:
-    """Write a directory so that nobody ever sees half of it.
+    """Write a directory; a new one appears whole or not at all.
+
+    In a directory that is there, the files that its manifest lists are replaced or removed, each at once and only when
+    all new ones are on the disk. The others stay as they are.
 
     Parameters
     ----------
-    path : Path
-        The directory. Of one that is there the files that its manifest lists are replaced, and the others stay.
     files : mapping of str to str or bytes
         What each file holds, text in UTF-8, by its path in the directory.
 
@@ -266,48 +185,136 @@ def write_whole_directory(path: Path, files: Mapping[str, str | bytes]) -> None:
     target = path.resolve()
     require_own_files(path, files)
     try:
-        with draft_of(target) as draft:
-            for name, content in {**files, MANIFEST: _manifest(files)}.items():
-                (draft / name).parent.mkdir(parents=True, exist_ok=True)
-                (draft / name).write_bytes(content.encode() if isinstance(content, str) else content)
+        with ExitStack() as opened:
+            written = {}
+            for name, content in files.items():
+                file = written[name] = opened.enter_context(_unnamed(target.parent))
+                file.write(content.encode() if isinstance(content, str) else content)
+                _to_disk(file)
             if target.exists():
-                _take_along(target, draft)
-            _exchange(target, draft)
+                _put_into(target, written)
+            else:
+                _new_directory(target, written)
     except OSError as error:
         raise _unwritable(path, error) from None
+
+
+def _target(path: Path) -> Path:
+    """The file that a name leads to; no link is followed that somebody else made."""
+    link = path
+    for _ in range(LINKS):
+        if not link.is_symlink():
+            break
+        if link.lstat().st_uid not in (0, os.geteuid()):
+            raise PermissionError(None, f"{link} is a link that somebody else made")
+        link = link.parent / link.readlink()
+    return path.resolve()
+
+
+def _status(path: Path) -> os.stat_result | None:
+    """What there is of a name; None where there is nothing."""
+    with suppress(FileNotFoundError):
+        return path.lstat()
+    return None
+
+
+def _unnamed(folder: Path) -> BinaryIO:
+    """A file on the disk of a folder that has no name: it is gone when it is closed, also by the end of the process."""
+    with suppress(AttributeError, OSError):  # a system, or a file system, without O_TMPFILE
+        return os.fdopen(os.open(folder, os.O_TMPFILE | os.O_RDWR, 0o600), "w+b")
+    return tempfile.TemporaryFile(dir=folder)
+
+
+def _to_disk(file: BinaryIO) -> None:
+    file.flush()
+    os.fsync(file.fileno())
+
+
+def _put_in_place(file: BinaryIO, target: Path) -> None:
+    """Give a file without a name that of another one, in its place and with its permissions."""
+    _take_permissions(file.fileno(), _status(target))
+    with _opened(target.parent) as folder:
+        draft = _draft_name()
+        try:
+            _give_name(file, draft, folder)
+            os.replace(draft, target.name, src_dir_fd=folder, dst_dir_fd=folder)
+        except BaseException:
+            with suppress(FileNotFoundError):
+                os.unlink(draft, dir_fd=folder)
+            raise
+
+
+def _take_permissions(descriptor: int, replaced: os.stat_result | None) -> None:
+    """Give a file the owner and the permissions of the one that it replaces; a new one those that the umask leaves."""
+    if replaced is None:
+        mask = os.umask(0o077)
+        os.umask(mask)
+        os.fchmod(descriptor, 0o666 & ~mask)
+        return
+    with suppress(PermissionError):  # it is somebody else's, in a folder that both may write to
+        os.fchown(descriptor, replaced.st_uid, replaced.st_gid)
+    os.fchmod(descriptor, replaced.st_mode & 0o777)
+
+
+@contextmanager
+def _opened(folder: Path) -> Iterator[int]:
+    descriptor = os.open(folder, os.O_DIRECTORY | getattr(os, "O_PATH", os.O_RDONLY))
+    try:
+        yield descriptor
+    finally:
+        os.close(descriptor)
+
+
+def _draft_name() -> str:
+    return f".holonom-{secrets.token_hex(8)}.new"
+
+
+def _give_name(file: BinaryIO, name: str, folder: int) -> None:
+    """Give a file without a name a new one; where the system cannot, copy it to a file that nobody else has made."""
+    try:
+        os.link(f"/proc/self/fd/{file.fileno()}", name, dst_dir_fd=folder)
+    except OSError:
+        mode = os.fstat(file.fileno()).st_mode & 0o777
+        flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
+        with open(os.open(name, flags, 0o600, dir_fd=folder), "wb") as copy:
+            file.seek(0)
+            shutil.copyfileobj(file, copy)
+            os.fchmod(copy.fileno(), mode)
+            _to_disk(copy)
+
+
+def _new_directory(target: Path, files: Mapping[str, BinaryIO]) -> None:
+    """Put files without names into a new directory."""
+    draft = target.with_name(_draft_name())
+    draft.mkdir()
+    try:
+        _put_into(draft, files)
+        draft.rename(target)
+    except BaseException:
+        remove_tree(draft)
+        raise
+
+
+def _put_into(directory: Path, files: Mapping[str, BinaryIO]) -> None:
+    """Put files without names into a directory, and remove files that its manifest alone names."""
+    gone = written_before(directory) - files.keys()
+    write_whole(directory / MANIFEST, _manifest({*gone, *files}))
+    for name, file in files.items():
+        (directory / name).parent.mkdir(parents=True, exist_ok=True)
+        _put_in_place(file, directory / name)
+    for name in gone:
+        (directory / name).unlink(missing_ok=True)
+    write_whole(directory / MANIFEST, _manifest(files))
 
 
 def _manifest(names: Iterable[str]) -> str:
     return "".join(f"{name}\n" for name in sorted(names))
 
 
-def _take_along(directory: Path, draft: Path) -> None:
-    """Copy into a directory's draft what the directory's manifest does not list."""
-    listed = {*written_before(directory), MANIFEST}
-    for folder, folders, names in os.walk(directory):
-        kept = [Path(folder, name) for name in names] + [
-            Path(folder, name) for name in folders if Path(folder, name).is_symlink()
-        ]
-        for file in kept:
-            if str(name := file.relative_to(directory)) not in listed:
-                (draft / name).parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy2(file, draft / name, follow_symlinks=False)
-
-
-def _exchange(target: Path, draft: Path) -> None:
-    """Put a draft in the place of a directory; the old one goes, or comes back where that fails."""
-    replaced = target.with_name(f".{target.name}.{os.getpid()}.old")
-    try:
-        if target.exists():
-            target.replace(replaced)
-        draft.replace(target)
-    finally:
-        if replaced.exists() and not target.exists():
-            replaced.replace(target)
-        _remove(replaced)
-
-
-def _unwritable(path: Path, error: OSError) -> HolonomError:
+def _unwritable(path: Path, error: OSError) -> Exception:
+    """The refusal to write a file; a lack of descriptors or memory, or a broken disk, is no matter of the file."""
+    if error.errno in (errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EIO):
+        return error
     full = error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
     failure = Failure.DISK_FULL if full else Failure.UNWRITABLE
     return HolonomError(failure, path, error.strerror or str(error))

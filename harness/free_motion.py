@@ -4,21 +4,22 @@ And the motion under prescribed reactions, of which free motion is the case zero
 """
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property
 from pathlib import Path
 
 from sympy import Add, Expr, Mul, Symbol
 
-from .confined import Limits
 from .crosscheck.system import described_system
-from .crosscheck.universal_laws import LawOfControls, judge_law
 from .crosscheck.verdict import Judgement
+from .described import read_system
 from .documents import Document, ask, read
+from .free_verdicts import FreeMotionTrial
 from .mathjson import to_sympy
-from .record import read_system
+from .sandbox import Limits
 from .shown import Show, Shown
+from .source import Source
 from .trees import Tree
 
 Law = Mapping[str, Expr]
@@ -152,7 +153,7 @@ class FreeMotion(Shown):
 
 
 def free_motion(
-    file: Path, scene: str | None, settings: Mapping[str, str], limits: Limits, order: int | None = None
+    file: Source | Path, scene: str | None, settings: Mapping[str, str], limits: Limits, order: int | None = None
 ) -> FreeMotion:
     """Ask Maxima about the free motion of a scene.
 
@@ -187,6 +188,7 @@ def read_free_motion(text: str) -> FreeMotion:
         As `holonom.documents.read`.
     """
     document = read(Document.FREE_MOTION, text)
+    trial = _trial(document)
     motion, trajectory, prescribed, left_open = (
         document[part] for part in ("motion", "trajectory", "prescribed", "open")
     )
@@ -194,14 +196,8 @@ def read_free_motion(text: str) -> FreeMotion:
         document["scene"],
         None if document["condition"] is None else tuple(document["condition"]),
         document["left_out"],
-        MotionVerdict(
-            Free(motion["verdict"]),
-            motion["for"],
-            motion["evidence"],
-            motion["order"],
-            motion["first"] and FirstCoefficient(**motion["first"]),
-        ),
-        _universal(document),
+        _motion(motion, trial, _law(document["control_law"])),
+        _universal(document["universal"], trial),
         TrajectoryControl(
             trajectory["kind"],
             _law(trajectory["law"]) if trajectory["series"] is None else _truncated_law(trajectory["series"]),
@@ -231,30 +227,52 @@ def _truncated_law(series: dict) -> Law:
     return {name: added_up(_expressions(trees)) for name, trees in series["coefficients"].items()}
 
 
-def _universal(document: dict) -> UniversalControls:
-    universal = document["universal"]
+def _trial(document: dict) -> FreeMotionTrial:
+    span = document["time_span"]
+    return FreeMotionTrial(
+        described_system(read_system(document["system"]), document["effects"]).without(document["redundant"]),
+        {Symbol(name, real=True): value for name, value in _law(document["parameter_values"]).items()},
+        span and (to_sympy(span[0]), to_sympy(span[1])),
+    )
+
+
+def _motion(motion: dict, trial: FreeMotionTrial, law: Law) -> MotionVerdict:
+    found = MotionVerdict(
+        Free(motion["verdict"]),
+        motion["for"],
+        motion["evidence"],
+        motion["order"],
+        motion["first"] and FirstCoefficient(**motion["first"]),
+    )
+    if found.verdict is not Free.FREE or found.states != "all states" or not law:
+        return found
+    contradiction = trial.contradiction_of_free_motion(law)
+    if not contradiction:
+        return found
+    return replace(
+        found, verdict=Free.UNDECIDED, states="this state", evidence=f"{found.evidence}; but {contradiction}"
+    )
+
+
+def _universal(universal: dict, trial: FreeMotionTrial) -> UniversalControls:
     families = zip(*(universal[part] for part in ("laws", "constants", "free", "positive")), strict=True)
+    laws = tuple(_checked_law(trial, *family) for family in families)
+    verdict, contradiction = trial.verdict_on_laws(universal["verdict"], [law.check for law in laws])
     return UniversalControls(
-        universal["verdict"],
-        tuple(_checked_law(document, *family) for family in families),
+        verdict,
+        laws,
         tuple(
             ControlCondition(to_sympy(each["expression"]), to_sympy(each["place"]), tuple(each["effects"]))
             for each in universal["conditions"]
         ),
         universal["generic"],
-        universal["reason"],
+        contradiction or universal["reason"],
     )
 
 
-def _checked_law(document: dict, law: dict, constants: list, free: list, positive: list) -> UniversalLaw:
-    system = described_system(read_system(document["system"]), document["effects"]).without(document["redundant"])
+def _checked_law(trial: FreeMotionTrial, law: dict, constants: list, free: list, positive: list) -> UniversalLaw:
     controls, conditions = _law(law), _expressions(positive)
-    judgement = judge_law(
-        system,
-        {Symbol(name, real=True): value for name, value in _law(document["parameter_values"]).items()},
-        LawOfControls({Symbol(name, real=True): value for name, value in controls.items()}, conditions),
-    )
-    return UniversalLaw(controls, tuple(constants), tuple(free), conditions, judgement)
+    return UniversalLaw(controls, tuple(constants), tuple(free), conditions, trial.of_law(controls, conditions))
 
 
 def _expressions(trees: Iterable[Tree]) -> tuple[Expr, ...]:

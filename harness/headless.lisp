@@ -5,7 +5,7 @@
 ;;;
 ;;;   RUN-FILE         reads a file statement by statement, as batchload does, remembering where each one starts, and
 ;;;                    evaluates a closing call, for instance write_record("record.json");
-;;;   RUN-SCENE        reads the file likewise and writes down what it described (description.lisp);
+;;;   RUN-SCENE        reads the file likewise and writes down what it described, if it loaded the library;
 ;;;   RUN-DESCRIPTION  reads no file but such a description, and evaluates the closing call.
 ;;;
 ;;; Each makes an error of all that would stop or prompt, a question, a syntax error, a Lisp error, and leaves the
@@ -35,6 +35,15 @@
 ;; read() and readonly() ask without it.
 (defun $readonly (&rest prompt)
   (error 'unanswered-question :text (format nil "~{~A~^ ~}" (mapcar #'plain-text prompt))))
+
+;; So do these, which open a prompt; in some versions of Maxima they are given their arguments as they stand.
+(dolist (door '($break $to_lisp))
+  (let ((call (list (list door))))
+    (flet ((refuse (&rest arguments)
+             (declare (ignore arguments))
+             (error 'unanswered-question :text (plain-text call))))
+      (setf (symbol-function door) #'refuse)
+      (when (get door 'mfexpr*) (setf (get door 'mfexpr*) #'refuse)))))
 
 (defun mread-synerr (control &rest arguments)
   "Maxima's one door for syntax errors: the place is that of the file being parsed, perhaps a loaded one."
@@ -69,7 +78,8 @@
   (with-open-file (*statement-stream* copy)
     (run-job job (lambda ()
                    (run-statements (first job))
-                   (write-description description)))))
+                   (when (and (boundp '*asked-for*) (symbol-value '*asked-for*))
+                     (mfuncall '$write_description description))))))
 
 (defun run-description (description call job)
   "Describe anew what DESCRIPTION holds, then run the Maxima text CALL."
@@ -86,6 +96,7 @@ before all, outcome, mark)."
     (setq $file_search_maxima
           `((mlist) ,(format nil "~A/$$$.mac" library) ,@(cdr $file_search_maxima)))
     (let ((ending (ending-of (lambda ()
+                               (setq $logexpand nil) ; log(x^2) has a value where x < 0, and 2 log(x) has none
                                (evaluate-text preparation)
                                (funcall run)))))
       (write-outcome outcome mark name ending)
@@ -98,8 +109,31 @@ before all, outcome, mark)."
       (setq *statement-start* (file-position *statement-stream*))
       (let ((statement (read-statement)))
         (unless (consp statement) (return))
+        (refuse-taken-names (third statement))
         (meval* (third statement)))))
   (setq *statement-start* nil))
+
+(defun refuse-taken-names (form)
+  "Refuse to define a function of Maxima's or the library's anew: what calls it would go wrong elsewhere."
+  (unless (or (atom form) (atom (car form)))
+    (when (member (caar form) '(mdefine mdefmacro $define))
+      (let ((name (and (consp (second form)) (consp (car (second form))) (caar (second form)))))
+        (when (taken-name-p name)
+          (merror "~M is a function of ~A: give yours another name." name
+                  (if (public-function-p name) "Holonom's" "Maxima's")))))
+    (mapc #'refuse-taken-names (cdr form))))
+
+(defun taken-name-p (name)
+  (and (symbolp name)
+       (or (fboundp name) (get name 'mfexpr*) (public-function-p name))
+       (not (member name (cdr $functions) :key #'caar))))
+
+(defun public-function-p (name)
+  "Whether a scene may call it; total(f) stands in results alone."
+  (and (not (eq name '$total))
+       (boundp '*public-names*)
+       (eq (gethash name (symbol-value '*public-names*)) 'function)
+       (mget name 'mexpr)))
 
 (defun read-statement ()
   (handler-case (mread *statement-stream* nil)
@@ -135,11 +169,18 @@ before all, outcome, mark)."
     (one-line (with-output-to-string (*standard-output*) ($errormsg)))))
 
 (defun lisp-message (condition)
-  "What a Lisp condition says, without the function that GCL says it in."
-  (one-line (if (typep condition 'simple-condition)
-                (apply #'format nil (simple-condition-format-control condition)
-                       (simple-condition-format-arguments condition))
-                (princ-to-string condition))))
+  "What a Lisp condition says, without the function that GCL says it in; of what is of a wrong type, that itself."
+  (let ((said (one-line (if (typep condition 'simple-condition)
+                            (apply #'format nil (simple-condition-format-control condition)
+                                   (simple-condition-format-arguments condition))
+                            (princ-to-string condition)))))
+    (if (and (string= said "") (typep condition 'type-error))
+        (format nil "~A is no ~(~A~)" (as-text (type-error-datum condition)) (type-error-expected-type condition))
+        said)))
+
+(defun as-text (datum)
+  (handler-case (plain-text datum)
+    (error () (one-line (princ-to-string datum)))))
 
 (defun plain-text (message)
   "A question of Maxima's, a string or (mtext) with strings and expressions, as one line."

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
 
-from .confined import bubblewrap
 from .documents import Document, ask, read
 from .failures import Failure, HolonomError
 from .files import shared, write_files, write_whole, written_before
 from .maxima import LIBRARY
 from .reference.maxima_help import help_files
+from .sandbox import has_sandbox
 
 REQUIREMENT = re.compile(r"(?P<package>[\w.-]+)[^;]*(?:;.*extra\s*==\s*['\"](?P<extra>\w+)['\"])?")
 USERS_EXTRAS = ("motion", "sweep", "companion")  # the others are for those who develop Holonom
@@ -28,7 +28,7 @@ PROGRAMS = {
     "maxima": "everything: it derives the equations",
     "cc": "compiled programs, --to fmu, the Runge-Kutta engine",
     "gsl-config": "the Runge-Kutta engine",
-    "bwrap": "walls around scene files",
+    "bwrap": "the sandbox of scene files",
 }
 ALLOW = "allow bubblewrap to make user namespaces, which this machine forbids"
 NEEDED = "maxima"
@@ -52,8 +52,8 @@ def components() -> Iterator[Component]:
         remedy = _install_program(program)
         if program == "maxima" and version is not None:
             version = maxima_version()
-        elif program == "bwrap" and version is not None and bubblewrap() is None:
-            version, remedy = None, ALLOW
+        elif program == "bwrap" and version is not None and (hindrance := _hindrance_of_sandbox()):
+            version, remedy = None, hindrance
         yield Component(program, version, purpose, program == NEEDED, remedy)
     for requirement in metadata.requires("holonom") or ():
         found = REQUIREMENT.match(requirement)
@@ -62,6 +62,14 @@ def components() -> Iterator[Component]:
             yield Component(package, _version(package), "the core", True, "pip install holonom")
         elif extra in USERS_EXTRAS:
             yield Component(package, _version(package), extra, False, f"pip install 'holonom[{extra}]'")
+
+
+def _hindrance_of_sandbox() -> str:
+    """Return what to do so that bubblewrap works; empty if it does."""
+    try:
+        return "" if has_sandbox() else ALLOW
+    except HolonomError as error:
+        return str(error)
 
 
 def extra_of(package: str) -> str | None:

@@ -4,9 +4,8 @@ This is the only module that knows Maxima is a process. A run has a private dire
 anything else, makes errors of questions and leaves the ending in a file, for Maxima's exit status says nothing. What
 Maxima prints is kept for people and not read, with one exception: the count of Maxima's own test runner.
 
-A scene file is a program, perhaps a stranger's. Unless it is trusted, one process runs it and writes down what it
-described, and another one, which never sees the file and begins when the first is gone, derives from that
-(`description.lisp`).
+A scene file is a program, perhaps a stranger's. One process runs it and writes down what it described, and others,
+which never see the file and begin when the first is gone, derive from that description.
 """
 
 import os
@@ -16,17 +15,20 @@ import shlex
 import shutil
 import signal
 import stat
-import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import BinaryIO
 
-from .confined import MIB, Confinement, LimitExceeded, Limits, Sandbox, run_confined, surroundings, walled_in
 from .failures import Failure, HolonomError
-from .files import near_file, private_directory, shared
-from .preloaded import ARGUMENTS, ENVIRONMENT, JOBS, QUIET, preloaded_image, quoted
+from .files import near_file, shared
+from .hidden import visible_line
+from .preloaded import ARGUMENTS, ENVIRONMENT, JOBS, QUIET, is_removed_as_broken, preloaded_image, quoted
+from .sandbox import MIB, LimitExceeded, Limits, Place, Sandbox, is_isolated, run_process, surroundings
+from .scene_files import copy_scene_files
 from .supervisor import doing
+from .temporary import private_directory
 
 LIBRARY = shared("maxima")
 DEFAULT_LIMITS = Limits()
@@ -41,10 +43,16 @@ PASSED_ON = (
     "MAXIMA_PREFIX",
     "MAXIMA_LAYOUT_AUTOTOOLS",
 )
+LARGEST = 64 * MIB  # bytes of a scene file, and of the description that it leaves
+SHOWN = 40  # letters of a name that is refused
+# A string, or a name of more than 200 letters, some perhaps behind a backslash.
+LONG_NAME = re.compile(r'"(?:[^"\\]|\\.)*+"?|(?<![\w\\])(?P<name>(?:[^\W\d]|\\.)(?:\w|%|\\.){200,})', re.DOTALL)
 BYTE_ORDER_MARK = "\ufeff"
 SIGNALS = frozenset(signal.Signals)
 SIGNALLED = 128  # a shell adds this to the number of the signal that ended a process
 
+LEFT_BEHIND = ("outcome", "document")
+LONGEST_OUTCOME = MIB  # bytes
 STARTED, FINISHED = "STARTED", "FINISHED"
 ENDINGS = {
     "FAULT": Failure.REFUSED,
@@ -74,8 +82,9 @@ class Run:
     file: Path  # the file that it is about
     directory: Path
     limits: Limits
-    settings: Mapping[str, str]
+    settings: Mapping[str, str] | None
     mark: str  # what only this run can know: the names of what it leaves behind end in it, and the outcome holds it
+    reads_files: bool = True  # whether it is given the files that the scene names, and those beside it
 
     def leaves(self, what: str) -> Path:
         """The file that the run is to leave behind."""
@@ -85,47 +94,60 @@ class Run:
 def get_ready(file: Path, limits: Limits) -> None:
     """Do beforehand what a run about a file begins with, and what takes ten times as long beside a busy thread.
 
-    Raises as `ask_scene` where the file cannot be read, or Maxima is missing.
+    Raises as `run_scene` where the file cannot be read, or Maxima is missing.
     """
     read_maxima_text(file)
-    walled_in(limits)
+    is_isolated(limits)
     _image(_maxima())
 
 
-def ask_scene(
-    scene: Path, writer: str, limits: Limits = DEFAULT_LIMITS, settings: Mapping[str, str] = NO_SETTINGS
-) -> str:
-    """Ask the library for a document about a scene file.
-
-    Unless the file is trusted, nothing that it does can reach the process that writes the document: that one begins
-    when all that the file started has ended, and knows of it the description alone.
+def run_scene(file: Path, limits: Limits, settings: Mapping[str, str], document: str) -> str:
+    """Run a scene file, and have it written down what it described.
 
     Parameters
     ----------
-    scene : Path
+    file : Path
         A Maxima file that describes one system and any number of scenes. ``load("holonom.mac")`` in it finds this
         project's library.
-    writer : str
-        The library's function that writes the document, given the name of the file to write.
     settings : mapping of str to str
         Numbers in Maxima's notation, for what the file leaves open and for parameters.
+    document : str
+        Name of the document, for the command that repeats the run.
 
     Raises
     ------
     HolonomError
         The file is missing, is refused, asks a question, exceeds a limit, or Maxima is missing.
     """
-    if limits.sandbox is Sandbox.TRUSTED:
-        return run_batch(scene, writer, limits, settings)
-    began = time.monotonic()
-    with doing("running the scene file"), _new_run(scene, limits, settings) as run:
-        printed = _run(run, f"run-scene {_copy(run)} {quoted(run.leaves('description').name)}", writer)
-        description = _left_behind(run, "description", printed)
-    rest = replace(limits, seconds=limits.seconds - (time.monotonic() - began))
-    if rest.seconds <= 0:
-        raise HolonomError(Failure.TOO_LONG, scene, detail=f"{limits.seconds:g} s")
-    with doing("deriving with Maxima"), _new_run(scene, rest, settings) as run:
-        (run.directory / "description").write_bytes(description)
+    with doing("running the scene file"), _new_run(file, limits, settings) as run:
+        printed = _run(run, f"run-scene {_copy(run)} {quoted(run.leaves('document').name)}", f"write_{document}")
+        left = run.leaves("document")
+        if left.is_file() and left.stat().st_size > LARGEST:
+            raise HolonomError(Failure.DESCRIPTION_TOO_LARGE, file, f"{LARGEST // MIB} MiB")
+        return _document(run, printed)
+
+
+def run_description(text: str, file: Path, writer: str, limits: Limits, settings: Mapping[str, str] | None) -> str:
+    """Have a document derived from a description, by a process that never sees the file.
+
+    Parameters
+    ----------
+    text : str
+        The description.
+    file : Path
+        The file that it is of, for messages.
+    writer : str
+        The library's function that writes the document, given the name of the file to write.
+    settings : mapping of str to str, or None
+        What the file was run with, for the command that repeats the run; None if no file was run.
+
+    Raises
+    ------
+    HolonomError
+        The description is refused, a limit is exceeded, or Maxima is missing.
+    """
+    with doing("deriving with Maxima"), _new_run(file, limits, settings, reads_files=False) as run:
+        (run.directory / "description").write_text(text, encoding="utf-8")
         printed = _run(run, f'run-description "description" {_call(writer, run)}', writer)
         return _document(run, printed)
 
@@ -135,12 +157,17 @@ def run_batch(
 ) -> str:
     """Run a Maxima file in the open, then one Maxima function that writes a document, perhaps one of the file's.
 
-    Raises as `ask_scene`.
-
     Parameters
     ----------
-    file, writer, limits, settings
-        As for `ask_scene`.
+    file, limits, settings
+        As for `run_scene`.
+    writer : str
+        As for `run_description`.
+
+    Raises
+    ------
+    HolonomError
+        As `run_scene`.
     """
     with doing("deriving with Maxima"), _new_run(file, replace(limits, sandbox=Sandbox.TRUSTED), settings) as run:
         printed = _run(run, f"run-file {_copy(run)} {_call(writer, run)}", writer)
@@ -189,15 +216,39 @@ def statement_ends(text: str, position: int = 0) -> Iterator[int]:
 
 
 @contextmanager
-def _new_run(file: Path, limits: Limits, settings: Mapping[str, str]) -> Iterator[Run]:
+def _new_run(file: Path, limits: Limits, settings: Mapping[str, str] | None, reads_files: bool = True) -> Iterator[Run]:
     with private_directory() as directory:
-        yield Run(file, directory, limits, settings, secrets.token_hex(16))
+        yield Run(file, directory, limits, settings, secrets.token_hex(16), reads_files)
 
 
 def _copy(run: Run) -> str:
     """The name of a copy of the run's file, as Lisp text; every path and every line end can be read in the copy."""
-    (run.directory / "file.mac").write_bytes(read_maxima_text(run.file).encode())
+    text = read_maxima_text(run.file)
+    _require_short_names(text, run.file)
+    (run.directory / "file.mac").write_bytes(text.encode())
     return '"file.mac"'
+
+
+def limited(opened: BinaryIO, file: Path | str) -> bytes:
+    """Read what is not larger than a scene file may be.
+
+    Raises
+    ------
+    HolonomError
+        It is larger.
+    """
+    content = opened.read(LARGEST + 1)
+    if len(content) > LARGEST:
+        raise HolonomError(Failure.FILE_TOO_LARGE, file, f"{LARGEST // MIB} MiB")
+    return content
+
+
+def _require_short_names(text: str, file: Path) -> None:
+    """Refuse names that Maxima's reader would take minutes for: its time grows as the square of their length."""
+    for found in LONG_NAME.finditer(text):
+        if found["name"]:
+            line = text.count("\n", 0, found.start()) + 1
+            raise HolonomError(Failure.NAME_TOO_LONG, f"{file}:{line}", found["name"][:SHOWN])
 
 
 def read_maxima_text(file: Path) -> str:
@@ -206,12 +257,13 @@ def read_maxima_text(file: Path) -> str:
     Raises
     ------
     HolonomError
-        There is no such file, it is no regular one, it cannot be read, or it is not UTF-8.
+        There is no such file, it is no regular one, it is too large, it cannot be read, or it is not UTF-8.
     """
     try:
         if not stat.S_ISREG(file.stat().st_mode):
             raise HolonomError(Failure.FILE_UNREADABLE, file, "it is no regular file")
-        content = file.read_bytes()
+        with file.open("rb") as opened:
+            content = limited(opened, file)
     except FileNotFoundError:
         raise HolonomError(Failure.FILE_MISSING, file, near_file(file)) from None
     except OSError as error:
@@ -234,25 +286,12 @@ def _call(writer: str, run: Run) -> str:
 def _run(run: Run, start: str, writer: str) -> str:
     """Do what `start` says; return what Maxima printed."""
     maxima = _maxima()
-    outcome = run.leaves("outcome")
-    preparation = f"(holonom_print : false, {_set(run.settings)})$"
-    arguments = [quoted(each) for each in (run.file.resolve(), LIBRARY, preparation, outcome.name, run.mark)]
-    confinement = _confinement(run, Path(maxima))
     image = _image(maxima)
-    program = [maxima] if image is None else [str(image), *ARGUMENTS]
-    known = () if image else JOBS
-    parts = [*(each.read_text(encoding="utf-8") for each in known), f"({start} '({' '.join(arguments)}))\n"]
-    (run.directory / "job.lisp").write_bytes(os.fsencode("(in-package :maxima)\n" + "\n".join(parts)))
-    command = [*program, *QUIET, "--preload-lisp=job.lisp"]
+    place = _place(run, Path(maxima))
     output = bytearray()
-    try:
-        status = run_confined(command, confinement, output)
-    except LimitExceeded as exceeded:
-        ending = Ending(exceeded.failure, str(run.file), exceeded.detail)
-    except OSError as error:
-        ending = Ending(Failure.NOT_MAXIMA, maxima, error.strerror or str(error))
-    else:
-        ending = _read_ending(run, maxima, status)
+    ending = _attempt(run, start, maxima, image, place, output)
+    if ending is not None and ending.failure is Failure.NOT_MAXIMA and image and is_removed_as_broken(image, place):
+        ending = _attempt(run, start, maxima, None, place, output)
     printed = output.decode(errors="replace")
     if ending is None:
         return printed
@@ -261,8 +300,25 @@ def _run(run: Run, start: str, writer: str) -> str:
         ending.place,
         ending.detail,
         last_lines=_last_lines(printed),
-        command=_repeating_command(run.file, f'{writer}("document")$', run.settings),
+        command="" if run.settings is None else _repeating_command(run.file, f'{writer}("document")$', run.settings),
     )
+
+
+def _attempt(run: Run, start: str, maxima: str, image: Path | None, place: Place, output: bytearray) -> Ending | None:
+    """Run Maxima, or an image of it; return how it ended before its time, if it did."""
+    preparation = f"(holonom_print : false, {_set(run.settings or NO_SETTINGS)})$"
+    facts = (run.file.resolve(), LIBRARY, preparation, run.leaves("outcome").name, run.mark)
+    known = [] if image else [each.read_text(encoding="utf-8") for each in JOBS]
+    job = "\n".join(["(in-package :maxima)", *known, f"({start} '({' '.join(map(quoted, facts))}))\n"])
+    (run.directory / "job.lisp").write_bytes(os.fsencode(job))
+    program = [maxima] if image is None else [str(image), *ARGUMENTS]
+    try:
+        status = run_process([*program, *QUIET, "--preload-lisp=job.lisp"], place, output)
+    except LimitExceeded as exceeded:
+        return Ending(exceeded.failure, str(run.file), exceeded.detail)
+    except OSError as error:
+        return Ending(Failure.NOT_MAXIMA, maxima, error.strerror or str(error))
+    return _read_ending(run, maxima, status)
 
 
 def _maxima() -> str:
@@ -279,7 +335,7 @@ def _passed_on() -> dict[str, str]:
     return {name: os.environ[name] for name in PASSED_ON if name in os.environ}
 
 
-def _confinement(run: Run, maxima: Path) -> Confinement:
+def _place(run: Run, maxima: Path) -> Place:
     """A private directory for all that Maxima keeps, English messages, and nothing else of this machine's settings."""
     directory = str(run.directory)
     environment = ENVIRONMENT | _passed_on()
@@ -297,23 +353,21 @@ def _confinement(run: Run, maxima: Path) -> Confinement:
         # the same memory. With a fifth, 24 derivatives of a gamma function take 3.7 GiB, with this 1.3 (measured).
         "GCL_GC_ALLOC_MIN": "0.13",
     }
-    readable = (*surroundings(maxima), LIBRARY, _own_folder(run.file))
-    return Confinement(run.directory, environment, readable, run.limits)
+    outputs = [run.leaves(what) for what in LEFT_BEHIND]
+    for each in outputs:
+        each.touch()
+    read = run.reads_files and is_isolated(run.limits)
+    copies = copy_scene_files(run.file, run.directory, run.limits.allow) if read else {}
+    return Place(run.directory, environment, run.limits, (*surroundings(maxima), LIBRARY), copies, outputs)
 
 
 def _memory_of_the_machine() -> int:
     return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
 
 
-def _own_folder(file: Path) -> Path:
-    """The folder that a file may read; the file alone where that would be the user's home directory, or more."""
-    folder = file.resolve().parent
-    return file.resolve() if Path.home().resolve().is_relative_to(folder) else folder
-
-
 def _read_ending(run: Run, maxima: str, status: int) -> Ending | None:
     """The ending that `headless.lisp` wrote; None when the run is finished."""
-    lines = (_read_left(run.leaves("outcome"), run.limits) or b"").decode(errors="replace").split("\n")
+    lines = (_read_left(run.leaves("outcome"), LONGEST_OUTCOME) or b"").decode(errors="replace").split("\n")
     if lines == [""]:
         return Ending(Failure.NOT_MAXIMA, maxima, f"exit status {status}")
     if len(lines) < 7 or [lines[0], *lines[-2:]] != [run.mark, run.mark, ""]:
@@ -326,9 +380,9 @@ def _read_ending(run: Run, maxima: str, status: int) -> Ending | None:
     if kind not in ENDINGS or not line.isdigit():
         return Ending(Failure.TORN, str(run.file), "outcome")
     own = running in (str(run.file.resolve()), str((run.directory / "file.mac").resolve()))
-    shown = str(run.file) if own else running
+    shown = str(run.file) if own else visible_line(running)
     place = shown if line == "0" else f"{shown}:{line}"
-    return Ending(ENDINGS[kind], place, " ".join(message.split()) or "it does not say which")
+    return Ending(ENDINGS[kind], place, visible_line(" ".join(message.split())) or "it does not say which")
 
 
 def _unfinished(run: Run, status: int) -> Ending:
@@ -347,20 +401,20 @@ def _document(run: Run, printed: str) -> str:
 
 
 def _left_behind(run: Run, what: str, printed: str) -> bytes:
-    content = _read_left(run.leaves(what), run.limits)
-    if content is None:
+    content = _read_left(run.leaves(what), run.limits.file_mib * MIB)
+    if not content:
         raise HolonomError(Failure.NOTHING_WRITTEN, run.file, last_lines=_last_lines(printed))
     return content
 
 
-def _read_left(path: Path, limits: Limits) -> bytes | None:
+def _read_left(path: Path, most: int) -> bytes | None:
     """What a process left in a regular file, or None; a link is not followed, nor a pipe waited for."""
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
     except OSError:
         return None
     found = os.fstat(descriptor)
-    if not stat.S_ISREG(found.st_mode) or found.st_size > limits.file_mib * MIB:
+    if not stat.S_ISREG(found.st_mode) or found.st_size > most:
         os.close(descriptor)
         return None
     with open(descriptor, "rb") as file:
@@ -368,7 +422,7 @@ def _read_left(path: Path, limits: Limits) -> bytes | None:
 
 
 def _last_lines(printed: str) -> tuple[str, ...]:
-    return tuple(line for line in printed.splitlines() if line.strip())[-LAST_LINES:]
+    return tuple(visible_line(line) for line in printed.splitlines() if line.strip())[-LAST_LINES:]
 
 
 def _set(settings: Mapping[str, str]) -> str:

@@ -11,6 +11,7 @@ from .program.infix import Formula, Rank, atom, call
 from .trees import FLOAT, INTEGER, Tree, converted, integer, quantity, refusal
 
 CONSTANTS = {"Pi": "%pi", "ExponentialE": "%e", "ImaginaryUnit": "%i", "EulerGamma": "%gamma"}
+CONSTANTS |= {"True": "true", "False": "false"}
 FUNCTIONS = {
     "Sqrt": "sqrt",
     "Exp": "exp",
@@ -48,6 +49,25 @@ FUNCTIONS = {
     "AiryBi": "airy_bi",
     "AiryAiPrime": "airy_dai",
     "AiryBiPrime": "airy_dbi",
+}
+BETWEEN = {
+    "Greater": ">",
+    "GreaterEqual": ">=",
+    "Less": "<",
+    "LessEqual": "<=",
+    "Same": "=",
+    "NotSame": "#",
+    "And": "and",
+    "Or": "or",
+}
+OF_ANY = {
+    "Max": "max",
+    "Min": "min",
+    "Not": "not",
+    "Equal": "equal",
+    "NotEqual": "notequal",
+    "UnitStep": "unit_step",
+    "HalfStep": "hstep",
 }
 OF_TWO = {
     "Arctan2": "atan2",
@@ -100,6 +120,14 @@ def _expanded(tree: Tree) -> Expanded:
             return (lambda *arguments: call(OF_TWO[head], *arguments)), [first, second]
         case ["PolyGamma", int(order), argument]:
             return (lambda formula: call(f"psi[{order}]", formula)), [argument]
+        case ["Which", *clauses]:
+            return _conditional, clauses
+        case ["Table", int(place), time]:
+            return (lambda formula: call(f"table_{place}", formula)), [time]
+        case [str(head), *arguments] if head in BETWEEN:
+            return (lambda *formulas: _between(BETWEEN[head], formulas)), arguments
+        case [str(head), *arguments] if head in OF_ANY:
+            return (lambda *formulas: call(OF_ANY[head], *formulas)), arguments
         case [str(head), argument] if head in FUNCTIONS:
             return (lambda formula: call(FUNCTIONS[head], formula)), [argument]
         case _:
@@ -197,6 +225,16 @@ def _power(base: Formula, exponent: Formula) -> Formula:
 
 def _negated(size: Formula) -> Formula:
     return Formula(f"-{size.within(Rank.PRODUCT)}", Rank.SUM)
+
+
+def _between(sign: str, formulas: Sequence[Formula]) -> Formula:
+    return atom(f"({f' {sign} '.join(formula.text for formula in formulas)})")
+
+
+def _conditional(*clauses: Formula) -> Formula:
+    cases = zip(clauses[:-2:2], clauses[1:-2:2], strict=True)
+    branches = " else".join(f"if {condition.text} then {value.text}" for condition, value in cases)
+    return atom(f"({branches} else {clauses[-1].text})")
 
 
 def _digits(tree: Tree) -> str:

@@ -1,8 +1,7 @@
 ;;; Maxima with the library loaded, saved as an image
 ;;;
 ;;; GCL interprets what it loads as text. The Lisp functions of the library and of the files that runs are made of are
-;;; compiled first, all as one file, where there is a C compiler; the file is kept with what it was compiled to, and
-;;; serves as long as the functions do not change.
+;;; compiled first, all as one file, where there is a C compiler.
 
 (in-package :maxima)
 
@@ -40,21 +39,9 @@ working directory; where no image can serve, do nothing."
     (if (and (eq (first form) 'defun) (fboundp (second form))) (format out "~S~%" form))))
 
 (defun load-compiled (text)
-  "Load functions, compiled now or kept from before: kept.lisp and kept.o."
-  (if (and (probe-file "kept.o") (string= text (text-in "kept.lisp")))
-      (load "kept.o")
-      (compile-anew text)))
-
-(defun compile-anew (text)
   (with-open-file (out "functions.lisp" :direction :output)
     (format out "(in-package :maxima)~%~A" text))
   #+gcl (progn
           (setq compiler::*opt-two* "-O1" compiler::*opt-three* "-O1") ; as quick as with -O2, and sooner there
           (compile-file "functions.lisp")
           (load "functions.o")))
-
-(defun text-in (file)
-  (with-open-file (in file)
-    (read-line in)                      ; (in-package :maxima)
-    (let* ((text (make-string (file-length in))) (end (read-sequence text in)))
-      (subseq text 0 end))))

@@ -5,32 +5,22 @@ which nothing is evaluated as code. SymPy expressions are made of them when they
 imported then.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from .confined import Limits
+from .described import System, Values, each, expression, read_system
 from .documents import Document, ask, read
 from .failures import Failure, HolonomError
 from .maxima import DEFAULT_LIMITS, NO_SETTINGS
+from .sandbox import Limits
+from .source import Source
 from .trees import Tree
 
 if TYPE_CHECKING:
     from sympy import Expr
-
-NAMED_QUANTITIES = (
-    "coordinates",
-    "velocities",
-    "accelerations",
-    "controls",
-    "control_rates",
-    "control_accelerations",
-    "parameters",
-    "multipliers",
-)
-Result = TypeVar("Result")
 
 
 @dataclass(frozen=True)
@@ -43,12 +33,12 @@ class Relation:
     @cached_property
     def left(self) -> "Expr":
         """The left side."""
-        return _expression(self.left_tree)
+        return expression(self.left_tree)
 
     @cached_property
     def right(self) -> "Expr":
         """The right side."""
-        return _expression(self.right_tree)
+        return expression(self.right_tree)
 
 
 @dataclass(frozen=True)
@@ -59,80 +49,6 @@ class Equation:
     number: str  # the number that the paper gives it; several items may share one
     name: str  # what it is, for people
     relations: tuple[Relation, ...]  # its components
-
-
-@dataclass(frozen=True)
-class Effect:
-    """A named part of the kinetic or of the potential energy."""
-
-    effect: str
-    tree: Tree
-
-    @cached_property
-    def value(self) -> "Expr":
-        """The energy."""
-        return _expression(self.tree)
-
-
-@dataclass(frozen=True)
-class ForceEffect:
-    """A named part of the generalized forces, one component a coordinate."""
-
-    effect: str
-    trees: tuple[Tree, ...]
-
-    @cached_property
-    def value(self) -> "tuple[Expr, ...]":
-        """The forces."""
-        return _each(_expression, self.trees)
-
-
-@dataclass(frozen=True)
-class System:
-    """A system as its scene file describes it, before anything is derived."""
-
-    title: str  # what the system is
-    source: str | None  # where it is published
-    time: str  # name of the time
-    # coordinates, velocities, accelerations: names of q, dot(q) and ddot(q)
-    coordinates: tuple[str, ...]
-    velocities: tuple[str, ...]
-    accelerations: tuple[str, ...]
-    # controls, control_rates, control_accelerations: names of u, dot(u) and ddot(u)
-    controls: tuple[str, ...]
-    control_rates: tuple[str, ...]
-    control_accelerations: tuple[str, ...]
-    parameters: tuple[str, ...]  # names of the constants
-    multipliers: tuple[str, ...]  # names of the constraint multipliers
-    # kinetic_energy, potential_energy: T and V as sums of named parts
-    kinetic_energy: tuple[Effect, ...]
-    potential_energy: tuple[Effect, ...]
-    forces: tuple[ForceEffect, ...]  # Q as a sum of named parts
-    constraint_trees: tuple[Tree, ...]  # each is zero on every motion
-
-    @cached_property
-    def constraints(self) -> "tuple[Expr, ...]":
-        """The constraints, g of them."""
-        return _each(_expression, self.constraint_trees)
-
-
-class Values(Mapping[str, "Expr"]):
-    """Expressions by name."""
-
-    def __init__(self, trees: Mapping[str, Tree]) -> None:
-        self._trees = trees
-        self._made: dict[str, Expr] = {}
-
-    def __getitem__(self, name: str) -> "Expr":
-        if name not in self._made:
-            self._made[name] = _expression(self._trees[name])
-        return self._made[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._trees)
-
-    def __len__(self) -> int:
-        return len(self._trees)
 
 
 class LeftOut(NamedTuple):
@@ -214,7 +130,7 @@ class Scene:
     @cached_property
     def time_span(self) -> "tuple[Expr, Expr] | None":
         """First and last instant."""
-        return None if self.span_trees is None else (_expression(self.span_trees[0]), _expression(self.span_trees[1]))
+        return None if self.span_trees is None else (expression(self.span_trees[0]), expression(self.span_trees[1]))
 
 
 @dataclass(frozen=True)
@@ -228,7 +144,7 @@ class Record:
 
 
 def derived_record(
-    file: Path,
+    file: Source | Path,
     settings: Mapping[str, str] = NO_SETTINGS,
     limits: Limits = DEFAULT_LIMITS,
     closed_form_size: int | None = None,
@@ -249,8 +165,8 @@ def read_record(text: str) -> Record:
     record = Record(
         maxima=document["maxima"],
         system=read_system(document["system"]),
-        derivations=_each(_derivation, document["derivations"]),
-        scenes=_each(_scene, document["scenes"]),
+        derivations=each(_derivation, document["derivations"]),
+        scenes=each(_scene, document["scenes"]),
     )
     for scene in record.scenes:
         if scene.derivation >= len(record.derivations):
@@ -258,32 +174,10 @@ def read_record(text: str) -> Record:
     return record
 
 
-def read_system(system: dict[str, Any]) -> System:
-    """Read the description of a system, as records and other documents hold it."""
-    return System(
-        title=system["title"],
-        source=system["source"],
-        time=system["time"],
-        **{kind: tuple(system[kind]) for kind in NAMED_QUANTITIES},
-        kinetic_energy=_each(_effect, system["kinetic_energy"]),
-        potential_energy=_each(_effect, system["potential_energy"]),
-        forces=_each(_force_effect, system["forces"]),
-        constraint_trees=tuple(system["constraints"]),
-    )
-
-
-def _effect(part: dict[str, Any]) -> Effect:
-    return Effect(part["effect"], part["value"])
-
-
-def _force_effect(part: dict[str, Any]) -> ForceEffect:
-    return ForceEffect(part["effect"], tuple(part["value"]))
-
-
 def _derivation(derivation: dict[str, Any]) -> Derivation:
     return Derivation(
         tuple(derivation["effects"]),
-        _each(_equation, derivation["equations"]),
+        each(_equation, derivation["equations"]),
         derivation["mass_matrix"],
         tuple(derivation["redundant"]),
         derivation["closed_form_operations"],
@@ -310,24 +204,14 @@ def _scene(scene: dict[str, Any]) -> Scene:
         correction=scene["correction"] and (scene["correction"]["name"], scene["correction"]["size"]),
         span_trees=None if span is None else (span[0], span[1]),
         observe=tuple(scene["observe"]),
-        equations=_each(_equation, scene["equations"]),
+        equations=each(_equation, scene["equations"]),
         left_out=_left_out(scene["left_out"]),
     )
 
 
 def _equation(equation: dict[str, Any]) -> Equation:
-    return Equation(equation["id"], equation["number"], equation["name"], _each(_relation, equation["relations"]))
+    return Equation(equation["id"], equation["number"], equation["name"], each(_relation, equation["relations"]))
 
 
 def _relation(relation: dict[str, Any]) -> Relation:
     return Relation(relation["left"], relation["right"])
-
-
-def _expression(tree: Tree) -> "Expr":
-    from .mathjson import to_sympy
-
-    return to_sympy(tree)
-
-
-def _each(read: Callable[[Any], Result], items: Sequence[Any]) -> tuple[Result, ...]:
-    return tuple(read(item) for item in items)

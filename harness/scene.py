@@ -13,23 +13,26 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from .confined import Limits
-from .documents import Document, ask, read
 from .equations import Equations
 from .failures import Failure, HolonomError, naming_the_extra
-from .files import KeptDirectory, near_file, scene_file
+from .files import near_file, scene_file
 from .program.forms import MotionProgram
 from .program.motion_program import Solve
 from .program.request import Request, read_settings
+from .sandbox import Limits, warn_unconfined
 from .simulation.derivations import Derivations
+from .source import Source
+from .temporary import KeptDirectory
 
 if TYPE_CHECKING:
     from .crosscheck import CheckReport
+    from .described import System
+    from .description import Description
     from .free_motion import FreeMotion
     from .program.effects import MeasuredCosts
     from .program.motion_problem import MotionProblem
     from .program.right_hand_side import RightHandSide
-    from .record import Record, System
+    from .record import Record
     from .series.power_series import MotionSeries
     from .simulation.result import Simulation
     from .sweeps.run import Sweep
@@ -42,12 +45,13 @@ LOADS_THE_LIBRARY = re.compile(r"\bload\s*\(.*?holonom")
 
 
 def load(path: str | Path, scene: str | None = None, limits: Limits | None = None, **settings: Number) -> "Scene":
-    """Open a scene file.
+    """Open a scene file, or a description.
 
     Parameters
     ----------
     path : str or Path
-        A Maxima file that describes one system and any number of scenes; ``examples/...`` is found anywhere.
+        A Maxima file that describes one system and any number of scenes, or a description that `holonom describe`
+        wrote; ``examples/...`` is found anywhere.
     scene : str or None
         The name that the scene is assigned to; None for the last one in the file.
     limits : Limits or None
@@ -58,12 +62,17 @@ def load(path: str | Path, scene: str | None = None, limits: Limits | None = Non
     Raises
     ------
     HolonomError
-        There is no such file; a setting is no number.
+        There is no such file; a setting is no number; a required sandbox is missing.
+
+    Warns
+    -----
+    UserWarning
+        This machine has no sandbox, and the limits do not trust the file.
     """
     file = scene_file(path)
     if not file.is_file():
         raise HolonomError(Failure.FILE_MISSING, file, near_file(file))
-    return Scene(file, scene, _settings(settings), limits or Limits())
+    return _opened(file, scene, settings, limits)
 
 
 def system(text: str, scene: str | None = None, limits: Limits | None = None, **settings: Number) -> "Scene":
@@ -85,9 +94,15 @@ def system(text: str, scene: str | None = None, limits: Limits | None = None, **
     file = directory.path / "system.mac"
     library = "" if LOADS_THE_LIBRARY.search(text) else 'load("holonom.mac")$ '
     file.write_text(library + text, encoding="utf-8")
-    opened = Scene(file, scene, _settings(settings), limits or Limits())
+    opened = _opened(file, scene, settings, limits)
     opened._directory = directory  # it is removed with the last scene that reads the file
     return opened
+
+
+def _opened(file: Path, scene: str | None, settings: Mapping[str, Number], limits: Limits | None) -> "Scene":
+    limits = limits or Limits()
+    warn_unconfined(limits)
+    return Scene(file, scene, _settings(settings), limits)
 
 
 def sweep(
@@ -165,7 +180,7 @@ def sweep(
     wanted = SweepRequest(axes, read_kept(keep), tol, _instant(until), cure, chunk, workers, scheduler)
     directory = KeptDirectory() if output is None else None
     folder = directory.path if directory is not None else Path(output)
-    found = run_sweep(opened.file, opened._request(solve), wanted, folder, opened.limits)
+    found = run_sweep(opened._source, opened._request(solve), wanted, folder, opened.limits)
     return replace(found, _directory=directory)
 
 
@@ -176,27 +191,33 @@ class Scene:
         self.file, self.settings, self.limits = file, dict(settings), limits
         self._name = name
         self._directory: KeptDirectory | None = None
-        self._derived = Derivations(file, limits)
+        self._source = Source(file, limits)
+        self._derived = Derivations(self._source)
 
     def with_settings(self, settings: Mapping[str, Number] | None = None, **more: Number) -> "Scene":
         """The same scene with other numbers for what the file leaves open and for parameters."""
         other = Scene(self.file, self._name, self.settings | _settings({**(settings or {}), **more}), self.limits)
-        other._directory, other._derived = self._directory, self._derived
+        other._directory, other._source, other._derived = self._directory, self._source, self._derived
         return other
 
     # ---- the derivation ----
+
+    @property
+    def description(self) -> "Description":
+        """All that the file says. It is run when the first question is put to it, once for each choice of settings."""
+        return self._source.description(self.settings)
 
     @cached_property
     def record(self) -> "Record":
         """All that Maxima derives from the file."""
         from .record import derived_record
 
-        return derived_record(self.file, self.settings, self.limits)
+        return derived_record(self._source, self.settings, self.limits)
 
     @property
     def system(self) -> "System":
         """The system as it is described, before anything is derived."""
-        return self.record.system
+        return self.description.system
 
     @cached_property
     def equations(self) -> Equations:
@@ -208,16 +229,11 @@ class Scene:
         names = [scene.name for scene in record.scenes]
         wanted = self._name
         if wanted not in names:
-            wanted = self._name_among(self._all_names())
+            wanted = self._name_among([scene.name for scene in self.description.scenes])
         if wanted not in names:
             return Equations(record.derivations[0].equations)
         chosen = record.scenes[names.index(wanted)]
         return Equations((*record.derivations[chosen.derivation].equations, *chosen.equations))
-
-    def _all_names(self) -> Sequence[str]:
-        """Names of the file's scenes, those that prescribe reactions among them."""
-        text = ask(Document.SCENES, self.file, settings=self.settings, limits=self.limits)
-        return read(Document.SCENES, text)["scenes"]
 
     def _name_among(self, names: Sequence[str]) -> str | None:
         """The scene's name: the last one where none is given, None where there is no scene."""
@@ -238,22 +254,24 @@ class Scene:
 
     def check(self) -> "CheckReport":
         """Compare every equation of the file with an independent SymPy evaluation."""
-        from .crosscheck import check_record
+        from .crosscheck import ask_motions, check_record, motion_verdicts
 
-        return check_record(self.record)
+        motions = ask_motions(self._source, self.settings)
+        report = check_record(self.record, self.description)
+        return report.with_verdicts(motion_verdicts(self.description, motions, report.seed))
 
     def free(self) -> "FreeMotion":
         """When the motion is free: as it is, under which laws always, under which for one trajectory."""
         from .free_motion import free_motion
 
-        return free_motion(self.file, self._name, self.settings, self.limits)
+        return free_motion(self._source, self._name, self.settings, self.limits)
 
     @naming_the_extra()
     def effects(self) -> "MeasuredCosts":
         """Which terms and effects there are, and what each costs in operations and in measured time."""
         from .program.effects import scene_costs
 
-        return scene_costs(self.file, self._request("direct"), self.limits)
+        return scene_costs(self._source, self._request("direct"), self.limits)
 
     # ---- the motion ----
 
@@ -287,7 +305,7 @@ class Scene:
 
         last = _instant(until)
         request = SeriesRequest(order, self._name, digits, last, self.settings, precision)
-        return compute_series(self.file, request, self.limits)
+        return compute_series(self._source, request, self.limits)
 
     @naming_the_extra()
     def simulate(
@@ -372,7 +390,7 @@ class Scene:
 
     def program(self, solve: str = "direct") -> MotionProgram:
         """The motion program: accelerations and multipliers of (t, q, dot q, u, dot u, ddot u)."""
-        return MotionProgram(self.file, self._request(solve), self.limits)
+        return MotionProgram(self._source, self._request(solve), self.limits)
 
     def __repr__(self) -> str:
         scene = f", scene={self._name!r}" if self._name else ""

@@ -1,57 +1,41 @@
-"""A command under supervision: whatever ends it, what it started ends with it, and nothing that it put aside stays.
+"""A command under supervision: everything that it started ends with it, and no temporary file stays.
 
-The command runs in a child process. This one only waits: it ends the command at a signal or when its time is over, sees
-it end by itself or crash, ends what is left of it, and removes its directory for temporary files. Where this process is
-killed, the child is killed, and the next command removes the directory.
+The command runs in a child process. This one waits for it or for a signal, ends what is left, and removes the directory
+for temporary files. If this process is killed, the kernel ends the child, and the next command removes the directory.
 """
 
-import ctypes
 import math
 import mmap
 import os
 import signal
-import struct
-import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Collection, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from threading import Thread
-from types import FrameType
 
-from .files import private_directory, sweep_private_directories
+from .processes import SIGNALLED, become_subreaper, die_with_parent, end_children
+from .temporary import private_directory, remove_abandoned_directories
 
-SIGNALLED = 128  # a shell adds this to the number of the signal that ended a command
 OUT_OF_TIME = 2
 CRASHED = 3
 ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 QUIET_ENDS = (*ENDING_SIGNALS, signal.SIGPIPE)
 EXPECTED = 120.0  # seconds: what surely takes longer is to be asked for with a time limit
-TICK = 0.1  # seconds between two looks at the clock
-ROUNDS = 500  # attempts to end all that a command started, a hundredth of a second each
-CLOCK = struct.Struct("dd")  # seconds that the command may take, and the instant at which they are over
-BOARD = 512  # bytes of what the command tells its supervisor: the clock, then what it is doing
-SET_PDEATHSIG, SET_CHILD_SUBREAPER = 1, 36  # of Linux's prctl
+BOARD = 512  # bytes of memory in which the command leaves what it is doing
 
 _board: mmap.mmap | None = None
+_time_limit = math.inf  # seconds
+_deadline = math.inf  # the instant, of the monotonic clock, at which they are over
 
 
 @dataclass(frozen=True)
 class Ending:
-    """How a command ended."""
+    """The ending of a command."""
 
-    status: int  # its exit status; 128 + n where a signal n ended it; 2 where its time was over; 3 where it crashed
-    sentence: str = ""  # what is to be told; empty where it told all by itself
-
-
-class _Interrupted(BaseException):
-    """A signal ends the wait, or the time is over."""
-
-    def __init__(self, ending: Ending) -> None:
-        super().__init__(ending)
-        self.ending = ending
+    status: int  # its exit status; 128 + n if signal n ended it; 2 if its time was over; 3 if it crashed
+    sentence: str = ""  # the message to print; empty if the command printed its own
 
 
 def supervise(command: Callable[[], int]) -> Ending:
@@ -63,41 +47,53 @@ def supervise(command: Callable[[], int]) -> Ending:
         No directory for temporary files can be made.
     """
     global _board
-    sweep_private_directories()
+    remove_abandoned_directories()
     with private_directory() as directory:
         _board = mmap.mmap(-1, BOARD)
-        limit_time(math.inf)
-        _control_process(SET_CHILD_SUBREAPER, 1)
+        become_subreaper()
+        heeded = [each for each in ENDING_SIGNALS if signal.getsignal(each) is not signal.SIG_IGN]
         supervisor = os.getpid()
+        signal.signal(signal.SIGCHLD, lambda *_: None)  # what is ignored may be lost while it is blocked
+        signal.pthread_sigmask(signal.SIG_BLOCK, [*heeded, signal.SIGCHLD])
         child = os.fork()
         if child == 0:
+            signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+            signal.pthread_sigmask(signal.SIG_UNBLOCK, [*heeded, signal.SIGCHLD])
             os._exit(_run(command, directory, supervisor))
         try:
-            with _interruptions():
-                return _ending_of(os.waitpid(child, 0)[1])
-        except _Interrupted as interrupted:
-            return interrupted.ending
+            return _wait(child, heeded)
         finally:
-            _end_descendants()
+            end_children()
 
 
 def limit_time(seconds: float) -> None:
-    """Say how much time the command has from now on; without supervision it is not limited."""
+    """Limit the time of the command from now on; without supervision it is not limited.
+
+    The kernel ends the command by SIGALRM, whatever it computes.
+    """
+    global _time_limit, _deadline
     if _board is not None:
-        CLOCK.pack_into(_board, 0, seconds, time.monotonic() + seconds)
+        _time_limit, _deadline = seconds, time.monotonic() + seconds
+        signal.signal(signal.SIGALRM, signal.SIG_DFL)
+        signal.setitimer(signal.ITIMER_REAL, seconds)
+        _write(_written())
 
 
 def time_left() -> float:
-    """Seconds that the command has left, `EXPECTED` where nothing limits it; infinite without supervision."""
+    """Return the seconds that the command has left, `EXPECTED` if nothing limits it; infinite without supervision."""
     if _board is None:
         return math.inf
-    seconds, deadline = CLOCK.unpack_from(_board, 0)
-    return deadline - time.monotonic() if math.isfinite(seconds) else EXPECTED
+    return _deadline - time.monotonic() if math.isfinite(_deadline) else EXPECTED
+
+
+def time_to_limit() -> float:
+    """Return the seconds until the command is ended; infinite if nothing limits it."""
+    return math.inf if _board is None else _deadline - time.monotonic()
 
 
 @contextmanager
 def doing(what: str) -> Iterator[None]:
-    """Say what the command does in the block, for the sentence that tells in what it ran out of time."""
+    """Leave word of what the command does in the block, for the message if it crashes or runs out of time."""
     before = _written()
     _write(what)
     try:
@@ -107,30 +103,19 @@ def doing(what: str) -> Iterator[None]:
 
 
 def _written() -> str:
-    return "" if _board is None else _board[CLOCK.size :].rstrip(b"\0").decode(errors="replace")
+    return _left_word()[1]
+
+
+def _left_word() -> tuple[str, str]:
+    """Return the time limit and what the command does, as the command wrote them."""
+    text = "" if _board is None else _board[:].rstrip(b"\0").decode(errors="replace")
+    limit, _, what = text.partition("\n")
+    return limit, what
 
 
 def _write(what: str) -> None:
     if _board is not None:
-        _board[CLOCK.size :] = what.encode()[: BOARD - CLOCK.size].ljust(BOARD - CLOCK.size, b"\0")
-
-
-def die_with_parent(parent: int) -> None:
-    """Have this process killed when its parent ends, by the kernel or else a thread; a parent that is gone counts."""
-
-    def end_without_parent() -> None:
-        if os.getppid() != parent:
-            os._exit(SIGNALLED + signal.SIGKILL)
-
-    def look_for_parent() -> None:
-        while True:
-            end_without_parent()
-            time.sleep(TICK)
-
-    if _control_process(SET_PDEATHSIG, signal.SIGKILL):
-        end_without_parent()
-    else:
-        Thread(target=look_for_parent, daemon=True).start()
+        _board[:] = f"{_time_limit:g}\n{what}".encode()[:BOARD].ljust(BOARD, b"\0")
 
 
 def _run(command: Callable[[], int], directory: Path, supervisor: int) -> int:
@@ -140,70 +125,26 @@ def _run(command: Callable[[], int], directory: Path, supervisor: int) -> int:
     return command()
 
 
+def _wait(child: int, heeded: Collection[int]) -> Ending:
+    """Wait until the command ends, or a signal asks for its end."""
+    while True:
+        number = signal.sigwait([*heeded, signal.SIGCHLD])
+        if number != signal.SIGCHLD:
+            return Ending(SIGNALLED + number)
+        ended, status = os.waitpid(child, os.WNOHANG)
+        if ended:
+            return _ending_of(os.waitstatus_to_exitcode(status))
+
+
 def _ending_of(status: int) -> Ending:
-    number = -os.waitstatus_to_exitcode(status)
-    if number <= 0:
-        return Ending(-number)
-    if number in QUIET_ENDS:
-        return Ending(SIGNALLED + number)
-    name = signal.Signals(number).name
-    return Ending(CRASHED, f"ended by {name}{_while_doing()}; perhaps this machine lacks memory: ask for less.")
-
-
-def _while_doing() -> str:
-    what = _written()
-    return f" while {what}" if what else ""
-
-
-@contextmanager
-def _interruptions() -> Iterator[None]:
-    """Signals that end a command, and the end of its time, interrupt the block; the signals are ignored after it."""
-
-    def end(number: int, _: FrameType | None) -> None:
-        raise _Interrupted(Ending(SIGNALLED + number))
-
-    def look_at_clock(*_: object) -> None:
-        seconds, deadline = CLOCK.unpack_from(_board, 0)
-        if time.monotonic() > deadline:
-            sentence = f"this took longer than {seconds:g} s, and ran out of them{_while_doing()}"
-            raise _Interrupted(Ending(OUT_OF_TIME, f"{sentence}; ask for less, or raise --time-limit."))
-
-    heeded = [number for number in ENDING_SIGNALS if signal.getsignal(number) is not signal.SIG_IGN]
-    signal.signal(signal.SIGALRM, look_at_clock)
-    signal.setitimer(signal.ITIMER_REAL, TICK, TICK)
-    for number in heeded:
-        signal.signal(number, end)
-    try:
-        yield
-    finally:
-        for number in heeded:
-            signal.signal(number, signal.SIG_IGN)
-        signal.setitimer(signal.ITIMER_REAL, 0)
-
-
-def _end_descendants() -> None:
-    """End what the command started, orphans too where the kernel gives them to this process."""
-    for _ in range(ROUNDS):
-        if not _reap():
-            return
-        import psutil  # a command that ends as it should does without
-
-        for process in psutil.Process().children(recursive=True):
-            with suppress(psutil.Error):
-                process.kill()
-        time.sleep(0.01)
-
-
-def _reap() -> bool:
-    """Take note of the children that have ended; whether there are others."""
-    try:
-        while os.waitpid(-1, os.WNOHANG)[0]:
-            pass
-    except ChildProcessError:
-        return False
-    return True
-
-
-def _control_process(option: int, value: int) -> bool:
-    """Linux's prctl; whether there is one, and it did so."""
-    return sys.platform == "linux" and ctypes.CDLL(None).prctl(option, ctypes.c_ulong(value), 0, 0, 0) == 0
+    if status >= 0:
+        return Ending(status)
+    limit, what = _left_word()
+    during = f" while {what}" if what else ""
+    if -status == signal.SIGALRM:
+        sentence = f"this took longer than {limit} s, and ran out of them{during}; ask for less, or raise --time-limit."
+        return Ending(OUT_OF_TIME, sentence)
+    if -status in QUIET_ENDS:
+        return Ending(SIGNALLED - status)
+    name = next((each.name for each in signal.Signals if each == -status), f"signal {-status}")
+    return Ending(CRASHED, f"ended by {name}{during}; perhaps this machine lacks memory: ask for less.")

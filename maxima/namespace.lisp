@@ -15,6 +15,9 @@
 ;;;   the fields of structures, that are only ever read behind an @.
 ;;;
 ;;;   public_names(name, ...)$              declares names of the vocabulary
+;;;   public_steps(name(a, b, [c]), ...)$   declares functions that a user calls as well. The library calls their twins;
+;;;                                         the plain name checks its arguments first (steps.mac). Those in
+;;;                                         brackets are given all or not at all
 ;;;   private_names(name, ...)$             declares names that head data: json_object(...)
 ;;;   load_library(directory, [file, ...])$ reads Maxima and Lisp files into the namespace, once
 ;;;   internal_names();                     lists the names that have a twin
@@ -29,6 +32,7 @@
 (defvar *defined-names* (make-hash-table :test 'eq) "Functions, structures and heads of data.")
 (defvar *bound-names* (make-hash-table :test 'eq) "Names that the library binds to values.")
 (defvar *read-names* (make-hash-table :test 'eq) "What each name of the library is read as.")
+(defvar *steps* nil "The calls of public steps, each as its definition begins: ((name) a b ((mlist) c)).")
 
 (defvar *namespace-open* nil "Whether everything is read as the library's files are.")
 (defvar *loaded-from* nil "The lists of files that are loaded, the latest first, each with its directory: (files . directory).")
@@ -214,10 +218,11 @@
           (meval* (with-maximas-defaults (in-namespace form)))))))
 
 ;;; What a user sets changes how Maxima computes: obase : 8, modulus : 7, numer : true. Behind the
-;;; library's own doors it computes as it does when it starts.
+;;; library's own doors it computes as it does when it starts; but log(x^2), which has a value where x < 0, stays what
+;;; it is, and does not become 2 log(x), which has none.
 (defvar *defaults*
   '(($numer nil) ($float nil) ($keepfloat nil) ($%enumer nil) ($modulus nil) ($obase 10) ($ibase 10)
-    ($algebraic nil) ($ratfac nil) ($domain $real) ($radexpand t) ($logexpand t) ($listarith t)
+    ($algebraic nil) ($ratfac nil) ($domain $real) ($radexpand t) ($logexpand nil) ($listarith t)
     ($doallmxops t) ($domxmxops t) ($exponentialize nil) ($demoivre nil) ($trigexpand nil)
     ($halfangles nil) ($stardisp nil) ($powerdisp nil) ($expop 0) ($expon 0)))
 
@@ -233,8 +238,9 @@
 (defun binding-of-flag (flag) (list '(msetq) (getalias (first flag)) (second flag)))
 
 (defun door-p (name)
-  (and (public-name-p name) (not (eq (gethash name *public-names*) 'entry))
-       (not (member name '($dot $ddot $dddot $total $setting)))))
+  (or (member name *steps* :key #'caar)
+      (and (public-name-p name) (not (eq (gethash name *public-names*) 'entry))
+           (not (member name '($dot $ddot $dddot $total $setting))))))
 
 ;;; ---- names that are made, and text that is read, while the library runs -----------------------
 
@@ -259,6 +265,11 @@
 (defmspec $public_names (form)
   (dolist (name (cdr form) '$done) (note name *public-names* 'function)))
 
+(defmspec $public_steps (form)
+  (dolist (call (cdr form) '$done)
+    (note (caar call) *defined-names* t)
+    (push call *steps*)))
+
 (defmspec $private_names (form)
   (dolist (name (cdr form) '$done) (note name *defined-names* t)))
 
@@ -277,8 +288,19 @@
   (let (($functions (copy-list $functions)) ($values (copy-list $values)) ($macros (copy-list $macros))
         ($arrays (copy-list $arrays)) ($props (copy-list $props)) ($structures (copy-list $structures))
         ($myoptions (copy-list $myoptions)))
-    (mapc #'evaluate-library-file (mapcar #'read-library-file paths)))
+    (mapc #'evaluate-library-file (mapcar #'read-library-file paths))
+    (mapc #'define-step *steps*))
   (setq $values (remove-if #'public-option-p $values)))
+
+(defun define-step (call)
+  "The plain name of a step:  name([given]) := called_step(twin, [a, b], [c], given)."
+  (let* ((given (read-name '$given))
+         (letters (mapcar #'in-namespace (cdr call)))
+         (optional (find-if #'$listp letters)))
+    (meval (with-maximas-defaults
+             `((mdefine) ((,(caar call)) ((mlist) ,given))
+               ((,(read-name '$called_step)) ((mquote) ,(read-function-name (caar call)))
+                ((mquote) ((mlist) ,@(remove optional letters))) ((mquote) ,(or optional '((mlist)))) ,given))))))
 
 (defun $internal_names ()
   "The names that the library keeps to itself, and that are none of Maxima's."

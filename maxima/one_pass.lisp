@@ -52,6 +52,16 @@
   "The name with letters before it and after it; concat would take  set,  an operator, by its sign {."
   (intern-invert-case (concatenate 'string "$" before (letters-of-name name) after)))
 
+(defun $dotted (dots x)
+  "dot(x), ddot(x), dddot(x): of a name another name, which is made once; of a list the list of them."
+  (cond ((symbolp x)
+         (or (get x dots)
+             (setf (get x dots) ($name_around (concatenate 'string (letters-of-name dots) "(") x ")"))))
+        (($listp x) (mlist-of (mapcar #'(lambda (each) ($dotted dots each)) (cdr x))))
+        (($mapatom x) (list (list dots 'simp) x)) ; as it is written, in index notation
+        (t (let ((dot (letters-of-name dots)))
+             (merror "~A(~M): expected a name or a list of names; write ~A of each name." dot x dot)))))
+
 (defun $contains_floats (e)
   (cond ((atom e) (floatp e))
         ((eq (caar e) 'bigfloat) t)

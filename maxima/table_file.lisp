@@ -44,8 +44,8 @@
   (let ((bad (position nil numbers)))
     (cond ((some #'separated-otherwise-p cells)
            (merror "table: ~M, line ~M: two numbers with a comma between them and decimal points, as 0.5,-1.25, must make a line; here it is '~M'"
-                   name line (shortened (trimmed text))))
-          (bad (merror "table: ~M, line ~M: '~M' is no number" name line (shortened (nth bad cells))))
+                   name line (shortened-text (trimmed text))))
+          (bad (merror "table: ~M, line ~M: '~M' is no number" name line (shortened-text (nth bad cells))))
           ((/= (length numbers) 2)
            (merror "table: ~M, line ~M: a line must hold two numbers, t and u, with decimal points; it holds ~M"
                    name line (length numbers))))))
@@ -54,13 +54,13 @@
   "BEFORE is the time of the row before, with its text; nil for the first row."
   (if (and before (<= (first numbers) (car before)))
       (merror "table: ~M, line ~M: the times must increase; ~M comes after ~M"
-              name line (shortened (first cells)) (shortened (cdr before)))))
+              name line (shortened-text (first cells)) (shortened-text (cdr before)))))
 
 (defun separated-otherwise-p (cell)
   "Whether there is a semicolon, a tab or a blank where only a comma may stand."
   (and (some #'digit-char-p cell) (find-if #'(lambda (c) (find c '(#\; #\Tab #\Space))) cell)))
 
-(defun shortened (text) (if (> (length text) 40) (concatenate 'string (subseq text 0 40) "...") text))
+(defun shortened-text (text) (if (> (length text) 40) (concatenate 'string (subseq text 0 40) "...") text))
 
 (defun beside-the-scene (name)
   (if (or (not (stringp $load_pathname)) (char= (char (concatenate 'string name " ") 0) #\/))

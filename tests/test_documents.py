@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from jsonschema import Draft202012Validator
 
-from holonom.documents import SCHEMAS, Document, Publication, ask, read, schema
+from holonom.documents import SCHEMAS, Document, Publication, ask, is_document, read, schema
 from holonom.failures import Failure, HolonomError
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -29,7 +29,6 @@ def test_every_schema_is_that_of_a_document():
     ("document", "file", "arguments"),
     [
         (Document.RECORD, PENDULUM, ()),
-        (Document.SCENES, PAPER, ()),
         (Document.PROGRAM, PENDULUM, (None, "direct")),
         (Document.EFFECTS, PENDULUM, (None, "direct")),
         (Document.MODEL, PENDULUM, (None, "direct", ("m",))),
@@ -53,6 +52,8 @@ def test_maxima_writes_what_the_schema_says(document, file, arguments):
         ("simulate", str(EXAMPLES / "linkage.mac"), "--until", "1", "--final"),
         ("check", str(PENDULUM)),
         ("effects", str(PENDULUM)),
+        ("free", str(PAPER)),
+        ("free", str(PENDULUM)),
     ],
 )
 def test_commands_publish_what_the_schema_says(command, holonom_here):
@@ -61,9 +62,35 @@ def test_commands_publish_what_the_schema_says(command, holonom_here):
 
 
 def test_what_has_another_shape_is_refused_where_it_differs():
-    with pytest.raises(HolonomError, match=r"holonom-scenes: at \$\.scenes\[1\], 2 is not of type") as raised:
-        read(Document.SCENES, '{"format": "holonom-scenes", "version": 1, "scenes": ["swing", 2]}')
+    with pytest.raises(HolonomError, match=r"holonom-errata: at \$\.equations\[0\]") as raised:
+        read(Document.ERRATA, '{"format": "holonom-errata", "version": 1, "equations": [2]}')
     assert raised.value.failure is Failure.NOT_A_DOCUMENT
+
+
+ENVELOPE = {"format": "holonom-check", "version": 1}
+
+
+@pytest.mark.parametrize(
+    ("content", "ours"),
+    [
+        (ENVELOPE, True),
+        ([ENVELOPE, ENVELOPE], True),
+        ({"name": "mine"}, False),
+        ({**ENVELOPE, "format": "holonom-thesis"}, False),
+        ({**ENVELOPE, "format": ["holonom-check"]}, False),
+        ({**ENVELOPE, "version": 2}, False),
+        ({"mine": ENVELOPE}, False),
+        ([], False),
+        ([ENVELOPE, "mine"], False),
+    ],
+)
+def test_a_document_is_known_by_its_envelope(content, ours):
+    assert is_document(json.dumps(content).encode()) is ours
+
+
+@pytest.mark.parametrize("text", [b'{"format": "holonom-check", "version": 1', b"\xff\xfe", b"[" * 100_000, b""])
+def test_what_is_no_json_is_no_document(text):
+    assert not is_document(text)
 
 
 @pytest.mark.parametrize("scene", ["", "a b", "quit()", "1x", "x;", "x\ny"])

@@ -2,16 +2,19 @@
 
 import errno
 import os
+import stat
+import subprocess
+import sys
+from itertools import count
 from pathlib import Path
 
 import pytest
 
 from holonom.failures import Failure, HolonomError
 from holonom.files import (
-    PRIVATE,
-    private_directory,
+    MANIFEST,
     require_own_files,
-    sweep_private_directories,
+    whole_file,
     write_files,
     write_whole,
     write_whole_directory,
@@ -57,6 +60,122 @@ def test_a_link_is_followed_and_a_device_kept(tmp_path):
     assert Path(os.devnull).is_char_device()
 
 
+@pytest.mark.parametrize("mode", [0o600, 0o640, 0o755])
+def test_permissions_of_what_is_replaced_stay(mode, tmp_path):
+    file = tmp_path / "file"
+    file.write_text("old")
+    file.chmod(mode)
+    write_whole(file, "new")
+    assert stat.S_IMODE(file.stat().st_mode) == mode
+    assert file.read_text() == "new"
+
+
+@pytest.mark.parametrize(("mask", "mode"), [(0o022, 0o644), (0o077, 0o600), (0o002, 0o664)])
+def test_a_new_file_has_the_permissions_that_the_umask_leaves(mask, mode, tmp_path):
+    before = os.umask(mask)
+    try:
+        write_whole(tmp_path / "file", "new")
+        assert os.umask(mask) == mask
+    finally:
+        os.umask(before)
+    assert stat.S_IMODE((tmp_path / "file").stat().st_mode) == mode
+
+
+def without_unnamed_files(monkeypatch):
+    """As on a file system that knows no O_TMPFILE."""
+    opened = os.open
+
+    def refuse(path, flags, *arguments, **options):
+        if flags & os.O_TMPFILE == os.O_TMPFILE:
+            raise OSError(errno.EOPNOTSUPP, os.strerror(errno.EOPNOTSUPP))
+        return opened(path, flags, *arguments, **options)
+
+    monkeypatch.setattr("os.open", refuse)
+
+
+@pytest.mark.parametrize("prepare", [lambda monkeypatch: None, without_unnamed_files])
+def test_while_a_file_is_written_its_folder_holds_nothing_new(prepare, tmp_path, monkeypatch):
+    """So nothing is left of it by whatever ends the process."""
+    prepare(monkeypatch)
+    file = tmp_path / "file"
+    file.write_text("old")
+    with whole_file(file) as writing:
+        writing.write(b"new")
+        writing.flush()
+        assert os.listdir(tmp_path) == ["file"]
+        assert file.read_text() == "old"
+    assert file.read_text() == "new"
+    assert os.listdir(tmp_path) == ["file"]
+
+
+def test_no_file_is_opened_that_somebody_put_in_the_way(tmp_path, monkeypatch):
+    """Even where the random name of a draft is known beforehand."""
+    without_unnamed_files(monkeypatch)
+    victim, folder = tmp_path / "victim", tmp_path / "folder"
+    victim.write_text("secret")
+    folder.mkdir()
+    monkeypatch.setattr("secrets.token_hex", lambda size: "0" * 2 * size)
+    trap = folder / f".holonom-{'0' * 16}.new"
+    trap.symlink_to(victim)
+    with pytest.raises(HolonomError):
+        write_whole(folder / "out.json", "forged")
+    assert victim.read_text() == "secret"
+
+
+def test_a_link_of_somebody_else_is_not_followed(tmp_path):
+    if os.geteuid() != 0:
+        pytest.skip("only root can make a link for somebody else")
+    victim, link, own = tmp_path / "victim", tmp_path / "link", tmp_path / "own"
+    victim.write_text("secret")
+    link.symlink_to(victim)
+    os.lchown(link, 65534, 65534)
+    own.symlink_to(link)
+    for path in (link, own):
+        with pytest.raises(HolonomError) as raised:
+            write_whole(path, "forged")
+        assert raised.value.failure is Failure.UNWRITABLE
+    assert victim.read_text() == "secret"
+
+
+def test_two_processes_that_write_one_file_leave_one_of_the_two(tmp_path):
+    write = "from pathlib import Path; from holonom.files import write_whole\n"
+    write += f"for _ in range(100): write_whole(Path({str(tmp_path / 'file')!r}), {{}} * 10000)"
+    commands = [[sys.executable, "-c", write.format(repr(letter))] for letter in "ab"]
+    for process in [subprocess.Popen(command) for command in commands]:
+        assert process.wait() == 0
+    assert set((tmp_path / "file").read_text()) in ({"a"}, {"b"})
+    assert os.listdir(tmp_path) == ["file"]
+
+
+def test_a_new_directory_appears_whole(tmp_path, monkeypatch):
+    """A disk that is full in the middle leaves nothing."""
+    calls = count()
+
+    def fill(descriptor: int) -> None:
+        if next(calls) == 2:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr("os.fsync", fill)
+    with pytest.raises(HolonomError) as raised:
+        write_whole_directory(tmp_path / "pages", {"a": "1", "b": "2", "c/d": "3"})
+    assert raised.value.failure is Failure.DISK_FULL
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_disk_that_is_full_leaves_a_directory_as_it_was(tmp_path, monkeypatch):
+    directory = tmp_path / "pages"
+    write_whole_directory(directory, {"a": "1", "b": "2"})
+
+    def fill(descriptor: int) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr("os.fsync", fill)
+    with pytest.raises(HolonomError):
+        write_whole_directory(directory, {"a": "new", "c": "3"})
+    assert (directory / "a").read_text() == "1"
+    assert sorted(os.listdir(directory)) == sorted([MANIFEST, "a", "b"])
+
+
 def test_a_directory_keeps_what_was_not_written_by_us(tmp_path):
     directory = tmp_path / "pages"
     write_whole_directory(directory, {"index.html": "first", "part/old.html": "first"})
@@ -78,48 +197,3 @@ def test_a_foreign_file_of_the_same_name_is_refused(write, tmp_path):
     assert raised.value.failure is Failure.FOREIGN_FILE
     assert (directory / "CMakeLists.txt").read_text() == "mine"
     assert (directory / "index.html").read_text() == "first"
-
-
-def test_a_private_directory_goes_whatever_is_in_it():
-    with private_directory() as directory:
-        (directory / "closed").mkdir()
-        (directory / "closed" / "file").touch()
-        (directory / "closed").chmod(0)
-    assert not directory.exists()
-
-
-def test_a_directory_that_another_run_sweeps_before_it_is_locked_is_made_again(tmp_path, monkeypatch):
-    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
-    opened, sweeps = os.open, [sweep_private_directories]
-
-    def after_a_sweep(*arguments, **options):
-        if sweeps:
-            sweeps.pop()()
-        return opened(*arguments, **options)
-
-    monkeypatch.setattr("os.open", after_a_sweep)
-    with private_directory() as directory:
-        assert list(tmp_path.iterdir()) == [directory]
-
-
-def test_what_a_killed_run_left_is_swept_and_what_is_in_use_stays(tmp_path, monkeypatch):
-    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
-    left, draft, foreign = tmp_path / f"{PRIVATE}abcdefgh", tmp_path / ".output.7.new", tmp_path / f"{PRIVATE}mine"
-    left.mkdir()
-    foreign.mkdir()
-    draft.touch()
-    (left / "draft-1").symlink_to(draft)
-    with private_directory() as used:
-        sweep_private_directories()
-        assert sorted(tmp_path.iterdir()) == sorted([used, foreign])
-
-
-def test_a_file_system_without_locks_for_temporary_files_is_one_sentence(monkeypatch, tmp_path):
-    def refuse(*_: object) -> None:
-        raise OSError(errno.ENOLCK, os.strerror(errno.ENOLCK))
-
-    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
-    monkeypatch.setattr("fcntl.flock", refuse)
-    with pytest.raises(HolonomError, match="no directory for temporary files can be made: No locks available"):
-        private_directory().__enter__()
-    assert list(tmp_path.iterdir()) == []

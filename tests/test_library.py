@@ -17,6 +17,12 @@ def test_no_function_is_defined_twice():
     assert [name for name, times in Counter(names).items() if times > 1] == []
 
 
+def test_the_steps_take_lists_and_matrices_and_no_structures():
+    for file in sorted((LIBRARY / "derivation").glob("*.mac")):
+        code = re.sub(r"/\*.*?\*/|\"[^\"]*\"", "", file.read_text(), flags=re.DOTALL)
+        assert not re.findall(r"@|\bsys\b|\bscene\b|\bdefstruct\b", code), file.name
+
+
 def test_the_files_of_the_paper_do_not_have_the_library_read_anew(tmp_path):
     job = tmp_path / "job.mac"
     job.write_text(f"""

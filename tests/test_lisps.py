@@ -14,12 +14,12 @@ from pathlib import Path
 
 import pytest
 
-from holonom.confined import Limits
 from holonom.documents import Document, ask
 from holonom.maxima import run_rtest
 from holonom.program.forms import MotionProgram
 from holonom.program.motion_program import Solve
 from holonom.program.request import Request
+from holonom.sandbox import Limits
 
 HERE = Path(__file__).parent
 EXAMPLES = HERE.parent / "examples"

@@ -39,7 +39,8 @@ def make(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
     programs, house = tmp_path / "programs", tmp_path / "house"
     house.mkdir()
     shutil.copy(MAKEFILE, house)
-    rooms = ("examples/one.mac", "examples/paper/paper.mac", "examples/paper/printed.mac", "examples/hard/case.mac")
+    rooms = ("examples/one.mac", "examples/paper/paper.mac", "examples/paper/printed.mac", "examples/paper/by_hand.mac")
+    rooms = (*rooms, "examples/hard/case.mac")
     for name in (*rooms, "maxima/holonom.mac", "harness/scene.py", "pyproject.toml", "constraints.txt"):
         (house / name).parent.mkdir(parents=True, exist_ok=True)
         (house / name).touch()

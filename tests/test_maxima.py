@@ -7,10 +7,10 @@ import pytest
 from particle import PARTICLE
 from shell import SHELL
 
-from holonom.confined import Limits
 from holonom.documents import Document, ask
 from holonom.failures import Failure, HolonomError
 from holonom.maxima import count_statements, run_batch, run_rtest
+from holonom.sandbox import Limits
 
 LONG = Limits(seconds=100, memory_mib=512, output_mib=1)
 

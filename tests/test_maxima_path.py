@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from holonom.installation import put_into_maxima
-from holonom.reference.entries import function_texts
+from holonom.reference.entries import function_texts, step_texts
+from holonom.reference.maxima_help import help_files
 
 ROOT = Path(__file__).parents[1]
 README_SCENE, *_ = re.findall(r"^```maxima\n(.*?)^```$", (ROOT / "README.md").read_text(encoding="utf-8"), re.M | re.S)
@@ -74,13 +75,25 @@ def test_examples_run_and_maximas_own_still_do(batch):
     assert "not found" in batch("load(holonom)$\nexample(no_such_topic)$\n")
 
 
+@pytest.mark.parametrize("step", step_texts(), ids=lambda step: step.name)
+def test_the_example_of_a_step_is_found(step):
+    assert f"\n&& {step.name}\n" in help_files()["examples.demo"]
+
+
+def test_steps_are_described_and_their_examples_run(batch):
+    names = [step.name for step in step_texts()]
+    printed = batch("load(holonom)$\n" + "".join(f"example({name})$\n" for name in names) + "? mass_matrix\n")
+    assert "error" not in printed
+    assert "Function: mass_matrix(T, v)" in printed
+
+
 def test_the_demonstration_waits_as_maximas_own_do_and_runs_to_its_end(batch):
-    printed = batch("load(holonom)$\ndemo(holonom)$\n", answers=";\n" * 10)
+    printed = batch("load(holonom)$\ndemo(holonom)$\n", answers=";\n" * 60)
     waiting = "type ';' and <enter> to proceed with the demonstration"
     assert waiting in printed
     assert waiting in batch("demo(cf)$\n", answers=";\n" * 40)
-    assert "(10)  condition of free motion" in printed
-    assert "(18)  initial motion, as a series" in printed
+    assert "error" not in printed
+    assert "dot(q3)_0 = " in printed
 
 
 @pytest.mark.parametrize("name", ["holonom.mac", "holonom/holonom.info"])

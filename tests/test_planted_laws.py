@@ -18,9 +18,9 @@ import pytest
 import sympy as sp
 from scipy.optimize import least_squares
 
-from holonom.confined import Limits
 from holonom.crosscheck import Verdict
 from holonom.free_motion import Free, UniversalLaw, free_motion
+from holonom.sandbox import Limits
 
 t = sp.Symbol("t", real=True)
 Change = Mapping[sp.Symbol, sp.Expr]
@@ -76,6 +76,10 @@ BASES = {
     "two controls for one": Base(
         (a, b), (u, w), (-a, sp.Integer(0)), (a - u - w,), {u: sp.sin(t) + t, w: -t},
         {a: (sp.Integer(0), sp.Integer(1)), b: (half, third)},
+    ),
+    "rank lost under the law": Base(
+        (a, b, c), (u,), (sp.Integer(0), sp.Integer(0), 1 + a), (b, b + u * c), {u: sp.Integer(0)},
+        {a: (sp.Integer(1), sp.Integer(0)), b: (sp.Integer(0), sp.Integer(0)), c: (sp.Integer(0), sp.Integer(1))},
     ),
     "two weights on one floor": Base(
         (a, b), (u,), (sp.Integer(-1), sp.Integer(-2)), (a - u, b - u - 1), {u: sp.Integer(0)},

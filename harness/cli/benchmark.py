@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..confined import Limits
+from ..sandbox import Limits
 from .group import holonom
 from .options import asks_one_scene, present, read_instant, runs_scenes, writes_json
 from .outputs import OutputFile
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 @holonom.command()
 @asks_one_scene
 @click.option("--until", metavar="T", callback=read_instant, help="The last instant, in place of the scene's.")
-@click.option("--plot", "plot_file", metavar="FILE", type=OutputFile("svg", "png"), help="Also draw a figure, SVG.")
+@click.option("--plot", "plot_file", metavar="FILE", type=OutputFile(), help="Also draw a figure, SVG.")
 @writes_json
 @runs_scenes
 def accuracy(
@@ -53,7 +53,7 @@ FAILED = 1
 
 @holonom.command()
 @click.option("--short", is_flag=True, help="Follow the long motions for less time: under a minute in all.")
-@click.option("--plot", "plot_file", metavar="FILE", type=OutputFile("svg", "png"), help="Also draw a figure.")
+@click.option("--plot", "plot_file", metavar="FILE", type=OutputFile(), help="Also draw a figure.")
 @writes_json
 def stability(short: bool, plot_file: Path | None, json_file: Path | None) -> int:
     """Run the register of hard cases: the digits that each method keeps, and what to do."""

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import click
 
-from ..confined import Limits
 from ..failures import missing_package
 from ..language import ENGLISH, LANGUAGES
+from ..sandbox import Limits
 from .group import holonom
 from .options import runs_scenes, takes_settings
 from .outputs import OutputFile, SceneFile, as_given
@@ -27,7 +27,7 @@ EXTRAS = ("jinja2", "babel", "latex2mathml", "matplotlib", "heyoka", "ziamath", 
     type=click.Path(path_type=Path),
     help="Where the pages are put; begin to read with index.html.",
 )
-@click.option("--pdf", type=OutputFile("pdf"), help="A file that all pages are printed to as one book, by Chromium.")
+@click.option("--pdf", type=OutputFile(), help="A file that all pages are printed to as one book, by Chromium.")
 @click.option(
     "--language",
     "languages",
@@ -61,7 +61,7 @@ def companion(
     with progress(f"Making {directory}", len(book.runs)) as done:
         make_book(book, directory, pdf, tuple(dict.fromkeys(languages)) or (ENGLISH,), done)
     done_line = f"The companion is in {directory}: open {directory / 'index.html'} in a browser."
-    make_console().print(done_line, soft_wrap=True, markup=False)
+    make_console().print(done_line, soft_wrap=True)
     return 0
 
 

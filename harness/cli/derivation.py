@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..confined import Limits
 from ..language import ENGLISH, LANGUAGES, speaking
-from ..supervisor import doing
+from ..sandbox import Limits
+from ..supervisor import doing, time_to_limit
 from .group import holonom
 from .options import DISAGREEMENT, present, publish, runs_scenes, takes_settings, writes_json
 from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile, as_given
@@ -17,6 +17,8 @@ from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile, as_given
 if TYPE_CHECKING:
     from ..crosscheck import CheckReport
     from ..record import Record
+
+TIME_TO_TELL = 1.0  # seconds that are kept for the verdicts found within a time limit
 
 limits_closed_forms = click.option(
     "--closed-form-size",
@@ -29,9 +31,27 @@ limits_closed_forms = click.option(
 @holonom.command()
 @click.argument("scene", type=SceneFile())
 @takes_settings
+@writes_json
+@runs_scenes
+def describe(scene: Path, settings: dict[str, str], json_file: Path | None, limits: Limits) -> int:
+    """Show what a SCENE file says, before anything is derived.
+
+    The document that --json writes is taken wherever a SCENE is.
+    """
+    from ..source import describe as describe_file
+    from .tables.description import show_description
+
+    description = describe_file(scene, settings, limits)
+    present(description.content, json_file, show_description, description)
+    return 0
+
+
+@holonom.command()
+@click.argument("scene", type=SceneFile())
+@takes_settings
 @limits_closed_forms
 @writes_json
-@click.option("--tex", "tex_file", metavar="FILE|-", type=OutputFile("tex"), help="Also write it as a LaTeX document.")
+@click.option("--tex", "tex_file", metavar="FILE|-", type=OutputFile(), help="Also write it as a LaTeX document.")
 @runs_scenes
 def derive(
     scene: Path,
@@ -62,6 +82,7 @@ def derive(
 @limits_closed_forms
 @writes_json
 @click.option("--seed", metavar="TEXT", help="Compare at the random points of an earlier check, which printed it.")
+@click.option("--allow-undecided", is_flag=True, help="End with status 0 although something is undecided.")
 @runs_scenes
 def check(
     scenes: Sequence[Path],
@@ -69,26 +90,36 @@ def check(
     closed_form_size: int | None,
     json_file: Path | None,
     seed: str | None,
+    allow_undecided: bool,
     limits: Limits,
 ) -> int:
     """Derive each SCENE and compare every equation with an independent SymPy evaluation."""
-    from ..crosscheck import check_record
+    from ..crosscheck import Verdict, ask_motions, check_record, motion_verdicts
     from ..crosscheck.points import fresh_seed
     from ..record import derived_record
+    from ..source import Source
     from .tables.derivation import show_reports
 
     seed = seed or fresh_seed()
-    records = [(as_given(scene), derived_record(scene, settings, limits, closed_form_size)) for scene in scenes]
+    sources = [Source(scene, limits) for scene in scenes]
+    records = [derived_record(source, settings, limits, closed_form_size) for source in sources]
+    programs = [ask_motions(source, settings) for source in sources]
+    reports = []
     with doing("checking with SymPy"):
-        reports = [(scene, check_record(record, seed)) for scene, record in records]
+        for source, record, written in zip(sources, records, programs, strict=True):
+            said, left = source.description(settings), time_to_limit() - TIME_TO_TELL
+            report = check_record(record, said, seed, closed_form_size, left)
+            motions = motion_verdicts(said, written, seed, time_to_limit() - TIME_TO_TELL)
+            reports.append((as_given(source.file), report.with_verdicts(motions)))
     documents = [_report_document(scene, report) for scene, report in reports]
     present(documents[0] if len(documents) == 1 else documents, json_file, show_reports, reports)
-    return DISAGREEMENT if any(report.disagreements for _, report in reports) else 0
+    unwanted = (Verdict.DISAGREES,) if allow_undecided else (Verdict.DISAGREES, Verdict.UNDECIDED)
+    return DISAGREEMENT if any(report.count(*unwanted) for _, report in reports) else 0
 
 
 @holonom.command()
 @writes_json
-@click.option("--svg", "svg_file", metavar="FILE", type=OutputFile("svg"), help="Also draw the table.")
+@click.option("--svg", "svg_file", metavar="FILE", type=OutputFile(), help="Also draw the table.")
 @click.option(
     "--language",
     type=click.Choice(list(LANGUAGES)),
@@ -141,7 +172,8 @@ def _report_document(scene: str, report: "CheckReport") -> dict[str, Any]:
         ],
         "made": len(report.verdicts) - report.count(Verdict.LEFT_OUT),
         "left_out": report.count(Verdict.LEFT_OUT),
-        "agreed": report.count(Verdict.PROVED, Verdict.AGREES),
+        "proved": report.count(Verdict.PROVED),
+        "agreed": report.count(Verdict.PROVED, Verdict.AGREES, Verdict.SAMPLED),
         "undecided": report.count(Verdict.UNDECIDED),
         "disagreements": report.disagreements,
         "seed": report.seed,

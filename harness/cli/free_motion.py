@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..confined import Limits
+from ..sandbox import Limits
 from .group import holonom
 from .meanwhile import meanwhile
 from .options import DISAGREEMENT, asks_one_scene, present, runs_scenes, writes_json
@@ -60,13 +60,14 @@ def _import_what_follows() -> None:
 
 
 def _free_motion_document(found: "FreeMotion") -> dict[str, Any]:
+    from ..documents import Publication, published
     from .tables.free_motion import formula, power_series
 
     def law_text(law: Mapping[str, Any]) -> dict[str, str]:
         return {control: formula(value) for control, value in law.items()}
 
     motion, universal, trajectory, prescribed = found.motion, found.universal, found.trajectory, found.prescribed
-    return {
+    content = {
         "scene": found.scene,
         "condition": None if found.condition is None else [formula(each) for each in found.condition],
         "left_out": found.left_out,
@@ -107,3 +108,4 @@ def _free_motion_document(found: "FreeMotion") -> dict[str, Any]:
         "prescribed": prescribed
         and {"reactions": law_text(prescribed.reactions), "controls": law_text(prescribed.controls)},
     }
+    return published(Publication.FREE, content)

@@ -3,13 +3,15 @@
 import io
 import os
 import sys
+import warnings
 from collections.abc import Collection
 from contextlib import nullcontext, suppress
 from typing import Any
 
 import click
 
-from ..failures import HolonomError, naming_the_extra
+from ..failures import HolonomError, HolonomWarning, naming_the_extra
+from ..hidden import visible
 from ..supervisor import supervise
 from .outputs import STANDARD_INPUT, Command
 
@@ -17,6 +19,7 @@ MACHINE_AT_FAULT = 3
 INTERNAL_ERROR = 70
 INTERRUPTED = 130
 PIPE_CLOSED = 141
+NO_DOCSTRINGS = "this Python has no docstrings, which libraries read; run it without -OO and PYTHONOPTIMIZE."
 OWN_PROCESS = object()  # what a command finds in its context when nothing else runs in its process
 
 
@@ -42,6 +45,8 @@ class Commands(click.Group):
         except (click.ClickException, click.Abort, click.exceptions.Exit):
             raise
         except Exception as error:
+            if sys.flags.optimize > 1:
+                return _told(NO_DOCSTRINGS, MACHINE_AT_FAULT)
             return _internal_error(error, verbose)
 
     def resolve_command(
@@ -101,6 +106,8 @@ def main() -> None:
         ending = supervise(run)
     except HolonomError as error:
         status = _told(error.sentence(), error.failure.status)
+    except OSError as error:  # as where no process may be started
+        status = _machine_refuses(error)
     else:
         status = _told(ending.sentence, ending.status) if ending.sentence else ending.status
     sys.stderr.flush()
@@ -110,6 +117,7 @@ def main() -> None:
 def run() -> int:
     """Run the command line in this process; every failure is told in one sentence. Returns the exit status."""
     _write_what_can_be_written()
+    warnings.showwarning = _show_warning
     try:
         status = holonom(standalone_mode=False, obj=OWN_PROCESS) or 0
         with suppress(OSError) if status == MACHINE_AT_FAULT else nullcontext():  # that is told already
@@ -124,6 +132,14 @@ def run() -> int:
         return PIPE_CLOSED
     except OSError as error:
         return _machine_refuses(error)
+
+
+def _show_warning(message: Warning | str, category: type[Warning], filename: str, lineno: int, *more: Any) -> None:
+    """Print a warning about a scene file as one line; any other as Python does."""
+    if issubclass(category, HolonomWarning):
+        click.echo(f"holonom: warning: {visible(str(message))}", err=True)
+    else:
+        sys.stderr.write(warnings.formatwarning(message, category, filename, lineno))
 
 
 def _open_what_is_closed() -> None:
@@ -144,7 +160,7 @@ def _write_what_can_be_written() -> None:
 
 
 def _told(sentence: str, status: int) -> int:
-    click.echo(f"holonom: {sentence}", err=True)
+    click.echo(f"holonom: {' '.join(visible(sentence).splitlines())}", err=True)
     return status
 
 
@@ -159,9 +175,9 @@ def _refused(error: HolonomError, verbose: bool, options: Collection[str], stand
     _told(error.sentence(options).replace(standing_in or named, named), error.failure.status)
     if verbose:
         for line in error.last_lines:
-            click.echo(f"  | {line}", err=True)
+            click.echo(f"  | {visible(line)}", err=True)
         if error.command:
-            click.echo(f"repeat it with: {error.command}", err=True)
+            click.echo(f"repeat it with: {visible(error.command)}", err=True)
     return error.failure.status
 
 

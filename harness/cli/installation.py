@@ -46,7 +46,7 @@ def show_components(console: "Console", components: "Iterable[Component]") -> No
         table.add_row(component.name, version, component.purpose)
     console.print(table)
     for remedy in dict.fromkeys(remedies):
-        console.print(f"to install what is missing: {remedy}", soft_wrap=True, markup=False)
+        console.print(f"to install what is missing: {remedy}", soft_wrap=True)
     if not remedies:
         console.print("Nothing is missing.")
 
@@ -63,5 +63,5 @@ def maxima_path() -> int:
     from .tables.text import make_console
 
     stub = put_into_maxima(user_directory())
-    make_console().print(f"load(holonom) in Maxima loads {stub}", soft_wrap=True, markup=False)
+    make_console().print(f"load(holonom) in Maxima loads {stub}", soft_wrap=True)
     return 0

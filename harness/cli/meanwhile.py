@@ -5,7 +5,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from threading import Thread
 
-from ..confined import Limits
+from ..sandbox import Limits
 
 
 @contextmanager

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..confined import Limits
 from ..failures import HolonomError
+from ..sandbox import Limits
 from .group import OWN_PROCESS, holonom
 from .meanwhile import meanwhile
 from .options import asks_one_scene, chooses_solve, json_text, present, publish, read_instant, runs_scenes, writes_json
@@ -108,12 +108,10 @@ FAILED = 1  # exit status of a result that is none
     "-o",
     "--output",
     metavar="FILE.csv|.npz|.parquet",
-    type=OutputFile("csv", "npz", "parquet"),
+    type=OutputFile(),
     help="Also write the samples of the motion.",
 )
-@click.option(
-    "--plot", "plot_file", metavar="FILE.svg|.png", type=OutputFile("svg", "png"), help="Also draw the motion."
-)
+@click.option("--plot", "plot_file", metavar="FILE.svg|.png", type=OutputFile(), help="Also draw the motion.")
 @runs_scenes
 def simulate(
     scene_file: Path,
@@ -140,14 +138,15 @@ def simulate(
     """
     from ..program.motion_problem import motion_problem, problem_document, read_problem
     from ..simulation.derivations import open_names, stands
+    from ..source import Source
 
-    digits = _digits_of(precision)
+    source, digits = Source(scene_file, limits), _digits_of(precision)
     imports = partial(_import_what_follows, click.get_current_context().obj is OWN_PROCESS)
     with meanwhile(scene_file, limits, imports):
-        document = problem_document(scene_file, request, limits, digits, open_names(request, digits))
+        document = problem_document(source, request, limits, digits, open_names(request, digits))
     problem = read_problem(document)
     if not stands(problem):
-        problem = motion_problem(scene_file, request, limits, digits)
+        problem = motion_problem(source, request, limits, digits)
     from ..simulation.output import (
         report_document,
         require_disk,

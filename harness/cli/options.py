@@ -2,14 +2,15 @@
 
 import functools
 import json
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..confined import Limits, Sandbox, bubblewrap
-from ..failures import Failure, HolonomError
+from ..hidden import visible
+from ..sandbox import UNCONFINED, Limits, Sandbox, is_isolated
 from ..supervisor import EXPECTED, limit_time
 from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile
 
@@ -20,10 +21,6 @@ DISAGREEMENT = 1  # exit status where SymPy contradicts Maxima
 SHOWN = 40  # letters of an option that is refused
 LONGEST = 1e9  # seconds of a time limit: 30 years
 MOST_MEMORY = 2**30  # MiB of a memory limit
-UNWALLED = (
-    "holonom: bubblewrap is missing or forbidden here: the scene is confined by limits alone and may reach your files; "
-    "install or allow it, or say --trust."
-)
 
 
 def writes_json(command: Callable[..., int]) -> Callable[..., int]:
@@ -32,7 +29,7 @@ def writes_json(command: Callable[..., int]) -> Callable[..., int]:
         "--json",
         "json_file",
         metavar="FILE|-",
-        type=OutputFile("json"),
+        type=OutputFile(json=True),
         help="Also write the result to FILE as one JSON document; with -, write nothing but that to standard output.",
     )(command)
 
@@ -82,7 +79,7 @@ def asks_one_scene(command: Callable[..., int]) -> Callable[..., int]:
 
 
 def runs_scenes(command: Callable[..., int]) -> Callable[..., int]:
-    """Give a command the options that limit and wall in its runs, passed on as `limits`."""
+    """Give a command the options that limit and isolate its runs, passed on as `limits`."""
     defaults = Limits()
 
     @click.option(
@@ -101,13 +98,28 @@ def runs_scenes(command: Callable[..., int]) -> Callable[..., int]:
         show_default=True,
         help="Memory that Maxima may take for a scene.",
     )
-    @click.option("--trust", is_flag=True, help="Run the scene file in the open: it may do whatever you may do.")
-    @click.option("--sandbox", is_flag=True, help="Refuse to run a scene file that cannot be walled in.")
+    @click.option("--trust", is_flag=True, help="Run the scene file outside the sandbox: it may do what you may do.")
+    @click.option("--sandbox", is_flag=True, help="Refuse to run a scene file on a machine without a sandbox.")
+    @click.option(
+        "--allow",
+        metavar="FILE",
+        multiple=True,
+        type=click.Path(exists=True, dir_okay=False, path_type=Path),
+        help="Let the scene read this file in the sandbox. May be given several times.",
+    )
     @functools.wraps(command)
-    def limited(*, time_limit: float | None, memory_limit: int, trust: bool, sandbox: bool, **options: Any) -> int:
+    def limited(
+        *,
+        time_limit: float | None,
+        memory_limit: int,
+        trust: bool,
+        sandbox: bool,
+        allow: tuple[Path, ...],
+        **options: Any,
+    ) -> int:
         if time_limit is not None:
             limit_time(time_limit)
-        limits = Limits(time_limit or defaults.seconds, memory_limit, sandbox=_sandbox(trust, sandbox))
+        limits = Limits(time_limit or defaults.seconds, memory_limit, sandbox=_sandbox(trust, sandbox), allow=allow)
         return command(limits=limits, **options)
 
     return limited
@@ -120,16 +132,15 @@ def _read_seconds(ctx: click.Context, parameter: click.Parameter, seconds: float
 
 
 def _sandbox(trust: bool, sandbox: bool) -> Sandbox:
-    """How the scene is walled in; where it is not and nobody asked for that, one line says so."""
+    """Return when the scene runs in the sandbox; print one line if this machine has none and nobody asked for that."""
     if trust and sandbox:
         raise click.UsageError("--trust and --sandbox exclude one another")
     if trust:
         return Sandbox.TRUSTED
-    if bubblewrap() is None:
-        if sandbox:
-            raise HolonomError(Failure.NO_SANDBOX)
-        click.echo(UNWALLED, err=True)
-    return Sandbox.REQUIRED if sandbox else Sandbox.WHERE_POSSIBLE
+    wanted = Sandbox.REQUIRED if sandbox else Sandbox.WHERE_POSSIBLE
+    if not is_isolated(Limits(sandbox=wanted)):
+        click.echo(f"holonom: {UNCONFINED}", err=True)
+    return wanted
 
 
 def read_instant(ctx: click.Context, parameter: click.Parameter, text: str | None) -> "Fraction | None":
@@ -170,7 +181,7 @@ def present(document: Any, json_file: Path | None, show: Callable[..., None], *s
 def publish(text: str, file: Path | None) -> None:
     """Put a document where an option asks for it, if it does."""
     if file == STANDARD_OUTPUT:
-        click.echo(text, nl=False)
+        click.echo(visible(text) if sys.stdout.isatty() else text, nl=False)
     elif file is not None:
         from ..files import write_whole
 

@@ -1,11 +1,9 @@
 """The files that a command reads and writes; no output takes the place of a scene, of another output, or of a stranger.
 
-What is there is replaced without --force only where it is an earlier output of the same kind, which is told by how it
-begins or ends.
+What is there is replaced with --force alone, or where it is a JSON document of Holonom's and another takes its place.
 """
 
 import os
-import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -13,27 +11,12 @@ from typing import Any
 import click
 
 from ..failures import Failure, HolonomError
-from ..files import draft_of, private_directory, scene_file
+from ..files import require_writable, scene_file
+from ..temporary import private_directory
 
 STANDARD_OUTPUT = Path("-")
-LOOKED_AT = 16384  # bytes at each end of a file
 STANDARD_INPUT = "holonom.standard_input"  # where it holds the file that stands in for standard input
 FORCE = "holonom.force"  # where the context of a command holds whether it has the option
-
-# What the beginning and the end of an earlier output hold, by kind.
-EARLIER = {
-    "json": re.compile(rb'\A\s*(\[\s*)?\{\s*"format"\s*:\s*"holonom-'),
-    "tex": re.compile(rb"\A% Written by Holonom\n"),
-    "svg": re.compile(rb"\A\s*(<\?xml|<svg).*(Holonom|class=\"errata|rich-terminal)", re.DOTALL),
-    "png": re.compile(rb"\A\x89PNG\r\n.*Holonom", re.DOTALL),
-    "pdf": re.compile(rb"\A%PDF-.*Skia/PDF", re.DOTALL),
-    "csv": re.compile(rb"\At(,[^,\n]+)*\n"),
-    "npz": re.compile(rb"\APK\x03\x04.{26,60}t\.npy", re.DOTALL),
-    "parquet": re.compile(rb"\APAR1.*holonom", re.DOTALL),
-    "python": re.compile(rb'\A"""Motion program( of |: )'),
-    "javascript": re.compile(rb"\A/\* Motion program( of |: )"),
-    "fmu": re.compile(rb"\APK\x03\x04.*modelDescription\.xml", re.DOTALL),
-}
 
 
 class SceneFile(click.Path):
@@ -48,8 +31,10 @@ class SceneFile(click.Path):
         """The path of the file."""
         if value != str(STANDARD_OUTPUT) or ctx is None:
             return scene_file(super().convert(value, parameter, ctx))
+        from ..maxima import limited
+
         file = Path(ctx.with_resource(private_directory()), "standard_input.mac")
-        file.write_bytes(click.get_binary_stream("stdin").read())
+        file.write_bytes(limited(click.get_binary_stream("stdin"), "standard input"))
         ctx.meta[STANDARD_INPUT] = file
         return file
 
@@ -65,13 +50,15 @@ class OutputFile(click.Path):
 
     Parameters
     ----------
-    kinds : str
-        What it may hold, keys of `EARLIER`; or c, a directory of files that a manifest lists.
+    json : bool
+        Whether it is a document in JSON.
+    directory : bool
+        Whether it may be a directory of files that a manifest lists.
     """
 
-    def __init__(self, *kinds: str) -> None:
+    def __init__(self, *, json: bool = False, directory: bool = False) -> None:
         super().__init__(path_type=Path)
-        self.kinds = kinds
+        self.json, self.directory = json, directory
 
 
 class Command(click.Command):
@@ -80,7 +67,9 @@ class Command(click.Command):
     def __init__(self, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)
         if any(isinstance(each.type, OutputFile) for each in self.params):
-            self.params.append(click.Option(["--force"], is_flag=True, help="Replace files that are somebody else's."))
+            self.params.append(
+                click.Option(["--force"], is_flag=True, help="Replace files, and not only Holonom's own documents.")
+            )
 
     def invoke(self, ctx: click.Context) -> Any:
         """Refuse outputs that would destroy something or cannot be written; then run the command."""
@@ -88,13 +77,13 @@ class Command(click.Command):
         outputs = [(kind, path) for kind, path in given if isinstance(kind, OutputFile) and path is not None]
         scenes = [path for kind, value in given if isinstance(kind, SceneFile) for path in _paths(value)]
         force = ctx.meta[FORCE] = ctx.params.pop("force", False)
-        files = [(kind.kinds, path) for kind, path in outputs if path != STANDARD_OUTPUT]
-        for kinds, path in files:
-            require_writable(path, kinds)
+        files = [(kind, path) for kind, path in outputs if path != STANDARD_OUTPUT]
+        for kind, path in files:
+            if not (kind.directory and path.is_dir()):
+                require_writable(path)
         require_apart(scenes, [path for _, path in outputs])
-        if not force:
-            for kinds, path in files:
-                require_earlier_output(path, kinds)
+        for kind, path in () if force else files:
+            require_replaceable(path, kind.json)
         return super().invoke(ctx)
 
 
@@ -113,42 +102,17 @@ def require_apart(scenes: Iterable[Path], outputs: Iterable[Path]) -> None:
         taken.append((output, "another output"))
 
 
-def require_writable(path: Path, kinds: Iterable[str]) -> None:
-    """Refuse an output that cannot be written, before there is anything to write.
-
-    Raises
-    ------
-    HolonomError
-        It is a directory, or nothing can be put beside it.
-    """
-    try:
-        target = path.resolve()
-        if target.is_dir():
-            if "c" in kinds:
-                return
-            raise IsADirectoryError(None, "it is a directory")
-        if not target.exists() or target.is_file():
-            with draft_of(target) as draft:
-                draft.touch()
-    except OSError as error:
-        raise HolonomError(Failure.UNWRITABLE, path, error.strerror or str(error)) from None
-
-
-def require_earlier_output(path: Path, kinds: Iterable[str]) -> None:
-    """Refuse to replace what is no earlier output of one of these kinds, keys of `EARLIER`.
+def require_replaceable(path: Path, json: bool) -> None:
+    """Refuse to replace a file, unless it is empty, or a document of Holonom's in the place of which another is put.
 
     Raises
     ------
     HolonomError
         There is a file with something else in it.
     """
-    if not path.is_file() or path.stat().st_size == 0:
-        return
-    with path.open("rb") as file:
-        ends = file.read(LOOKED_AT)
-        file.seek(max(file.tell(), path.stat().st_size - LOOKED_AT))
-        ends += file.read()
-    if not any(EARLIER[kind].search(ends) for kind in kinds if kind in EARLIER):
+    from ..documents import is_document
+
+    if path.is_file() and path.stat().st_size and not (json and is_document(path.read_bytes())):
         raise HolonomError(Failure.FOREIGN_FILE, path)
 
 

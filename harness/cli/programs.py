@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..confined import Limits
 from ..failures import Failure, HolonomError
+from ..sandbox import Limits
 from .group import holonom
 from .options import asks_one_scene, chooses_solve, present, publish, runs_scenes, writes_json
 from .outputs import STANDARD_OUTPUT, OutputFile, is_forced
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     "-o",
     "--output",
     metavar="FILE|DIR",
-    type=OutputFile("json", "python", "javascript", "fmu", "c"),
+    type=OutputFile(json=True, directory=True),
     default=STANDARD_OUTPUT,
     help="Where it goes; c takes a directory, fmu a file.",
 )

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..confined import Limits
+from ..sandbox import Limits
 from .group import holonom
 from .options import asks_one_scene, chooses_solve, present, read_instant, runs_scenes, writes_json
 from .outputs import OutputFile, as_given
@@ -63,7 +63,7 @@ FAILED = 1  # exit status of a sweep none of whose rows came about
     "--plot",
     "plot_file",
     metavar="FILE.svg|.png",
-    type=OutputFile("svg", "png"),
+    type=OutputFile(),
     help="Also draw the first that is kept: a curve over one parameter, a map over two.",
 )
 @writes_json
@@ -112,6 +112,8 @@ def sweep(
     wanted = SweepRequest(axes, kept, tol, until, cure, chunk, workers, scheduler, resume, called)
     with sweep_progress(axes.rows) as progress:
         found = run_sweep(scene_file, request, wanted, output, limits, progress)
+    for name in found.mended:
+        click.echo(f"holonom: {output / name} was not as it was written, and has been computed again.", err=True)
     if plot_file is not None:
         found.plot().save(plot_file)
     statuses = found.statuses

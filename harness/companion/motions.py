@@ -6,12 +6,12 @@ from fractions import Fraction
 from functools import partial
 from pathlib import Path
 
-from ..confined import Limits
 from ..figures.drawing import Film, animation, film_of, strip
 from ..figures.motion import draw_motion
 from ..program.motion_problem import motion_problem
 from ..program.request import Request
 from ..program.sign_pattern import drawing_at_any_time
+from ..sandbox import Limits
 from ..simulation.request import SimulationRequest
 from ..simulation.result import Report, Simulation
 from ..simulation.simulate import simulate

@@ -9,8 +9,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ..confined import Limits
 from ..language import translatable
+from ..sandbox import Limits
 from .book import Book
 from .cards import Card, derivation_cards, files_of, missing, scene_cards
 from .chapter import Chapter, Page

@@ -24,7 +24,7 @@ from .finish import Place
 from .finish import terms as terms_in
 
 LONGEST_COEFFICIENT = 12  # characters of an exact number in a table
-NAMED_BY_MAXIMA = re.compile(r"(no control can make )(.+)( vanish)")
+NAMED_BY_MAXIMA = re.compile(r"(no control law makes every motion free: .* is )(.+)($)")
 CODE_IN_TEXT = re.compile(r"`([^`]+)`")
 NEGLIGIBLE = 1e-9  # of a complex number: a part of it that is rounding alone
 STYLE = TEMPLATES / "companion.css"

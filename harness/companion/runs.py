@@ -6,26 +6,27 @@ They are performed by processes, not by threads: mpmath's precision belongs to t
 import os
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from fractions import Fraction
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-from ..confined import Limits
 from ..crosscheck import CheckReport, check_record
-from ..documents import Document, ask, read
 from ..errata import errata
-from ..failures import HolonomError
-from ..files import private_directory
+from ..failures import Failure, HolonomError
 from ..free_motion import FreeMotion, free_motion
+from ..processes import die_with_parent
 from ..program.motion_problem import motion_problem
 from ..program.request import Request
 from ..record import Record, derived_record
+from ..sandbox import Limits
 from ..series.power_series import MotionSeries, SeriesRequest, compute_series
 from ..simulation.request import SimulationRequest
 from ..simulation.result import Simulation
-from ..supervisor import die_with_parent
+from ..source import Source, describe
+from ..temporary import private_directory
 from .chapter import Run
 
 WORKERS = 2
@@ -118,6 +119,8 @@ def perform(runs: Iterable[Run], done: Callable[[], None]) -> dict[Run, Any]:
             for future in as_completed(waiting):
                 results[waiting[future]] = future.result()
                 done()
+        except BrokenProcessPool:
+            raise HolonomError(Failure.WORKER_ENDED) from None
         except BaseException:
             processes.shutdown(cancel_futures=True)
             raise
@@ -125,8 +128,9 @@ def perform(runs: Iterable[Run], done: Callable[[], None]) -> dict[Run, Any]:
 
 
 def _derive(file: Path, settings: Settings, limits: Limits) -> Derived:
-    record = derived_record(file, dict(settings), limits)
-    return Derived(record, check_record(record))
+    source = Source(file, limits)
+    record = derived_record(source, dict(settings), limits)
+    return Derived(record, check_record(record, source.description(dict(settings))))
 
 
 def _free(file: Path, scene: str | None, settings: Settings, limits: Limits) -> FreeMotion:
@@ -168,8 +172,7 @@ def _study(file: Path, settings: Settings, limits: Limits) -> FileAnswers:
 
 def names_of_scenes(file: Path, settings: Settings, limits: Limits) -> list[str]:
     """Names of a file's scenes, of those too that prescribe reactions."""
-    text = ask(Document.SCENES, file, settings=dict(settings), limits=limits)
-    return read(Document.SCENES, text)["scenes"]
+    return [scene.name for scene in describe(file, dict(settings), limits).scenes]
 
 
 def or_refusal(compute: Callable[..., Any], *arguments: Any) -> Any:

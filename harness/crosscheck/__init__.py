@@ -5,6 +5,7 @@ description only; the two meet in the comparison and nowhere before.
 """
 
 from .check import check_record
+from .motions import ask_motions, motion_verdicts
 from .report import CheckReport, EquationVerdict, Verdict
 
-__all__ = ["CheckReport", "EquationVerdict", "Verdict", "check_record"]
+__all__ = ["CheckReport", "EquationVerdict", "Verdict", "ask_motions", "check_record", "motion_verdicts"]

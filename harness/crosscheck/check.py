@@ -1,61 +1,41 @@
-"""The cross-check of a record: a verdict on every equation, and on every one that is missing."""
+"""The cross-check of a record: a verdict on every equation, held or missing, and on what else is said."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from math import factorial
 from typing import NamedTuple, TypeVar
 
-from ..record import Derivation, Equation, LeftOut, Record, Relation
+from ..description import Description
+from ..record import Derivation, Equation, LeftOut, Record, Relation, Scene
 from . import derivation, initial_motion
 from .claims import NotComparable
 from .derivation import DerivationClaims
 from .independent import IndependentEquations
 from .initial_motion import SceneClaims
 from .points import fresh_seed
+from .premises import Difference, Premises, differences, premises_of
 from .redundancy import judge_redundancy
 from .report import CheckReport, EquationVerdict, Verdict
+from .skeleton import (
+    CLOSED_NUMBERS,
+    Item,
+    derivation_items,
+    length_of,
+    operations_of,
+    predicted_size,
+    scene_items,
+    scene_numbers_left_out,
+)
 from .system import MechanicalSystem, described_system
-from .verdict import Comparison, judge
-
-STATED = {
-    "constraints": "1",
-    "lagrange_equations": "2",
-    "kinetic_energy": "3a",
-    "christoffel_symbols": "6",
-    "expanded_equations": "3",
-    "constraint_accelerations": "7",
-}
-"""Equations that every derivation holds: their ids, and the paper's numbers."""
-
-SOLVED = {
-    "inverse_mass_matrix": "5",
-    "driven_accelerations": "4",
-    "multiplier_equations": "8",
-    "multipliers": "8",
-    "constraint_forces": "9",
-    "free_motion_condition": "10",
-    "accelerations": "11",
-}
-"""Equations that a derivation holds, all or none, where their closed form is readable."""
-
-STATED_IN_SCENE = {"initial_state": "12", "determined_initial_values": "19"}
-SOLVED_IN_SCENE = {"initial_accelerations": "13"}
-SERIES_IN_SCENE = {"initial_series": "18"}
-UNDER_LAW_IN_SCENE = {"free_motion_residual": "10"}
+from .time_limit import TimeLimit
+from .verdict import Comparison, Judgement, judge_all
 
 Claims = TypeVar("Claims", DerivationClaims, SceneClaims)
-Compare = Callable[[Claims, tuple[Relation, ...]], Comparison]
+Compare = Callable[[Claims, tuple[Relation, ...]], Comparison | tuple[Comparison, ...]]
 
-USUAL_LIMIT = 500
-"""The library's own `closed_form_size`; the two sizes that follow belong to it, and shrink and grow with another."""
-
-READABLE = 220
-"""Up to this size of T, V, Q and f (operations, times g! times n!) closed forms must be there."""
-
-READABLE_SERIES = 100
-"""Up to this many operations in (8) and (11) together, (18), which differentiates them, must be there."""
+OUT_OF_TIME = Judgement(Verdict.UNDECIDED, None, None, "the time limit was reached before")
 
 
 class Place(NamedTuple):
@@ -65,91 +45,192 @@ class Place(NamedTuple):
     scene: str | None = None
 
 
-def check_record(record: Record, seed: str | None = None) -> CheckReport:
-    """Compare every equation of a record with the independent evaluation.
+def check_record(
+    record: Record,
+    description: Description,
+    seed: str | None = None,
+    closed_form_size: int | None = None,
+    seconds: float = math.inf,
+) -> CheckReport:
+    """Compare every equation of a record with the independent evaluation of a description.
 
-    The seed draws the random points; None is for a fresh one.
+    Parameters
+    ----------
+    record : Record
+        What is claimed.
+    description : Description
+        What the scene file says; nothing of it is taken from the record.
+    seed : str or None
+        Draws the random points; None is for a fresh one.
+    closed_form_size : int or None
+        The limit that the record was derived with; None for that of the description.
+    seconds : float
+        Time for all verdicts: what is not decided by then is undecided.
 
     Returns
     -------
     CheckReport
-        Verdicts in the record's order. An equation that should be there and is not disagrees,
-        and so does one whose id has no comparison.
+        Verdicts in the record's order. An equation that should be there and is not disagrees, and so does one that has
+        no place, and what the record says otherwise than the description.
     """
     seed = seed or fresh_seed()
-    claims = [_claims(record, derived) for derived in record.derivations]
-    verdicts: list[EquationVerdict] = []
-    for place, each in enumerate(record.derivations):
-        verdicts += _check_derivation(Place(place), claims[place], each.left_out, seed)
-        if each.redundant:
-            verdicts.append(_check_redundancy(Place(place), claims[place], record, seed))
-    for place, each in enumerate(record.derivations):
-        verdicts += _left_out(Place(place), each.left_out)
-    for scene in record.scenes:
-        place = Place(scene.derivation, scene.name)
-        verdicts += _check_scene(place, SceneClaims(scene, claims[scene.derivation]), seed)
-        verdicts += _left_out(place, scene.left_out)
-    return CheckReport(tuple(verdicts), seed)
+    premises = premises_of(description, closed_form_size)
+    return CheckReport(tuple(_Check(record, premises, seed, TimeLimit(seconds)).verdicts()), seed)
 
 
-def _claims(record: Record, derived: Derivation) -> DerivationClaims:
-    system = described_system(record.system, derived.effects)
-    supported = derived.mass_matrix == "supported"
-    return DerivationClaims(
-        IndependentEquations(system),
-        IndependentEquations(system.without(derived.redundant), supported),
-        tuple(derived.equations),
+class _Check:
+    """One record, what is known of it, and how its verdicts are found."""
+
+    def __init__(self, record: Record, premises: Premises, seed: str, time: TimeLimit) -> None:
+        self._record, self._premises, self._seed, self._time = record, premises, seed, time
+        self._limit = premises.closed_form_size
+
+    def verdicts(self) -> Iterator[EquationVerdict]:
+        """Verdicts on all that the record says, in its order."""
+        record = self._record
+        yield from map(_said_otherwise, differences(record, self._premises))
+        claims = list(map(self._claims, record.derivations))
+        scenes = list(self._scenes(claims))
+        for place, (derived, each) in enumerate(zip(record.derivations, claims, strict=True)):
+            yield from self._on_derivation(Place(place), derived, each)
+            starts = [scene.configuration for scene in scenes if scene.derivation is each]
+            yield from self._on_redundancy(Place(place), derived, each, starts)
+        for place, derived in enumerate(record.derivations):
+            yield from _left_out(Place(place), derived.left_out)
+        for each in scenes:
+            yield from self._on_scene(Place(each.scene.derivation, each.scene.name), each)
+
+    def _claims(self, derived: Derivation) -> DerivationClaims:
+        system = described_system(self._premises.system, derived.effects)
+        independent = system.without(derived.redundant)
+        return DerivationClaims(
+            IndependentEquations(system),
+            IndependentEquations(independent, derived.mass_matrix == "supported"),
+            tuple(derived.equations),
+            predicted_size(self._premises.system, derived, independent, self._limit),
+            len(system.coordinates) ** 2 <= self._limit,
+        )
+
+    def _scenes(self, claims: Sequence[DerivationClaims]) -> Iterator[SceneClaims]:
+        stated = {scene.name: scene for scene in self._premises.scenes}
+        for scene in self._record.scenes:
+            if scene.name in stated and scene.derivation < len(claims):
+                yield SceneClaims(scene, stated[scene.name], claims[scene.derivation])
+
+    def _on_derivation(self, place: Place, derived: Derivation, claims: DerivationClaims) -> Iterator[EquationVerdict]:
+        closed = claims.size <= self._limit
+        items = derivation_items(closed, derived.mass_matrix == "regular", derived.redundant, claims.all_entries)
+        yield from self._on_equations(place, derived, items, claims, derivation.COMPARISONS)
+        from . import lagranges_method  # loads SymPy's mechanics, which nothing else of this package needs
+
+        if lagranges_method.can_take(claims.known.system):
+            yield self._judged(
+                place, lagranges_method.OPINION, lambda: lagranges_method.compare(claims.known), claims.system
+            )
+        yield from self._on_left_out(place, derived.left_out, () if closed else CLOSED_NUMBERS, claims.size)
+        solved = [each for each in derived.equations if each.id in ("multipliers", "accelerations")]
+        operations = operations_of(solved) if closed else None
+        if derived.closed_form_operations != operations:
+            detail = f"the record counts {derived.closed_form_operations}, and there are {operations}"
+            yield _refused(place, Item("closed_form_operations", "", "operations in (8) and (11)"), detail)
+
+    def _on_redundancy(
+        self, place: Place, derived: Derivation, claims: DerivationClaims, starts: Sequence[Mapping]
+    ) -> Iterator[EquationVerdict]:
+        names = [multiplier.name for multiplier in claims.system.multipliers]
+        kept = [name for name in names if name not in derived.redundant]
+        item = Item("redundant_constraints", "1", _redundant_in_words(derived.redundant))
+        if [*derived.redundant] != [name for name in names if name not in kept]:
+            yield _refused(place, item, "there are no such constraints")
+            return
+        regular = derived.mass_matrix == "regular"
+        found = self._time.result(
+            lambda: judge_redundancy(claims.system, kept, regular, starts, self._seed), OUT_OF_TIME
+        )
+        if names or found.verdict is not Verdict.AGREES:
+            yield _told(place, item, found)
+
+    def _on_scene(self, place: Place, claims: SceneClaims) -> Iterator[EquationVerdict]:
+        size = claims.derivation.size
+        closed, law = size <= self._limit, bool(claims.premises.control_law)
+        if closed:
+            accelerations = [each for each in claims.derivation.equations if each.id == "accelerations"]
+            size = length_of(accelerations[0]) if accelerations else 0
+        series = closed and size <= self._limit
+        items = scene_items(closed, series, law)
+        yield from self._on_equations(place, claims.scene, items, claims, initial_motion.COMPARISONS)
+        numbers = scene_numbers_left_out(closed, series, law)
+        yield from self._on_left_out(place, claims.scene.left_out, numbers, size)
+        yield from _left_out(place, claims.scene.left_out)
+
+    def _on_equations(
+        self,
+        place: Place,
+        part: Derivation | Scene,
+        items: Sequence[Item],
+        claims: Claims,
+        comparisons: Mapping[str, Compare[Claims]],
+    ) -> Iterator[EquationVerdict]:
+        """Verdicts on the equations of a part, each of which must be there once, in its place and under its names."""
+        waiting = list(items)
+        for equation in part.equations:
+            item = Item(equation.id, equation.number, equation.name)
+            if item in waiting:
+                waiting = waiting[waiting.index(item) + 1 :]
+                compare = comparisons[equation.id]
+                yield self._judged(place, item, lambda c=compare, e=equation: c(claims, e.relations), claims.system)
+            else:
+                yield _refused(place, item, "no such equation belongs here; or it is there twice, or out of order")
+        held = {(each.id, each.number, each.name) for each in part.equations}
+        for item in items:
+            if item not in held:
+                yield _refused(place, item, "the record does not hold this equation", held=False)
+
+    def _judged(
+        self,
+        place: Place,
+        item: Item | Equation,
+        compare: Callable[[], Comparison | tuple[Comparison, ...]],
+        system: MechanicalSystem,
+    ) -> EquationVerdict:
+        def work() -> Judgement:
+            try:
+                compared = compare()
+            except NotComparable as reason:
+                return Judgement(Verdict.DISAGREES, None, None, f"the record holds {reason}")
+            compared = (compared,) if isinstance(compared, Comparison) else compared
+            comparisons = [replace(each, domain=system.terms) for each in compared]
+            return judge_all(comparisons, f"{self._seed} {item.number} {item.name}")
+
+        return _told(place, item, self._time.result(work, OUT_OF_TIME))
+
+    def _on_left_out(
+        self, place: Place, left_out: LeftOut | None, numbers: Sequence[str], size: int
+    ) -> Iterator[EquationVerdict]:
+        expected = LeftOut(tuple(numbers), size, self._limit) if numbers else None
+        if left_out != expected:
+            detail = f"the record has {left_out or 'nothing'}, where {expected or 'nothing'} belongs"
+            yield _refused(place, Item("left_out", "", "what is left out"), detail)
+
+
+def _said_otherwise(difference: Difference) -> EquationVerdict:
+    place = Place(0, difference.scene)
+    return _refused(place, Item("description", "", difference.what), difference.detail, held=False)
+
+
+def _redundant_in_words(redundant: Sequence[str]) -> str:
+    return (
+        f"constraints that follow from the others: {'those of ' if redundant else ''}{', '.join(redundant) or 'none'}"
     )
 
 
-def _check_derivation(
-    place: Place, claims: DerivationClaims, left_out: LeftOut | None, seed: str
-) -> Iterator[EquationVerdict]:
-    for equation in claims.equations:
-        yield _verdict(place, equation, claims, derivation.COMPARISONS, seed)
-    yield from _missing(place, _expected(claims, left_out), claims.equations)
-    from . import lagranges_method  # loads SymPy's mechanics, which nothing else of this package needs
-
-    if lagranges_method.can_take(claims.known.system):
-        yield _judged(place, lagranges_method.OPINION, lagranges_method.compare(claims.known), seed)
-
-
-def _check_redundancy(place: Place, claims: DerivationClaims, record: Record, seed: str) -> EquationVerdict:
-    starts = [SceneClaims(scene, claims) for scene in record.scenes if scene.derivation == place.derivation]
-    found = judge_redundancy(claims.system, claims.known.system, [each.configuration for each in starts], seed)
-    names = ", ".join(each.name for each in claims.system.multipliers if each not in claims.known.system.multipliers)
-    what = ("redundant_constraints", "1", f"constraints that follow from the others: those of {names}")
+def _told(place: Place, item: Item | Equation, found: Judgement) -> EquationVerdict:
+    what = (item.id, item.number, item.name)
     return EquationVerdict(*what, *place, found.verdict, found.digits, found.points, found.detail)
 
 
-def _check_scene(place: Place, claims: SceneClaims, seed: str) -> Iterator[EquationVerdict]:
-    for equation in claims.scene.equations:
-        yield _verdict(place, equation, claims, initial_motion.COMPARISONS, seed)
-    yield from _missing(place, _expected_in_scene(claims), claims.scene.equations)
-
-
-def _verdict(
-    place: Place, equation: Equation, claims: Claims, comparisons: Mapping[str, Compare[Claims]], seed: str
-) -> EquationVerdict:
-    compare = comparisons.get(equation.id)
-    if compare is None:
-        return _refused(place, equation, "there is no comparison for this equation")
-    try:
-        comparison = compare(claims, equation.relations)
-    except NotComparable as reason:
-        return _refused(place, equation, f"the record holds {reason}")
-    return _judged(place, equation, comparison, seed)
-
-
-def _judged(place: Place, equation: Equation, comparison: Comparison, seed: str) -> EquationVerdict:
-    found = judge(comparison, seed=f"{seed} {equation.number} {equation.name}")
-    what = (equation.id, equation.number, equation.name)
-    return EquationVerdict(*what, *place, found.verdict, found.digits, found.points, found.detail)
-
-
-def _refused(place: Place, equation: Equation, reason: str) -> EquationVerdict:
-    what = (equation.id, equation.number, equation.name)
-    return EquationVerdict(*what, *place, Verdict.DISAGREES, None, None, reason)
+def _refused(place: Place, item: Item, reason: str, held: bool = True) -> EquationVerdict:
+    return EquationVerdict(*item, *place, Verdict.DISAGREES, None, None, reason, held=held)
 
 
 def _left_out(place: Place, left_out: LeftOut | None) -> Iterator[EquationVerdict]:
@@ -157,46 +238,3 @@ def _left_out(place: Place, left_out: LeftOut | None) -> Iterator[EquationVerdic
         for number in left_out.numbers:
             what = ("", number, "(not made)")
             yield EquationVerdict(*what, *place, Verdict.LEFT_OUT, None, None, "", held=False, left_out=left_out)
-
-
-def _missing(place: Place, expected: Mapping[str, str], present: Iterable[Equation]) -> Iterator[EquationVerdict]:
-    held = {equation.id for equation in present}
-    for each, number in expected.items():
-        if each not in held:
-            absent = Equation(each, number, "(missing)", ())
-            yield replace(_refused(place, absent, "the record does not hold this equation"), held=False)
-
-
-def _expected(claims: DerivationClaims, left_out: LeftOut | None) -> Mapping[str, str]:
-    holds_some = any(equation.id in SOLVED for equation in claims.equations)
-    return (
-        STATED | SOLVED if holds_some or _predicted_size(claims.known.system) <= _share(READABLE, left_out) else STATED
-    )
-
-
-def _expected_in_scene(claims: SceneClaims) -> Mapping[str, str]:
-    motion = claims.derivation.motion()
-    if motion is None:
-        return STATED_IN_SCENE
-    law = UNDER_LAW_IN_SCENE if claims.scene.control_law else {}
-    holds_series = any(equation.id in SERIES_IN_SCENE for equation in claims.scene.equations)
-    operations = sum(int(expression.count_ops()) for expression in motion.values())
-    series = SERIES_IN_SCENE if holds_series or operations <= _share(READABLE_SERIES, claims.scene.left_out) else {}
-    return STATED_IN_SCENE | SOLVED_IN_SCENE | series | law
-
-
-def _share(size: int, left_out: LeftOut | None) -> float:
-    """What a size comes to under the limit that the record names as the reason for what it leaves out."""
-    return size if left_out is None else size * left_out.limit / USUAL_LIMIT
-
-
-def _predicted_size(system: MechanicalSystem) -> int:
-    description = (
-        system.kinetic_energy,
-        system.potential_energy,
-        *system.forces,
-        *system.constraints,
-    )
-    operations = sum(1 + int(expression.count_ops()) for expression in description)
-    orders = factorial(len(system.constraints)) * factorial(len(system.coordinates))
-    return operations * orders

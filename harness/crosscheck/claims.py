@@ -1,12 +1,14 @@
-"""The record's relations, sorted by the quantity on their left."""
+"""The record's relations, read once and wholly: each left side is the one that belongs there."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import sympy as sp
 
 from ..record import Relation
+from ..trees import Tree
+from .system import exact
 from .verdict import Pair
 
 Entries = Mapping[tuple[int, ...], sp.Expr]
@@ -15,6 +17,63 @@ Entries = Mapping[tuple[int, ...], sp.Expr]
 
 class NotComparable(Exception):
     """A relation is missing, or it is about something else; says which."""
+
+
+def read_exactly(keys: Sequence[Tree], relations: Sequence[Relation]) -> list[sp.Expr]:
+    """Return the right sides of relations whose left sides are these, in this order.
+
+    Raises
+    ------
+    NotComparable
+        A left side is another, is missing, or is one too many.
+    """
+    for i, relation in enumerate(relations):
+        if i >= len(keys) or relation.left_tree != keys[i]:
+            belongs = shown(keys[i]) if i < len(keys) else "nothing"
+            raise NotComparable(f"{shown(relation.left_tree)} where {belongs} belongs")
+    if len(relations) < len(keys):
+        raise NotComparable(f"no relation for {shown(keys[len(relations)])}")
+    return [exact(relation.right) for relation in relations]
+
+
+def solved_for(symbols: Sequence[sp.Symbol], relations: Sequence[Relation]) -> dict[sp.Symbol, sp.Expr]:
+    """Right side of the relation for each symbol, in their order; raises as `read_exactly`."""
+    return dict(zip(symbols, read_exactly([symbol.name for symbol in symbols], relations), strict=True))
+
+
+def list_of(name: str, length: int, relations: Sequence[Relation]) -> list[sp.Expr]:
+    """Entries of the list ``name``, each in its place; raises as `read_exactly`."""
+    return read_exactly([["Subscript", name, i] for i in range(1, length + 1)], relations)
+
+
+def sparse_entries(
+    name: str, shape: Sequence[int], order: Sequence[int], relations: Sequence[Relation]
+) -> dict[tuple[int, ...], sp.Expr]:
+    """Entries of the indexed quantity ``name``, sorted by their indices; what is not there is zero.
+
+    The indices are compared in the order in which they are named: (2, 0, 1) for the third, the first, the second.
+
+    Raises
+    ------
+    NotComparable
+        An index is outside the shape, or an entry is there twice or out of order.
+    """
+    entries: dict[tuple[int, ...], sp.Expr] = {}
+    last: list[int] = []
+    for relation in relations:
+        match relation.left_tree:
+            case ["Subscript", str(named), *indices] if named == name and len(indices) == len(shape):
+                inside = all(
+                    isinstance(i, int) and not isinstance(i, bool) and 1 <= i <= n
+                    for i, n in zip(indices, shape, strict=True)
+                )
+            case _:
+                inside = False
+        if not inside or (place := [indices[i] for i in order]) <= last:
+            raise NotComparable(f"an entry {shown(relation.left_tree)} that is out of place")
+        last = place
+        entries[tuple(indices)] = exact(relation.right)
+    return entries
 
 
 def residual_pairs(what: str, relations: Sequence[Relation], expected: Sequence[sp.Expr]) -> tuple[Pair, ...]:
@@ -28,54 +87,17 @@ def residual_pairs(what: str, relations: Sequence[Relation], expected: Sequence[
     if len(relations) != len(expected):
         raise NotComparable(f"{len(relations)} relations ({what}) where {len(expected)} belong")
     return tuple(
-        Pair(f"{what} {i}", relation.left - relation.right, residual)
+        Pair(f"{what} {i}", exact(relation.left) - exact(relation.right), residual)
         for i, (relation, residual) in enumerate(zip(relations, expected, strict=True), start=1)
     )
 
 
-def solved_for(symbols: Sequence[sp.Symbol], relations: Sequence[Relation]) -> dict[sp.Symbol, sp.Expr]:
-    """Right side of the relation for each symbol.
-
-    Raises
-    ------
-    NotComparable
-        The left sides are not these symbols, each once.
-    """
-    lefts = [relation.left for relation in relations]
-    if sorted(lefts, key=str) != sorted(symbols, key=str):
-        raise NotComparable(f"relations for {_listed(lefts)} where {_listed(symbols)} belong")
-    return {relation.left: relation.right for relation in relations}
-
-
-def entries_of(name: str, shape: Sequence[int], relations: Sequence[Relation]) -> Entries:
-    """Entries of the indexed quantity ``name``; what is not there is zero.
-
-    Raises
-    ------
-    NotComparable
-        An index is outside the shape, or an entry is there twice.
-    """
-    entries: dict[tuple[int, ...], sp.Expr] = {}
-    for relation in relations:
-        if not (isinstance(relation.left, sp.Indexed) and relation.left.base.label.name == name):
-            continue
-        indices = tuple(int(index) for index in relation.left.indices)
-        inside = len(indices) == len(shape) and all(1 <= i <= n for i, n in zip(indices, shape, strict=True))
-        if not inside or indices in entries:
-            raise NotComparable(f"an entry {relation.left} that is out of place")
-        entries[indices] = relation.right
-    return entries
-
-
-def require_names(names: Iterable[str], relations: Sequence[Relation]) -> None:
-    """Refuse relations about an indexed quantity or symbol that is not named."""
-    allowed = set(names)
-    for relation in relations:
-        left = relation.left
-        name = left.base.label.name if isinstance(left, sp.Indexed) else str(left)
-        if name not in allowed:
-            raise NotComparable(f"a relation for {left} that is out of place")
-
-
-def _listed(symbols: Sequence[sp.Basic]) -> str:
-    return ", ".join(map(str, symbols)) or "nothing"
+def shown(left: Tree) -> str:
+    """A left side for people: ``A[1, 2]``."""
+    match left:
+        case ["Subscript", str(name), *indices]:
+            return f"{name}[{', '.join(map(str, indices))}]"
+        case str():
+            return left
+        case _:
+            return "an expression"

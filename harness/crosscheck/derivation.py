@@ -15,9 +15,9 @@ from itertools import combinations_with_replacement, product
 import sympy as sp
 
 from ..record import Equation, Relation
-from .claims import Entries, NotComparable, entries_of, require_names, residual_pairs, solved_for
+from .claims import Entries, NotComparable, list_of, read_exactly, residual_pairs, solved_for, sparse_entries
 from .independent import IndependentEquations
-from .system import MechanicalSystem
+from .system import MechanicalSystem, gradient
 from .verdict import Comparison, Pair
 
 Relations = Sequence[Relation]
@@ -31,6 +31,8 @@ class DerivationClaims:
     stated: IndependentEquations  # of the system as it is described
     known: IndependentEquations  # of its independent constraints: what is solved
     equations: tuple[Equation, ...]
+    size: int = 0  # predicted, of the closed forms
+    all_entries: bool = True  # whether (3a) holds all entries of A, its zeros among them
 
     @property
     def system(self) -> MechanicalSystem:
@@ -82,18 +84,41 @@ def equations_of_motion(claims: DerivationClaims, relations: Relations) -> Compa
 
 def split_kinetic_energy(claims: DerivationClaims, relations: Relations) -> Comparison:
     """(3), its coefficients: A, B and T0 are those of T as a polynomial in the velocities."""
-    require_names(("A", "B", "T0"), relations)
     T, v = claims.system.kinetic_energy, claims.system.velocities
     n = len(v)
-    A, B = entries_of("A", (n, n), relations), entries_of("B", (n,), relations)
     at_rest = dict.fromkeys(v, sp.Integer(0))
-    T0 = {relation.left.name: relation.right for relation in relations if relation.left.is_Symbol}
+    momenta = gradient(T, v)
+    if claims.all_entries:
+        keys = list(product(range(1, n + 1), repeat=2))
+        A = dict(zip(keys, read_exactly([["Subscript", "A", *key] for key in keys], relations[: n * n]), strict=True))
+    else:
+        A = sparse_entries("A", (n, n), (0, 1), relations[: max(len(relations) - n - 1, 0)])
+        if missing := {(s, s) for s in range(1, n + 1)} - A.keys():
+            raise NotComparable(f"no relation for A{list(min(missing))}")
+    rest = relations[len(A) :]
     return Comparison(
         (
-            *(Pair(f"A[{s + 1},{k + 1}]", _entry(A, s, k), T.diff(v[s], v[k])) for s, k in product(range(n), repeat=2)),
-            *(Pair(f"B[{s + 1}]", _entry(B, s), T.diff(v[s]).xreplace(at_rest)) for s in range(n)),
-            Pair("T0", T0.get("T0", sp.Integer(0)), T.xreplace(at_rest)),
+            *_sparse_pairs("A", A, {(s, k): a for s, p in enumerate(momenta, 1) for k, a in _slopes(p, v)}),
+            *(
+                Pair(f"B[{s}]", claimed, momentum.xreplace(at_rest))
+                for s, (claimed, momentum) in enumerate(zip(list_of("B", n, rest[:n]), momenta, strict=True), 1)
+            ),
+            Pair("T0", *read_exactly(["T0"], rest[n:]), T.xreplace(at_rest)),
         )
+    )
+
+
+def _slopes(momentum: sp.Expr, velocities: Sequence[sp.Symbol]) -> list[tuple[int, sp.Expr]]:
+    present = momentum.free_symbols
+    return [(k, momentum.diff(v)) for k, v in enumerate(velocities, 1) if v in present]
+
+
+def _sparse_pairs(name: str, claimed: Entries, expected: Entries) -> tuple[Pair, ...]:
+    """Pairs for all entries that the record holds, and for all that are not zero."""
+    zero = sp.Integer(0)
+    return tuple(
+        Pair(f"{name}{list(key)}", claimed.get(key, zero), expected.get(key, zero))
+        for key in sorted(claimed.keys() | {key for key, value in expected.items() if value != 0})
     )
 
 
@@ -105,39 +130,39 @@ def driven_accelerations(claims: DerivationClaims, relations: Relations) -> Comp
 
 def inverse_mass_matrix(claims: DerivationClaims, relations: Relations) -> Comparison:
     """(5): A^ls A_sk is the unit matrix, or the inverse of A + J^T J where A is singular."""
-    require_names(("A_inverse",), relations)
     n = len(claims.system.coordinates)
-    inverse = entries_of("A_inverse", (n, n), relations)
+    keys = list(product(range(n), repeat=2))
+    lefts = [["Subscript", "A_inverse", row + 1, s + 1] for row, s in keys]
+    inverse = dict(zip(keys, read_exactly(lefts, relations), strict=True))
     A = claims.known.inverted
     return Comparison(
         tuple(
             Pair(
                 f"row {row + 1} of A_inverse, times column {k + 1} of what it inverts",
-                sp.Add(*(_entry(inverse, row, s) * A[s][k] for s in range(n))),
+                sp.Add(*(inverse[row, s] * A[s][k] for s in range(n))),
                 sp.Integer(row == k),
             )
-            for row, k in product(range(n), repeat=2)
+            for row, k in keys
         )
     )
 
 
 def christoffel_symbols(claims: DerivationClaims, relations: Relations) -> Comparison:
-    """(6): half the second derivatives by the velocities of d/dt dT/d dot(q_s) - dT/dq_s."""
-    require_names(("christoffel",), relations)
+    """(6): half the second derivatives by the velocities of d/dt dT/d dot(q_s) - dT/dq_s, for k <= m."""
     v = claims.system.velocities
     n = len(v)
-    claimed = entries_of("christoffel", (n, n, n), relations)
+    claimed = sparse_entries("christoffel", (n, n, n), (2, 0, 1), relations)
+    for k, m, s in claimed:
+        if k > m:
+            raise NotComparable(f"christoffel[{k}, {m}, {s}], which christoffel[{m}, {k}, {s}] stands for")
     at_rest = dict.fromkeys(claims.system.accelerations, sp.Integer(0))
-    pairs = []
-    for s, residual in enumerate(claims.stated.kinetic):
+    expected = {}
+    for s, residual in enumerate(claims.stated.kinetic, 1):
         quadratic = residual.xreplace(at_rest)
-        for k, m in combinations_with_replacement(range(n), 2):
-            symbol = claimed.get((k + 1, m + 1, s + 1), claimed.get((m + 1, k + 1, s + 1)))
-            expected = quadratic.diff(v[k], v[m]) / 2
-            if symbol is not None or expected != 0:
-                name = f"christoffel[{k + 1},{m + 1},{s + 1}]"
-                pairs.append(Pair(name, symbol or sp.Integer(0), expected))
-    return Comparison(tuple(pairs))
+        present = [k for k, velocity in enumerate(v, 1) if velocity in quadratic.free_symbols]
+        for k, m in combinations_with_replacement(present, 2):
+            expected[k, m, s] = quadratic.diff(v[k - 1], v[m - 1]) / 2
+    return Comparison(_sparse_pairs("christoffel", claimed, expected))
 
 
 def constraint_accelerations(claims: DerivationClaims, relations: Relations) -> Comparison:
@@ -171,12 +196,11 @@ def multipliers(claims: DerivationClaims, relations: Relations) -> Comparison:
 
 def constraint_forces(claims: DerivationClaims, relations: Relations) -> Comparison:
     """(9): lambda_gamma df_gamma/dq_s with the multipliers of the bordered system."""
-    require_names(("Lambda",), relations)
-    claimed = entries_of("Lambda", (len(claims.system.coordinates),), relations)
+    claimed = list_of("Lambda", len(claims.system.coordinates), relations)
     return Comparison(
         tuple(
-            Pair(f"Lambda[{s + 1}]", _entry(claimed, s), force)
-            for s, force in enumerate(claims.known.constraint_forces)
+            Pair(f"Lambda[{s}]", value, force)
+            for s, (value, force) in enumerate(zip(claimed, claims.known.constraint_forces, strict=True), 1)
         ),
         solves=(claims.known.bordered,),
         certificate=claims.motion(),
@@ -204,11 +228,6 @@ def accelerations(claims: DerivationClaims, relations: Relations) -> Comparison:
 
 def _solved_pairs(solution: ClosedForm) -> tuple[Pair, ...]:
     return tuple(Pair(symbol.name, value, symbol) for symbol, value in solution.items())
-
-
-def _entry(entries: Entries, *indices: int) -> sp.Expr:
-    """Look up an entry by indices that count from zero."""
-    return entries.get(tuple(i + 1 for i in indices), sp.Integer(0))
 
 
 COMPARISONS = {

@@ -25,7 +25,7 @@ from functools import cached_property
 import sympy as sp
 
 from .linear import LinearEquations
-from .system import MechanicalSystem
+from .system import MechanicalSystem, gradient
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class IndependentEquations:
         """The n reactions lambda_beta df_beta/dq_s."""
         system = self.system
         power = sp.Add(*(multiplier * f for multiplier, f in zip(system.multipliers, system.constraints, strict=True)))
-        return tuple(power.diff(q) for q in system.coordinates)
+        return tuple(gradient(power, system.coordinates))
 
     @cached_property
     def constraint_rates(self) -> tuple[sp.Expr, ...]:
@@ -122,10 +122,8 @@ class IndependentEquations:
     def _lagrangian_derivatives(self, function: sp.Expr) -> tuple[sp.Expr, ...]:
         """d/dt dX/d dot(q_s) - dX/dq_s, over s, of a function X of the state."""
         system = self.system
-        return tuple(
-            system.total_rate(function.diff(v)) - function.diff(q)
-            for q, v in zip(system.coordinates, system.velocities, strict=True)
-        )
+        momenta, slopes = gradient(function, system.velocities), gradient(function, system.coordinates)
+        return tuple(system.total_rate(momentum) - slope for momentum, slope in zip(momenta, slopes, strict=True))
 
 
 def reaction_power(system: MechanicalSystem) -> sp.Expr:

@@ -12,13 +12,25 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import sympy as sp
+from mpmath import mp
 
+from ..description import DescribedScene
 from ..record import Relation, Scene
-from .claims import NotComparable, entries_of, require_names, solved_for
+from .claims import NotComparable, list_of, solved_for
 from .derivation import DerivationClaims
+from .evaluation import Steps
 from .independent import IndependentEquations
-from .system import MechanicalSystem, history, initial
-from .verdict import Comparison, Pair
+from .system import MechanicalSystem, exact, history, initial
+from .verdict import WORKING_DIGITS, Comparison, Pair
+
+STATED_DIGITS = 2
+"""Digits in which a stated correction is the one that was made."""
+
+LIMITED_DIGITS = mp.mpf("2e-9")
+"""Largest correction of given values, as a share of the largest of them."""
+
+FEWEST_ROUNDED_DIGITS = 40
+"""Digits of the denominator of a number that may be rounded."""
 
 Relations = Sequence[Relation]
 Definitions = Mapping[sp.Symbol, sp.Expr]
@@ -26,9 +38,10 @@ Definitions = Mapping[sp.Symbol, sp.Expr]
 
 @dataclass(frozen=True)
 class SceneClaims:
-    """A scene of the record beside the derivation it rests on."""
+    """A scene of the record beside what is known of it and the derivation it rests on."""
 
     scene: Scene
+    premises: DescribedScene
     derivation: DerivationClaims
 
     @property
@@ -44,18 +57,33 @@ class SceneClaims:
     @property
     def initial_instant(self) -> sp.Expr:
         """t0, the beginning of the time span; zero where there is none."""
-        return self.scene.time_span[0] if self.scene.time_span else sp.Integer(0)
+        return exact(self.premises.time_span[0]) if self.premises.time_span else sp.Integer(0)
 
     @cached_property
     def state(self) -> tuple[sp.Symbol, ...]:
         """Coordinates and velocities."""
         return (*self.system.coordinates, *self.system.velocities)
 
+    @property
+    def law(self) -> Mapping[str, sp.Expr]:
+        """The control law; where it is switched, as the record holds it around the initial instant."""
+        return self.scene.control_law if self.scene.law_around_start else self.premises.control_law
+
+    @cached_property
+    def parameters(self) -> Definitions:
+        """The parameters that have values."""
+        return {sp.Symbol(x, real=True): exact(y) for x, y in self.premises.parameter_values.items()}
+
+    @cached_property
+    def initial_values(self) -> Definitions:
+        """The initial state by its symbols q1_0, dot(q1)_0, as the record has it."""
+        return {initial(sp.Symbol(x, real=True)): exact(y) for x, y in self.scene.initial_state.items()}
+
     @cached_property
     def control_law(self) -> Definitions:
         """Controls and their rates as functions of time, by the scene's control law."""
         definitions: dict[sp.Symbol, sp.Expr] = {}
-        for name, law in self.scene.control_law.items():
+        for name, law in self.law.items():
             for symbol in history(sp.Symbol(name, real=True)):
                 definitions[symbol] = law
                 law = law.diff(self.system.time)
@@ -81,13 +109,20 @@ class SceneClaims:
     @cached_property
     def configuration(self) -> Definitions:
         """The initial instant, parameters, controls and coordinates, as far as the scene has numbers for them."""
-        parameters = {sp.Symbol(x, real=True): y for x, y in self.scene.parameter_values.items()}
-        values = {sp.Symbol(x, real=True): y for x, y in self.scene.initial_state.items()}
-        known = {**values, **self.controls_at_start, **parameters}
+        values = {q: self.initial_values.get(initial(q), initial(q)) for q in self.system.coordinates}
+        known = {**values, **self.controls_at_start, **self.parameters}
         at_start = {
-            symbol: value.xreplace(self.controls_at_start).xreplace(parameters) for symbol, value in known.items()
+            symbol: value.xreplace(self.controls_at_start).xreplace(self.parameters) for symbol, value in known.items()
         }
         return {symbol: value for symbol, value in at_start.items() if value.is_number}
+
+    @property
+    def given_values(self) -> Definitions:
+        """Initial values as the scene gives them, by the symbols q1_0, dot(q1)_0."""
+        return {
+            initial(sp.Symbol(x, real=True)): exact(y).xreplace(self.parameters)
+            for x, y in self.premises.initial_state.items()
+        }
 
     def certificate(self, *solutions: Definitions) -> Definitions | None:
         """Claimed closed forms of the motion at the start, with the record's multipliers."""
@@ -101,96 +136,161 @@ class SceneClaims:
         return together
 
 
-def free_motion_condition(claims: SceneClaims, relations: Relations) -> Comparison:
+def free_motion_condition(claims: SceneClaims, relations: Relations) -> tuple[Comparison, ...]:
     """(10) under the control law: constraint accelerations where every multiplier is zero."""
-    require_names(("residual",), relations)
     expected = claims.known.constraint_accelerations
-    claimed = entries_of("residual", (len(expected),), relations)
-    return Comparison(
-        tuple(
-            Pair(f"condition of free motion {beta}", claimed.get((beta,), sp.Integer(0)), residual)
-            for beta, residual in enumerate(expected, start=1)
+    claimed = list_of("residual", len(expected), relations)
+    return (
+        Comparison(
+            tuple(
+                Pair(f"condition of free motion {beta}", value, residual)
+                for beta, (value, residual) in enumerate(zip(claimed, expected, strict=True), start=1)
+            ),
+            given=claims.control_law,
+            solves=(claims.known.free,),
+            certificate=claims.derivation.free_accelerations(),
         ),
-        given=claims.control_law,
-        solves=(claims.known.free,),
-        certificate=claims.derivation.free_accelerations(),
     )
 
 
-def initial_state(claims: SceneClaims, relations: Relations) -> Comparison:
-    """(12): the constraints and their first rates vanish at the initial state."""
+def initial_state(claims: SceneClaims, relations: Relations) -> tuple[Comparison, ...]:
+    """(12): what is given, up to the stated correction; and the constraints and their first rates vanish there."""
     names = tuple(map(initial, claims.state))
     claimed = solved_for(names, relations)
-    stated = {initial(sp.Symbol(x, real=True)): y for x, y in claims.scene.initial_state.items()}
-    if stated.keys() != set(names):
-        raise NotComparable("an initial state that is not complete")
-    parameters = {sp.Symbol(x, real=True): y for x, y in claims.scene.parameter_values.items()}
-    return Comparison(
-        (
-            *(Pair(name.name, claimed[name], stated[name]) for name in names),
-            *_vanishing("constraint", claims.system.constraints),
-            *_vanishing("rate of constraint", claims.derivation.stated.constraint_rates),
-        ),
-        given={**parameters, **claimed, **claims.start},
+    if list(claims.scene.initial_state) != [symbol.name for symbol in claims.state]:
+        raise NotComparable("an initial state that is not complete, or not in order")
+    for name in names:
+        if claimed[name] != claims.initial_values[name]:
+            raise NotComparable(f"two values of {name}")
+    require_given(claims, claimed)
+    pairs = (
+        *_vanishing("constraint", claims.system.constraints),
+        *_vanishing("rate of constraint", claims.derivation.stated.constraint_rates),
     )
+    return at_start(claims, pairs)
 
 
-def determined_initial_values(claims: SceneClaims, relations: Relations) -> Comparison:
+def require_given(claims: SceneClaims, claimed: Definitions) -> None:
+    """Refuse initial values that are not those given, or differ by more than the stated correction.
+
+    Raises
+    ------
+    NotComparable
+        Says which.
+    """
+    changes = {}
+    for name, value in claims.given_values.items():
+        change = (claimed[name] - value).xreplace(claims.parameters)
+        if change != 0 and (not change.is_number or not change.equals(0)):
+            changes[name] = change
+    stated = claims.scene.correction
+    if not changes and stated is None:
+        return
+    largest = max(changes, key=lambda name: _size(changes[name]), default=None)
+    if largest is None or stated is None or stated[0] != largest.name:
+        raise NotComparable(f"an initial value of {largest or stated[0]} that is another than the one given")
+    _require_correction(claims, _size(changes[largest]), stated[1])
+
+
+def _require_correction(claims: SceneClaims, change: mp.mpf, stated: str) -> None:
+    """Refuse a correction that is none of limited digits, or another than is stated in three digits."""
+    given = max(_size(value.xreplace(claims.parameters)) for value in claims.given_values.values())
+    if not abs(change - mp.mpf(stated)) <= mp.mpf(10) ** -STATED_DIGITS * change:
+        raise NotComparable(f"a correction of {stated}, where it is {mp.nstr(change, 6)}")
+    if change > LIMITED_DIGITS * (given or 1):
+        raise NotComparable(f"a correction of {stated}, which is no rounding")
+
+
+def _size(number: sp.Expr) -> mp.mpf:
+    with mp.workdps(WORKING_DIGITS):
+        value = Steps([number]).at({})[0]
+        return mp.inf if value is None else abs(value)
+
+
+def at_start(claims: SceneClaims, pairs: Iterable[Pair]) -> tuple[Comparison, ...]:
+    """Pairs in symbols of the initial state, with its numbers: one comparison where all have one, two at most."""
+    state = {name: value.xreplace(claims.parameters) for name, value in claims.initial_values.items()}
+    given = {**claims.parameters, **state, **claims.start}
+    pairs = tuple(pairs)
+    if not pairs:
+        return (Comparison(()),)
+    rounded = {name: value for name, value in state.items() if is_rounded(value)}
+    return (Comparison(pairs, given=given, rounded=rounded),)
+
+
+def is_rounded(value: sp.Expr) -> bool:
+    """Whether a number may have been rounded: its fraction is as long as those that Newton's method finds."""
+    return any(number.q > 10**FEWEST_ROUNDED_DIGITS for number in value.atoms(sp.Rational))
+
+
+def determined_initial_values(claims: SceneClaims, relations: Relations) -> tuple[Comparison, ...]:
     """(19): all values left out are there; with them put in, the constraints they come from vanish identically.
 
     A value that is a number, in constraints that contain other initial values besides, is one for the scene's own
-    numbers only: it is compared with the initial state, for which (12) has the constraints.
+    numbers only. Each value is that of the initial state, for which (12) has the constraints: so is the branch of a
+    root.
     """
-    fixed = {relation.left: relation.right for relation in relations}
-    left_out = {initial(symbol) for symbol in claims.state if symbol.name not in claims.scene.given}
-    if len(fixed) < len(relations) or fixed.keys() != left_out:
-        raise NotComparable(f"values of {_names(fixed)} where the scene leaves out {_names(left_out)}")
-    stated = {initial(sp.Symbol(x, real=True)): y for x, y in claims.scene.initial_state.items()}
+    names = [symbol for symbol in claims.state if initial(symbol) not in claims.given_values]
+    lefts = [relation.left_tree for relation in relations]
+    ordered = sorted(relations, key=lambda relation: str(relation.left_tree).startswith("dot("))
+    if sorted(map(str, lefts)) != sorted(initial(symbol).name for symbol in names) or ordered != list(relations):
+        raise NotComparable(
+            f"values of {_listed(map(str, lefts))} where {_listed(initial(x).name for x in names)} belong"
+        )
+    fixed = {sp.Symbol(left, real=True): exact(r.right) for left, r in zip(lefts, relations, strict=True)}
     residuals = [
         *_for_all_states(claims.system.coordinates, claims.known.system.constraints, fixed),
         *_for_all_states(claims.system.velocities, claims.known.constraint_rates, fixed),
     ]
-    numbers = [name for name, value in fixed.items() if value.is_number]
-    return Comparison(
-        (
-            *_vanishing("constraint", residuals),
-            *(Pair(name.name, fixed[name], stated[name]) for name in numbers if stated[name].is_number),
-        ),
-        given={**fixed, **claims.start},
-    )
+    always = Comparison(tuple(_vanishing("constraint", residuals)), given={**fixed, **claims.start})
+    values = (Pair(name.name, fixed[name], name) for name in fixed)
+    return always, *at_start(claims, values)
 
 
 def _for_all_states(
     symbols: Iterable[sp.Symbol], residuals: Iterable[sp.Expr], fixed: Mapping[sp.Symbol, sp.Expr]
 ) -> Iterable[sp.Expr]:
     """Residuals that contain fixed symbols, and no symbol that is fixed for the scene's numbers only."""
-    symbols = set(symbols)
+    symbols, residuals = set(symbols), list(residuals)
     known = {symbol for symbol in symbols if initial(symbol) in fixed}
-    numbers = {symbol for symbol in known if fixed[initial(symbol)].is_number}
+    numbers = _without_closed_form({symbol for symbol in known if fixed[initial(symbol)].is_number}, residuals)
     for residual in residuals:
         present = residual.free_symbols & symbols
         if present & known and not (present & numbers and present - numbers):
             yield residual
 
 
-def _names(symbols: Iterable[sp.Symbol]) -> str:
-    return ", ".join(sorted(symbol.name for symbol in symbols)) or "nothing"
+def _without_closed_form(numbers: set[sp.Symbol], residuals: Sequence[sp.Expr]) -> set[sp.Symbol]:
+    """Those of the symbols that share residuals with one that is not linear in them: others have a closed form."""
+    shared = [(residual, residual.free_symbols & numbers) for residual in residuals]
+    found = set().union(
+        *(within for residual, within in shared if any(residual.diff(x).free_symbols & within for x in within))
+    )
+    for _ in numbers:
+        found = found.union(*(within for _, within in shared if within & found))
+    return found
 
 
-def initial_accelerations(claims: SceneClaims, relations: Relations) -> Comparison:
+def _listed(names: Iterable[str]) -> str:
+    return ", ".join(sorted(names)) or "nothing"
+
+
+def initial_accelerations(claims: SceneClaims, relations: Relations) -> tuple[Comparison, ...]:
     """(13): the accelerations of the bordered system at the start."""
     system = claims.system
     claimed = solved_for([initial(a) for a in system.accelerations], relations)
     solution = {a: claimed[initial(a)] for a in system.accelerations}
-    return Comparison(
-        tuple(Pair(initial(a).name, value, a) for a, value in solution.items()),
-        given=claims.start,
-        solves=(claims.known.bordered,),
-        certificate=claims.certificate(solution),
+    return (
+        Comparison(
+            tuple(Pair(initial(a).name, value, a) for a, value in solution.items()),
+            given=claims.start,
+            solves=(claims.known.bordered,),
+            certificate=claims.certificate(solution),
+        ),
     )
 
 
-def initial_series(claims: SceneClaims, relations: Relations) -> Comparison:
+def initial_series(claims: SceneClaims, relations: Relations) -> tuple[Comparison, ...]:
     """(18): the series, to the third order, is that of the motion; and it ends there."""
     system = claims.system
     claimed = solved_for(system.coordinates, relations)
@@ -203,11 +303,13 @@ def initial_series(claims: SceneClaims, relations: Relations) -> Comparison:
             series = series.diff(system.time)
         pairs.append(Pair(f"remainder of the series of {q}", series, sp.Integer(0)))
     highest = {x: rates[x] for x in (*system.accelerations, *system.jerks)}
-    return Comparison(
-        tuple(pairs),
-        given=claims.start,
-        solves=(claims.known.bordered, claims.known.bordered_rates),
-        certificate=claims.certificate(highest),
+    return (
+        Comparison(
+            tuple(pairs),
+            given=claims.start,
+            solves=(claims.known.bordered, claims.known.bordered_rates),
+            certificate=claims.certificate(highest),
+        ),
     )
 
 

@@ -27,6 +27,10 @@ ADDITION_THEOREMS = (sp.sin, sp.cos, sp.tan, sp.sinh, sp.cosh, sp.tanh, sp.exp)
 """Functions whose sums and multiples can be taken out of the argument."""
 
 
+LARGEST_MULTIPLE, MOST_TERMS, LONGEST_ARGUMENT = 12, 12, 200
+"""Of an argument that addition theorems are applied to: its largest factor, its terms, its operations."""
+
+
 class AllowanceSpent(Exception):
     """The proof would take more work than it is allowed."""
 
@@ -60,7 +64,7 @@ def is_identically_zero(expressions: Iterable[sp.Expr], allowance: int = ALLOWAN
     try:
         forms = NormalForms(canonical, allowance)
         return not any(forms.numerator(expression) for expression in canonical)
-    except AllowanceSpent:
+    except (AllowanceSpent, ZeroDivisionError):  # nothing is shown of a quotient by what is identically zero
         return False
 
 
@@ -133,6 +137,9 @@ class NormalForms:
         return Quotient(numerator, denominators)
 
     def _power(self, base: Quotient, exponent: int) -> Quotient:
+        self._left -= exponent
+        if self._left < 0:
+            raise AllowanceSpent
         return self._product([base] * exponent)
 
     def _inverse(self, quotient: Quotient) -> Quotient:
@@ -232,7 +239,11 @@ def _in_basic_functions(expression: sp.Expr) -> sp.Expr:
 
 
 def _basic_function(part: sp.Expr) -> sp.Expr:
-    argument = sp.expand(part.args[0])
+    """Write a function by others of shorter arguments; that of a large multiple, by too many of them, stays."""
+    argument = sp.expand(part.args[0]) if part.args[0].count_ops() <= LONGEST_ARGUMENT else part.args[0]
+    multiples = [term.as_coeff_Mul(rational=True)[0] for term in sp.Add.make_args(argument)]
+    if len(multiples) > MOST_TERMS or any(abs(multiple.p) > LARGEST_MULTIPLE for multiple in multiples):
+        return part
     match part:
         case sp.exp():
             return sp.expand_power_exp(sp.exp(argument))

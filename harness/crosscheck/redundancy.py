@@ -1,97 +1,195 @@
-"""Constraints that are said to follow from the others, looked at again near configurations that keep all of them.
+"""Ranks on the constraint manifold: which constraints follow from the others, and whether the mass matrix is regular.
 
 By the implicit function theorem, constraints with independent gradients at a configuration are a manifold around it.
-The others follow from them there if they vanish on it. So a configuration that keeps all constraints, the start of a
-scene or one that is found from a random point, is left by a small random step, in coordinates, controls and time;
-Newton's method leads back to the manifold of the independent constraints alone, and there the others are evaluated.
+The others follow from them there if they vanish on it. So a configuration near the start of a scene, or a random one,
+is moved by Newton's method to where the constraints that are said to be independent hold; where the others hold as
+well, the rank of the gradients of all constraints is the number of independent ones.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 import sympy as sp
 from mpmath import mp
 
-from .manifold import State, moved_onto, valuation
-from .points import IrregularPoint, Valuation, random_point
+from .draws import Point
+from .evaluation import Number, Steps
+from .points import random_point
+from .ranks import Elimination, Row
 from .report import Verdict
-from .system import MechanicalSystem
-from .verdict import ATTEMPTS, DIGITS, POINTS, WORKING_DIGITS, Judgement
+from .system import MechanicalSystem, gradient
+from .verdict import DIGITS, WORKING_DIGITS, Judgement
 
 STEP = sp.Rational(1, 1000)
-"""Of the random step, in terms of the random numbers up to two."""
+"""Of the random step away from a start, in terms of the random numbers up to two."""
+
+CONFIGURATIONS = 3
+"""Configurations on the manifold at which ranks are found."""
+
+DRAWS = 60
+"""Configurations from which one on the manifold is looked for."""
+
+NEWTON_STEPS = 40
+"""Steps of Newton's method towards the manifold."""
+
+SPARE_DIGITS = 15
+"""Of those that are carried, digits to which constraints need not vanish."""
+
+State = dict[sp.Symbol, Number | None]
+
+
+class Ranks(NamedTuple):
+    """Ranks at a configuration: of the mass matrix, and of the gradients of all constraints and of those kept."""
+
+    mass: int
+    every: int
+    kept: int
 
 
 def judge_redundancy(
-    described: MechanicalSystem, independent: MechanicalSystem, starts: Sequence[Mapping[sp.Symbol, sp.Expr]], seed: str
+    described: MechanicalSystem,
+    kept: Sequence[str],
+    regular: bool,
+    starts: Sequence[Mapping[sp.Symbol, sp.Expr]],
+    seed: str,
 ) -> Judgement:
-    """Verdict on the constraints of a system that others are said to imply.
+    """Verdict on the constraints of a system that others are said to imply, and on the kind of its mass matrix.
 
     Parameters
     ----------
     described : MechanicalSystem
         With all constraints.
-    independent : MechanicalSystem
-        Without those in question.
+    kept : sequence of str
+        Multipliers of the constraints that are said to be independent.
+    regular : bool
+        Whether the mass matrix is said to be regular.
     starts : sequence of mapping of Symbol to Expr
         Configurations that keep all constraints: numbers for what is known of time, parameters, controls, coordinates.
     seed : str
         Makes the random steps.
-
-    Returns
-    -------
-    Judgement
-        ``agrees`` with the digits and points, ``disagrees`` with the first constraint that does not vanish, or
-        ``undecided`` where too few configurations were found.
     """
-    others = [f for f in described.constraints if f not in independent.constraints]
-    jacobian = [[f.diff(q) for q in independent.coordinates] for f in independent.constraints]
+    manifold = _Manifold(described, kept)
     with mp.workdps(WORKING_DIGITS):
-        compared = 0
-        for state, step in _steps(described, starts, seed):
-            try:
-                moved_onto(state, independent.coordinates, independent.constraints, jacobian)
-                if _first_left(others, state):
-                    continue
-                for symbol, by in step.items():
-                    state[symbol] += by
-                moved_onto(state, independent.coordinates, independent.constraints, jacobian)
-                left = _first_left(others, state)
-            except (IrregularPoint, ZeroDivisionError):
-                continue
-            if left:
-                return Judgement(Verdict.DISAGREES, DIGITS, POINTS, f"{left} where the others hold")
-            compared += 1
-            if compared == POINTS:
-                return Judgement(Verdict.AGREES, DIGITS, POINTS)
-    reason = f"only {compared} configurations were found that keep all constraints, of {POINTS} looked for"
-    return Judgement(Verdict.UNDECIDED, None, compared or None, reason)
+        found = []
+        for point in _configurations(manifold.names, described, starts, seed):
+            if (ranks := manifold.ranks_near(point)) is not None:
+                found.append(ranks)
+            if len(found) == CONFIGURATIONS:
+                break
+    if not found and manifold.held_alone:
+        detail = "where the constraints that are kept hold, the others do not"
+        return Judgement(Verdict.DISAGREES, DIGITS, manifold.held_alone, detail)
+    if not found:
+        return Judgement(Verdict.UNDECIDED, None, None, "no configuration was found that keeps all constraints")
+    largest = Ranks(*(max(ranks) for ranks in zip(*found, strict=True)))
+    detail = _contradiction(largest, len(kept), len(described.coordinates), regular)
+    return Judgement(Verdict.DISAGREES if detail else Verdict.AGREES, DIGITS, len(found), detail)
 
 
-def _steps(
-    system: MechanicalSystem, starts: Sequence[Mapping[sp.Symbol, sp.Expr]], seed: str
-) -> Iterator[tuple[State, State]]:
-    """Configurations to begin with, and a random step away from each; parameters stay."""
-    changing = {system.time, *system.coordinates, *system.controls}
-    names = sorted(
-        {symbol.name for f in system.constraints for symbol in f.free_symbols} | {q.name for q in system.coordinates}
-    )
-    for attempt in range(ATTEMPTS * POINTS):
-        known = starts[attempt % len(starts)] if starts else {}
+def _contradiction(found: Ranks, kept: int, coordinates: int, regular: bool) -> str:
+    if found.every != kept or found.kept != kept:
+        return f"{found.every} constraints are independent, and {found.kept} of the {kept} that are said to be"
+    if (found.mass == coordinates) != regular:
+        return f"the mass matrix has the rank {found.mass} of {coordinates}"
+    return ""
+
+
+class _Manifold:
+    """The constraints and the mass matrix of a system, evaluated at configurations."""
+
+    def __init__(self, system: MechanicalSystem, kept: Sequence[str]) -> None:
+        q, v = system.coordinates, system.velocities
+        self._coordinates = q
+        self._kept = [i for i, multiplier in enumerate(system.multipliers) if multiplier.name in kept]
+        self._constraints = Steps(system.constraints)
+        self._jacobian = _Sparse([_entries(f, q) for f in system.constraints])
+        self._mass = _Sparse([_entries(momentum, v) for momentum in gradient(system.kinetic_energy, v)])
+        symbols = set().union(*(f.free_symbols for f in (*system.constraints, system.kinetic_energy)))
+        self.names = sorted({x.name for x in symbols | {*q}} - {x.name for x in v})
+
+        self.held_alone = 0  # configurations where the constraints that are kept hold, and not all others
+
+    def ranks_near(self, point: Point) -> Ranks | None:
+        """Ranks at a configuration of the manifold near a point; None where there is none."""
+        state: State = {x: mp.mpf(number.p) / number.q for x, number in point.items()}
+        if not self._brought_onto(state):
+            return None
+        every, mass = self._jacobian.at(state), self._mass.at(state)
+        if every is None or mass is None:
+            return None
+        kept = [every[i] for i in self._kept]
+        return Ranks(Elimination(mass).rank, Elimination(every).rank, Elimination(kept).rank)
+
+    def _brought_onto(self, state: State) -> bool:
+        """Whether Newton's method on the constraints that are kept brings the state to where all hold."""
+        for _ in range(NEWTON_STEPS):
+            values, rows = self._constraints.at(state), self._jacobian.at(state)
+            if rows is None or any(value is None or mp.im(value) for value in values):
+                return False
+            step = Elimination([rows[i] for i in self._kept], [values[i] for i in self._kept]).solution()
+            for place, by in step.items():
+                state[self._coordinates[place]] -= by
+            size = 1 + max((abs(state[q]) for q in self._coordinates), default=mp.zero)
+            if max(map(abs, step.values()), default=mp.zero) <= mp.mpf(10) ** (SPARE_DIGITS - mp.dps) * size:
+                return self._all_hold(state)
+        return False
+
+    def _all_hold(self, state: State) -> bool:
+        values, rows = self._constraints.at(state), self._jacobian.at(state)
+        if rows is None or None in values:
+            return False
+        size = 1 + max((abs(state[q]) for q in self._coordinates), default=mp.zero)
+        slopes = [1 + max(map(abs, row.values()), default=mp.zero) for row in rows]
+        tolerance = mp.mpf(10) ** -(mp.dps // 2) * size
+        left = [i for i, value in enumerate(values) if abs(value) > tolerance * slopes[i]]
+        self.held_alone += bool(left) and not set(left) & set(self._kept)
+        return not left
+
+
+class _Sparse:
+    """A matrix of few entries, evaluated at configurations."""
+
+    def __init__(self, rows: Sequence[Mapping[int, sp.Expr]]) -> None:
+        self._places = [(i, k) for i, row in enumerate(rows) for k in row]
+        self._steps = Steps([value for row in rows for value in row.values()])
+        self._length = len(rows)
+
+    def at(self, state: State) -> list[Row] | None:
+        """Its rows; None where an entry has no real value."""
+        rows: list[Row] = [{} for _ in range(self._length)]
+        for (i, k), value in zip(self._places, self._steps.at(state), strict=True):
+            if value is None or mp.im(value):
+                return None
+            if value:
+                rows[i][k] = mp.re(value)
+        return rows
+
+
+def _entries(expression: sp.Expr, symbols: Sequence[sp.Symbol]) -> dict[int, sp.Expr]:
+    present = expression.free_symbols
+    return {k: expression.diff(x) for k, x in enumerate(symbols) if x in present}
+
+
+def _configurations(
+    names: Sequence[str], system: MechanicalSystem, starts: Sequence[Mapping[sp.Symbol, sp.Expr]], seed: str
+) -> Iterator[Point]:
+    """Points a random step away from the starts; what they do not know, and what there is without any, is random."""
+    moving = {system.time, *system.coordinates, *system.controls}
+    exact = [_in_numbers(start) for start in starts]
+    for attempt in range(DRAWS):
+        known = exact[attempt % len(exact)] if exact else {}
         drawn = random_point(names, 2 * attempt, seed)
         step = random_point(names, 2 * attempt + 1, seed)
-        number = Valuation({})
-        yield (
-            {symbol: number(known.get(symbol, drawn[symbol])) for symbol in drawn},
-            {symbol: number(STEP * by) for symbol, by in step.items() if symbol in changing},
-        )
+        yield {x: known[x] + (STEP * step[x] if x in moving else 0) if x in known else drawn[x] for x in drawn}
 
 
-def _first_left(constraints: Sequence[sp.Expr], state: State) -> str:
-    """Tell the first of the constraints that does not vanish; empty where all do."""
-    value, size = valuation(state), max(1, *(abs(number) for number in state.values()))
-    for f in constraints:
-        if abs(left := value(f)) > mp.mpf(10) ** -DIGITS * size:
-            return f"{f} is {mp.nstr(left, 12)}"
-    return ""
+def _in_numbers(start: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, sp.Rational]:
+    with mp.workdps(WORKING_DIGITS):
+        values = Steps(list(start.values())).at({})
+    return {
+        x: sp.Rational(str(mp.nstr(value, WORKING_DIGITS)))
+        for x, value in zip(start, values, strict=True)
+        if value is not None and not mp.im(value)
+    }

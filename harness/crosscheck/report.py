@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from ..language import translatable
@@ -16,7 +17,10 @@ class Verdict(StrEnum):
     PROVED = translatable("proved")
     """The difference is identically zero."""
     AGREES = translatable("agrees")
-    """The difference vanishes, to the digits stated, at the random points stated."""
+    """The difference vanishes, to the digits stated, at the random points stated, and where exp, sin and the like have
+    values independent of their arguments."""
+    SAMPLED = translatable("agrees at points")
+    """The difference vanishes, to the digits stated, at the random points stated, and nothing more is known."""
     DISAGREES = translatable("disagrees")
     """The difference does not vanish, or the equation is not there."""
     UNDECIDED = translatable("undecided")
@@ -60,6 +64,10 @@ class CheckReport(Shown):
 
     verdicts: tuple[EquationVerdict, ...]
     seed: str
+
+    def with_verdicts(self, verdicts: Iterable[EquationVerdict]) -> CheckReport:
+        """The same report with further verdicts."""
+        return replace(self, verdicts=(*self.verdicts, *verdicts))
 
     @property
     def disagreements(self) -> int:

@@ -8,14 +8,14 @@ symbol that is its derivative along the motion:
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 
 import sympy as sp
 
-from ..record import Effect, System
+from ..described import Effect, System
 
 
 def dotted(dots: str, symbol: sp.Symbol) -> sp.Symbol:
@@ -74,6 +74,12 @@ class MechanicalSystem:
             },
         }
 
+    @cached_property
+    def terms(self) -> tuple[sp.Expr, ...]:
+        """Terms of the energies, forces and constraints."""
+        described = (self.kinetic_energy, self.potential_energy, *self.forces, *self.constraints)
+        return tuple(dict.fromkeys(term for each in described for term in sp.Add.make_args(each)))
+
     def without(self, redundant: Collection[str]) -> MechanicalSystem:
         """Leave out the constraints whose multipliers have these names."""
         kept = [
@@ -88,12 +94,38 @@ class MechanicalSystem:
     def total_rate(self, expression: sp.Expr) -> sp.Expr:
         """Total time derivative d/dt of an expression along any motion."""
         changing = sorted(expression.free_symbols & self.rates.keys(), key=str)
-        return sp.Add(*(expression.diff(symbol) * self.rates[symbol] for symbol in changing))
+        slopes = gradient(expression, changing)
+        return sp.Add(*(slope * self.rates[symbol] for symbol, slope in zip(changing, slopes, strict=True)))
+
+
+FEW = 4
+"""Symbols of a product up to which it is not looked into for a long sum."""
+
+
+def gradient(expression: sp.Expr, symbols: Sequence[sp.Symbol]) -> list[sp.Expr]:
+    """Partial derivatives by the symbols, in a time that grows with the length of a sum and not with their number."""
+    terms: dict[sp.Symbol, list[sp.Expr]] = {symbol: [] for symbol in symbols}
+    slopes: dict[sp.Symbol, list[sp.Expr]] = {symbol: [] for symbol in symbols}
+    for term in sp.Add.make_args(expression):
+        present = sorted(term.free_symbols & terms.keys(), key=str)
+        factor, rest = term.as_independent(*present, as_Add=False) if len(present) > FEW else (sp.Integer(1), term)
+        if isinstance(rest, sp.Add):
+            for symbol, slope in zip(present, gradient(rest, present), strict=True):
+                slopes[symbol].append(factor * slope)
+        else:
+            for symbol in present:
+                terms[symbol].append(term)
+    return [sp.Add(sp.Add(*terms[symbol]).diff(symbol), *slopes[symbol]) for symbol in symbols]
 
 
 def history(symbol: sp.Symbol) -> tuple[sp.Symbol, ...]:
     """List a coordinate or control and its first three rates."""
     return symbol, *(dotted(dots, symbol) for dots in ("dot", "ddot", "dddot"))
+
+
+def exact(expression: sp.Expr) -> sp.Expr:
+    """Return the expression with each decimal number as the fraction that it is."""
+    return expression.xreplace({number: sp.Rational(number) for number in expression.atoms(sp.Float)})
 
 
 def described_system(system: System, effects: Collection[str]) -> MechanicalSystem:
@@ -106,8 +138,8 @@ def described_system(system: System, effects: Collection[str]) -> MechanicalSyst
         multipliers=_symbols(system.multipliers),
         kinetic_energy=_sum_of(system.kinetic_energy, effects),
         potential_energy=_sum_of(system.potential_energy, effects),
-        forces=tuple(sp.Add(*(force[s] for force in forces)) for s in range(len(system.coordinates))),
-        constraints=tuple(system.constraints),
+        forces=tuple(exact(sp.Add(*(force[s] for force in forces))) for s in range(len(system.coordinates))),
+        constraints=tuple(map(exact, system.constraints)),
     )
 
 
@@ -116,4 +148,4 @@ def _symbols(names: Iterable[str]) -> tuple[sp.Symbol, ...]:
 
 
 def _sum_of(parts: Iterable[Effect], effects: Collection[str]) -> sp.Expr:
-    return sp.Add(*(part.value for part in parts if part.effect in effects))
+    return exact(sp.Add(*(part.value for part in parts if part.effect in effects)))

@@ -35,14 +35,20 @@ class LawOfControls:
     positive: tuple[sp.Expr, ...] = ()  # what must be positive where the law holds
 
 
-def judge_law(system: MechanicalSystem, values: Mapping[sp.Symbol, sp.Expr], law: LawOfControls) -> Judgement:
-    """Verdict on a law: whether multipliers vanish in random states; undecided where too few regular ones are found.
+def judge_law(
+    system: MechanicalSystem,
+    values: Mapping[sp.Symbol, sp.Expr],
+    law: LawOfControls,
+    span: tuple[sp.Expr, sp.Expr] | None = None,
+) -> Judgement:
+    """Judge a law by the multipliers in random states at instants of the time span.
 
-    Parameters without a value are drawn at random too.
+    Parameters without a value are drawn at random too. The verdict is undecided if too few regular states are found,
+    for instance because the law is not real there.
     """
     moved = _MovedByLaw(system, values, law)
     seed = fresh_seed()
-    draws = (random_point(moved.names, attempt, seed) for attempt in range(DRAWS * POINTS))
+    draws = (_within(span, random_point(moved.names, attempt, seed), system.time) for attempt in range(DRAWS * POINTS))
     with mp.workdps(WORKING_DIGITS):
         for found in range(POINTS):
             detail = _residual_at_next_state(moved, draws)
@@ -52,6 +58,16 @@ def judge_law(system: MechanicalSystem, values: Mapping[sp.Symbol, sp.Expr], law
             if detail:
                 return Judgement(Verdict.DISAGREES, DIGITS, POINTS, f"{detail}, in a state drawn with seed {seed}")
     return Judgement(Verdict.AGREES, DIGITS, POINTS)
+
+
+def _within(
+    span: tuple[sp.Expr, sp.Expr] | None, point: dict[sp.Symbol, sp.Rational], time: sp.Symbol
+) -> dict[sp.Symbol, sp.Rational]:
+    """Move the instant of a point, which lies between -2 and 2, into the time span."""
+    if span is None or time not in point:
+        return point
+    first, last = (sp.Rational(str(sp.N(end, 30))) for end in span)
+    return point | {time: first + (last - first) * (point[time] + 2) / 4}
 
 
 def _residual_at_next_state(moved: _MovedByLaw, draws: Iterator[Mapping[sp.Symbol, sp.Rational]]) -> str | None:
@@ -88,7 +104,8 @@ class _MovedByLaw:
         self.multipliers = system.multipliers
         self.motion = LinearEquations(equations.bordered.unknowns, under_law(equations.bordered.residuals))
         self.positive = under_law(law.positive)
-        everything = (*self.constraints, *self.rates, *self.motion.residuals, *self.positive)
+        self.law = tuple(expression.xreplace(values) for expression in law.controls.values())
+        everything = (*self.constraints, *self.rates, *self.motion.residuals, *self.positive, *self.law)
         symbols = set().union(*(expression.free_symbols for expression in everything))
         state = {*self.coordinates, *self.velocities}
         self.names = sorted(symbol.name for symbol in (symbols | state) - {*self.motion.unknowns})
@@ -97,6 +114,8 @@ class _MovedByLaw:
         """Tell the first multiplier that is not zero; empty where all are."""
         if any(Valuation(point)(expression) <= 0 for expression in self.positive):
             raise IrregularPoint
+        for expression in self.law:
+            Valuation(point)(expression)  # irregular if it is not real, though its square may be
         state: dict[sp.Symbol, mp.mpf] = {symbol: mp.mpf(number.p) / number.q for symbol, number in point.items()}
         moved_onto(state, self.coordinates, self.constraints, self.jacobian)
         moved_onto(state, self.velocities, self.rates, self.jacobian)

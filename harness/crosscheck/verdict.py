@@ -1,46 +1,69 @@
-"""Two expressions compared: at random points first, then, where they agree, by proof.
+"""Two expressions compared: at points first, then, where they agree, by proof.
 
-A comparison may need the solution of linear equations. At a point they are solved, by numbers.
-In a proof a certificate takes the solution's place: the record's own closed form, which is put
-back into the equations. Where all residuals vanish identically it is the solution, for the
-equations are regular at the points and so have no other.
+A point is taken in two precisions. What is the same in both is a value, and a difference that is the same in both is
+one; what shrinks with the precision is a rounding of zero. So no tolerance is chosen, and terms of any size count.
+
+A comparison may need the solution of linear equations. At a point they are solved, by numbers. In a proof a certificate
+takes the solution's place: the record's own closed form, which is put back into the equations. Where all residuals
+vanish identically it is the solution, for the equations are regular at the points and so have no other.
+
+Where no proof is found, points are drawn on both sides of each branch (`branches`), and points at which functions such
+as exp have values independent of what their arguments are (`independent_functions`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
-from functools import partial
+from enum import Enum, auto
 from typing import NamedTuple
 
 import sympy as sp
 from mpmath import mp
 
+from .branches import Branches, branches_of
+from .draws import Draws, Point
+from .evaluation import Number, Steps, Values
+from .independent_functions import with_independent_functions
 from .linear import LinearEquations
 from .normal_form import is_identically_zero
-from .points import IrregularPoint, Valuation, random_point
 from .report import Verdict
 
 DIGITS = 50
-"""Digits to which two values must agree, relative to the larger of them and of one."""
+"""Digits to which two values agree at least."""
 
 WORKING_DIGITS = DIGITS + 20
 """Digits carried, so that cancellation and a linear solve leave the stated ones untouched."""
 
 CONFIRMING_DIGITS = 3 * WORKING_DIGITS
-"""Digits in which a difference must be found again: of terms that cancel 10^40 is left as a rounding of 10^-30."""
+"""Digits in which each point is taken again."""
 
-DIGITS_OF_FLOATS = 9
-"""Digits to which values agree that come from floating-point data in the scene."""
+SHRUNK = 2 * DIGITS
+"""Orders of magnitude by which a rounding of zero shrinks at least, of the 140 that the digits differ by."""
+
+SAME_DIGITS = 10
+"""Digits that a number has in common in both precisions if it is one."""
 
 POINTS = 8
 """Random points at which two expressions are compared."""
+
+INDEPENDENT_POINTS = 4
+"""Points with independent functions at which two expressions are compared."""
 
 ATTEMPTS = 25
 """Draws for each point before the search for a regular one is given up."""
 
 
-Point = Mapping[sp.Symbol, sp.Rational]
+MOST_AGAIN = 8
+"""Numbers of digits tried in the place of the first where a rounding of zero is zero."""
+
+Sides = tuple[list[Number | None], list[Number | None]]
+"""Values of all claims, and of what they are compared with."""
+
+
+HOPELESS = 60
+"""Draws after which no regular point is looked for where there was none."""
 
 
 class Pair(NamedTuple):
@@ -62,6 +85,10 @@ class Comparison:
     solves: tuple[LinearEquations, ...] = ()
     # claimed closed forms of all these unknowns; None where there are none
     certificate: Mapping[sp.Symbol, sp.Expr] | None = None
+    # symbols with numbers that may be rounded in the last of 50 digits, such as initial values found by Newton's method
+    rounded: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    # terms of what was described: where one has no real value, as asech(x) at x < 0, its derivatives tell nothing
+    domain: tuple[sp.Expr, ...] = ()
 
 
 class Judgement(NamedTuple):
@@ -73,33 +100,243 @@ class Judgement(NamedTuple):
     detail: str = ""
 
 
+class Found(Enum):
+    """What a point tells of a pair."""
+
+    EQUAL = auto()
+    DIFFERENT = auto()
+    WITHOUT_CLAIM = auto()  # only the independent evaluation has a value
+    UNSTABLE = auto()  # the claim's value is lost in rounding
+    NOTHING = auto()  # the independent evaluation has no value
+
+
 def judge(comparison: Comparison, seed: str) -> Judgement:
     """Verdict on a comparison; the same seed makes the same random points."""
     if not comparison.pairs:
         return Judgement(Verdict.NOTHING, None, None)
-    names = _free_names(comparison)
-    points = POINTS if names else 1
-    digits = _digits(comparison)
-    compared, valueless = 0, ""
-    candidates = (random_point(names, attempt, seed) for attempt in range(ATTEMPTS * points))
-    with mp.workdps(WORKING_DIGITS):
-        while compared < points and (point := next(candidates, None)) is not None:
-            try:
-                detail = confirmed(partial(_difference, comparison, point, digits))
-            except ClaimWithoutValue as found:
-                valueless = valueless or str(found)
-                continue
-            except (IrregularPoint, ZeroDivisionError):
-                continue
-            if detail:
-                return Judgement(Verdict.DISAGREES, digits, points, detail)
-            compared += 1
-    if compared == 0 and valueless:
-        return Judgement(Verdict.DISAGREES, digits, ATTEMPTS * points, valueless)
-    if compared < points:
-        return Judgement(Verdict.UNDECIDED, None, compared or None, _too_few(compared))
-    proved = _is_proved(comparison)
-    return Judgement(Verdict.PROVED if proved else Verdict.AGREES, digits, points)
+    if comparison.rounded and not _free_names(comparison):
+        return judge_rounded(comparison)
+    return _Judge(comparison, seed).judgement()
+
+
+def judge_all(comparisons: Sequence[Comparison], seed: str) -> Judgement:
+    """Verdict on several comparisons, the weakest of theirs."""
+    found = [judge(comparison, f"{seed} {i}") for i, comparison in enumerate(comparisons)]
+    order = (
+        Verdict.DISAGREES,
+        Verdict.UNDECIDED,
+        Verdict.SAMPLED,
+        Verdict.AGREES,
+        Verdict.PROVED,
+        Verdict.NOTHING,
+    )
+    return min(found, key=lambda each: order.index(each.verdict))
+
+
+class _Judge:
+    """One comparison, and how often each of its pairs was found equal."""
+
+    def __init__(self, comparison: Comparison, seed: str) -> None:
+        self.comparison = comparison
+        self.evaluation = Evaluation(comparison)
+        self.branches = branches_of(_definitions_put_in(comparison))
+        self.draws = Draws(_free_names(comparison), self.branches, seed)
+        self.points = POINTS if self.draws.names else 1
+        self.equal = [0] * len(comparison.pairs)
+        self.lost = [""] * len(comparison.pairs)
+
+    def judgement(self) -> Judgement:
+        attempts = range(ATTEMPTS * self.points)
+        if detail := self._difference(map(self.draws.point, attempts), enough=True):
+            return Judgement(Verdict.DISAGREES, DIGITS, self.points, detail)
+        fewest = min(self.equal)
+        if fewest < self.points:
+            return self._too_few(fewest)
+        if _is_proved(self.comparison):
+            return Judgement(Verdict.PROVED, DIGITS, self.points)
+        if detail := self._difference(self.draws.at_branches()):
+            return Judgement(Verdict.DISAGREES, DIGITS, self.points, detail)
+        if sides := self.draws.sides_not_reached():
+            return Judgement(Verdict.UNDECIDED, None, fewest, f"no point was found where {sides[0]}")
+        verdict = Verdict.AGREES if self._agrees_independently() else Verdict.SAMPLED
+        return Judgement(verdict, DIGITS, min(self.equal))
+
+    def _difference(self, points: Iterable[Point], enough: bool = False) -> str:
+        """Tell the first difference; empty where there is none. It stops where each pair has enough points."""
+        for drawn, point in enumerate(points):
+            for i, (found, left, right) in enumerate(self.evaluation.findings(point)):
+                if found is Found.EQUAL:
+                    self.equal[i] += 1
+                elif found in (Found.DIFFERENT, Found.WITHOUT_CLAIM) and self._is_in_domain(i, point):
+                    return self._told(i, found, left, right, point)
+                elif found is Found.UNSTABLE:
+                    self.lost[i] = self._told(i, found, left, right, point)
+            if enough and (min(self.equal) >= self.points or (drawn > HOPELESS and not max(self.equal))):
+                break
+        return ""
+
+    def _is_in_domain(self, i: int, point: Point) -> bool:
+        """Return False if a described term of the quantities of a pair has no real value at a point."""
+        pair = self.comparison.pairs[i]
+        known = pair.independent.free_symbols | pair.claimed.free_symbols
+        terms = [term for term in self.comparison.domain if term.free_symbols <= known]
+        return all(each is not None and _is_real(each, each) for each in self.evaluation.values_of(terms, point))
+
+    def _told(self, i: int, found: Found, left: Number | None, right: Number, point: Point) -> str:
+        claim = mp.nstr(mp.re(left), 12) if found is Found.DIFFERENT else "no real value"
+        known = f"the independent evaluation {mp.nstr(mp.re(right), 12)}{_where(point)}"
+        return f"{self.comparison.pairs[i].quantity}: the record gives {claim}, {known}"
+
+    def _too_few(self, fewest: int) -> Judgement:
+        for equal, lost in zip(self.equal, self.lost, strict=True):
+            if lost and not equal:
+                return Judgement(Verdict.DISAGREES, DIGITS, ATTEMPTS * self.points, lost)
+        points = f"only {fewest} regular points were" if fewest else "no regular point was"
+        reason = f"{points} found among those drawn at random"
+        return Judgement(Verdict.UNDECIDED, None, fewest or None, reason)
+
+    def _agrees_independently(self) -> bool:
+        """Whether the pairs agree where exp, sin and the like have values independent of their arguments."""
+        comparison = with_independent_functions(self.comparison)
+        evaluation = Evaluation(comparison)
+        draws = Draws(_free_names(comparison), Branches(()), f"{self.draws.seed} independent")
+        equal = [0] * len(comparison.pairs)
+        for attempt in range(ATTEMPTS * INDEPENDENT_POINTS):
+            for i, (found, _, _) in enumerate(evaluation.findings(draws.point(attempt), complex_too=True)):
+                equal[i] += found is Found.EQUAL
+                if found is Found.DIFFERENT:
+                    return False
+            if min(equal) >= INDEPENDENT_POINTS:
+                return True
+        return False
+
+
+class Evaluation:
+    """The pairs of a comparison, evaluated at points in two precisions."""
+
+    def __init__(self, comparison: Comparison) -> None:
+        self._given = [(symbol, Steps([meaning])) for symbol, meaning in comparison.given.items()]
+        self._solves = [_Solve(equations) for equations in comparison.solves]
+        self._left = Steps([pair.claimed for pair in comparison.pairs])
+        self._right = Steps([pair.independent for pair in comparison.pairs])
+
+    def findings(self, point: Point, complex_too: bool = False) -> Iterator[tuple[Found, Number | None, Number | None]]:
+        """What the point tells of each pair, and the values of both sides."""
+        fine = self._values(point, CONFIRMING_DIGITS)
+        coarse = self._values(point, WORKING_DIGITS)
+        for digits in range(WORKING_DIGITS + 1, WORKING_DIGITS + MOST_AGAIN):
+            lucky = [i for i, each in enumerate(zip(*coarse, *fine, strict=True)) if _is_luck(*each)]
+            if not lucky:
+                break
+            again = self._values(point, digits)
+            for i in lucky:
+                coarse[0][i], coarse[1][i] = again[0][i], again[1][i]
+        with mp.workdps(CONFIRMING_DIGITS):
+            for left, right, left_again, right_again in zip(*coarse, *fine, strict=True):
+                yield _finding((left, left_again), (right, right_again), complex_too), left_again, right_again
+
+    def values_of(self, expressions: Sequence[sp.Expr], point: Point) -> Sequence[Number | None]:
+        """Return the values of other expressions of the same symbols at a point; None where there is none."""
+        with mp.workdps(CONFIRMING_DIGITS):
+            return Steps(expressions).at(self._known(point))
+
+    def _values(self, point: Point, digits: int) -> Sides:
+        with mp.workdps(digits):
+            values = self._known(point)
+            return self._left.at(values), self._right.at(values)
+
+    def _known(self, point: Point) -> dict[sp.Symbol, Number | None]:
+        values: dict[sp.Symbol, Number | None] = {x: mp.mpf(number.p) / number.q for x, number in point.items()}
+        for symbol, meaning in self._given:
+            values[symbol] = meaning.at(values)[0]
+        for solve in self._solves:
+            solve.put_into(values)
+        return values
+
+
+class _Solve:
+    """Linear equations, solved at points."""
+
+    def __init__(self, equations: LinearEquations) -> None:
+        self._unknowns = equations.unknowns
+        self._steps = Steps([*(entry for row in equations.coefficients for entry in row), *equations.constants])
+
+    def put_into(self, values: dict[sp.Symbol, Number | None]) -> None:
+        """Put the solution beside the values; None for each unknown where there is no solution."""
+        order = len(self._unknowns)
+        found = self._steps.at(values)
+        solution: Iterable[Number | None] = [None] * order
+        if order and None not in found:
+            rows = [found[i * order : (i + 1) * order] for i in range(order)]
+            with suppress(ZeroDivisionError, TypeError):  # which mpmath raises for a column of zeros
+                solution = list(mp.lu_solve(mp.matrix(rows), -mp.matrix(found[order * order :])))
+        values.update(zip(self._unknowns, solution, strict=True))
+
+
+def _finding(left: Sequence[Number | None], right: Sequence[Number | None], complex_too: bool) -> Found:
+    if None in right or not (_is_stable(*right) and (complex_too or _is_real(*right))):
+        return Found.NOTHING
+    if None in left:
+        return Found.WITHOUT_CLAIM if left[0] is left[1] else Found.UNSTABLE
+    coarse, fine = (claimed - known for claimed, known in zip(left, right, strict=True))
+    if not coarse or _vanishes(coarse, fine):  # zero in each of the fewer numbers of digits
+        return Found.EQUAL
+    if not _is_same(coarse, fine):
+        return Found.UNSTABLE
+    return Found.DIFFERENT if complex_too or _is_real(*left) else Found.WITHOUT_CLAIM
+
+
+def _is_luck(left: Number | None, right: Number | None, left_again: Number | None, right_again: Number | None) -> bool:
+    """Whether a rounding of zero is zero itself in the fewer digits, so that nothing is seen to shrink."""
+    return left is not None and left == right and left_again != right_again
+
+
+def _vanishes(coarse: Number, fine: Number) -> bool:
+    """Whether a number shrinks with the precision, as a rounding of zero does."""
+    return not fine or abs(fine) <= mp.mpf(10) ** -SHRUNK * abs(coarse)
+
+
+def _is_same(coarse: Number, fine: Number) -> bool:
+    return abs(fine - coarse) <= mp.mpf(10) ** -SAME_DIGITS * abs(fine)
+
+
+def _is_stable(coarse: Number, fine: Number) -> bool:
+    return not coarse or _is_same(coarse, fine) or _vanishes(coarse, fine)
+
+
+def _is_real(coarse: Number, fine: Number) -> bool:
+    return _vanishes(mp.im(coarse), mp.im(fine)) or abs(mp.im(fine)) <= mp.mpf(10) ** -SHRUNK * abs(fine)
+
+
+def judge_rounded(comparison: Comparison) -> Judgement:
+    """Verdict on pairs at one point whose numbers may be rounded: a change of them in the 50th digit explains the rest.
+
+    A difference d is explained where |d| <= 10^-50 times the sum of |x dd/dx| over the rounded numbers x.
+    """
+    values = _rounded_values(comparison)
+    exact = _resolved({x: meaning for x, meaning in comparison.given.items() if x not in comparison.rounded})
+    for pair in comparison.pairs:
+        difference = (pair.claimed - pair.independent).xreplace(exact)
+        changing = [x for x in comparison.rounded if x in difference.free_symbols]
+        steps = Steps([difference, pair.claimed, pair.independent, *(x * difference.diff(x) for x in changing)])
+        with mp.workdps(CONFIRMING_DIGITS):
+            found, left, right, *changes = steps.at(values)
+            if found is None or left is None or right is None or mp.im(found):
+                return Judgement(Verdict.DISAGREES, DIGITS, 1, f"{pair.quantity} has no real value at the start")
+            explained = mp.mpf(10) ** -DIGITS * mp.fsum(abs(change) for change in changes if change is not None)
+            noise = mp.mpf(10) ** (DIGITS - CONFIRMING_DIGITS) * max(abs(left), abs(right))
+            if abs(found) > explained + noise:
+                detail = f"{pair.quantity}: the record gives {mp.nstr(left, 12)}, where {mp.nstr(right, 12)} belongs"
+                return Judgement(Verdict.DISAGREES, DIGITS, 1, detail)
+    return Judgement(Verdict.AGREES, DIGITS, 1)
+
+
+def _rounded_values(comparison: Comparison) -> Values:
+    values: dict[sp.Symbol, Number | None] = {}
+    with mp.workdps(CONFIRMING_DIGITS):
+        for symbol, meaning in {**comparison.rounded, **comparison.given}.items():
+            values[symbol] = Steps([meaning]).at(values)[0]
+    return values
 
 
 def confirmed(difference: Callable[[], str]) -> str:
@@ -108,40 +345,6 @@ def confirmed(difference: Callable[[], str]) -> str:
         return ""
     with mp.workdps(CONFIRMING_DIGITS):
         return difference()
-
-
-def _too_few(compared: int) -> str:
-    found = f"only {compared} regular points were" if compared else "no regular point was"
-    return f"{found} found among {ATTEMPTS * POINTS} drawn at random"
-
-
-class ClaimWithoutValue(IrregularPoint):
-    """At a point where the independent evaluation has a value the record's expression has none."""
-
-
-def _difference(comparison: Comparison, point: Point, digits: int) -> str:
-    """Tell the first difference at a point; empty where there is none."""
-    value = Valuation(point)
-    for symbol, meaning in comparison.given.items():
-        value.define(symbol, value(meaning))
-    for equations in comparison.solves:
-        for symbol, number in equations.solution(value).items():
-            value.define(symbol, number)
-    for quantity, claimed, independent in comparison.pairs:
-        right = value(independent)
-        try:
-            left = value(claimed)
-        except (IrregularPoint, ZeroDivisionError):
-            raise ClaimWithoutValue(
-                f"{quantity}: the record gives no real value at any point tried, "
-                f"the independent evaluation {mp.nstr(right, 12)}{_where(point)}"
-            ) from None
-        if abs(left - right) > mp.mpf(10) ** -digits * max(1, abs(left), abs(right)):
-            return (
-                f"{quantity}: the record gives {mp.nstr(left, 12)}, "
-                f"the independent evaluation {mp.nstr(right, 12)}{_where(point)}"
-            )
-    return ""
 
 
 def _where(point: Point) -> str:
@@ -154,12 +357,7 @@ def _free_names(comparison: Comparison) -> list[str]:
     """Names of the symbols that need a value at a point."""
     solved = {symbol for equations in comparison.solves for symbol in equations.unknowns}
     free = set().union(*(e.free_symbols for e in _expressions(comparison)))
-    return sorted(symbol.name for symbol in free - solved - comparison.given.keys())
-
-
-def _digits(comparison: Comparison) -> int:
-    floating = any(expression.has(sp.Float) for expression in _expressions(comparison))
-    return DIGITS_OF_FLOATS if floating else DIGITS
+    return sorted(symbol.name for symbol in free - solved - comparison.given.keys() if isinstance(symbol, sp.Symbol))
 
 
 def _expressions(comparison: Comparison) -> Iterator[sp.Expr]:
@@ -170,17 +368,23 @@ def _expressions(comparison: Comparison) -> Iterator[sp.Expr]:
         yield from equations.residuals
 
 
+def _definitions_put_in(comparison: Comparison) -> list[sp.Expr]:
+    definitions = _resolved(comparison.given)
+    return [expression.xreplace(definitions) for expression in _expressions(comparison)]
+
+
 def _is_proved(comparison: Comparison) -> bool:
     if comparison.solves and comparison.certificate is None:
         return False
-    definitions = {**comparison.given, **(comparison.certificate or {})}
+    definitions = _resolved({**comparison.given, **(comparison.certificate or {})})
     zeros = [pair.claimed - pair.independent for pair in comparison.pairs]
     zeros += [residual for equations in comparison.solves for residual in equations.residuals]
-    return is_identically_zero(_substituted(zero, definitions) for zero in zeros)
+    return is_identically_zero(zero.xreplace(definitions) for zero in zeros)
 
 
-def _substituted(expression: sp.Expr, definitions: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
-    """Put in every definition, the last first, as later ones use earlier."""
-    for symbol, meaning in reversed(definitions.items()):
-        expression = expression.xreplace({symbol: meaning})
-    return expression
+def _resolved(definitions: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, sp.Expr]:
+    """Definitions in terms of what is not defined; each may use the ones before it."""
+    found: dict[sp.Symbol, sp.Expr] = {}
+    for symbol, meaning in definitions.items():
+        found[symbol] = meaning.xreplace(found)
+    return found

@@ -19,9 +19,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..confined import Limits
 from ..files import shared
 from ..language import gettext
+from ..sandbox import Limits
 from ..series.power_series import MotionSeries, SeriesRequest, compute_series
 from ..series.radius import ENTIRE, Radius
 from .style import (

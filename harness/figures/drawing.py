@@ -16,6 +16,7 @@ from xml.etree.ElementTree import Element, SubElement
 import numpy as np
 from numpy.typing import NDArray
 
+from ..hidden import visible
 from ..language import gettext
 from ..program.drawing import Drawing, Shape
 from ..simulation.result import Simulation
@@ -183,7 +184,7 @@ class _Stage:
 
     def text(self) -> str:
         """The sheet as text."""
-        return ElementTree.tostring(self.root, encoding="unicode") + "\n"
+        return visible(ElementTree.tostring(self.root, encoding="unicode")) + "\n"
 
     def _element(self, shape: Shape, numbers: NDArray[np.float64], moves: bool) -> tuple[str, dict, dict]:
         """Tag, attributes and, frame by frame, further attributes of a shape."""

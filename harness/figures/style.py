@@ -25,8 +25,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
 
-from ..failures import missing_package
+from ..failures import Failure, HolonomError, missing_package
 from ..files import write_whole
+from ..hidden import visible
 from ..language import spoken
 
 if TYPE_CHECKING:
@@ -42,6 +43,7 @@ RATE, NUMBERED = re.compile(r"(d{1,3})ot\((.+)\)"), re.compile(r"(.*?)(\d*)", re
 WORD = re.compile(r"[A-Za-z]+\d*")
 DOTS = {"d": "\N{COMBINING DOT ABOVE}", "dd": "\N{COMBINING DIAERESIS}", "ddd": "\N{COMBINING THREE DOTS ABOVE}"}
 LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+DOLLAR = re.compile(r"(?<!\\)\$")
 INK = "#1f2328"
 INK_ON_DARK = "#d1d7e0"
 
@@ -182,17 +184,27 @@ class Picture:
 def svg_text(figure: "Figure") -> str:
     """A figure as the text of an SVG document, its ink the reader's."""
     buffer = io.StringIO()
+    _take_text_for_text(figure)
     with import_matplotlib().rc_context(WRITING):
         figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": "Holonom"})
-    head, defs, rest = buffer.getvalue().partition("<defs>")
+    head, defs, rest = visible(buffer.getvalue()).partition("<defs>")
     lines = (line.rstrip() for line in (head + COLOUR_OF_INK + defs + rest.replace(INK, "currentColor")).splitlines())
     return "\n".join(lines) + "\n"
 
 
 def _png(figure: "Figure") -> bytes:
     buffer = io.BytesIO()
+    _take_text_for_text(figure)
     figure.savefig(buffer, format="png", facecolor="white", metadata={"Software": "Holonom"})
     return buffer.getvalue()
+
+
+def _take_text_for_text(figure: "Figure") -> None:
+    """See that no title or label is read as a formula, which Matplotlib would look for between dollar signs."""
+    from matplotlib.text import Text
+
+    for written in figure.findobj(Text):
+        written.set_text(DOLLAR.sub(r"\\$", visible(written.get_text())))
 
 
 def import_matplotlib() -> ModuleType:
@@ -201,4 +213,7 @@ def import_matplotlib() -> ModuleType:
         import matplotlib
     except ImportError:
         raise missing_package("matplotlib") from None
+    except UnicodeDecodeError as error:  # in the settings that it finds in the working directory, or at home
+        place, byte = "matplotlibrc", error.object[error.start]
+        raise HolonomError(Failure.NOT_UTF8, place, f"0x{byte:02x}") from None
     return matplotlib

@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..confined import Confinement, LimitExceeded, Limits, Sandbox, run_confined
 from ..failures import Failure, HolonomError
-from ..files import private_directory
+from ..sandbox import LimitExceeded, Limits, Place, Sandbox, run_process
 from ..supervisor import doing
+from ..temporary import private_directory
 from .c_source import c_source
 from .motion_program import Program
 
@@ -109,7 +109,7 @@ def compile_shared(sources: Sequence[Path], library: Path, *options: str) -> Non
     said = bytearray()
     try:
         with doing("compiling C"):
-            status = run_confined(command, Confinement(library.parent, os.environ, (), COMPILER_LIMITS), said)
+            status = run_process(command, Place(library.parent, os.environ, COMPILER_LIMITS), said)
     except LimitExceeded as exceeded:
         raise HolonomError(Failure.COMPILER_UNUSABLE, detail=f"{command[0]} took more than {exceeded.detail}") from None
     except OSError as error:

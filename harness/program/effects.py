@@ -14,11 +14,12 @@ from pathlib import Path
 
 import numpy as np
 
-from ..confined import Limits
 from ..documents import Document, ask, read
 from ..failures import Failure, HolonomError
 from ..language import translatable
+from ..sandbox import Limits
 from ..shown import Show, Shown
+from ..source import Source
 from .c_function import compile_c
 from .motion_program import Program, program_of
 from .numpy_function import NumpyFunction
@@ -110,7 +111,7 @@ class MeasuredCosts(Shown):
         return show_costs
 
 
-def scene_costs(file: Path, request: Request, limits: Limits) -> MeasuredCosts:
+def scene_costs(file: Source | Path, request: Request, limits: Limits) -> MeasuredCosts:
     """What a scene pays for, its programs asked of Maxima; raises as `holonom.documents.ask` and `measure_costs`."""
     asked = (Document.EFFECTS, file, request.scene, request.solve)
     return measure_costs(read_costs(ask(*asked, settings=request.settings, limits=limits)))

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from ..confined import MIB
 from ..failures import Failure, HolonomError
+from ..sandbox import MIB
 from ..supervisor import time_left
 from .heyoka_function import dynamics, import_heyoka, zero_multipliers
 from .motion_problem import MotionProblem

@@ -13,11 +13,13 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from ..failures import Failure, HolonomError
-from ..files import private_directory
+from ..hidden import visible
+from ..temporary import private_directory
 from .c_function import compile_shared
 from .c_library import c_library
 from .model import Model
 
+XML = "<?xml version='1.0' encoding='utf-8'?>\n"
 UNIT = Path(__file__).with_name("fmi3.c")
 OPTIONS = ("-std=c11", "-O2", "-fvisibility=hidden", "-shared", "-fPIC")
 SUFFIXES = {"linux": ".so", "darwin": ".dylib", "windows": ".dll"}
@@ -162,7 +164,7 @@ def _compiled(sources: dict[str, str], name: str) -> bytes:
 
 def _xml(root: ElementTree.Element) -> bytes:
     ElementTree.indent(root)
-    return ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
+    return (XML + visible(ElementTree.tostring(root, encoding="unicode"))).encode()
 
 
 def _archive(files: dict[str, bytes]) -> bytes:

@@ -5,10 +5,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..confined import Limits
 from ..documents import Document, ask
 from ..failures import naming_the_extra
 from ..files import write_files, write_whole
+from ..sandbox import Limits
+from ..source import Source, source_of
 from .motion_program import Program, read_program
 from .request import Request
 
@@ -21,14 +22,14 @@ if TYPE_CHECKING:
 class MotionProgram:
     """The motion program of a scene, and the forms in which it can be taken elsewhere."""
 
-    def __init__(self, file: Path, request: Request, limits: Limits) -> None:
-        self._file, self._request, self._limits = file, request, limits
+    def __init__(self, file: Source | Path, request: Request, limits: Limits) -> None:
+        self._source, self._request = source_of(file, limits), request
 
     @cached_property
     def document(self) -> str:
         """The program as one JSON document."""
         asked = self._request
-        return ask(Document.PROGRAM, self._file, asked.scene, asked.solve, settings=asked.settings, limits=self._limits)
+        return ask(Document.PROGRAM, self._source, asked.scene, asked.solve, settings=asked.settings)
 
     @cached_property
     def program(self) -> Program:
@@ -94,14 +95,14 @@ class MotionProgram:
         """The text of each file that `to_c` writes, by its name."""
         from .c_library import c_library, default_name
 
-        return c_library(self._model(parameters), name or default_name(self._file))
+        return c_library(self._model(parameters), name or default_name(self._source.file))
 
     def to_fmu(self, file: str | Path, name: str | None = None, parameters: Sequence[str] = ()) -> None:
         """Write an FMI 3.0 unit for model exchange; otherwise like `to_c`."""
         from .c_library import default_name
         from .fmu import write_fmu
 
-        write_whole(Path(file), write_fmu(self._model(parameters), name or default_name(self._file)))
+        write_whole(Path(file), write_fmu(self._model(parameters), name or default_name(self._source.file)))
 
     def __repr__(self) -> str:
         return (
@@ -111,4 +112,4 @@ class MotionProgram:
     def _model(self, parameters: Sequence[str]) -> "Model":
         from .model import scene_model
 
-        return scene_model(self._file, self._request, parameters, self._limits)
+        return scene_model(self._source, self._request, parameters, self._source.limits)

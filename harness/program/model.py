@@ -7,9 +7,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..confined import Limits
 from ..documents import NAME, Document, ask, read
 from ..failures import Failure, HolonomError
+from ..sandbox import Limits
+from ..source import Source
 from .motion_program import Program, program_of
 from .request import Request
 from .table import Table, read_tables
@@ -56,7 +57,7 @@ class Model:
         return () if self.law is None else tuple(name for name in self.controls if name in self.law.outputs)
 
 
-def scene_model(file: Path, request: Request, parameters: Sequence[str], limits: Limits) -> Model:
+def scene_model(file: Source | Path, request: Request, parameters: Sequence[str], limits: Limits) -> Model:
     """Ask Maxima for a scene as a model, in which parameters stay open although the scene gives them values.
 
     Raises

@@ -11,9 +11,10 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
-from ..confined import Limits
 from ..documents import Document, ask, read
 from ..failures import Failure, HolonomError
+from ..sandbox import Limits
+from ..source import Source
 from .motion_program import Program, count_operations, names_in, program_of
 from .request import Request
 from .table import Table, read_tables
@@ -103,10 +104,14 @@ class MotionProblem:
     law_end: str | None = None
     written_out: tuple[str, ...] = ()  # special functions of the time, which programs hold as sums of polynomials
     controls: Program | None = None  # the controls, by name; None where the scene does not observe them
+    # ``servo_matrix[j,i]``: what the i-th control that servo-constraints find adds to the second rate of condition j
+    servo_matrix: Program | None = None
     # how many of the constraints, the last ones, controls in forces keep, so that their multipliers are zero
     servo: int = 0
     # of each output that servo-constraints prescribe: which of its rates the controls are in
     relative_degrees: tuple[int, ...] = ()
+    # the initial value that differs most from the scene's guess, and by how much; None without a guess
+    moved: tuple[str, str] | None = None
     # expressions whose first zero crossing ends the motion, as Maxima prints them; empty where the time span alone does
     until: tuple[str, ...] = ()
     events: Program | None = None  # ``event[i]``, their values; they may need the multipliers. None without `until`.
@@ -195,7 +200,11 @@ def require_expandable(problem: MotionProblem) -> None:
 
 
 def motion_problem(
-    file: Path, request: Request, limits: Limits, digits: int = DOUBLE_DIGITS, open_parameters: Sequence[str] = ()
+    file: Source | Path,
+    request: Request,
+    limits: Limits,
+    digits: int = DOUBLE_DIGITS,
+    open_parameters: Sequence[str] = (),
 ) -> MotionProblem:
     """Ask Maxima for the motion of a scene.
 
@@ -215,7 +224,11 @@ def motion_problem(
 
 
 def problem_document(
-    file: Path, request: Request, limits: Limits, digits: int = DOUBLE_DIGITS, open_parameters: Sequence[str] = ()
+    file: Source | Path,
+    request: Request,
+    limits: Limits,
+    digits: int = DOUBLE_DIGITS,
+    open_parameters: Sequence[str] = (),
 ) -> str:
     """The document of a scene's motion, as Maxima writes it, for `read_problem`; arguments as for `motion_problem`."""
     asked = (request.scene, request.solve, digits, tuple(open_parameters))
@@ -243,6 +256,7 @@ def read_problem(text: str) -> MotionProblem:
         multipliers=tuple(document["multipliers"]),
         start=document["start"] or {"t": span[0] if span else "0"},
         correction=(correction := document["correction"]) and (correction["name"], correction["size"]),
+        moved=(moved := document.get("moved")) and (moved["name"], moved["size"]),
         obstacle=document["obstacle"],
         motion=_optional(document["motion"]),
         projection=_optional(document["projection"]),
@@ -252,6 +266,7 @@ def read_problem(text: str) -> MotionProblem:
         law_end=document.get("law_end"),
         written_out=tuple(document.get("written_out", ())),
         controls=_optional(document.get("controls")),
+        servo_matrix=_optional(document.get("servo_matrix")),
         servo=document.get("servo", 0),
         relative_degrees=tuple(document.get("relative_degrees", ())),
         until=tuple(document.get("until", ())),

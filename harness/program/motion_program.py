@@ -230,7 +230,7 @@ def _within_double(number: Fraction) -> Fraction:
     try:
         float(number)
     except OverflowError:
-        raise _refusal("a number in it is larger than a double can be") from None
+        raise HolonomError(Failure.NUMBER_TOO_LARGE) from None
     return number
 
 

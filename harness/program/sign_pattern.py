@@ -33,9 +33,7 @@ def problem_in(problem: MotionProblem, pattern: Pattern) -> MotionProblem:
         return _with_programs(problem, lambda program: program_in(problem, program, pattern))
 
     analytic = problem.once(frozenset(pattern.items()), problem.matrices, build)
-    return replace(
-        analytic, start=problem.start, values=problem.values, correction=problem.correction, signs=(), switching=None
-    )
+    return replace(_begun(analytic, problem), signs=(), switching=None)
 
 
 def program_in(problem: MotionProblem, program: Program, pattern: Pattern) -> Program:
@@ -97,7 +95,13 @@ def at_start(problem: MotionProblem) -> MotionProblem:
         return replace(begun, switching=problem.switching and with_numbers(problem.switching, numbers), tables=())
 
     begun = problem.once("at start", problem.matrices, build)
-    return replace(begun, start=problem.start, values=problem.values, correction=problem.correction)
+    return _begun(begun, problem)
+
+
+def _begun(motion: MotionProblem, problem: MotionProblem) -> MotionProblem:
+    """A motion that starts as another one does."""
+    kept = ("start", "values", "correction", "moved")
+    return replace(motion, **{name: getattr(problem, name) for name in kept})
 
 
 def sharing_programs(problem: MotionProblem, known: dict[Hashable, MotionProblem]) -> MotionProblem:
@@ -212,6 +216,7 @@ def _with_programs(problem: MotionProblem, changed: Callable[[Program], Program]
         drawing=problem.drawing and replace(problem.drawing, program=changed(problem.drawing.program)),
         events=problem.events and changed(problem.events),
         controls=problem.controls and changed(problem.controls),
+        servo_matrix=problem.servo_matrix and changed(problem.servo_matrix),
     )
 
 

@@ -1,7 +1,8 @@
-"""Entries of holonomic_system and holonomic_scene, and what writes them for bodies, as `entries.toml` explains them."""
+"""Functions that a user of Maxima calls, and the entries of two of them, as `entries.toml` explains them."""
 
 import re
 import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -57,29 +58,47 @@ class FunctionText:
 
 @dataclass(frozen=True)
 class PartText:
-    """What there is to know about a function that writes entries for a body, a joint or a load."""
+    """Function called by itself: a step of the derivation, or a writer of entries for a body, a joint or a load."""
 
     name: str
     call: str
     text: str
     example: str
-    context: tuple[str, ...]  # the bodies that the example uses, as statements
+    context: tuple[str, ...]  # statements that the example needs before it
     refused: tuple[Refusal, ...]
+    gives: str = ""  # what the example returns, an expression of Maxima
 
 
 @cache
 def part_texts() -> tuple[PartText, ...]:
-    """The functions that write entries for bodies, joints and loads."""
+    """Return the functions that write entries for bodies, joints and loads."""
+    return _parts("part")
+
+
+@cache
+def step_texts() -> tuple[PartText, ...]:
+    """Return the steps of the derivation, in the paper's order."""
+    return _parts("step")
+
+
+def _parts(kind: str) -> tuple[PartText, ...]:
     described = _described()
-    bodies = {name: f"{name} : {body}$" for name, body in described["part_context"].items()}
+    context = described[f"{kind}_context"]
     return tuple(
         PartText(
-            context=tuple(line for name, line in bodies.items() if re.search(rf"\b{name}\b", part["example"])),
+            context=tuple(f"{name} : {context[name]}$" for name in _names_used(part["example"], context)),
             refused=tuple(Refusal(**refusal) for refusal in part.pop("refused")),
             **part,
         )
-        for part in described["part"]
+        for part in described[kind]
     )
+
+
+def _names_used(text: str, context: Mapping[str, str]) -> list[str]:
+    """Return the names of the context that a text uses, those that their values use among them, in their order."""
+    used = {name for name in context if re.search(rf"(?<!')\b{name}\b(?! =)", text)}
+    below = {each for name in used for each in _names_used(context[name], context)}
+    return [name for name in context if name in used | below]
 
 
 @cache

@@ -7,8 +7,10 @@ import textwrap
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
-from .entries import EntryText, FunctionText, PartText, Refusal, function_texts, part_texts
+from ..files import shared
+from .entries import EntryText, FunctionText, PartText, Refusal, function_texts, part_texts, step_texts
 
+BY_HAND = shared("examples") / "paper" / "by_hand.mac"
 INFO = "holonom.info"
 DEFINITIONS = "Definitions for holonom"
 WIDTH = 79
@@ -51,14 +53,19 @@ def info_with_index() -> tuple[str, str]:
 
 
 def _topics() -> Iterator[tuple[str, str]]:
-    """Names of topics and their texts. Where both functions have an entry, Maxima shows title <1> and title <2>."""
-    functions = function_texts()
-    shared = Counter(entry.name for function in functions for entry in function.entries)
-    for number, function in enumerate(functions, 1):
+    """Yield names of topics and their texts; where several share a name, Maxima shows title <1> and title <2>."""
+    topics = [*_named_topics()]
+    shared, met = Counter(name for name, _ in topics), Counter()
+    for name, text in topics:
+        met[name] += 1
+        yield f"{name} <{met[name]}>" if shared[name] > 1 else name, text
+
+
+def _named_topics() -> Iterator[tuple[str, str]]:
+    for function in function_texts():
         yield function.name, _function(function)
-        for entry in function.entries:
-            yield f"{entry.name} <{number}>" if shared[entry.name] > 1 else entry.name, _entry(entry)
-    yield from ((part.name, _part(part)) for part in part_texts())
+        yield from ((entry.name, _entry(entry)) for entry in function.entries)
+    yield from ((part.name, _part(part)) for part in (*part_texts(), *step_texts()))
 
 
 def _function(function: FunctionText) -> str:
@@ -85,8 +92,9 @@ def _entry(entry: EntryText) -> str:
 
 def _part(part: PartText) -> str:
     example = "\n".join([*part.context, f"{part.example};"])
+    gives = f"\n{_filled('which gives')}\n{_shown(part.gives)}" if part.gives else ""
     return (
-        f" -- Function: {part.call}\n{_filled(part.text)}\n{_filled('For instance:')}\n{_shown(example)}"
+        f" -- Function: {part.call}\n{_filled(part.text)}\n{_filled('For instance:')}\n{_shown(example)}{gives}"
         f"{_refused(part.refused)}"
     )
 
@@ -113,23 +121,21 @@ def _lisp(text: str) -> str:
 
 
 def examples() -> str:
-    """What ``example(topic)`` runs, in the form of Maxima's manual.demo."""
+    """Return what ``example(topic)`` runs, in the form of Maxima's manual.demo."""
     system, scene = map(assignment, function_texts())
+    steps = "".join("\n".join([f"\n&& {step.name}\n", *step.context, f"{step.example};\n"]) for step in step_texts())
     return (
         "/* Run by example(topic). */\n\n"
         f"&& holonomic_system\n\n{system}\nprint_derivation({SYSTEM})$\n\n"
         f"&& holonomic_scene\n\n{system}\n{scene}\nprint_derivation({SYSTEM}, {SCENE})$\n"
+        f"{steps}"
     )
 
 
 def demonstration() -> str:
-    """What ``demo(holonom)`` runs."""
-    system, scene = map(assignment, function_texts())
-    return (
-        f"/* A system: what it is made of. */\n{system}\n"
-        f"/* Its equations, under the numbers of the paper. */\nprint_derivation({SYSTEM})$\n"
-        f"/* The system put to work. */\n{scene}\n"
-        f"/* The initial motion. */\nprint_derivation({SYSTEM}, {SCENE})$\n"
+    """Return what ``demo(holonom)`` runs: the paper's example by hand, the library being loaded."""
+    return "".join(
+        line for line in BY_HAND.read_text(encoding="utf-8").splitlines(True) if not line.startswith("load(")
     )
 
 

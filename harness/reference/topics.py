@@ -12,11 +12,12 @@ from typing import Any
 import click
 
 from ..documents import SCHEMAS
-from .entries import EntryText, PartText, Refusal, function_texts, part_texts
+from .entries import EntryText, PartText, Refusal, function_texts, part_texts, step_texts
 
-DESCRIPTION, BODIES, COMMANDS, DOCUMENTS, PYTHON = (
+DESCRIPTION, BODIES, STEPS, COMMANDS, DOCUMENTS, PYTHON = (
     "Describing a system",
     "Bodies and joints",
+    "The steps, called by hand",
     "The command line",
     "Documents",
     "Python",
@@ -59,7 +60,14 @@ class Topic:
 
 def topics() -> list[Topic]:
     """All pages, group by group."""
-    return [*entry_topics(), *part_topics(), *command_topics(), *document_topics(), *python_topics()]
+    return [
+        *entry_topics(),
+        *part_topics(),
+        *step_topics(),
+        *command_topics(),
+        *document_topics(),
+        *python_topics(),
+    ]
 
 
 # ---- entries ----------------------------------------------------------------------------------------------------
@@ -98,17 +106,23 @@ def _refusals(refused: Sequence[Refusal]) -> Table:
 
 
 def part_topics() -> Iterator[Topic]:
-    """A page for each function that writes entries for a body, a joint or a load."""
-    yield from (_part_topic(part) for part in part_texts())
+    """Yield a page for each function that writes entries for a body, a joint or a load."""
+    yield from (_part_topic(BODIES, "part", part) for part in part_texts())
 
 
-def _part_topic(part: PartText) -> Topic:
-    parts = (
+def step_topics() -> Iterator[Topic]:
+    """Yield a page for each step of the derivation."""
+    yield from (_part_topic(STEPS, "step", step) for step in step_texts())
+
+
+def _part_topic(group: str, kind: str, part: PartText) -> Topic:
+    parts: list[Table | Code] = [
         Code("How it is called", part.call),
         Code("For instance", "\n".join([*part.context, f"{part.example};"])),
-        _refusals(part.refused),
-    )
-    return Topic(BODIES, f"part-{part.name}", part.name, part.text, parts)
+    ]
+    if part.gives:
+        parts.append(Code("which gives", part.gives))
+    return Topic(group, f"{kind}-{part.name}", part.name, part.text, (*parts, _refusals(part.refused)))
 
 
 # ---- commands ---------------------------------------------------------------------------------------------------

@@ -17,20 +17,23 @@ from typing import Any
 import mpmath
 import numpy as np
 
-from ..confined import Limits
 from ..failures import Failure, HolonomError
 from ..program.expense import order_for, require_means
 from ..program.heyoka_function import dynamics, heyoka_expressions, import_heyoka, zero_multipliers
 from ..program.motion_problem import MotionProblem, motion_problem, require_expandable
+from ..program.motion_program import Program
 from ..program.precision import GUARD_DIGITS, Precision, read_precision
 from ..program.request import Request
+from ..program.sign_pattern import with_numbers
+from ..sandbox import Limits
+from ..source import Source
 from .power_series import Continuation, MotionSeries, NumberTexts, SeriesRequest
 
 MOST_STEPS = 10**6  # of a continuation
 ONCE, OFTEN = 0, 3  # LLVM's levels of optimisation: compiled in a tenth of the time, and run in half
 
 
-def expand_by_heyoka(file: Path, request: SeriesRequest, limits: Limits) -> MotionSeries:
+def expand_by_heyoka(file: Source | Path, request: SeriesRequest, limits: Limits) -> MotionSeries:
     """Expand a scene's motion with heyoka, and continue it where that is asked for.
 
     Raises as `motion_problem`, `expand` and `continue_motion`.
@@ -72,7 +75,14 @@ def expand(problem: MotionProblem, order: int, precision: Precision) -> MotionSe
         coordinates={name: _texts(row[: order + 1], precision) for name, row in coordinates},
         multipliers={name: row for name, row in reactions.items() if not name.startswith("Lambda")},
         constraint_forces={name: row for name, row in reactions.items() if name.startswith("Lambda")},
+        program=_of_state(problem),
     )
+
+
+def _of_state(problem: MotionProblem) -> Program:
+    """The motion program of the time and the state alone."""
+    unused = {name: Fraction(0) for name in problem.multipliers}
+    return with_numbers(with_numbers(problem.motion, problem.values), unused)
 
 
 def continue_motion(problem: MotionProblem, until: Fraction, precision: Precision) -> Continuation:

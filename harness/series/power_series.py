@@ -14,12 +14,14 @@ from typing import Any
 
 import mpmath
 
-from ..confined import Limits
 from ..documents import Document, Publication, ask, published, read
 from ..failures import Failure, HolonomError
 from ..mathjson import number, numbers
+from ..program.motion_program import Program, program_of
+from ..sandbox import Limits
 from ..shown import Show, Shown
-from .radius import Radius, estimate_radius, truncation_error
+from ..source import Source
+from .radius import POLYNOMIAL, UNPROVED, Radius, described, estimate_radius, truncation_error
 
 EXACT = "exact"
 AUTOMATIC = "automatic"
@@ -78,6 +80,8 @@ class MotionSeries(Shown):
     constraint_forces: Mapping[str, NumberTexts]
     continuation: Continuation | None = None
     switch: str | None = None
+    polynomial: bool = False  # whether the equations of motion are satisfied identically by the series as they end here
+    program: Program | None = None  # of t, coordinates and velocities; None where it is not known
 
     @property
     def digits(self) -> int:
@@ -88,8 +92,14 @@ class MotionSeries(Shown):
     @cached_property
     def radius(self) -> Radius:
         """Radius of convergence about t0."""
+        from .singularities import decided
+
+        if self.polynomial:
+            return replace(POLYNOMIAL, coefficients=self.order + 1)
         with mpmath.workdps(self.digits):
-            return estimate_radius([numbers(series) for _, series in self.all_series()])
+            found = estimate_radius([numbers(series) for _, series in self.all_series()])
+            found = replace(found, remark=UNPROVED.remark) if found == POLYNOMIAL else found
+            return decided(found, [numbers(row) for row in self.coordinates.values()], self.program, number(self.t0))
 
     def up_to(self, order: int) -> "MotionSeries":
         """The same series without the powers above a lower order."""
@@ -117,7 +127,7 @@ class Values:
     truncation_error: float
 
 
-def compute_series(file: Path, request: SeriesRequest, limits: Limits) -> MotionSeries:
+def compute_series(file: Source | Path, request: SeriesRequest, limits: Limits) -> MotionSeries:
     """Expand a scene's motion, in Maxima or, where a precision is asked for, with heyoka.
 
     Raises
@@ -155,6 +165,8 @@ def read_series(text: str) -> MotionSeries:
         constraint_forces=_series(document["constraint_forces"]),
         continuation=None if continuation is None else _continuation(continuation),
         switch=document.get("switch"),
+        polynomial=document.get("polynomial", False),
+        program=program_of(document["program"]) if document.get("program") else None,
     )
 
 
@@ -203,6 +215,9 @@ def series_document(motion: MotionSeries, values: Values | None = None) -> dict[
             "uncertainty": radius.uncertainty,
             "singularities": [[t0 + z.real, z.imag] for z in radius.singularities],
             "remark": radius.remark,
+            "located": radius.located,
+            "coefficients": radius.coefficients,
+            "unseen": radius.unseen,
         },
     }
     if values is not None:
@@ -238,7 +253,7 @@ def _require_inside(motion: MotionSeries, time: Fraction, distance: float) -> No
     raise HolonomError(
         Failure.BEYOND_RADIUS,
         detail=f"the series about t = {motion.t0} does not converge at t = {float(time):g}: its radius of convergence "
-        f"is {radius.estimate:.6g}, known to {radius.uncertainty:.1g}; {reason}",
+        f"is {radius.estimate:.6g}, {described(radius)}; {reason}",
     )
 
 

@@ -19,15 +19,16 @@ Mercer & Roberts, SIAM J. Appl. Math. 50 (1990) 1547; Domb & Sykes, Proc. R. Soc
 Guttmann & Joyce, J. Phys. A 5 (1972) L81, for recurrences with corrections in 1/n.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import reduce
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import mpmath
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from ..language import translatable
 
@@ -50,7 +51,11 @@ COARSE = 0.1  # relative uncertainty that a fit may have
 SMALLEST = 1e-290  # with its reciprocal: sizes between which double precision has all its digits
 DEPENDENT = 1e-13  # of the largest pivot: columns that rounding alone tells apart
 
-Floats = NDArray[np.float64]
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -61,9 +66,17 @@ class Radius:
     uncertainty: float | None
     singularities: tuple[complex, ...]  # the nearest ones, as t - t0
     remark: str  # what was found, in words
+    located: bool = False  # whether the equations of motion are singular there; the coefficients alone tell otherwise
+    coefficients: int = field(default=0, compare=False)  # how many were looked at
+    # strength, beside the singularity found, of one at nine tenths of its distance that would not show; None if nothing
+    # was fitted
+    unseen: float | None = field(default=None, compare=False)
 
+
+NEARER = 0.9  # of the estimate: where a weak singularity may hide
 
 POLYNOMIAL = Radius(None, None, (), translatable("infinite: the motion is a polynomial of the time"))
+UNPROVED = Radius(None, None, (), translatable("unknown: no higher powers occur, and that none follow is not proved"))
 ENTIRE = Radius(None, None, (), translatable("infinite: the motion is entire, as far as its coefficients show"))
 UNDECIDED = Radius(None, None, (), translatable("unknown: these orders do not tell how far the series holds"))
 TOO_FEW = Radius(
@@ -76,7 +89,26 @@ def estimate_radius(series: Iterable[Sequence[mpmath.mpf]]) -> Radius:
 
     The most certain estimate among those of the series that end first.
     """
-    return _first_end([_radius_of(coefficients) for coefficients in series])
+    rows = list(series)
+    return _of_so_many(_first_end([_radius_of(coefficients) for coefficients in rows]), len(rows[0]) if rows else 0)
+
+
+def described(radius: Radius) -> str:
+    """What a radius is known from."""
+    if radius.located:
+        return "where the equations of motion are singular"
+    return (
+        f"estimated from {radius.coefficients} coefficients, whose fits differ by {radius.uncertainty:.1g}; "
+        f"a singularity at {NEARER} of it that is weaker than {radius.unseen:.1g} of the one found is not seen"
+    )
+
+
+def _of_so_many(radius: Radius, coefficients: int) -> Radius:
+    """An estimate with what so many coefficients do not show."""
+    if radius.estimate is None:
+        return replace(radius, coefficients=coefficients)
+    unseen = radius.uncertainty / radius.estimate * NEARER**coefficients
+    return replace(radius, coefficients=coefficients, unseen=unseen)
 
 
 def estimate_radii(series: Floats) -> list[Radius]:
@@ -89,11 +121,13 @@ def estimate_radii(series: Floats) -> list[Radius]:
     series : ndarray, shape (series, orders, motions)
         Finite coefficients.
     """
+    import numpy as np
+
     each, orders, motions = series.shape
     flat = np.ascontiguousarray(np.moveaxis(series, 2, 0).reshape(motions * each, orders))
     with np.errstate(all="ignore"):
         found = _radii_of_floats(flat)
-    return [_first_end(found[first : first + each]) for first in range(0, motions * each, each)]
+    return [_of_so_many(_first_end(found[first : first + each]), orders) for first in range(0, motions * each, each)]
 
 
 def _first_end(found: Sequence[Radius]) -> Radius:
@@ -123,6 +157,8 @@ def truncation_error(coefficients: Sequence[mpmath.mpf], radius: Radius, time: f
 
 
 def _radius_of(coefficients: Sequence[mpmath.mpf]) -> Radius:
+    import numpy as np
+
     with np.errstate(all="ignore"):
         floats = np.array([float(c) for c in coefficients])
         if all(c == 0 or SMALLEST < abs(x) < 1 / SMALLEST for c, x in zip(coefficients, floats, strict=True)):
@@ -140,6 +176,8 @@ def _radius_of(coefficients: Sequence[mpmath.mpf]) -> Radius:
 
 def _radii_of_floats(series: Floats) -> list[Radius]:
     """Radii of series in double precision, shape (m, orders)."""
+    import numpy as np
+
     orders = series.shape[1]
     if orders < FEWEST:
         return [TOO_FEW] * len(series)
@@ -161,6 +199,8 @@ def _radii_of_balanced(scale: Floats, balanced: Floats) -> list[Radius]:
     ----------
     balanced : ndarray, shape (m, orders)
     """
+    import numpy as np
+
     found = np.empty(len(balanced), dtype=object)
     first, stride = _powers(balanced)
     for powers in sorted(set(zip(first.tolist(), stride.tolist(), strict=True))):
@@ -192,6 +232,8 @@ def _radii_of_strided(scale: Floats, balanced: Floats, stride: int) -> list[Radi
 
 def _powers(balanced: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """First power and distance of the powers that occur: (0, 1), or (0, 2) for even and (1, 2) for odd ones."""
+    import numpy as np
+
     later = np.abs(balanced[:, 2:])
     even, odd = later[:, ::2].max(axis=1), later[:, 1::2].max(axis=1)
     only_even, only_odd = odd <= NEGLIGIBLE * even, even <= NEGLIGIBLE * odd
@@ -200,6 +242,8 @@ def _powers(balanced: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
 
 def _envelope(balanced: Floats) -> tuple[NDArray[np.int64], Floats]:
     """Later orders, shape (k,), and log|c_n| there of the largest of three neighbours each, shape (m, k)."""
+    import numpy as np
+
     n = np.arange((balanced.shape[1] - 1) // 3 + 2, balanced.shape[1])
     return n, np.log(np.max([np.abs(balanced[:, n - shift]) for shift in range(3)], axis=0))
 
@@ -213,6 +257,8 @@ def _slopes(
     n: NDArray[np.int64], logarithms: Floats, columns: Callable[[NDArray[np.int64]], list[ArrayLike]]
 ) -> Floats:
     """Coefficients of the first of the columns, fitted to logarithms together with the others and a constant."""
+    import numpy as np
+
     slopes = np.empty(len(logarithms))
     there = np.isfinite(logarithms)  # where not, three coefficients in a row are zero
     for kept in np.unique(there, axis=0):
@@ -224,6 +270,8 @@ def _slopes(
 
 def _root_tests(n: NDArray[np.int64], logarithms: Floats, stride: int, scale: Floats) -> list[Radius]:
     """log|c_n| = -n log R + b, and with a term a log n more: what that changes is uncertain."""
+    import numpy as np
+
     slope = _slopes(n, logarithms, lambda n: [n])
     with_power = _slopes(n, logarithms, lambda n: [n, np.log(n)])
     error = np.maximum(ROOT_TEST_ERROR / n[-1], SAFETY * np.abs(slope - with_power)) / stride
@@ -236,6 +284,8 @@ def _root_tests(n: NDArray[np.int64], logarithms: Floats, stride: int, scale: Fl
 
 def _fitted_radii(balanced: Floats, stride: int, scale: Floats) -> list[Radius | None]:
     """The estimates of the recurrences whose corrections agree best with fewer and with other orders."""
+    import numpy as np
+
     choices = [choice for lags in LAGS for choice in _compared_fits(balanced, lags)]
     if not choices:
         return [None] * len(balanced)
@@ -261,6 +311,8 @@ def _compared_fits(balanced: Floats, lags: int) -> list[tuple[Floats, NDArray[np
     -------
     list of (ndarray, shape (m,), ndarray, shape (m, lags))
     """
+    import numpy as np
+
     last = balanced.shape[1] - 1
     orders = [np.arange(max(lags, int(last * later)), last + 1) for later in LATER]
     most = min(MOST_CORRECTIONS, int(min(map(len, orders)) / (EQUATIONS_PER_UNKNOWN * lags)) - 1)
@@ -284,6 +336,8 @@ def _recurrence_roots(balanced: Floats, lags: int, n: NDArray[np.int64], most: i
 
     The columns of fewer corrections are the first of those of more: one factorisation serves them all.
     """
+    import numpy as np
+
     columns = [balanced[:, n - lag] * (n[-1] / n) ** j for j in range(most + 1) for lag in range(1, lags + 1)]
     matrices, right = np.stack(columns, axis=2), -balanced[:, n]
     q, r = np.linalg.qr(matrices)
@@ -303,6 +357,8 @@ def _recurrence_roots(balanced: Floats, lags: int, n: NDArray[np.int64], most: i
 
 def _roots(recurrences: Floats) -> NDArray[np.complex128]:
     """Where 1 + p_1 z + p_2 z^2 + ... is zero, the nearest first, shape (m, lags): the reciprocals of eigenvalues."""
+    import numpy as np
+
     lags = recurrences.shape[1]
     companions = np.zeros((len(recurrences), lags, lags))
     companions[:, 0] = -np.where(np.isfinite(recurrences), recurrences, 0.0)
@@ -314,6 +370,8 @@ def _roots(recurrences: Floats) -> NDArray[np.complex128]:
 
 def _in_time(root: complex, stride: int, scale: float) -> list[complex]:
     """The singularities in the time that a root in its stride-th power stands for."""
+    import numpy as np
+
     if stride == 1:
         return [complex(root) * scale]
     z = complex(np.sqrt(complex(root))) * scale

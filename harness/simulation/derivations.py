@@ -7,19 +7,18 @@ derived with the numbers in it.
 
 from collections.abc import Mapping
 from fractions import Fraction
-from pathlib import Path
 
-from ..confined import Limits
 from ..failures import Failure, HolonomError
 from ..program.motion_problem import DOUBLE_DIGITS, MotionProblem, motion_problem
 from ..program.request import Request
+from ..source import Source
 
 
 class Derivations:
     """What Maxima has derived from a scene file."""
 
-    def __init__(self, file: Path, limits: Limits) -> None:
-        self._file, self._limits = file, limits
+    def __init__(self, source: Source) -> None:
+        self._source = source
         self._opened: dict[tuple[object, ...], list[tuple[Mapping[str, str], MotionProblem]]] = {}
         self._closed: dict[tuple[object, ...], MotionProblem] = {}
 
@@ -35,7 +34,7 @@ class Derivations:
     def _with_numbers(self, request: Request, digits: int) -> MotionProblem:
         key = (request.scene, request.solve, digits, *sorted(request.settings.items()))
         if key not in self._closed:
-            self._closed[key] = motion_problem(self._file, request, self._limits, digits)
+            self._closed[key] = motion_problem(self._source, request, self._source.limits, digits)
         return self._closed[key]
 
     def _at_settings(self, request: Request, names: tuple[str, ...]) -> MotionProblem | None:
@@ -44,7 +43,7 @@ class Derivations:
         for settings, problem in known:
             if all(settings[name] == request.settings[name] for name in names if name not in problem.parameters):
                 return _moved(problem, request.settings)
-        problem = motion_problem(self._file, request, self._limits, DOUBLE_DIGITS, names)
+        problem = motion_problem(self._source, request, self._source.limits, DOUBLE_DIGITS, names)
         known.append((request.settings, problem))
         return _moved(problem, request.settings)
 

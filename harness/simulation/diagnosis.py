@@ -18,6 +18,8 @@ from .matrices import Matrices, MotionMatrices, Vector
 
 ILL_CONDITIONED, DEPENDENT = 1e8, 1e20  # condition of G: half of a double's digits lost, and none left
 UNEQUAL_MASSES = 1e8  # ratio of the entries on A's diagonal: half of a double's digits
+SINGULAR_MASS = 1e-8  # least eigenvalue of a mass matrix with a diagonal of ones, of one that is singular
+ROUNDED_MASS = 1e-13  # of the largest mass: rounding
 UNSQUARED = 1e150  # numbers whose squares leave the range of a double, or soon will
 MANY_STEPS = 10_000
 FREE = 1e-13  # constraint forces, in terms of the others
@@ -120,7 +122,10 @@ def stiffness(matrices: MotionMatrices, at: Instant) -> float:
     if not free.size:
         return 1.0
     moves = np.concatenate([free, np.zeros_like(free)])
-    squares = np.abs(np.linalg.eigvals(free.T @ here.mass @ _change_of_accelerations(matrices, at, moves)))
+    change = free.T @ here.mass @ _change_of_accelerations(matrices, at, moves)
+    if not np.isfinite(change).all():
+        return 1.0
+    squares = np.abs(np.linalg.eigvals(change))
     moving = squares[squares > AT_REST * squares.max()]
     return float(moving.max() / moving.min()) if moving.size else 1.0
 
@@ -183,7 +188,21 @@ def _change_of_accelerations(matrices: MotionMatrices, at: Instant, moves: Matri
 
 
 def _mass_ratio(at: Matrices) -> float:
+    """Ratio of the largest to the smallest mass; of a singular mass matrix, of those of directions left free.
+
+    Euler parameters near (1, 0, 0, 0) have a small entry on the diagonal, and no small mass.
+    """
     masses = at.mass.diagonal()[at.mass.diagonal() > 0]
+    if masses.size == len(at.mass):
+        scaled = at.mass / np.sqrt(masses[:, None] * masses)
+        if not np.isfinite(scaled).all() or np.linalg.eigvalsh(scaled)[0] > SINGULAR_MASS:
+            return float(masses.max() / masses.min())
+    if not at.finite:
+        return 1.0
+    left, values, _ = np.linalg.svd(at.jacobian.T)
+    free = left[:, rank_of(values) if values.size else 0 :]
+    masses = np.linalg.eigvalsh(free.T @ at.mass @ free)
+    masses = masses[masses > ROUNDED_MASS * masses.max(initial=0.0)]
     return float(masses.max() / masses.min()) if masses.size else 1.0
 
 

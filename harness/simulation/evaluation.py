@@ -167,7 +167,8 @@ def as_floats(numbers: Numbers) -> NDArray[np.float64]:
     """The same numbers in double precision."""
     if getattr(numbers, "dtype", None) == np.float64:
         return numbers.copy()
-    return np.array([float(number) for number in numbers])
+    array = np.asarray(numbers)
+    return np.array([float(number) for number in array.ravel()]).reshape(array.shape)
 
 
 def wake_compiler() -> None:

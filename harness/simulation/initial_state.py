@@ -20,12 +20,10 @@ from ..program.sign_pattern import at_start, problem_in
 from .diagnostics import scaled_residual
 from .evaluation import Numbers, lane_evaluation
 from .matrices import LaneMatrices
+from .nearest_root import ITERATIONS, ROUNDING, SETTLED, Linearized, NearestRoots
 
 LIMITED_DIGITS = 1e-9  # share of the largest datum by which data may be corrected, and of coordinates a residual
-ROUNDING = 8 * np.finfo(float).eps  # relative size of a correction that is none
-ITERATIONS = 60  # Newton's method halves the way to a double root
 SOON = 1e-9  # of the first instant, or of a unit: after it, for functions that vanish there
-SETTLED = 1e-12  # relative size of a last correction that rounding may have made
 
 
 class Starts(NamedTuple):
@@ -84,9 +82,11 @@ class InitialStates:
         with np.errstate(all="ignore"):
             for group in self._groups:
                 found &= self._corrected(group, states, values)
-                if len(group.solved):
+                if len(group.solved) and group.only:
                     lanes = np.arange(len(found))
-                    found &= self._solved(states, values, group, group.solved, group.open, group.only, lanes)
+                    found &= self._solved(states, values, group, group.solved, group.open, True, lanes)
+                elif len(group.solved):
+                    found &= self._solved_nearby(states, values, group)
             at = self._matrices(self._instant, states, values)
             for residual, moved in ((at.residual, states[: self._n]), (at.residual_rate, states[self._n :])):
                 found &= scaled_residual(residual, at.jacobian, moved) <= LIMITED_DIGITS
@@ -94,14 +94,23 @@ class InitialStates:
 
     def correction(self, values: Numbers, states: Numbers) -> tuple[str, str] | None:
         """The datum that was corrected most to make the state of one motion, and by how much; None if none was."""
-        origins = self._origins
+        name, size, now = self._largest_change(Origin.GIVEN, values, states)
+        return (name, f"{size:.2g}") if size > ROUNDING * max(1.0, abs(now)) else None
+
+    def moved(self, values: Numbers, states: Numbers) -> tuple[str, str] | None:
+        """The value that differs most from the guess in the state of one motion, and by how much; None without one."""
+        name, size, _ = self._largest_change(Origin.NEAR, values, states)
+        return (name, f"{size:.3g}") if name else None
+
+    def _largest_change(self, origin: Origin, values: Numbers, states: Numbers) -> tuple[str, float, float]:
+        """Of the values of an origin: the name of the one that changed most, by how much, and what it is now."""
         data, state = self._evaluate(values)[:, 0], states[:, 0]
-        changes = {
-            name: abs(float(now - before))
-            for name, before, now in zip(origins, data, state, strict=True)
-            if origins[name] is Origin.GIVEN and abs(now - before) > ROUNDING * max(1.0, abs(now))
-        }
-        return max(((name, f"{size:.2g}") for name, size in changes.items()), key=lambda c: float(c[1]), default=None)
+        changes = (
+            (name, abs(float(now - before)), float(now))
+            for name, before, now in zip(self._origins, data, state, strict=True)
+            if self._origins[name] is origin
+        )
+        return max(changes, key=lambda change: change[1], default=("", 0.0, 0.0))
 
     def _corrected(self, group: "_Group", states: Numbers, values: Numbers) -> NDArray[np.bool_]:
         """Correct the data, in place, where they are given in too few digits; whether no more was needed."""
@@ -114,6 +123,23 @@ class InitialStates:
         self._solved(states, values, group, group.given, group.bound, False, np.flatnonzero(missed))
         size = np.max(np.abs(data), axis=0)
         return np.max(np.abs(states[rows] - data), axis=0) <= LIMITED_DIGITS * np.where(size > 0, size, 1.0)
+
+    def _solved_nearby(self, states: Numbers, values: Numbers, group: "_Group") -> NDArray[np.bool_]:
+        """Put the numbers nearest to those there, in place, that the constraints allow; whether there are any."""
+        unknown, places = group.solved, group.solved + group.half * self._n
+
+        def linearize(points: Numbers, lanes: NDArray[np.int64]) -> Linearized:
+            trial = states[:, lanes].copy()
+            trial[places] = points
+            at = self._matrices(self._instant, trial, values[:, lanes])
+            residual = (at.residual_rate if group.half else at.residual)[group.open]
+            return Linearized(residual, at.jacobian[np.ix_(group.open, unknown)], at.mass[np.ix_(unknown, unknown)])
+
+        def correct(at: Linearized) -> Numbers:
+            return _step(at.mass, at.jacobian, at.residual, self._redundant)
+
+        states[places], found = NearestRoots(linearize, correct)(states[places])
+        return found
 
     def _solved(
         self,
@@ -183,6 +209,10 @@ class InitialStatesBySign:
         """As `InitialStates.correction`."""
         return self._in_pattern(self._signs(values)[:, 0]).correction(values, states)
 
+    def moved(self, values: Numbers, states: Numbers) -> tuple[str, str] | None:
+        """As `InitialStates.moved`."""
+        return self._in_pattern(self._signs(values)[:, 0]).moved(values, states)
+
     def _in_pattern(self, pattern: Iterable[float]) -> InitialStates:
         signs = tuple(map(int, pattern))
         if signs not in self._of:
@@ -249,8 +279,9 @@ def at_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionP
     starts = initial_states(numbers)
     if not starts.found[0]:
         raise HolonomError(Failure.START_UNFOLLOWED, problem.scene, "no state satisfies the constraints")
-    correction = initial_states.correction(numbers, starts.states)
-    return replace(started(problem, complete, starts.states[:, 0]), correction=correction)
+    found = started(problem, complete, starts.states[:, 0])
+    correction, moved = (told(numbers, starts.states) for told in (initial_states.correction, initial_states.moved))
+    return replace(found, correction=correction, moved=moved or problem.moved)
 
 
 def started(problem: MotionProblem, values: Mapping[str, Fraction], state: Numbers) -> MotionProblem:

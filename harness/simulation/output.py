@@ -3,7 +3,10 @@
 Numbers that no double can hold are written as decimal text.
 """
 
+import csv
+import io
 import shutil
+import zipfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from pathlib import Path
@@ -13,17 +16,19 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from ..confined import MIB
 from ..documents import Publication, published
 from ..explanations import engine_text, remarks
 from ..failures import Failure, HolonomError, missing_package
 from ..files import whole_file
+from ..hidden import visible_line
 from ..program.motion_problem import MotionProblem
+from ..sandbox import MIB
 from .result import Report, Sampled, Simulation
 
 BYTES_OF_NUMBER = 250  # while samples are collected and written as text: measured for 300000 of six numbers each
 Columns = Mapping[str, NDArray[np.float64] | NDArray[np.str_]]
 Write = Callable[[Columns], None]
+FORMULA = ("=", "+", "-", "@", "\t", "\r")  # with which a spreadsheet's formulas begin
 Format = Callable[[BinaryIO], AbstractContextManager[Write]]
 
 
@@ -142,13 +147,20 @@ def _csv(file: BinaryIO) -> Iterator[Write]:
 
     def write(columns: Columns) -> None:
         nonlocal named
-        texts = [[str(value) for value in column.tolist()] for column in columns.values()]
-        heading = [] if named else [",".join(columns)]
+        text = io.StringIO()
+        lines = csv.writer(text, lineterminator="\n")
+        if not named:
+            lines.writerow(map(_heading, columns))
         named = True
-        lines = [*heading, *map(",".join, zip(*texts, strict=True))]
-        file.write(("\n".join(lines) + "\n").encode())
+        lines.writerows(zip(*(column.tolist() for column in columns.values()), strict=True))
+        file.write(text.getvalue().encode())
 
     yield write
+
+
+def _heading(name: str) -> str:
+    """A name as a heading that no spreadsheet takes for a formula."""
+    return visible_line(f"'{name}" if name.startswith(FORMULA) else name)
 
 
 @contextmanager
@@ -156,7 +168,10 @@ def _npz(file: BinaryIO) -> Iterator[Write]:
     """All samples of a quantity are one array: they are kept until the end."""
     kept: list[Columns] = []
     yield kept.append
-    np.savez_compressed(file, **{name: np.concatenate([each[name] for each in kept]) for name in kept[0]})
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:  # as NumPy does, of names that it reserves, too
+        for name in kept[0]:
+            with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
+                np.lib.format.write_array(member, np.concatenate([each[name] for each in kept]), allow_pickle=False)
 
 
 @contextmanager
@@ -211,11 +226,19 @@ def report_document(report: Report) -> dict[str, Any]:
     """
     said = {"engine": engine_text(report.legs), "remarks": tuple(remarks(report.legs, report.cases))}
     lists = {name: tuple(each._asdict() for each in getattr(report, name)) for name in ("legs", "switchings", "doubts")}
-    correction = report.correction and dict(zip(("name", "size"), report.correction, strict=True))
+    correction, moved = (
+        change and dict(zip(("name", "size"), change, strict=True)) for change in (report.correction, report.moved)
+    )
     ending = None if report.ending is None else report.ending._asdict()
     attributes = vars(report) | lists | said
     choice = None if report.choice is None else vars(report.choice)
-    attributes |= {"trusted": report.trusted, "correction": correction, "ending": ending, "choice": choice}
+    attributes |= {
+        "trusted": report.trusted,
+        "correction": correction,
+        "moved": moved,
+        "ending": ending,
+        "choice": choice,
+    }
     return published(Publication.SIMULATION, {k: _published(value, report.digits) for k, value in attributes.items()})
 
 

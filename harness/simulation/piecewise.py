@@ -42,7 +42,8 @@ from ..program.sign_pattern import (
 from .clock import Tick, ticks
 from .constraints.program_projection import ProgramProjection
 from .constraints.projection import project
-from .constraints.singularity import require_gradient, shortly_before, vanishing_instants
+from .constraints.singularity import no_controls, require_gradient, shortly_before, vanishing_instants
+from .control_matrix import ControlMatrix, controls_may_fail
 from .diagnosis import Instant, dependence
 from .diagnostics import POINTS, EnergyBalance, residuals
 from .engines.choice import Between, Choice
@@ -152,6 +153,23 @@ class Part:
     def projection(self) -> ProgramProjection:
         """What projects states in the numbers of the run."""
         return ProgramProjection(self.problem, self._precision, self.matrices)
+
+    def pieces(self, until: Any) -> Iterator[Piece]:
+        """Follow the motion as its engine does, to where servo-constraints leave their controls without values."""
+        for piece in self.engine.pieces(until):
+            lost = None if self._control_matrix is None else self._control_matrix.lost(piece)
+            if lost is None:
+                yield piece
+                continue
+            if lost > piece.start:
+                yield Piece(piece.start, lost, piece.states)
+            raise no_controls(float(lost))
+
+    @cached_property
+    def _control_matrix(self) -> ControlMatrix | None:
+        if not controls_may_fail(self.problem):
+            return None
+        return ControlMatrix(self.problem, self._precision, self._end - self._start)
 
     def require_way_on(self, at: Instant) -> None:
         """Refuse to go on where a constraint loses its gradient, or an expression of the time its smoothness."""
@@ -271,7 +289,7 @@ class PiecewiseMotion:
         HolonomError
             The motion cannot be followed so far.
         """
-        if self._problem.signs:
+        if self._problem.signs or controls_may_fail(self._problem):
             deque(self.pieces(until), maxlen=0)
             return
         while self.time != until:
@@ -358,9 +376,9 @@ class PiecewiseMotion:
     def _to_stop(self, stop: Any) -> Iterator[Piece]:
         part = self.part
         if not self._problem.signs:
-            yield from part.engine.pieces(stop)
+            yield from part.pieces(stop)
             return
-        for piece in part.engine.pieces(stop):
+        for piece in part.pieces(stop):
             crossing = part.surfaces.first_crossing(piece, self._left)
             if crossing is None:
                 yield piece

@@ -41,6 +41,8 @@ class Report:
         Energy gained beyond what the forces and the controls did as work, see `holonom.simulation.diagnostics`.
     condition : float
         Condition number of G = J A^-1 J^T at the end, each constraint scaled to unit length.
+    moved : (str, str) or None
+        The initial value that differs most from the scene's guess, and by how much; None without a guess.
     legs : tuple of Leg
         Which engine followed the motion from when to when, and why.
     code : str
@@ -88,6 +90,7 @@ class Report:
     choice: Choice | None = None
     controls: Mapping[str, Any] = field(default_factory=dict)
     relative_degrees: tuple[int, ...] = ()
+    moved: tuple[str, str] | None = None
 
     @property
     def trusted(self) -> bool:

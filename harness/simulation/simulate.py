@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from ..program.sign_pattern import with_values_in
 from ..supervisor import doing
 from .diagnosis import HardCase, Instant, hard_cases
 from .diagnostics import condition, residuals
-from .engines.engine import Piece, Solutions
+from .engines.engine import JUDGED_AFTER, Piece, Solutions, require_reach
 from .evaluation import Numbers, as_floats, one_blas_thread
 from .events import Ending, first_event
 from .matrices import Matrices
@@ -23,7 +24,7 @@ from .piecewise import PiecewiseMotion
 from .recording import Recording, Stretch
 from .request import FINAL_STATE_ALONE, EngineName, SimulationRequest, Stabilization
 from .result import Report, Sampled, Samples, Simulation, joined
-from .trust import doubts, energy_scale, may_hide
+from .trust import doubts, energy_scale, expected, may_hide
 
 Progress = Callable[[float], None]
 TakeSamples = Callable[[Sampled], None]
@@ -57,11 +58,23 @@ def follow(
         The request cannot be met: its precision, tolerance, engine or end; or the motion cannot be followed so far.
     """
     with one_blas_thread(), np.errstate(all="ignore"):  # numbers that leave their range are doubted in the report
+        _require_steps(problem, request)
         end, ending = end_of(problem, request)
         with doing("compiling the motion"):
             prepared = _Simulation(followable(problem, request), request, take, end, ending)
         with doing("following the motion"):
             return prepared.run(progress)
+
+
+def _require_steps(problem: MotionProblem, request: SimulationRequest) -> None:
+    """Refuse a longest step that is none, or so short that nobody waits for the end."""
+    step = request.max_step
+    if step is None:
+        return
+    if not 0 < step < inf:
+        raise HolonomError(Failure.NOT_A_STEP, detail=f"{step:g}")
+    span = float(last_instant(problem, request.until, read_precision("double"))) - float(problem.start["t"])
+    require_reach(JUDGED_AFTER, JUDGED_AFTER * step, span)
 
 
 def end_of(problem: MotionProblem, request: SimulationRequest) -> tuple[Any, Ending | None]:
@@ -241,6 +254,7 @@ class _Simulation:
             compile_seconds=self.compile_seconds + self.motion.compile_seconds,
             run_seconds=seconds,
             correction=self.problem.correction,
+            moved=self.problem.moved,
             cases=self._cases(state),
             switchings=tuple(self.motion.switchings),
             ending=self.ending,
@@ -260,10 +274,14 @@ class _Simulation:
         return {**kept, "energy": error / scale if 0 < scale < np.inf else error, **within}
 
     def _energy_missed(self, at: Matrices) -> tuple[float, float]:
-        """The largest energy error on the way, and the size of the energies that it is an error of."""
+        """The largest energy error on the way, and the size of the energies that it is an error of.
+
+        Velocities no larger than what steps of the tolerance, which is an absolute one too, may add up to make none.
+        """
         first, last = as_floats(self.first), as_floats(self.motion.state)
         scale = max(energy_scale(self.motion.matrices(float(self.start), first), first), energy_scale(at, last))
-        return self.exchange.error, max(scale, self.exchange.work, self.exchange.exchanged)
+        at_rest = float(np.max(at.mass.diagonal(), initial=0.0)) * expected(self.motion.tol, self.motion.steps) ** 2
+        return max(0.0, self.exchange.error - at_rest), max(scale, self.exchange.work, self.exchange.exchanged)
 
     def _cases(self, state: Numbers) -> tuple[HardCase, ...]:
         """Those that the robust engine was called for, then those that the ends tell; each once."""

@@ -34,6 +34,8 @@ MOST = 2**13  # parts of the same length that are looked at
 BLOCK = 2**13  # parts that are looked at together
 MUCH = 8  # times shorter than the longest part
 EPSILON = 1e-14  # relative rounding of a time, with a margin
+NEARLY_ALL = 0.99  # of the samples tell the rounding of an expression
+ROUNDED, BESIDE_ROUNDING = 32.0, 1e5  # times this rounding: an error that is none; the least size of an expression
 JUMP = 1e-3  # of the largest value: an error that is no rounding
 NOT_SMOOTH = "an expression of the time in the equations of motion is not smooth"
 BESIDE, NEARER = 1e-9, 1e-3  # of the lengths of two parts: how near to their boundary they are compared; and of that
@@ -113,7 +115,8 @@ class _Scan:
             self._ending = self._last, "an expression of the time in the equations of motion has no real, finite value"
             values = function(start + (self._last - start) * cells)
         self._grid = values
-        self._scale = np.max(np.abs(values), axis=1)
+        self._rounding = self._rounding_of(start + (self._last - start) * cells, values)
+        self._scale = np.maximum(np.max(np.abs(values), axis=1), BESIDE_ROUNDING * self._rounding)
         self._usual = np.partition(np.abs(values), SAMPLES // 2, axis=1)[:, SAMPLES // 2]
         self._bases, self._spans = self._cut()
 
@@ -128,6 +131,13 @@ class _Scan:
         ]
         end, reason = self._ending or (None, "")
         return TimeDependence(tuple(float(t) for t in stops if end is None or t < end), end and float(end), reason)
+
+    def _rounding_of(self, instants: Vector, values: np.ndarray) -> Vector:
+        """What rounding makes of each expression, shape (expressions,): its changes over the least steps of time."""
+        with np.errstate(all="ignore"):
+            changes = np.abs(self._function(np.nextafter(instants, np.inf)) - values)
+        changes[~np.isfinite(changes)] = 0.0
+        return np.quantile(changes, NEARLY_ALL, axis=1)
 
     def _cut(self) -> tuple[Vector, Vector]:
         """Beginnings and lengths of what is halved; between knots, what so many fresh samples are enough for."""
@@ -188,9 +198,10 @@ class _Scan:
             self._scale = np.fmax(self._scale, np.max(np.where(counts, largest, 0.0), axis=1))
             scale = np.fmax(largest, self._scale[:, None])
             rounding = EPSILON * max(abs(self._start), abs(self._last)) * np.ptp(values, axis=2)
-            allowed = RESOLVED * scale + rounding / lengths
+            noise = ROUNDED * self._rounding[:, None]
+            allowed = RESOLVED * scale + rounding / lengths + noise
             early, late = (np.ptp(half, axis=2) for half in (values[..., : DEGREE // 2], values[..., DEGREE // 2 :]))
-            hidden = (early < HIDDEN * late) & (late > FAINT * scale)
+            hidden = (early < HIDDEN * late) & (late > FAINT * scale + noise)
         error = np.where(np.isfinite(error), error, np.inf)
         return error, ((error > np.where(np.isfinite(allowed), allowed, 0.0)) | hidden).any(axis=0)
 

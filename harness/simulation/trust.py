@@ -34,10 +34,15 @@ class Doubt(NamedTuple):
 
 def doubts(missed: Mapping[str, float], tol: float, steps: int) -> Iterator[Doubt]:
     """What is out of proportion to the tolerance, of what is missed by quantity, relative to its size."""
-    expected = MARGIN * max(tol, FINEST) * max(1, steps)
+    most = expected(tol, steps)
     for quantity, value in missed.items():
-        if not value <= expected:
-            yield Doubt(quantity, value, expected)
+        if not value <= most:
+            yield Doubt(quantity, value, most)
+
+
+def expected(tol: float, steps: int) -> float:
+    """The most that a tolerance lets expect of an error after so many steps, relative to the size of the quantity."""
+    return MARGIN * max(tol, FINEST) * max(1, steps)
 
 
 def energy_scale(at: Matrices, state: Vector) -> float:

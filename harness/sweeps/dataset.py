@@ -1,13 +1,15 @@
 """The folder of a sweep: one Parquet file a chunk, each there whole or not at all, and a document that says of what.
 
-The same sweep asked for again finds its chunks there and computes those that are missing; another one is refused.
+A manifest has a line for each file: its first and last row, and its checksum. The same sweep asked for again computes
+what is missing, or is not as it was written; another one is refused.
 """
 
 import fcntl
+import hashlib
 import json
 import os
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -15,13 +17,14 @@ from typing import TYPE_CHECKING, Any
 
 from ..documents import Publication, published, require
 from ..failures import Failure, HolonomError
-from ..files import write_whole
+from ..files import DRAFTS, append_line, write_whole
 
 if TYPE_CHECKING:
     import pyarrow
 
 DOCUMENT = "_sweep.json"  # readers of datasets pass over names that begin so
 LOCK = "_sweep.lock"
+MANIFEST = "_parts.jsonl"
 UNCOMPARED = ("file",)  # what a sweep may be called from and is still the same
 
 
@@ -38,6 +41,11 @@ class Chunk:
     def name(self) -> str:
         """Of the file."""
         return f"part-{self.index:07d}.parquet"
+
+    def entry(self, content: bytes) -> dict[str, Any]:
+        """What the manifest says of the file."""
+        checksum = hashlib.sha256(content).hexdigest()
+        return {"part": self.name, "first": self.first, "last": self.last - 1, "sha256": checksum}
 
 
 class SweepFolder:
@@ -70,13 +78,13 @@ class SweepFolder:
         self._require_ours(resume)
         try:
             self.path.mkdir(parents=True, exist_ok=True)
-            lock = os.open(self.path / LOCK, os.O_RDWR | os.O_CREAT, 0o644)
+            lock = os.open(self.path / LOCK, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
         except OSError as error:
             raise HolonomError(Failure.UNWRITABLE, self.path, error.strerror or str(error)) from None
         try:
             _lock(lock, self.path)
             self._require_ours(resume)
-            for left in self.path.glob(".part-*.new"):  # of a command that was killed
+            for left in self.path.glob(DRAFTS):  # of a command that was killed
                 left.unlink(missing_ok=True)
             if not (self.path / DOCUMENT).exists():
                 write_whole(self.path / DOCUMENT, json.dumps(self.document, ensure_ascii=False, indent=1) + "\n")
@@ -84,28 +92,41 @@ class SweepFolder:
         finally:
             os.close(lock)
 
-    def missing(self) -> list[Chunk]:
-        """Chunks whose files are not there, or are not whole."""
-        return [chunk for chunk in chunks_of(self.document) if not self._is_whole(chunk)]
+    def missing(self) -> tuple[list[Chunk], list[Chunk]]:
+        """Chunks that are to be computed: those without a file, and those whose files are not as they were written."""
+        listed = self._listed()
+        absent, altered = [], []
+        for chunk in chunks_of(self.document):
+            file = self.path / chunk.name
+            if not os.path.lexists(file):
+                absent.append(chunk)
+            elif file.is_symlink() or listed.get(chunk.name) != chunk.entry(file.read_bytes()):
+                altered.append(chunk)
+        return absent, altered
 
     def write(self, chunk: Chunk, content: bytes) -> None:
-        """Put a chunk in its place, whole.
+        """Put a chunk in its place, whole, and into the manifest.
 
         Raises
         ------
         HolonomError
             There is no space for it, or it cannot be written.
         """
-        write_whole(self.path / chunk.name, content)
+        file = self.path / chunk.name
+        if file.is_symlink():  # which would lead to another file
+            file.unlink()
+        write_whole(file, content)
+        append_line(self.path / MANIFEST, json.dumps(chunk.entry(content)))
 
-    def _is_whole(self, chunk: Chunk) -> bool:
-        import pyarrow
-        import pyarrow.parquet
-
-        try:
-            return pyarrow.parquet.read_metadata(self.path / chunk.name).num_rows == chunk.last - chunk.first
-        except (OSError, pyarrow.ArrowInvalid):
-            return False
+    def _listed(self) -> dict[str, dict[str, Any]]:
+        """The last line of the manifest for each file; what cannot be read of it is as if it were not there."""
+        listed: dict[str, dict[str, Any]] = {}
+        with suppress(FileNotFoundError):
+            for line in (self.path / MANIFEST).read_bytes().splitlines():
+                with suppress(ValueError, TypeError, KeyError):
+                    entry = json.loads(line)
+                    listed[str(entry["part"])] = entry
+        return listed
 
     def _require_ours(self, resume: bool) -> None:
         if not (self.path / DOCUMENT).exists():

@@ -99,10 +99,10 @@ class LaneEngine:
             equations,
             np.zeros((len(equations), lanes)),
             tol=tol,
-            pars=np.zeros((len(problem.parameters), lanes)),
             compact_mode=problem.motion.operations * lanes >= COMPACT_FROM,
         )
-        self._state, self._pars, self._time = self._integrator.state, self._integrator.pars, self._integrator.time
+        self._state, self._time = self._integrator.state, self._integrator.time
+        self._pars = np.zeros((len(problem.parameters), lanes))
         self._moving = self._state[: self._size]
         self._looking = _Along(self._integrator, self._size) if along else None
         self._nearest = None
@@ -175,6 +175,7 @@ class LaneEngine:
             options = {"callback": along, "write_tc": True}
         integrator.set_time(self._start)
         self._state[...], self._pars[...] = starts, pars
+        integrator.pars[...] = pars[: len(integrator.pars)]  # those that the equations contain
         reached, well = np.empty((len(stops), self._size, self._lanes)), np.ones(self._lanes, dtype=bool)
         longest = [0.0] * self._lanes
         for place, stop in enumerate(stops):

@@ -18,6 +18,7 @@ from ..program.heyoka_function import import_heyoka
 from ..program.motion_problem import MotionProblem, require_analytic
 from ..program.motion_program import Expression, Name, Operation, Program, calls_in
 from ..program.precision import read_precision
+from ..simulation.control_matrix import controls_may_fail
 from ..simulation.diagnostics import scaled_residual
 from ..simulation.evaluation import in_full_vectors
 from ..simulation.initial_state import initial_states_of, started
@@ -51,6 +52,7 @@ class Status(StrEnum):
     """How a row came about."""
 
     OK = "ok"
+    UNDEFINED = "undefined"  # something that is kept has no finite value
     DOUBTFUL = "doubtful"  # what it misses is out of proportion to the tolerance
     NO_START = "no start"
     BROKEN_OFF = "broken off"
@@ -160,7 +162,8 @@ class RowMaker:
         """Whether lanes can follow motions of the problem at all."""
         problem = self._problem
         ends_smoothly = problem.events is None or not _has_kinks(problem.events)
-        return ends_smoothly and not (problem.signs or problem.tables) and problem.obstacle is None and not self._hides
+        alone = problem.signs or problem.tables or problem.obstacle is not None or controls_may_fail(problem)
+        return ends_smoothly and not alone and not self._hides
 
     def _together(self, rows: "_Rows", there: NDArray, states: Floats, stops: Sequence[float]) -> NDArray:
         """Follow motions in lanes; those that this does not do for."""
@@ -198,11 +201,11 @@ class RowMaker:
             rows.mark(np.array([row]), Status.BROKEN_OFF, error.said)
             return
         here, rows.residual[row] = np.array([row]), found.residual
+        if not max(found.residual, found.missed) <= self._allowed:
+            rows.mark(here, Status.DOUBTFUL, "what it misses is out of proportion to the tolerance")
         points = {stop: found.points[place][:, None] for place, stop in enumerate(self._asked)}
         self._keep(rows, here, np.array([found.end]), found.states[-1][:, None], points)
         self._keep_along(rows, here, self._seen(found.steps))
-        if not max(found.residual, found.missed) <= self._allowed:
-            rows.mark(here, Status.DOUBTFUL, "what it misses is out of proportion to the tolerance")
 
     # ---- what is kept ----
 
@@ -217,14 +220,15 @@ class RowMaker:
                     rows.kept[name][there] = numbers
             elif kept.kind is Kind.AT:
                 reached = kept.instant is None or float(kept.instant) <= ends
-                rows.kept[kept.text][there] = np.where(reached, points[self._instant(kept)][place], np.nan)
+                rows.keep(kept.text, there, points[self._instant(kept)][place], there_is=reached)
                 place += 1
 
     def _keep_along(self, rows: "_Rows", there: NDArray, seen: Floats) -> None:
         """What is kept of quantities along the motion, shape (numbers, k)."""
-        free = (Kind.FREE,) if any(self._free) else ()
-        for name, numbers in zip((*(kept.text for kept in self._looks), *free), seen, strict=True):
-            rows.kept[name][there] = numbers
+        for kept, numbers in zip(self._looks, seen, strict=False):
+            rows.keep(kept.text, there, numbers, there_is=(kept.kind is not Kind.ZERO) | ~np.isnan(numbers))
+        if any(self._free):
+            rows.kept[str(Kind.FREE)][there] = seen[-1]
 
     def _seen(self, steps: list[Steps]) -> Floats:
         """The numbers made of quantities along motions, shape (numbers, lanes): the last says whether they are free."""
@@ -247,7 +251,7 @@ class RowMaker:
             case Kind.LARGEST:
                 return largest_size(along)
             case Kind.ZERO:
-                return first_zero(along)
+                return np.where(np.isfinite(along.coefficients).all(axis=(0, 1)), first_zero(along), np.inf)
             case _:
                 return _mean(along)
 
@@ -338,6 +342,12 @@ class _Rows:
         self.kept = {name: np.full(k, np.nan) for name in columns}
         self.residual = np.full(k, np.nan)
         self.statuses, self.remarks = np.zeros(k, dtype=np.int8), np.full(k, None, dtype=object)
+
+    def keep(self, name: str, rows: NDArray, numbers: Floats, there_is: bool | NDArray[np.bool_]) -> None:
+        """Keep numbers of rows where there are any, and say of rows where there should be and are not."""
+        finite = np.isfinite(numbers)
+        self.kept[name][rows] = np.where(finite & there_is, numbers, np.nan)
+        self.mark(rows[~finite & there_is], Status.UNDEFINED, f"{name} has no finite value")
 
     def mark(self, rows: NDArray, status: Status, remark: str) -> None:
         """Say of rows what became of them."""

@@ -9,18 +9,19 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..confined import Limits
 from ..failures import Failure, HolonomError
 from ..program.motion_problem import DOUBLE_DIGITS, MotionProblem, problem_document, read_problem
 from ..program.precision import read_precision
 from ..program.request import Request
+from ..sandbox import Limits
 from ..simulation.engines.taylor import held
 from ..simulation.request import Stabilization
+from ..source import Source, source_of
 from .axes import Axes, Grid, Listed, Sample
 from .dataset import SweepFolder, chunks_of
 from .kept import Kept, Kind
 from .rows import TOLERANCE, Plan, RowMaker
-from .workers import compute
+from .workers import compute, require_address
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -59,10 +60,13 @@ class Sweep:
         The folder.
     document : mapping
         What was swept, and how; see the schema ``sweep``.
+    mended : tuple of str
+        Files that were there and not as they were written: they have been computed again.
     """
 
     path: Path
     document: Mapping[str, Any]
+    mended: tuple[str, ...] = ()
     _directory: Any = field(default=None, repr=False, compare=False)  # a folder that goes with the last of its sweeps
 
     @property
@@ -105,7 +109,7 @@ class Sweep:
 
 
 def run_sweep(
-    file: Path,
+    file: Source | Path,
     request: Request,
     wanted: SweepRequest,
     folder: Path,
@@ -119,15 +123,18 @@ def run_sweep(
     HolonomError
         The request cannot be met, or the folder holds something else; as `holonom.program.motion_problem`.
     """
+    require_address(wanted.scheduler)
     held(wanted.tol, read_precision("double"))
-    text = _derived(file, request, wanted.axes, limits)
+    source = source_of(file, limits)
+    text = _derived(source, request, wanted.axes)
     problem = read_problem(text)
     _require_parameters(problem, wanted.axes)
     plan = Plan(problem, wanted.axes, wanted.kept, wanted.tol, wanted.until, wanted.drift)
     maker = RowMaker(plan)  # refuses what cannot be computed before there is a folder
-    target = SweepFolder(folder, _document(file, request, wanted, text, maker))
+    target = SweepFolder(folder, _document(source.file, request, wanted, text, maker))
     with target.held(wanted.resume):
-        chunks = target.missing()
+        absent, altered = target.missing()
+        chunks = sorted([*absent, *altered], key=lambda chunk: chunk.index)
         done = wanted.axes.rows - sum(chunk.last - chunk.first for chunk in chunks)
 
         def take(chunk: Any, content: bytes) -> None:
@@ -139,13 +146,13 @@ def run_sweep(
 
         if chunks:
             compute(plan, chunks, take, wanted.workers or os.cpu_count() or 1, wanted.scheduler)
-    return Sweep(folder, target.document)
+    return Sweep(folder, target.document, tuple(chunk.name for chunk in altered))
 
 
-def _derived(file: Path, request: Request, axes: Axes, limits: Limits) -> str:
+def _derived(source: Source, request: Request, axes: Axes) -> str:
     """The document of the motion with its parameters open; where it takes values to derive it, the middle ones."""
     try:
-        return problem_document(file, request, limits, DOUBLE_DIGITS, axes.names)
+        return problem_document(source, request, source.limits, DOUBLE_DIGITS, axes.names)
     except HolonomError as refused:
         if refused.failure is not Failure.REFUSED:
             raise
@@ -153,7 +160,7 @@ def _derived(file: Path, request: Request, axes: Axes, limits: Limits) -> str:
         numbers = {name: str(Fraction(float(x))) for name, x in zip(axes.names, middle, strict=True)}
         given = Request(request.scene, request.solve, {**request.settings, **numbers})
         try:
-            return problem_document(file, given, limits, DOUBLE_DIGITS, axes.names)
+            return problem_document(source, given, source.limits, DOUBLE_DIGITS, axes.names)
         except HolonomError:
             raise refused from None
 

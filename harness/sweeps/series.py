@@ -5,12 +5,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..program.arithmetic import run_program
 from ..program.heyoka_function import dynamics, heyoka_expressions, import_heyoka, zero_multipliers
 from ..program.motion_problem import MotionProblem, require_expandable
 from ..series.radius import ENTIRE, POLYNOMIAL, Radius, estimate_radii
+from ..series.singularities import COMPLEX
 
 ORDER = 40
 LANES = 8
+PROBES = np.array([0.3, 0.7, 1.1, 2.3])  # complex instants, by size and direction, where a polynomial is tried
+SATISFIED = 1e-9  # of an acceleration there: what is rounding
 
 Floats = NDArray[np.float64]
 
@@ -31,7 +35,32 @@ def lane_radii(problem: MotionProblem, states: Floats, values: Floats) -> Floats
     series = expanded(problem, states, values)
     finite, radii = np.isfinite(series).all(axis=(0, 1)), np.full(states.shape[1], np.nan)
     radii[finite] = [_number(found) for found in estimate_radii(series[:, :, finite])]
+    ended = finite & ~series[:, ORDER // 2 :].any(axis=(0, 1))
+    radii[ended] = np.where(_solves(problem, series[:, :, ended], values[:, ended]), np.inf, np.nan)
     return radii
+
+
+def _solves(problem: MotionProblem, series: Floats, values: Floats) -> NDArray[np.bool_]:
+    """Whether polynomials, shape (n + g, orders, k), satisfy the equations of motion at some complex instants."""
+    n, z = len(problem.coordinates), PROBES * np.exp(1j * PROBES)
+    powers = z[:, None] ** np.arange(series.shape[1])
+    rows = np.moveaxis(series[:n], 1, 2)
+    paths = [np.einsum("ij,nkj->nik", _rates(powers, z, order), rows) for order in range(3)]
+    lanes = np.zeros((len(z), series.shape[2]), dtype=complex)
+    state = [float(problem.start["t"]) + z[:, None] + lanes, *paths[0], *paths[1]]
+    inputs = [*state, *[lanes] * len(problem.multipliers), *(lanes + row for row in values)]
+    with np.errstate(all="ignore"):
+        found = run_program(problem.motion, dict(zip(problem.motion.inputs, inputs, strict=True)), COMPLEX)
+        accelerations = np.array([found[f"ddot({name})"] + lanes for name in problem.coordinates])
+        missed = np.abs(accelerations - paths[2]) <= SATISFIED * (1 + np.abs(paths[2]))
+    return missed.all(axis=(0, 1))
+
+
+def _rates(powers: NDArray[np.complex128], z: NDArray[np.complex128], order: int) -> NDArray[np.complex128]:
+    """What each coefficient contributes to a derivative of a polynomial at complex places."""
+    n = np.arange(powers.shape[1])
+    falling = np.prod([n - k for k in range(order)], axis=0) if order else 1.0
+    return powers * falling / z[:, None] ** order
 
 
 def expanded(problem: MotionProblem, states: Floats, values: Floats) -> Floats:
@@ -66,7 +95,6 @@ def _expanding(problem: MotionProblem) -> Any:
         [*dynamics(problem.motion, given), *integrals],
         np.zeros((len(problem.state) + len(integrals), LANES)),
         tol=float(np.exp(-2 * ORDER)),
-        pars=np.zeros((len(problem.parameters), LANES)),
         compact_mode=True,
     )
 

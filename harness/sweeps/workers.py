@@ -6,9 +6,10 @@ asked writes them. So nothing hangs on which worker computes what, or on how oft
 
 import logging
 import pickle
+import re
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from functools import lru_cache
 from itertools import islice
 from typing import TYPE_CHECKING, Any
@@ -19,7 +20,7 @@ from .dataset import Chunk, part_of
 from .rows import Plan, RowMaker
 
 if TYPE_CHECKING:
-    from distributed import Client
+    from distributed import Client, LocalCluster
 
 AHEAD = 3  # tasks that wait at each worker
 TOGETHER = 4  # chunks of a task at most: to hand one out and to fetch it takes a tenth of what a quick chunk takes
@@ -27,10 +28,22 @@ KEPT_MEMORY = (
     2**29
 )  # bytes that a worker does not give back at once; Dask's 64 KiB are given back and fetched each step
 LARGEST_PIECE = 2**25  # bytes of the largest piece of what is kept
+STARTS = 3  # attempts to start workers
+ADDRESS = re.compile(r"((tcp|tls|ws|wss)://)?([\w.-]+|\[[\da-fA-F:.]+\]):(?P<port>\d{1,5})", re.ASCII)
+PORTS = range(1, 2**16)
 ATTEMPTS = 10  # workers that a chunk may outlive
 PATIENCE = 20  # seconds that a scheduler may take to answer
 
 Take = Callable[[Chunk, bytes], None]
+
+
+def require_address(scheduler: str | None) -> None:
+    """Refuse what can be no address of a Dask scheduler."""
+    if scheduler is None:
+        return
+    found = ADDRESS.fullmatch(scheduler)
+    if not found or int(found["port"]) not in PORTS:
+        raise HolonomError(Failure.NOT_A_SCHEDULER, detail=scheduler or "nothing")
 
 
 def compute(plan: Plan, chunks: Sequence[Chunk], take: Take, workers: int, scheduler: str | None) -> None:
@@ -88,18 +101,17 @@ def _compute_by(client: "Client", plan: Plan, chunks: Sequence[Chunk], take: Tak
     from distributed import as_completed
 
     written = pickle.dumps(plan)
-    with _told_when_lost():
-        workers = max(1, len(client.scheduler_info(n_workers=-1)["workers"]))
-        waiting = _tasks(chunks, workers)
-        doing = {_submitted(client, written, task): task for task in islice(waiting, AHEAD * workers)}
-        arriving = as_completed(list(doing), with_results=False)
-        for future in arriving:
-            for chunk, content in zip(doing.pop(future), future.result(), strict=True):
-                take(chunk, content)
-            for task in islice(waiting, 1):
-                following = _submitted(client, written, task)
-                doing[following] = task
-                arriving.add(following)
+    workers = max(1, len(client.scheduler_info(n_workers=-1)["workers"]))
+    waiting = _tasks(chunks, workers)
+    doing = {_submitted(client, written, task): task for task in islice(waiting, AHEAD * workers)}
+    arriving = as_completed(list(doing), with_results=False)
+    for future in arriving:
+        for chunk, content in zip(doing.pop(future), future.result(), strict=True):
+            take(chunk, content)
+        for task in islice(waiting, 1):
+            following = _submitted(client, written, task)
+            doing[following] = task
+            arriving.add(following)
 
 
 def _tasks(chunks: Sequence[Chunk], workers: int) -> Iterator[Sequence[Chunk]]:
@@ -119,7 +131,7 @@ def _submitted(client: "Client", plan: bytes, chunks: Sequence[Chunk]) -> Any:
 def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
     """A client of the scheduler, or of one that is started here with its workers, and ended."""
     import dask
-    from distributed import Client, LocalCluster
+    import distributed  # noqa: F401
 
     for name in ("distributed", *logging.root.manager.loggerDict):
         if name.startswith(("distributed", "tornado")):  # what matters of what they say comes as exceptions
@@ -132,22 +144,42 @@ def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
         "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": KEPT_MEMORY,
         "distributed.nanny.pre-spawn-environ.MALLOC_MMAP_THRESHOLD_": LARGEST_PIECE,
     }
-    with dask.config.set(settings):
-        if scheduler is not None:
-            with _told_when_lost(), Client(scheduler, timeout=PATIENCE) as client:
-                yield client
-            return
-        cluster = LocalCluster(
-            n_workers=workers,
-            threads_per_worker=1,
-            host="127.0.0.1",
-            security=True,  # other users of this machine reach its address, too
-            dashboard_address="127.0.0.1:0",  # any port that is free, for another sweep may run
-            memory_limit=0,
-            silence_logs=logging.CRITICAL,
-        )
-        with cluster, Client(cluster, timeout=PATIENCE) as client:
-            yield client
+    with (
+        dask.config.set(settings),
+        _told_when_lost(),
+        _cluster(workers) if scheduler is None else nullcontext(scheduler) as place,
+        _connected(place) as client,
+    ):
+        yield client
+
+
+def _connected(place: "LocalCluster | str") -> "Client":
+    from distributed import Client
+
+    try:
+        return Client(place, timeout=PATIENCE)
+    except (TypeError, ValueError) as error:  # as of tls without certificates
+        raise HolonomError(Failure.NOT_A_SCHEDULER, detail=f"{place} ({_first_line(error)})") from None
+
+
+def _cluster(workers: int) -> "LocalCluster":
+    """A scheduler with its workers. It is started anew where one of them ends while it starts."""
+    from distributed import LocalCluster
+
+    for _ in range(STARTS):
+        try:
+            return LocalCluster(
+                n_workers=workers,
+                threads_per_worker=1,
+                host="127.0.0.1",
+                security=True,  # other users of this machine reach its address, too
+                dashboard_address="127.0.0.1:0",  # any port that is free, for another sweep may run
+                memory_limit=0,
+                silence_logs=logging.CRITICAL,
+            )
+        except (RuntimeError, OSError, TimeoutError) as error:
+            failed = error
+    raise HolonomError(Failure.WORKERS_LOST, detail=_first_line(failed))
 
 
 @contextmanager
@@ -164,5 +196,8 @@ def _told_when_lost() -> Iterator[None]:
     except HolonomError:
         raise
     except (KilledWorker, CommClosedError, TaskCancelled, CancelledError, TimeoutError, OSError) as error:
-        said = next(iter(str(error).splitlines()), "")
-        raise HolonomError(Failure.WORKERS_LOST, detail=said or "they do not answer") from None
+        raise HolonomError(Failure.WORKERS_LOST, detail=_first_line(error)) from None
+
+
+def _first_line(error: BaseException) -> str:
+    return next(iter(str(error).splitlines()), "") or "they do not answer"

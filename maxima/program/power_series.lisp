@@ -299,13 +299,17 @@
 (defun maxima-value (number)
   (if *binary-digits* ($bfloat (maxima-number number)) (maxima-number number)))
 
+;; exp(-10^7) as a fraction has millions of digits, and its sum with 1 takes minutes.
+(defvar *smallest-power* -40000 "Power of two below which rounded values at the start are zero.")
+
 (defun number-at-start (e assignment)
   "The value of a Maxima expression as a Lisp rational."
   (let ((value (if *binary-digits* ($bfloat e) e)))
     (cond ((integerp value) value)
           ((and (consp value) (eq (caar value) 'rat)) (/ (second value) (third value)))
           ((and (consp value) (eq (caar value) 'bigfloat))
-           (times-power-of-two (second value) (- (third value) (car (last (car value))))))
+           (let ((power (- (third value) (car (last (car value))))))
+             (if (< power *smallest-power*) 0 (times-power-of-two (second value) power))))
           (t (obstacle (if *binary-digits* '$not_real '$irrational) e assignment)))))
 
 (defun require-nonzero (value assignment)
@@ -402,7 +406,7 @@
 (defun rounding-levels (coarse fine added)
   "For each order binary magnitudes of what is left of a zero at most, by the coarse and by the fine expansion."
   (let* ((sizes (sizes-by-order coarse fine)) (of-coarse nil) (of-fine nil)
-         (few (binary-digits *few-digits*)) (most (- (binary-digits added))))
+         (few (digits-in-bits *few-digits*)) (most (- (digits-in-bits added))))
     (map-coefficients coarse fine
                       #'(lambda (a b order)
                           (if (and (not (eql a 0)) (not (eql b 0)) (shrinks-p a b added))
@@ -415,8 +419,6 @@
                  (cons (+ (min (+ of-coarse few) most) size) (+ (min (+ of-fine few) most) size))
                  (cons nil nil)))
          sizes)))
-
-(defun binary-digits (decimal-digits) (ceiling (* decimal-digits (log 10d0 2d0))))
 
 (defun larger (x y) (if x (max x y) y))
 

@@ -38,6 +38,26 @@
 
 (defvar *most-refinements* 20)
 
+(defvar *most-halvings* 40 "Of a correction, in a line search.")
+
+(defvar *small-correction* (expt 10 -12) "Of the largest coordinate: a correction that needs no line search.")
+
+(defvar *contraction* 1/16 "Of a correction: what the constraints may miss of being linear along it, where the start is next to its root.")
+
+(defvar *starts-on-a-line* '(1/16 -1/16 1/8 -1/8 3/16 -3/16 1/4 -1/4 5/16 -5/16 3/8 -3/8 7/16 -7/16 1/2 -1/2
+                             9/16 -9/16 5/8 -5/8 11/16 -11/16 3/4 -3/4 13/16 -13/16 7/8 -7/8 15/16 -15/16 1 -1)
+  "Shares of the distance of a root at which the search for nearer ones begins, with one unknown.")
+
+(defvar *starts-around* '(1/4 -1/4 1/2 -1/2 3/4 -3/4 1 -1) "The same along each of several unknowns.")
+
+(defvar *most-unknowns-searched* 12 "Unknowns up to which nearer roots are looked for.")
+
+(defvar *most-corrections-of-search* 20 "From each of these starts.")
+
+(defvar *most-halvings-of-search* 6 "Of each of these corrections.")
+
+(defvar *nearer* 9/10 "Of the distance of a point on a manifold: another one that is on a nearer branch.")
+
 (defstruct sample-point
   (symbols (make-hash-table))              ; symbol -> rational
   (known (make-hash-table)))               ; node number -> rational
@@ -288,7 +308,7 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
 
 ;; In floating point a residual whose terms all vanish, as y where y = 0, may stay: whoever has a point that no correction
 ;; changes any more goes on from there with more digits.
-(defun newton-iteration (point constraints jacobian coordinates &optional metric)
+(defun newton-iteration (point constraints jacobian coordinates &optional metric damped)
   (let ((last-size nil))
     (dotimes (attempt *most-corrections* nil)
       (let ((residuals (residuals-at point constraints)))
@@ -301,7 +321,28 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
               (return point))
           (if (and (> attempt *impatience*) last-size (>= size last-size)) (return nil))
           (setq last-size size
-                point (corrected-point point corrections (cdr coordinates))))))))
+                point (if damped
+                          (point-of-line-search point corrections size constraints jacobian metric coordinates)
+                          (corrected-point point corrections (cdr coordinates))))
+          (if (null point) (return nil)))))))
+
+(defun point-of-line-search (point corrections size constraints jacobian metric coordinates)
+  "A point along the corrections, of this size, where the next ones with the same matrix are shorter; nil where none is."
+  (do ((share 1 (/ share 2)) (halvings 0 (1+ halvings)))
+      ((> halvings *most-halvings*) nil)
+    (let* ((trial (corrected-point point (shortened corrections share) (cdr coordinates)))
+           (residuals (catch 'irregular-point (residuals-at trial constraints))))
+      (if (and residuals
+               (or (every #'zerop residuals)
+                   (< size (* *small-correction* (largest-coordinate point coordinates)))
+                   (<= (largest-correction (corrections-in-metric residuals jacobian metric point (length (cdr coordinates))))
+                       (* (- 1 (/ share 4)) size))))
+          (return trial)))))
+
+(defun shortened (corrections share)
+  (let ((result (make-hash-table)))
+    (maphash #'(lambda (column value) (setf (gethash column result) (* share value))) corrections)
+    result))
 
 (defun newton-corrections (residuals jacobian point)
   "The shortest change of the coordinates, column -> number: J^T x with J J^T x = -f."
@@ -411,11 +452,90 @@ vanish; false where Newton's method does not get there."
          (*zero-share* (expt 10 (- 5 digits)))
          (*small-coordinate* *zero-share*))
     (catch 'irregular-point
-      (let ((found (newton-iteration point constraints jacobian names metric)))
+      (let ((found (or (newton-iteration point constraints jacobian names metric t)
+                       (root-from-around point constraints jacobian metric names)
+                       (newton-iteration point constraints jacobian names metric))))
         (if found
-            (cons '(mlist)
-                  (mapcar #'(lambda (x) (maxima-number (plain-number (gethash x (sample-point-symbols found)))))
-                          (cdr names))))))))
+            (let ((nearer (nearer-root found point constraints jacobian metric names)))
+              (cons '(mlist)
+                    (mapcar #'(lambda (x) (maxima-number (plain-number (gethash x (sample-point-symbols nearer)))))
+                            (cdr names)))))))))
+
+(defun nearer-root (found point constraints jacobian metric names)
+  "The root nearest to the point, of those that Newton's method gets to from starts around it; found, if it is none of them."
+  (let ((close (if (and (<= (length (cdr names)) *most-unknowns-searched*)
+                        (not (contracts-at-once point constraints jacobian metric names)))
+                   (nearest-within nil found point constraints jacobian metric names))))
+    (or (if close (catch 'irregular-point (newton-iteration close constraints jacobian names metric)))
+        found)))
+
+(defun root-from-around (point constraints jacobian metric names)
+  "The nearest root that Newton's method gets to from starts around the point, where it gets to none from there; or nil."
+  (if (<= (length (cdr names)) *most-unknowns-searched*)
+      (let ((size (let ((largest (largest-coordinate point names))) (if (zerop largest) 1 largest))))
+        (some #'(lambda (distance)
+                  (let ((close (nearest-within distance nil point constraints jacobian metric names)))
+                    (if close (catch 'irregular-point (newton-iteration close constraints jacobian names metric)))))
+              (list (/ size 4) size (* 4 size) (* 16 size))))))
+
+(defun contracts-at-once (point constraints jacobian metric names)
+  "Whether the constraints are nearly linear along the first correction, so that the point is next to its root."
+  (let* ((size (length (cdr names)))
+         (corrections (corrections-in-metric (residuals-at point constraints) jacobian metric point size)))
+    (every #'(lambda (share)
+               (let* ((next (corrected-point point (shortened corrections share) (cdr names)))
+                      (residuals (catch 'irregular-point (residuals-at next constraints))))
+                 (and residuals
+                      (<= (largest-difference (corrections-in-metric residuals jacobian metric point size)
+                                              (shortened corrections (- 1 share)))
+                          (* *contraction* (largest-correction corrections))))))
+           '(1/3 5/7 1))))
+
+(defun largest-difference (corrections others)
+  (let ((differences (make-hash-table)))
+    (maphash #'(lambda (column value) (setf (gethash column differences) (- value (gethash column others 0)))) corrections)
+    (largest-correction differences)))
+
+(defun nearest-within (distance found point constraints jacobian metric names)
+  "The nearest root from starts at this distance of the point at most, or as far as the one found; nil where there is no nearer one."
+  (let* ((*floating* t)
+         (*zero-share* *zero-share-of-floats*)
+         (*most-corrections* *most-corrections-of-search*)
+         (*most-halvings* *most-halvings-of-search*)
+         (guess (converted-point point #'float-of))
+         (rows (catch 'irregular-point (numeric-rows metric (converted-point point #'float-of))))
+         (reach (if found (distance-in-metric (converted-point found #'float-of) guess rows names) (float-of distance)))
+         (share (if (< (length (cdr constraints)) (length (cdr names))) *nearer* (- 1 1/1000000)))
+         (known (if found reach))
+         (best nil))
+    (do ((improved t)) ((or (not improved) (not (plusp reach))))
+      (setq improved nil)
+      (dolist (start (starts-around guess reach rows names))
+        (let* ((root (car (errset (catch 'irregular-point
+                                    (newton-iteration start constraints jacobian names metric t)))))
+               (way (if root (distance-in-metric root guess rows names))))
+          (if (and way (or (null known) (< way (* share known))))
+              (setq improved t best root known way reach way)))))
+    (if best (converted-point best #'rational))))
+
+(defun starts-around (guess distance rows names)
+  "Points at shares of a distance from the guess, along each of the names."
+  (let ((column 0) (starts nil))
+    (dolist (name (cdr names) (nreverse starts))
+      (incf column)
+      (let ((mass (or (cdr (assoc column (nth (1- column) rows))) 0)))
+        (if (plusp mass)
+            (dolist (share (if (cdr (cdr names)) *starts-around* *starts-on-a-line*))
+              (let ((start (converted-point guess #'identity)))
+                (incf (gethash name (sample-point-symbols start)) (* share (/ distance (sqrt mass))))
+                (push start starts))))))))
+
+(defun distance-in-metric (point guess rows names)
+  (let ((ways (mapcar #'(lambda (x) (- (gethash x (sample-point-symbols point)) (gethash x (sample-point-symbols guess))))
+                      (cdr names)))
+        (square 0))
+    (mapc #'(lambda (row way) (dolist (e row) (incf square (* way (cdr e) (nth (1- (car e)) ways))))) rows ways)
+    (sqrt (max square 0))))
 
 (defun plain-number (number)
   "The fraction of few digits that the number agrees with; else its decimal digits."

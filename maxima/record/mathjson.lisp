@@ -22,12 +22,13 @@
     (%jacobi_sn . "JacobiSn") (%jacobi_cn . "JacobiCn") (%jacobi_dn . "JacobiDn")))
 
 (defvar *mathjson-constants*
-  '(($%pi . "Pi") ($%e . "ExponentialE") ($%i . "ImaginaryUnit") ($%gamma . "EulerGamma")))
+  '(($%pi . "Pi") ($%e . "ExponentialE") ($%i . "ImaginaryUnit") ($%gamma . "EulerGamma") (t . "True") (nil . "False")))
 
 (defun $write_json (tree file)
-  (write-file file (with-output-to-string (out) (write-json tree out) (terpri out))))
+  (let ((*print-base* 10) (*print-radix* nil)) ; obase : 8 of a scene is none of a document's
+    (write-file file (with-output-to-string (out) (write-json tree out) (terpri out)))))
 
-;;; All at once: a Lisp that hands each piece to the system as it comes takes longer for that than for the pieces.
+;;; All at once: GCL hands each piece to the system as it comes, by two calls.
 (defun write-file (file text)
   (with-open-file (out file :direction :output :if-exists :supersede)
     (write-string text out))
@@ -92,6 +93,7 @@
         ((polygamma-p e) (write-tree "PolyGamma" (list (second (second e)) (third e)) out))
         ((cdr (assoc (caar e) *mathjson-functions*))
          (write-tree (cdr (assoc (caar e) *mathjson-functions*)) (cdr e) out))
+        ((write-described e out))
         (t (merror "the function ~M is not one that the record knows" (caar e)))))
 
 (defun write-tree (head arguments out)
@@ -150,4 +152,4 @@
 
 (defun $reads_as_constant (name)
   "Whether a document that holds the name says a number or a truth value."
-  (and (member (letters-of-name name) (list* "True" "False" (mapcar #'cdr *mathjson-constants*)) :test #'string=) t))
+  (and (member (letters-of-name name) (mapcar #'cdr *mathjson-constants*) :test #'string=) t))

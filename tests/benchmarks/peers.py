@@ -14,12 +14,12 @@ import chain
 import sympy as sp
 from charged import charged
 
-from holonom.confined import Limits
 from holonom.mathjson import from_sympy
 from holonom.maxima import run_batch
 from holonom.program.forms import MotionProgram
 from holonom.program.motion_program import Program, count_operations, read_program
 from holonom.program.request import Request
+from holonom.sandbox import Limits
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "chain.mac"
 

@@ -21,11 +21,11 @@ from typing import Any
 
 import numpy as np
 
-from holonom.confined import Limits
 from holonom.program.heyoka_function import import_heyoka
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.precision import read_precision
 from holonom.program.request import Request
+from holonom.sandbox import Limits
 from holonom.series.heyoka_series import OFTEN, expanding_integrator
 from holonom.series.power_series import SeriesRequest, compute_series
 

@@ -25,11 +25,11 @@ from simulation_report import write_report
 from holonom.benchmark.work_precision.contest import times_in_turns, without_caches
 from holonom.benchmark.work_precision.measurement import numbers_of, relative_error
 from holonom.benchmark.work_precision.reference import Reference, find_reference
-from holonom.confined import Limits
 from holonom.failures import HolonomError
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request
 from holonom.program.timing import Batch, python_batch
+from holonom.sandbox import Limits
 from holonom.simulation.engines.program_engine import ProgramEngine
 from holonom.simulation.engines.runge_kutta import RungeKuttaEngine
 from holonom.simulation.engines.taylor import TaylorEngine

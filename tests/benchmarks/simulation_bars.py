@@ -16,10 +16,10 @@ from timing import as_installed
 from holonom.benchmark.work_precision.engines import prepare_taylor
 from holonom.benchmark.work_precision.measurement import State, relative_error
 from holonom.benchmark.work_precision.reference import find_reference
-from holonom.confined import Limits
 from holonom.program.motion_problem import DOUBLE_DIGITS, MotionProblem, motion_problem, problem_document
 from holonom.program.request import Request
 from holonom.program.timing import python_batch, shortest_times
+from holonom.sandbox import Limits
 from holonom.simulation.derivations import open_names
 from holonom.simulation.request import EngineName, SimulationRequest, Stabilization
 from holonom.simulation.simulate import simulate

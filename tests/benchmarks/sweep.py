@@ -24,10 +24,10 @@ from typing import NamedTuple
 import heyoka
 import numpy as np
 
-from holonom.confined import Limits
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.precision import read_precision
 from holonom.program.request import Request
+from holonom.sandbox import Limits
 from holonom.simulation.initial_state import at_values
 from holonom.simulation.piecewise import PiecewiseMotion
 from holonom.simulation.request import EngineName, SimulationRequest, Stabilization

@@ -6,9 +6,9 @@ from holonom.benchmark.work_precision.study import Plan, Study, study
 from holonom.companion.chapter import Run
 from holonom.companion.chapters import INITIAL_SCENE, PAPER
 from holonom.companion.paper import REPOSITORY, chapter_of_the_paper
-from holonom.confined import Limits
 from holonom.figures.convergence import RadiiFound, find_radii
 from holonom.program.request import Request
+from holonom.sandbox import Limits
 
 
 def few_radii() -> RadiiFound:

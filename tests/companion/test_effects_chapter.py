@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from holonom.companion.chapters.effects import STILL, TURNING, turning_point
-from holonom.confined import Limits
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
+from holonom.sandbox import Limits
 from holonom.simulation.request import SimulationRequest
 from holonom.simulation.simulate import simulate
 

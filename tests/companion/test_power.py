@@ -9,12 +9,12 @@ import pytest
 from holonom.companion.cards import scene_named
 from holonom.companion.power import energy_balance, values_along
 from holonom.companion.runs import Derived
-from holonom.confined import Limits
 from holonom.crosscheck.independent import reaction_power
 from holonom.crosscheck.system import described_system
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
 from holonom.record import derived_record
+from holonom.sandbox import Limits
 from holonom.simulation.request import SimulationRequest
 from holonom.simulation.simulate import simulate
 

@@ -4,7 +4,9 @@ from pathlib import Path
 
 import pytest
 
+from holonom.description import Description
 from holonom.record import Record, derived_record
+from holonom.source import Source
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
@@ -28,17 +30,47 @@ part : holonomic_scene(system, effects = [bare, push], control_law = [u = 1 + t^
     scope="session",
     params=["paper/paper.mac", "weightless_cabin.mac", "pendulum.mac", "bead.mac"],
 )
-def example_record(request: pytest.FixtureRequest) -> Record:
-    return derived_record(EXAMPLES / request.param)
+def example_source(request: pytest.FixtureRequest) -> Source:
+    return Source(EXAMPLES / request.param)
 
 
 @pytest.fixture(scope="session")
-def paper_record() -> Record:
-    return derived_record(EXAMPLES / "paper" / "paper.mac")
+def example_record(example_source: Source) -> Record:
+    return derived_record(example_source)
 
 
 @pytest.fixture(scope="session")
-def every_term_record(tmp_path_factory: pytest.TempPathFactory) -> Record:
+def example_description(example_source: Source) -> Description:
+    return example_source.description()
+
+
+@pytest.fixture(scope="session")
+def paper_source() -> Source:
+    return Source(EXAMPLES / "paper" / "paper.mac")
+
+
+@pytest.fixture(scope="session")
+def paper_record(paper_source: Source) -> Record:
+    return derived_record(paper_source)
+
+
+@pytest.fixture(scope="session")
+def paper_description(paper_source: Source) -> Description:
+    return paper_source.description()
+
+
+@pytest.fixture(scope="session")
+def every_term_source(tmp_path_factory: pytest.TempPathFactory) -> Source:
     file = tmp_path_factory.mktemp("every") / "scene.mac"
     file.write_text(EVERY_TERM, encoding="utf-8")
-    return derived_record(file)
+    return Source(file)
+
+
+@pytest.fixture(scope="session")
+def every_term_record(every_term_source: Source) -> Record:
+    return derived_record(every_term_source)
+
+
+@pytest.fixture(scope="session")
+def every_term_description(every_term_source: Source) -> Description:
+    return every_term_source.description()

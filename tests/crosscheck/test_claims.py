@@ -1,9 +1,9 @@
-"""What a record may say of an indexed quantity: every entry once, in its place, and of nothing else."""
+"""What a record may say: every left side once, in its place, and of nothing else."""
 
 import pytest
 import sympy as sp
 
-from holonom.crosscheck.claims import NotComparable, entries_of, require_names, residual_pairs, solved_for
+from holonom.crosscheck.claims import NotComparable, list_of, read_exactly, residual_pairs, solved_for, sparse_entries
 from holonom.record import Relation
 
 X, Y = sp.symbols("x y", real=True)
@@ -17,28 +17,50 @@ def of(name: str, value: int = 5) -> Relation:
     return Relation(name, value)
 
 
-def test_entries_are_found_by_their_indices_among_others():
-    relations = [entry("A", 1, 2), entry("B", 1, value=7), entry("A", 2, 2, value=6), of("T0")]
-    assert entries_of("A", (2, 2), relations) == {(1, 2): 5, (2, 2): 6}
-    assert entries_of("B", (2,), relations) == {(1,): 7}
+WRONG = {
+    "fewer": [of("x")],
+    "twice": [of("x"), of("y"), of("y")],
+    "twice at first": [of("x"), of("x"), of("y")],
+    "another": [of("x"), of("z")],
+    "out of order": [of("y"), of("x")],
+    "indexed": [of("x"), entry("y", 1)],
+}
 
 
-@pytest.mark.parametrize("indices", [(0, 1), (1, 3), (1,), (1, 1, 1)])
+@pytest.mark.parametrize("relations", WRONG.values(), ids=WRONG)
+def test_left_sides_are_those_that_belong_each_once_and_in_order(relations):
+    assert read_exactly(["x", "y"], [of("x", 6), of("y")]) == [6, 5]
+    assert solved_for([X, Y], [of("x", 6), of("y")]) == {X: 6, Y: 5}
+    for read in (lambda: read_exactly(["x", "y"], relations), lambda: solved_for([X, Y], relations)):
+        with pytest.raises(NotComparable):
+            read()
+
+
+def test_a_list_has_all_its_entries():
+    assert list_of("B", 2, [entry("B", 1), entry("B", 2, value=7)]) == [5, 7]
+    for relations in ([entry("B", 2), entry("B", 1)], [entry("B", 1)], [entry("B", 1), entry("A", 2)]):
+        with pytest.raises(NotComparable):
+            list_of("B", 2, relations)
+
+
+def test_sparse_entries_are_found_by_their_indices_in_order():
+    relations = [entry("A", 1, 2), entry("A", 2, 1, value=6)]
+    assert sparse_entries("A", (2, 2), (0, 1), relations) == {(1, 2): 5, (2, 1): 6}
+    assert sparse_entries("A", (2, 2), (1, 0), relations[::-1]) == {(1, 2): 5, (2, 1): 6}
+    with pytest.raises(NotComparable):
+        sparse_entries("A", (2, 2), (0, 1), relations[::-1])
+
+
+@pytest.mark.parametrize("indices", [(0, 1), (1, 3), (1,), (1, 1, 1), (True, 1)])
 def test_an_entry_out_of_place_is_refused(indices):
     with pytest.raises(NotComparable, match="out of place"):
-        entries_of("A", (2, 2), [entry("A", *indices)])
+        sparse_entries("A", (2, 2), (0, 1), [entry("A", *indices)])
 
 
-def test_a_later_duplicate_of_an_entry_took_its_place():
+@pytest.mark.parametrize("stray", [entry("B", 1, 2), of("T0"), entry("A", 1, 1)])
+def test_what_is_there_twice_or_about_something_else_is_refused(stray):
     with pytest.raises(NotComparable, match="out of place"):
-        entries_of("A", (2, 2), [entry("A", 1, 1), entry("A", 1, 1, value=6)])
-
-
-@pytest.mark.parametrize("stray", [entry("B", 1), of("T0")])
-def test_a_relation_about_something_else_is_refused(stray):
-    require_names(["A"], [entry("A", 1)])
-    with pytest.raises(NotComparable, match="out of place"):
-        require_names(["A"], [entry("A", 1), stray])
+        sparse_entries("A", (2, 2), (0, 1), [entry("A", 1, 1), stray])
 
 
 def test_a_residual_is_the_left_side_less_the_right():
@@ -52,10 +74,6 @@ def test_more_or_fewer_relations_than_there_are_residuals_are_refused(relations)
         residual_pairs("f", relations, [X])
 
 
-@pytest.mark.parametrize(
-    "relations", [[of("x")], [of("x"), of("y"), of("y")], [of("x"), of("z")]], ids=["fewer", "twice", "another"]
-)
-def test_what_is_solved_for_stands_on_the_left_each_once(relations):
-    assert solved_for([X, Y], [of("y"), of("x", 6)]) == {X: 6, Y: 5}
-    with pytest.raises(NotComparable, match="x, y belong"):
-        solved_for([X, Y], relations)
+def test_a_decimal_is_read_as_the_fraction_that_it_is():
+    (value,) = read_exactly(["x"], [Relation("x", {"num": "2.5e-1"})])
+    assert value == sp.Rational(1, 4)

@@ -10,7 +10,8 @@ from holonom.crosscheck.derivation import DerivationClaims
 from holonom.crosscheck.independent import IndependentEquations
 from holonom.crosscheck.initial_motion import COMPARISONS, SceneClaims
 from holonom.crosscheck.system import described_system
-from holonom.crosscheck.verdict import judge
+from holonom.crosscheck.verdict import judge_all
+from holonom.description import Description
 from holonom.record import Equation, Record, Relation
 
 THOUSANDTH = ["Rational", 1, 1000]
@@ -19,24 +20,24 @@ LATER = ["Power", ["Add", "t", -1], 4]
 
 
 @pytest.fixture(scope="module")
-def claims(every_term_record: Record) -> SceneClaims:
-    return claims_of(every_term_record, 0)
+def claims(every_term_record: Record, every_term_description: Description) -> SceneClaims:
+    return claims_of(every_term_record, every_term_description, 0)
 
 
-def claims_of(record: Record, scene: int) -> SceneClaims:
+def claims_of(record: Record, description: Description, scene: int) -> SceneClaims:
     described = record.scenes[scene]
     derived = record.derivations[described.derivation]
     known = IndependentEquations(described_system(record.system, derived.effects))
-    return SceneClaims(described, DerivationClaims(known, known, tuple(derived.equations)))
+    return SceneClaims(described, description.scenes[scene], DerivationClaims(known, known, tuple(derived.equations)))
 
 
 def verdict(claims: SceneClaims, equation: Equation, relations: tuple[Relation, ...]) -> Verdict:
     try:
-        comparison = COMPARISONS[equation.id](claims, relations)
+        comparisons = COMPARISONS[equation.id](claims, relations)
     except NotComparable:
         return Verdict.DISAGREES
-    alone = dataclasses.replace(comparison, certificate=None)
-    return judge(alone, equation.id).verdict
+    alone = [dataclasses.replace(comparison, certificate=None) for comparison in comparisons]
+    return judge_all(alone, equation.id).verdict
 
 
 def equation(claims: SceneClaims, wanted: str) -> Equation:
@@ -45,9 +46,9 @@ def equation(claims: SceneClaims, wanted: str) -> Equation:
 
 
 @pytest.mark.parametrize("scene", [0, 1])
-def test_the_equations_are_right_as_they_are(every_term_record, scene):
+def test_the_equations_are_right_as_they_are(every_term_record, every_term_description, scene):
     """The second scene calls for some effects alone, and its motion is that of these."""
-    claims = claims_of(every_term_record, scene)
+    claims = claims_of(every_term_record, every_term_description, scene)
     for each in claims.scene.equations:
         assert verdict(claims, each, each.relations) is not Verdict.DISAGREES, each.id
 

@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 
 from holonom.crosscheck import Verdict, check_record
 from holonom.record import derived_record
+from holonom.source import Source
 
 SYSTEMS, MANY_SYSTEMS = 5, 40
 """Each is a run of Maxima."""
@@ -135,5 +136,6 @@ def test_no_equation_of_many_random_systems_disagrees(tmp_path: Path, system: Sy
 
 def require_agreement(scene: Path, system: SystemText) -> None:
     scene.write_text(system.scene_file(), encoding="utf-8")
-    report = check_record(derived_record(scene))
+    source = Source(scene)
+    report = check_record(derived_record(source), source.description())
     assert not report.disagreements, [found for found in report.verdicts if found.verdict is Verdict.DISAGREES]

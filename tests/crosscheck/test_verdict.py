@@ -41,10 +41,9 @@ def test_difference_beyond_double_precision_is_found() -> None:
     assert "at x = " in found.detail
 
 
-def test_floating_point_data_are_held_to_their_own_digits() -> None:
-    found = judge(compared(sp.Float(0.1) * X + sp.Float(0.2) * X, sp.Rational(3, 10) * X), "seed")
-    assert found.verdict is Verdict.AGREES
-    assert found.digits < DIGITS
+def test_a_decimal_is_the_fraction_that_it_is() -> None:
+    assert judge(compared(sp.Float(0.5) * X, X / 2), "seed").verdict is not Verdict.DISAGREES
+    assert judge(compared(sp.Float(0.1) * X, X / 10), "seed").verdict is Verdict.DISAGREES
 
 
 def test_points_where_an_expression_is_not_real_are_passed_over() -> None:
@@ -54,22 +53,20 @@ def test_points_where_an_expression_is_not_real_are_passed_over() -> None:
 def test_nothing_is_decided_where_no_point_is_regular() -> None:
     imaginary = sp.sqrt(-1 - X**2)
     found = judge(compared(imaginary, imaginary), "seed")
-    assert found == (Verdict.UNDECIDED, None, None, "no regular point was found among 200 drawn at random")
+    assert found[:3] == (Verdict.UNDECIDED, None, None)
 
 
-def test_too_few_points_decide_nothing() -> None:
-    rare = sp.sqrt(X - sp.Rational(39, 20))
-    found = judge(compared(rare, rare), "seed")
-    assert found.verdict is Verdict.UNDECIDED
-    assert 0 < found.points < POINTS
-    assert found.detail == f"only {found.points} regular points were found among 200 drawn at random"
+def test_a_domain_that_random_points_miss_is_found() -> None:
+    far = sp.sqrt(X - 10**5)
+    assert judge(compared(far, 2 * far), "seed").verdict is Verdict.DISAGREES
+    assert judge(compared(far**3, far * (X - 10**5)), "seed").verdict is Verdict.PROVED
 
 
 @pytest.mark.parametrize("valueless", [sp.sqrt(-1 - X**2), sp.zoo * X])
 def test_what_has_no_value_where_the_truth_has_one_disagrees(valueless) -> None:
     found = judge(compared(valueless, X), "seed")
     assert found.verdict is Verdict.DISAGREES
-    assert "something: the record gives no real value at any point tried, the independent evaluation" in found.detail
+    assert "no real value" in found.detail
 
 
 def test_a_difference_counts_although_other_points_are_irregular() -> None:
@@ -133,13 +130,52 @@ def test_a_point_where_the_equations_are_singular_is_passed_over() -> None:
     assert judge(Comparison((Pair("y", X, Y),), solves=(equations,)), "seed").verdict is Verdict.AGREES
 
 
-def test_floats_in_what_is_given_lower_the_digits() -> None:
-    found = judge(Comparison((Pair("y", Y, X / 10),), given={Y: sp.Float(0.1) * X}), "seed")
-    assert found.verdict is not Verdict.DISAGREES
-    assert found.digits < DIGITS
+LARGE = sp.Integer(10) ** 30
 
 
-def test_floating_point_data_are_no_excuse_for_four_digits() -> None:
-    assert judge(compared(sp.Float(0.1) * X, (sp.Rational(1, 10) + sp.Rational(1, 10**6)) * X), "seed").verdict is (
-        Verdict.DISAGREES
+@pytest.mark.parametrize(
+    ("claimed", "independent"),
+    [
+        (3 - X, sp.Abs(X - 3)),
+        (X - 10**8, sp.Abs(X - 10**8)),
+        (sp.sqrt(X) * sp.sqrt(Y), sp.sqrt(X * Y)),
+        (2 * sp.log(X), sp.log(X**2)),
+        (sp.Integer(0), (X - 3 + sp.Abs(X - 3)) * (Y + sp.Abs(Y)) * (Z - 1 + sp.Abs(Z - 1))),
+        (X, X + sp.exp(-(10**6) * (X - 1) ** 2)),
+        (X, X + 1 - sp.tanh(10**9 * (X - 1)) ** 2),
+        (LARGE * X, LARGE * X + Y / LARGE),
+        (X / LARGE**2, 3 * X / LARGE**2),
+    ],
+    ids=str,
+)
+def test_a_difference_on_one_side_of_a_branch_or_in_a_narrow_range_is_found(claimed, independent) -> None:
+    for seed in ("first", "second", "third"):
+        assert judge(compared(claimed, independent), seed).verdict is Verdict.DISAGREES
+
+
+def test_a_quotient_of_two_zeros_is_no_value() -> None:
+    none = (sp.sin(X) ** 2 + sp.cos(X) ** 2 - 1) / (sp.sin(2 * X) - 2 * sp.sin(X) * sp.cos(X))
+    assert judge(compared(X + none, X), "seed").verdict is Verdict.DISAGREES
+
+
+def test_what_agrees_by_an_identity_of_the_arguments_agrees_at_points_alone() -> None:
+    """exp(x y) is a function of the product, which the independent values of functions keep; log(exp(x) y) is not."""
+    assert judge(compared(sp.Abs(X) * sp.exp(X + Y), sp.Abs(X) * sp.exp(X) * sp.exp(Y)), "seed").verdict is (
+        Verdict.PROVED
     )
+    assert judge(compared(sp.atan(X) + sp.atan(1 / X), sp.sign(X) * sp.pi / 2), "seed").verdict is Verdict.SAMPLED
+
+
+def test_pairs_have_regular_points_of_their_own() -> None:
+    """No point is regular for both of them."""
+    pairs = (Pair("x", sp.sqrt(X), sp.sqrt(X)), Pair("-x", sp.sqrt(-X - 1), 2 * sp.sqrt(-X - 1)))
+    assert judge(Comparison(pairs), "seed").verdict is Verdict.DISAGREES
+
+
+def test_a_rounded_number_is_held_to_fifty_digits() -> None:
+    def verdict(digits: int) -> Verdict:
+        rounded = {X: sp.Rational(int(sp.sqrt(2).n(80) * 10**digits), 10**digits)}
+        return judge(Comparison((Pair("x", sp.Integer(0), X**2 - 2),), given=rounded, rounded=rounded), "seed").verdict
+
+    assert verdict(60) is Verdict.AGREES
+    assert verdict(48) is Verdict.DISAGREES

@@ -10,6 +10,7 @@ from holonom import maxima
 from holonom.crosscheck import check_record
 from holonom.maxima import run_batch
 from holonom.record import derived_record, read_record
+from holonom.source import describe
 
 HOLONOM = 'load("holonom.mac")$'
 
@@ -142,7 +143,7 @@ def test_a_scene_may_call_its_coordinates_by_letters_of_the_paper_and_of_maxima(
         scene = re.sub(rf"\b{word}\b", letter, scene)
     (file := tmp_path / "scene.mac").write_text(HOLONOM + scene)
     record = derived_record(file)
-    report = check_record(record)
+    report = check_record(record, describe(file))
     assert set(record.system.coordinates) == {letters["east"], letters["north"]}
     assert report.verdicts
     assert report.disagreements == 0
@@ -158,7 +159,7 @@ system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [m,
   kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2, forces = [field = -gradient(field)], constraints = [x^2 + y^2 - u^2])$
 """.replace("[field =", "[pull =")
     )
-    report = check_record(read_record(run_batch(file, "write_record")))
+    report = check_record(read_record(run_batch(file, "write_record")), describe(file))
     assert report.verdicts
     assert report.disagreements == 0
 

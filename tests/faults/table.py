@@ -88,6 +88,7 @@ def leaving(what: str, command: str) -> Callable[[Path], object]:
 
 FINISHED = "printf '%s\\nFINISHED\\n-\\n0\\n\\n%s\\n' ${{mark#outcome-}} ${{mark#outcome-}} > $mark"
 OTHER_MAXIMA = {"PATH": "{here}/bin:" + os.environ["PATH"], "XDG_CACHE_HOME": "{here}/../cache"}
+ENVELOPE = '{"format": "holonom-free", "version": 1}'
 NO_PROGRAMS = {"PATH": "{here}"}
 DERIVE = "derive scene.mac --json out.json"
 
@@ -167,18 +168,24 @@ OUTPUTS = [
         Fault(
             f"somebody else's {name}",
             f"{command} {name}",
-            "no earlier output of this kind",
+            "there is a file of that name",
             prepare=holding(name, content),
         )
         for name, command, content in (
             ("notes.json", "derive scene.mac --json", '{"name": "mine"}'),
             ("list.json", "check scene.mac --json", "[1, 2]"),
             ("other.mac", "derive scene.mac --json", PARTICLE),
+            ("other.json", "derive scene.mac --json", '{"format": "holonom-thesis", "version": 1}'),
             ("table.csv", "simulate scene.mac -o", "name,mark\nme,1\n"),
+            ("motion.csv", "simulate scene.mac -o", "t,x,dot(x)\n0,1,2\n"),
             ("drawing.svg", "errata --svg", "<svg xmlns='http://www.w3.org/2000/svg'/>"),
             ("thesis.tex", "derive scene.mac --tex", "\\documentclass{book}"),
             ("tool.py", "program scene.mac --to python -o", "print('mine')"),
         )
+    ),
+    Fault("an earlier document", "free scene.mac --json out.json", "", 0, holding("out.json", ENVELOPE)),
+    Fault(
+        "samples that may be replaced", "simulate scene.mac --until 1 -o x.csv --force", "", 0, holding("x.csv", "t\n")
     ),
     Fault("no such format", "simulate scene.mac --until 1 -o out.xls", "no such file can be written"),
     Fault("a directory of others for the companion", "companion scene.mac -o .", "other things than a companion"),
@@ -198,6 +205,96 @@ SCENES = [
     ),
     Fault("UTF-16", "check wide.mac", "not UTF-8", prepare=holding("wide.mac", PARTICLE.encode("utf-16"))),
     Fault("a link to itself", "derive loop", "cannot be read", prepare=lambda here: (here / "loop").symlink_to("loop")),
+    *(
+        Fault(f"{call} on the way", "derive asks.mac", "nobody is there to answer", prepare=holding("asks.mac", text))
+        for call, text in (
+            ("break()", "x : 1$ break()$"),
+            ("break(x)", 'break("why", x)$'),
+            ("to_lisp()", "to_lisp()$"),
+        )
+    ),
+    *(
+        Fault(
+            f"{name} defined anew",
+            "derive anew.mac",
+            f"anew.mac:{line}: {name} is a function of {whose}",
+            prepare=holding("anew.mac", PARTICLE + text),
+        )
+        for name, line, whose, text in (
+            ("subst", 18, "Maxima's", "subst(a, b, c) := a$"),
+            ("diff", 19, "Maxima's", "\nblock([x], define(diff(a, b), a))$"),
+            ("map", 18, "Maxima's", "map([x]) ::= x$"),
+            ("derive", 18, "Holonom's", "derive(x) := x$"),
+            ("holonomic_scene", 18, "Holonom's", "holonomic_scene([x]) := x$"),
+        )
+    ),
+    *(
+        Fault(
+            f"{entry} that is no text",
+            "derive titled.mac",
+            f"'{entry}' must be text",
+            prepare=holding(
+                "titled.mac",
+                PARTICLE.replace("kinetic_energy =", f"{entry} = u, kinetic_energy =").replace(
+                    'title          = "Particle on a table of controlled height",', ""
+                ),
+            ),
+        )
+        for entry in ("title", "source")
+    ),
+    Fault(
+        "a mass that no double holds",
+        "simulate mass.mac --until 1",
+        "larger than a double",
+        prepare=holding("mass.mac", PARTICLE.replace("m = 2", "m = 10^1000")),
+    ),
+    Fault(
+        "an energy that is a truncated series",
+        "derive series.mac --json out.json",
+        "",
+        0,
+        holding("series.mac", PARTICLE.replace("m*g*z,", "m*g*taylor(sin(z), z, 0, 3),")),
+    ),
+    Fault(
+        "names that are taken by no function",
+        "derive own.mac --json out.json",
+        "",
+        0,
+        holding(
+            "own.mac", f"{PARTICLE}f(x) := x$ f(x) := 2*x$ A(x) := x$ energy(x) := x$ gradient(V) := V$ h(x) ::= x$"
+        ),
+    ),
+    Fault(
+        "a name of 100000 letters",
+        "derive long.mac",
+        "long.mac:18: the name",
+        prepare=holding("long.mac", f"{PARTICLE}x{'a' * 100_000} : 1$"),
+    ),
+    Fault(
+        "a text of 100000 letters",
+        "derive text.mac --json out.json",
+        "",
+        0,
+        holding("text.mac", f'{PARTICLE}x : "{"a" * 100_000}"$'),
+    ),
+    Fault(
+        "1001 scenes",
+        "derive many.mac",
+        "describes 1001 scenes",
+        prepare=holding("many.mac", PARTICLE + "".join(f"s{k} : rise$ " for k in range(1000))),
+    ),
+    Fault(
+        "a file of 70 MiB",
+        "derive large.mac",
+        "is larger than 64 MiB",
+        prepare=holding("large.mac", b" " * (70 * 2**20)),
+    ),
+    Fault(
+        "standard input without an end",
+        "derive -",
+        "standard input: the file is larger than 64 MiB",
+        shell='"$@" < /dev/zero',
+    ),
     Fault("an empty file", "derive empty.mac", "describes no system", prepare=holding("empty.mac", "")),
     Fault(
         "a file that ends Maxima",
@@ -347,6 +444,19 @@ ENVIRONMENTS = [
         long=True,
     ),
     Fault(
+        "settings of Matplotlib that are not UTF-8",
+        "simulate scene.mac --until 1 --plot out.svg",
+        "not UTF-8",
+        prepare=holding("matplotlibrc", b"\xff\xfe"),
+    ),
+    Fault(
+        "a Python without docstrings",
+        "check scene.mac",
+        "no docstrings",
+        MACHINE_AT_FAULT,
+        environment={"PYTHONOPTIMIZE": "2"},
+    ),
+    Fault(
         "a nonsensical backend of Matplotlib",
         "simulate scene.mac --until 1 --plot out.svg",
         "",
@@ -376,6 +486,20 @@ WORK = [
     ),
     Fault("a tolerance of nan", "simulate scene.mac --until 1 --tol nan", "tolerances"),
     Fault("a tolerance of zero", "simulate scene.mac --until 1 --tol 0", "tolerances", long=True),
+    *(
+        Fault(f"a step of {text}", f"simulate scene.mac --until 1 --max-step {text}", says)
+        for text, says in (("nan", "is no length"), ("inf", "is no length"), ("1e-300", "steps to its end"))
+    ),
+    *(
+        Fault(
+            f"an end that nobody waits for, by {engine}",
+            f"simulate swing.mac --until 99999999999999999999 --engine {engine}",
+            "steps to its end",
+            prepare=holding("swing.mac", SWING),
+            long=engine == "robust",
+        )
+        for engine in ("taylor", "runge-kutta", "robust")
+    ),
     Fault("an end before the start", "simulate scene.mac --until -1", "not after the start", long=True),
     Fault("5000 digits", "series scene.mac --order 4 --precision 5000", "", 0, long=True),
     Fault("one digit", "simulate scene.mac --until 1 --precision 1 --final", "", 0, long=True),

@@ -15,10 +15,11 @@ from particle import PARTICLE
 from shell import SHELL
 from walls import walled
 
-from holonom.cli.options import UNWALLED
-from holonom.confined import Limits, Sandbox
 from holonom.documents import Document, ask
 from holonom.failures import Failure, HolonomError
+from holonom.hidden import hidden_character
+from holonom.sandbox import UNCONFINED, Limits, Sandbox
+from holonom.source import Source
 
 
 def scene(tmp_path: Path, deed: str, *, before: str = "") -> Path:
@@ -115,7 +116,7 @@ REFUSALS = {Failure.TORN, Failure.REFUSED, Failure.NOTHING_WRITTEN, Failure.LISP
 FORGERIES = {
     "the writer of the record": 'write_record(file) := with_stdout(file, print("{\\"forged\\" : true}"))$',
     "the derivation": "derive(system) := error(sconcat(forged))$ multipliers_of([x]) := [0]$",
-    "the Christoffel symbols": "christoffel_symbols([x]) := zeromatrix(2, 2)$ diff([x]) := 0$",
+    "the first steps": "christoffel_first_kind([x]) := zeromatrix(2, 2)$ mass_matrix([x]) := ident(2)$ diff([x]) := 0$",
     "Lisp's own functions": r'?eval(?read\-from\-string("(defun $diff (&rest x) (declare (ignore x)) 0)"))$',
     "the outcome": "in_a_shell(\"for f in outcome-*; do printf 'forged' > $f; done\")$",
     "the document": 'in_a_shell("touch document-0 document; cp document document-1")$',
@@ -138,9 +139,27 @@ def derivations(record: str) -> list:
     return json.loads(record)["derivations"]
 
 
-def test_a_description_that_is_changed_afterwards_is_refused(tmp_path):
-    with pytest.raises(HolonomError, match="was changed afterwards, or the file sets an option of Maxima's"):
-        ask(Document.RECORD, scene(tmp_path, "particle@constraints : [z - 2*u]$ "))
+def test_a_system_that_is_changed_afterwards_is_derived_as_its_description_shows_it(tmp_path):
+    source = Source(scene(tmp_path, "particle@constraints : [z - 2*u]$ "))
+    record = json.loads(ask(Document.RECORD, source))
+    shown = source.description().content["system"]["constraints"]
+    assert shown == record["system"]["constraints"] == [["Add", ["Multiply", -2, "u"], "z"]]
+
+
+@pytest.mark.parametrize("letter", ["\u202e", "\u2066", "\x07", "\x9b", "\u2028", "\u200b"])
+def test_titles_hold_no_characters_that_hide_or_reverse_text(letter, tmp_path):
+    file = tmp_path / "scene.mac"
+    file.write_text(PARTICLE.replace('"Particle', f'"{letter}Particle'), encoding="utf-8")
+    with pytest.raises(HolonomError) as raised:
+        ask(Document.RECORD, file)
+    assert (raised.value.failure, raised.value.detail) == (Failure.HIDDEN_CHARACTER, f"U+{ord(letter):04X}")
+
+
+def test_messages_show_the_characters_that_hide_or_reverse_text(tmp_path):
+    with pytest.raises(HolonomError) as raised:
+        ask(Document.RECORD, scene(tmp_path, 'print("\u202eon the way")$ error("\x1b[2Jlost\u202e")$'))
+    assert raised.value.detail == r"\x1b[2Jlost\u202e"
+    assert not any(map(hidden_character, raised.value.last_lines))
 
 
 @pytest.mark.parametrize(
@@ -177,5 +196,5 @@ def test_without_walls_one_line_says_so_and_the_derivation_is_the_same(bubblewra
         text=True,
         check=False,
     )
-    assert (done.returncode, done.stderr) == (0, f"{UNWALLED}\n")
+    assert (done.returncode, done.stderr) == (0, f"holonom: {UNCONFINED}\n")
     assert derivations(done.stdout) == derivations(particle_record)

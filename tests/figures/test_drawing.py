@@ -7,18 +7,18 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from holonom.confined import Limits
 from holonom.failures import HolonomError
 from holonom.figures.drawing import FRAMES, POSITIONS, animation, film_of, strip
 from holonom.program.drawing import Shape
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request
+from holonom.sandbox import Limits
 from holonom.simulation.request import SimulationRequest
 from holonom.simulation.result import Simulation
 from holonom.simulation.simulate import simulate
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-SCENES = sorted(file for file in EXAMPLES.rglob("*.mac") if file.name != "printed.mac")
+SCENES = sorted(file for file in EXAMPLES.rglob("*.mac") if file.name not in ("by_hand.mac", "printed.mac"))
 SVG = "{http://www.w3.org/2000/svg}"
 PENDULUM = """load("holonom.mac")$
 system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [g],

@@ -12,10 +12,10 @@ from click.testing import CliRunner
 from scipy.interpolate import CubicSpline
 
 from holonom.cli import holonom
-from holonom.confined import Limits
 from holonom.program.c_library import c_library, default_name, identifiers
 from holonom.program.model import scene_model
 from holonom.program.request import Request
+from holonom.sandbox import Limits
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 STRICT = ["-Wall", "-Wextra", "-pedantic", "-O2"]

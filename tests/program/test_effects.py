@@ -12,7 +12,6 @@ from programs import PENDULUM, document
 from walls import without_notice
 
 from holonom.cli import holonom
-from holonom.confined import Limits
 from holonom.crosscheck import check_record
 from holonom.crosscheck.independent import IndependentEquations
 from holonom.crosscheck.points import Valuation, random_point
@@ -23,6 +22,8 @@ from holonom.program.forms import MotionProgram
 from holonom.program.numpy_function import NumpyFunction
 from holonom.program.request import Request
 from holonom.record import derived_record
+from holonom.sandbox import Limits
+from holonom.source import describe
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SPHERICAL = EXAMPLES / "spherical_pendulum.mac"
@@ -155,7 +156,7 @@ def refusal_of(file, *options):
 def test_every_subset_of_effects_is_checked(called, write_scene):
     file = write_scene(spherical_scene(called))
     record = derived_record(file)
-    report = check_record(record)
+    report = check_record(record, describe(file))
     assert report.verdicts
     assert report.disagreements == 0
     assert_solves_independent_equations(file, record)

@@ -7,13 +7,13 @@ from types import SimpleNamespace
 import psutil
 import pytest
 
-from holonom.confined import Limits
 from holonom.failures import Failure, HolonomError
 from holonom.program import expense
 from holonom.program.expense import order_for, require_means
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.precision import GUARD_DIGITS, read_precision
 from holonom.program.request import Request
+from holonom.sandbox import Limits
 from holonom.series.heyoka_series import continue_motion, expand
 from holonom.simulation.engines.taylor import TaylorEngine
 from holonom.simulation.request import SimulationRequest

@@ -12,12 +12,12 @@ from click.testing import CliRunner
 from fmpy.validation import validate_fmu
 
 from holonom.cli import holonom
-from holonom.confined import Limits
 from holonom.failures import HolonomError
 from holonom.program.fmu import write_fmu
 from holonom.program.model import scene_model
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
+from holonom.sandbox import Limits
 from holonom.simulation.request import SimulationRequest
 from holonom.simulation.simulate import simulate
 

@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from holonom.confined import Limits
 from holonom.failures import HolonomError
 from holonom.program.motion_problem import MotionProblem, computing, motion_problem
 from holonom.program.numpy_function import NumpyFunction
 from holonom.program.request import Request
+from holonom.sandbox import Limits
 
 PAPER = Path(__file__).parents[2] / "examples" / "paper" / "paper.mac"
 

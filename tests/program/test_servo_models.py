@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from fmpy.validation import validate_fmu
 
-from holonom.confined import Limits
 from holonom.program.fmu import write_fmu
 from holonom.program.model import Model, scene_model
 from holonom.program.motion_problem import motion_problem
 from holonom.program.numpy_function import NumpyFunction
 from holonom.program.request import Request
+from holonom.sandbox import Limits
 from holonom.simulation.request import SimulationRequest
 from holonom.simulation.simulate import simulate
 

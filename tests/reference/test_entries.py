@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from holonom.maxima import LIBRARY
-from holonom.reference.entries import EntryText, FunctionText, function_texts, part_texts
+from holonom.reference.entries import EntryText, FunctionText, PartText, function_texts, part_texts, step_texts
 
 SYSTEM, SCENE = function_texts()
 
@@ -17,6 +17,19 @@ def call(function: FunctionText, *replacing: str, system: tuple[str, ...] = ()) 
     if system:
         first = f"{call(SYSTEM, *system)}, "
     return f"{function.name}({first}{function.with_entries(*replacing)})"
+
+
+def in_context(step: PartText, called: str) -> str:
+    """Return a call of Maxima's in which the names of the example have their values."""
+    names = (line.partition(" : ")[0] for line in step.context)
+    statements = (line.rstrip("$") for line in step.context)
+    return f"block([{', '.join(names)}], {', '.join([*statements, called])})"
+
+
+def misused(step: PartText) -> list[tuple[str, str]]:
+    """Return calls of a step with too few arguments and with texts in their place, and what is said of them."""
+    texts = ", ".join('"no"' for _ in step.call.split(","))
+    return [(f"{step.name}()", "arguments"), (f"{step.name}({texts})", step.name)]
 
 
 BODIES = ", ".join(dict.fromkeys(line.rstrip("$") for part in part_texts() for line in part.context))
@@ -34,6 +47,16 @@ CASES = [
     ),
     *((f"block([{BODIES}], {part.example})", None) for part in part_texts()),
     *((f"block([{BODIES}], {refusal.given})", refusal.said) for part in part_texts() for refusal in part.refused),
+    *(
+        (in_context(step, f'if ratsimp({step.example}) # ratsimp({step.gives}) then error("gives another")'), None)
+        for step in step_texts()
+    ),
+    *((in_context(step, refusal.given), refusal.said) for step in step_texts() for refusal in step.refused),
+    *(case for step in step_texts() for case in misused(step)),
+    ("dot(x + y)", "write dot of each name"),
+    *((f"{name}(x)", f"{name}: the first argument") for name in ("print_derivation", "free_motion_of")),
+    ("motion_series(x, 3, exact)", "motion_series: the first argument"),
+    ("continued_motion(x, 3, 16, 1)", "continued_motion: the first argument"),
 ]
 
 
@@ -75,6 +98,12 @@ def test_an_entry_says_all_that_there_is_to_say():
     assert all(isinstance(entry, EntryText) for entry in SYSTEM.entries)
     for entry in (*SYSTEM.entries, *SCENE.entries):
         assert all((entry.type, entry.default, entry.text, entry.example))
+
+
+def test_every_public_step_is_explained():
+    loaded = (Path(LIBRARY) / "holonom.mac").read_text(encoding="utf-8")
+    public = re.search(r"public_steps\((.*?)\)\$", loaded, re.DOTALL)[1]
+    assert sorted(step.name for step in step_texts()) == sorted([*re.findall(r"(\w+)\(", public), "derive"])
 
 
 def test_every_function_for_bodies_is_explained():

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import pytest
 
-from holonom.reference.entries import function_texts, part_texts
+from holonom.reference.entries import function_texts, part_texts, step_texts
 from holonom.reference.maxima_help import help_files
 
 FILES = help_files()
@@ -32,15 +32,16 @@ def test_every_entry_is_a_topic_with_its_whole_text(entry):
     assert all(" ".join(each.split()) in text for each in said)
 
 
-@pytest.mark.parametrize("part", part_texts(), ids=lambda part: part.name)
-def test_every_function_for_bodies_is_a_topic_with_its_whole_text(part):
-    said = (part.call, part.text, part.example, *(refusal.said for refusal in part.refused))
-    assert all(" ".join(each.split()) in explained(part.name) for each in said)
+@pytest.mark.parametrize("part", [*part_texts(), *step_texts()], ids=lambda part: part.name)
+def test_every_function_called_by_itself_is_a_topic_with_its_whole_text(part):
+    said = (part.call, part.text, part.example, part.gives, *(refusal.said for refusal in part.refused))
+    [text] = [found for topic in TOPICS if f"-- Function: {part.call} " in (found := explained(topic))]
+    assert all(" ".join(each.split()) in text for each in said)
 
 
 def test_topics_follow_one_another_without_overlap():
     places = sorted(TOPICS.values())
-    assert len(places) == len(ENTRIES) + len(function_texts()) + len(part_texts())
+    assert len(places) == len(ENTRIES) + len(function_texts()) + len(part_texts()) + len(step_texts())
     assert all(start + length < following for (start, length), (following, _) in pairwise(places))
 
 

@@ -10,7 +10,7 @@ import pytest
 import holonom
 from holonom.cli import holonom as command_line
 from holonom.documents import SCHEMAS
-from holonom.reference.entries import function_texts, part_texts
+from holonom.reference.entries import function_texts, part_texts, step_texts
 from holonom.reference.manual import manual_page
 from holonom.reference.topics import Table, Topic, command_options, topics
 
@@ -43,6 +43,10 @@ def test_every_entry_has_a_page(function):
 
 def test_every_function_for_bodies_has_a_page():
     assert all(f"part-{part.name}" in TOPICS for part in part_texts())
+
+
+def test_every_step_has_a_page():
+    assert all(f"step-{step.name}" in TOPICS for step in step_texts())
 
 
 @pytest.mark.parametrize("name", command_line.commands)

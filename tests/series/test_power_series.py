@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from paper_series import START, paper_by_hand
 
-from holonom.confined import Limits
 from holonom.failures import HolonomError
+from holonom.sandbox import Limits
 from holonom.series.power_series import (
     MotionSeries,
     SeriesRequest,

@@ -3,9 +3,9 @@
 from functools import cache
 from pathlib import Path
 
-from holonom.confined import Limits
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request
+from holonom.sandbox import Limits
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

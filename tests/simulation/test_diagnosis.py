@@ -2,9 +2,9 @@
 
 import pytest
 
-from holonom.confined import Limits
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
+from holonom.sandbox import Limits
 from holonom.simulation import diagnosis
 from holonom.simulation.matrices import MotionMatrices, start_of
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from problems import problem
 
-from holonom.confined import Limits
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
+from holonom.sandbox import Limits
 from holonom.simulation.diagnostics import EnergyBalance, condition, residuals
 from holonom.simulation.engines.robust import RobustEngine
 from holonom.simulation.matrices import Matrices, MotionMatrices

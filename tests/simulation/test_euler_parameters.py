@@ -6,9 +6,10 @@ from scipy import special
 from scipy.integrate import solve_ivp
 
 import holonom
-from holonom.confined import Limits
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request, Solve
+from holonom.sandbox import Limits
+from holonom.simulation.diagnosis import HardCase
 from holonom.simulation.request import EngineName, SimulationRequest
 from holonom.simulation.simulate import simulate
 
@@ -133,3 +134,15 @@ def test_a_disk_on_a_pivot_moved_by_a_bessel_function_follows_newton_and_euler(w
     start = np.concatenate([e, angular_velocity(e, rate)])
     truth = solve_ivp(newton_and_euler, (0, 2), start, "DOP853", rtol=3e-14, atol=1e-15).y[:4, -1]
     np.testing.assert_allclose([report.coordinates[f"e{i}"] for i in range(4)], truth, atol=1e-10)
+
+
+@pytest.mark.parametrize("e1", ["0", "1/10^9", "1/10^6", "1/100"])
+def test_body_near_its_reference_attitude_has_no_large_mass_ratio(e1):
+    """One of the diagonal entries of A is 4 I e1^2 there; the moments of inertia are 1, 2 and 3."""
+    motion = holonom.system(f"""
+body : rigid_body(2, [1, 2, 3], [x, y, z], [e0, e1, e2, e3])$
+system : holonomic_system(assembly(body))$
+spin : holonomic_scene(system, initial_state = [x = 0, y = 0, z = 0, dot(x) = 0, dot(y) = 0, dot(z) = 0,
+    e1 = {e1}, e2 = 0, e3 = 0, dot(e1) = 1/2, dot(e2) = 1/3, dot(e3) = 1],
+  initial_guess = [e0 = 1, dot(e0) = 0], time_span = [0, 1/10])$""").simulate(samples=2)
+    assert HardCase.MASS_RATIO not in motion.report.cases

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from problems import problem as example
 
-from holonom.confined import Limits
 from holonom.program.motion_problem import motion_problem
 from holonom.program.precision import read_precision
 from holonom.program.request import Request
+from holonom.sandbox import Limits
 from holonom.simulation.constraints.program_projection import ProgramProjection, _nearest_by_lapack, nearest_state
 from holonom.simulation.engines.robust import RobustEngine
 from holonom.simulation.evaluation import CompiledIfItPays, evaluation, evaluation_once

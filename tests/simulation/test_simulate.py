@@ -1,5 +1,6 @@
 """The motion in numbers, against closed forms, published solutions and conservation laws."""
 
+import warnings
 from fractions import Fraction
 
 import mpmath
@@ -7,11 +8,12 @@ import numpy as np
 import pytest
 from problems import problem
 
-from holonom.confined import Limits
+import holonom
 from holonom.explanations import engine_text, remarks
-from holonom.failures import Failure, HolonomError
+from holonom.failures import Failure, HolonomError, HolonomWarning
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request
+from holonom.sandbox import Limits
 from holonom.simulation.diagnosis import HardCase, Instant, fastest_decay
 from holonom.simulation.matrices import MotionMatrices
 from holonom.simulation.request import EngineName, SimulationRequest, Stabilization
@@ -402,3 +404,79 @@ def test_a_long_run_earns_better_code():
     assert long.compile_seconds > 0
     assert long.steps > 10000 * short.steps
     assert long.residuals["position"] < 1e-15
+
+
+@pytest.mark.parametrize("engine", ["auto", "robust"])
+def test_simulate_starts_where_a_force_has_no_slope(engine):
+    """x'' = x^(1/3) from x = 0 at unit speed: x'^2 = 1 + 3/2 x^(4/3)."""
+    motion = holonom.system("""
+system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [x^(1/3)])$
+motion : holonomic_scene(system, initial_state = [x = 0, dot(x) = 1], time_span = [0, 1])$""")
+    found = motion.simulate(samples=2, engine=engine)
+    assert found["dot(x)"][-1] ** 2 == pytest.approx(1 + 1.5 * found["x"][-1] ** (4 / 3), rel=1e-6)
+
+
+def test_simulate_rests_where_a_force_has_no_slope():
+    motion = holonom.system("""
+system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [-x^(1/3)])$
+motion : holonomic_scene(system, initial_state = [x = 0, dot(x) = 0], time_span = [0, 1])$""").simulate(samples=2)
+    assert motion["x"][-1] == 0
+
+
+def test_parameter_without_use_is_a_warning_once():
+    """A term that was commented out: x = a t^2/2."""
+    scene = holonom.system("""
+system : holonomic_system(coordinates = [x], parameters = [a, b], kinetic_energy = dot(x)^2/2, forces = [a])$
+motion : holonomic_scene(system, parameter_values = [a = 1, b = 2], initial_state = [x = 0, dot(x) = 0],
+  time_span = [0, 1])$""")
+    with pytest.warns(HolonomWarning) as told:
+        found = scene.simulate(samples=2)
+        scene.program()
+    assert [("'b'" in str(each.message), "'a'" in str(each.message)) for each in told] == [(True, False)]
+    assert found["x"][-1] == pytest.approx(0.5)
+
+
+def test_parameter_of_a_servo_constraint_alone_is_used():
+    scene = holonom.system("""
+system : holonomic_system(coordinates = [x], parameters = [b], controls = [u], kinetic_energy = dot(x)^2/2,
+  forces = [u])$
+motion : holonomic_scene(system, servo_constraints = [x - b*t^2], parameter_values = [b = 2], initial_state = [],
+  time_span = [0, 1])$""")
+    with warnings.catch_warnings(action="error"):
+        assert scene.simulate(samples=2)["x"][-1] == pytest.approx(2)
+
+
+@pytest.mark.parametrize("name", ["euler", "all", "local", "coordinates", "exact", "block"])
+def test_name_of_maxima_may_name_a_coordinate_and_a_parameter(name):
+    scene = holonom.system(f"""
+system : holonomic_system(coordinates = [{name}], kinetic_energy = dot({name})^2/2, forces = [1])$
+motion : holonomic_scene(system, initial_state = [{name} = 0, dot({name}) = 0], time_span = [0, 1])$""")
+    assert scene.simulate(samples=2)[name][-1] == pytest.approx(0.5)
+    assert scene.check().disagreements == 0
+    other = holonom.system(f"""
+system : holonomic_system(coordinates = [x], parameters = [{name}], kinetic_energy = dot(x)^2/2, forces = [{name}])$
+motion : holonomic_scene(system, parameter_values = [{name} = 3], initial_state = [x = 0, dot(x) = 0],
+  time_span = [0, 1])$""")
+    assert other.simulate(samples=2)["x"][-1] == pytest.approx(1.5)
+
+
+@pytest.mark.parametrize(
+    "effect", ["forces = [k = [-k*x]]", "potential_energy = [k = k*x^2/2]", "forces = [-forces*x]"]
+)
+def test_parameter_named_as_an_effect_is_refused_by_name(effect):
+    """A value of k took the place of the effect's name too, and the spring was lost without a word."""
+    name = "forces" if "forces*x" in effect else "k"
+    with pytest.raises(HolonomError) as refused:
+        holonom.system(f"""
+system : holonomic_system(coordinates = [x], parameters = [{name}], kinetic_energy = dot(x)^2/2, {effect})$
+motion : holonomic_scene(system, parameter_values = [{name} = 4], initial_state = [x = 1, dot(x) = 0],
+  time_span = [0, 1])$""").simulate(samples=2)
+    assert f"'{name}'" in refused.value.detail
+
+
+def test_function_of_a_user_with_an_internal_name_changes_nothing():
+    scene = holonom.system("""
+total(x) := x^2$
+system : holonomic_system(coordinates = [x], kinetic_energy = total(dot(x))/2, forces = [1])$
+motion : holonomic_scene(system, initial_state = [x = 0, dot(x) = 0], time_span = [0, 1])$""")
+    assert scene.simulate(samples=2)["x"][-1] == pytest.approx(0.5)

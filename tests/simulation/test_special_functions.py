@@ -10,7 +10,6 @@ from scipy import special
 from scipy.integrate import solve_ivp
 
 import holonom
-from holonom.confined import Limits
 from holonom.crosscheck.report import Verdict
 from holonom.failures import Failure, HolonomError
 from holonom.program.model import scene_model
@@ -18,6 +17,7 @@ from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.numpy_function import NumpyFunction
 from holonom.program.precision import read_precision
 from holonom.program.request import Request
+from holonom.sandbox import Limits
 from holonom.series.heyoka_series import expand
 from holonom.series.power_series import SeriesRequest, compute_series
 from holonom.simulation.request import EngineName, SimulationRequest

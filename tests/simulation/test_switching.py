@@ -14,12 +14,12 @@ import numpy as np
 import pytest
 
 import holonom
-from holonom.confined import Limits
 from holonom.failures import Failure, HolonomError
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.numpy_function import NumpyFunction
 from holonom.program.request import Request
 from holonom.program.sign_pattern import drawing_at_any_time
+from holonom.sandbox import Limits
 from holonom.simulation.engines.taylor import TaylorEngine
 from holonom.simulation.piecewise import Passage
 from holonom.simulation.request import EngineName, SimulationRequest
@@ -247,3 +247,32 @@ pushed : holonomic_scene(system, control_law = [u = if t < 1 then 0 else (t - 1)
   initial_state = [x = 0, dot(x) = 0], time_span = [0, 2], observe = [trajectory, residuals])$""").simulate(samples=9)
     assert {leg.engine for leg in motion.report.legs} == {"taylor", "robust"}
     assert motion["x"] == pytest.approx(np.maximum(motion.instants - 1, 0) ** 4.5 * 4 / 63, abs=1e-10)
+
+
+STICKING = """
+system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [{force} - 5*signum(dot(x))])$
+motion : holonomic_scene(system, initial_state = [x = 0, dot(x) = 0], time_span = [0, {span}])$
+"""
+
+
+@pytest.mark.parametrize("engine", ["auto", "robust"])
+@pytest.mark.parametrize(
+    ("force", "span", "end"),
+    [
+        ("t", 4, 0),
+        ("t", 5.5, 0.5**3 / 6),
+        ("t", 7, 2**3 / 6),
+        ("t", 8, 3**3 / 6),
+        ("2*t", 3, 2 * 0.5**3 / 6),
+        ("(5 - t)", 3, 0),
+        ("5*sin(t)", 5, 0),
+        ("-t", 7, -(2**3) / 6),
+        ("3*t/2", 6, 1.5 * (6 - 10 / 3) ** 3 / 6),
+        ("4*cos(3*t)", 3, 0),
+    ],
+)
+def test_friction_sticks_from_rest_until_the_force_is_larger(force, span, end, engine):
+    """The force grows as k t: it breaks away at k t = 5."""
+    motion = holonom.system(STICKING.format(force=force, span=span)).simulate(samples=2, engine=engine)
+    assert motion["x"][-1] == pytest.approx(end, abs=1e-9)
+    assert motion.report.trusted

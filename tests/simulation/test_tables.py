@@ -268,3 +268,20 @@ def test_a_motion_under_a_table_in_quadruple_precision(driven):
     motion = driven(f"table({points()})").simulate(samples=3, precision="quadruple")
     found = np.array([float(x) for x in motion["x"]])
     assert found == pytest.approx(truth(np.linspace(0, 4, 3)), rel=1e-14)
+
+
+@pytest.mark.parametrize("engine", ["taylor", "runge-kutta"])
+@pytest.mark.parametrize("drift", ["baumgarte", "ggl", "projection", "none"])
+def test_pendulum_whose_length_a_table_gives_keeps_its_angular_momentum(drift, engine, gsl):
+    """Without gravity r^2 phi' is constant, and r is SciPy's spline."""
+    points = [(0, 1), (0.5, 1.1), (1, 1), (2, 1.2), (3, 1)]
+    spline = CubicSpline(*np.array(points).T, bc_type="natural")
+    text = ", ".join(f"[{t}, {r}]" for t, r in points)
+    motion = holonom.system(f"""
+system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  constraints = [x^2 + y^2 - u^2])$
+swing : holonomic_scene(system, control_law = [u = table([{text}])], initial_state = [x = 0, dot(x) = 1],
+  initial_guess = [y = -1, dot(y) = 0], time_span = [0, 2])$""").simulate(samples=5, drift=drift, engine=engine)
+    angle = quad(lambda t: 1 / spline(t) ** 2, 0, 2, epsabs=1e-12)[0]
+    assert motion["x"][-1] == pytest.approx(spline(2) * math.sin(angle), abs=1e-7)
+    assert motion["y"][-1] == pytest.approx(-spline(2) * math.cos(angle), abs=1e-7)

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from holonom.confined import Limits
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
+from holonom.sandbox import Limits
 from holonom.sweeps.axes import read_axes
 from holonom.sweeps.kept import read_kept
 from holonom.sweeps.rows import Plan, RowMaker

@@ -172,6 +172,33 @@ def test_impossible_rows_are_marked_and_the_rest_is_right(rows_of, scenes):
     assert all(found["remark"][found["status"] != "ok"])
 
 
+SHORT = ("0/0", "at(1/(x-x),1)", "zero(1/(k-k))")
+LONG = ("1/0", "log(-1-x^2)", "max(1/(k-k))", "mean(sqrt(-1-x^2))")
+NOWHERE_FINITE = [*SHORT, *(pytest.param(kept, marks=pytest.mark.long) for kept in LONG)]
+
+
+@pytest.mark.parametrize("kept", NOWHERE_FINITE)
+def test_a_row_without_a_finite_value_says_so_and_keeps_none(rows_of, scenes, kept):
+    found = columns(rows_of(scenes / "oscillator.mac", f"{kept},x", "k=1:4:3", "m=1:2:1").table(0, 3))
+    assert (found["status"] == Status.UNDEFINED).all()
+    assert all(remark.startswith(kept) for remark in found["remark"])
+    assert np.isnan(found[kept]).all()
+    assert np.isfinite(found["x"]).all()
+
+
+def test_rows_with_a_finite_value_are_not_those_without(rows_of, scenes):
+    found = columns(rows_of(scenes / "oscillator.mac", "1/(k-2),log(k-1),zero(x)", "k=1:3:3", "m=1:100:2").table(0, 6))
+    finite = np.isin(found["k"], [3])
+    assert (found["status"] == np.where(finite, Status.OK, Status.UNDEFINED)).all()
+    assert np.isnan(found["zero(x)"][found["m"] == 100]).all()  # there is none, and that is no fault
+
+
+def test_a_motion_followed_by_itself_without_a_finite_value_says_so_too(rows_of, scenes):
+    found = columns(rows_of(scenes / "friction.mac", "1/0,max(log(-1-x^2)),zero(1/(mu-mu)),x", "mu=1:2:2").table(0, 2))
+    assert (found["status"] == Status.UNDEFINED).all()
+    assert np.isfinite(found["x"]).all()
+
+
 @pytest.mark.long
 def test_a_length_that_vanishes_on_the_way_ends_its_row_and_no_other(rows_of, scenes):
     found = columns(rows_of(scenes / "hanging.mac", "final", "v=-1:1:3").table(0, 3))
@@ -292,3 +319,22 @@ def test_without_projection_the_constraints_drift(rows_of):
 def test_a_quantity_that_the_motion_does_not_have_is_refused(rows_of):
     with pytest.raises(HolonomError, match="the motion has no lambda2; it has t, s, x, y"):
         rows_of("crane.mac", "max(lambda2)", "m=50:500:3")
+
+
+@pytest.mark.parametrize(("force", "radii"), [("a", [np.inf, np.inf]), ("a + t^40/(1 - t)", [np.nan, np.nan])])
+def test_infinite_radius_of_a_polynomial_takes_equations_that_it_satisfies(force, radii):
+    scene = holonom.system(f"""
+system : holonomic_system(coordinates = [x], parameters = [a], kinetic_energy = dot(x)^2/2, forces = [{force}])$
+motion : holonomic_scene(system, initial_state = [x = 1, dot(x) = 1], parameter_values = [a = 1])$""")
+    found = holonom.sweep(scene, values={"a": [0, 1]}, keep=["radius"]).to_pandas()["radius"]
+    assert list(found) == pytest.approx(radii, nan_ok=True)
+
+
+def test_sweep_over_a_parameter_that_cancels_gives_one_motion():
+    """A body falls as fast whatever its mass."""
+    scene = holonom.system("""
+system : holonomic_system(coordinates = [x], parameters = [m], kinetic_energy = m*dot(x)^2/2, potential_energy = m*x)$
+fall : holonomic_scene(system, parameter_values = [m = 1], initial_state = [x = 0, dot(x) = 0], time_span = [0, 1])$""")
+    rows = holonom.sweep(scene, values={"m": [1, 2, 5]}, keep=["x", "radius"]).to_pandas()
+    assert list(rows["x"]) == pytest.approx([-0.5] * 3)
+    assert (rows["radius"] == np.inf).all()

@@ -2,6 +2,8 @@
 
 import json
 import os
+import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -63,11 +65,66 @@ def test_the_same_command_computes_the_missing_parts_alone(swept):
     first, second = swept / "runs" / "part-0000000.parquet", swept / "runs" / "part-0000002.parquet"
     whole, stamp = rows(swept / "runs"), first.stat().st_mtime_ns
     second.write_bytes(second.read_bytes()[:100])
-    (swept / "runs" / ".part-0000003.parquet.99999.new").write_bytes(b"torn")
+    (swept / "runs" / ".holonom-0123456789abcdef.new").write_bytes(b"torn")
     assert sweep(*ASKED, "-o", swept / "runs", "--resume").returncode == 0
     assert rows(swept / "runs").equals(whole)
     assert first.stat().st_mtime_ns == stamp
-    assert not list((swept / "runs").glob(".part*"))
+    assert not list((swept / "runs").glob(".holonom-*"))
+
+
+def flip(folder: Path) -> None:
+    """One bit of a number, so that the file still reads."""
+    file = folder / "part-0000001.parquet"
+    content = bytearray(file.read_bytes())
+    content[len(content) // 3] ^= 1
+    file.write_bytes(content)
+
+
+def copy_over(folder: Path) -> None:
+    shutil.copy(folder / "part-0000001.parquet", folder / "part-0000002.parquet")
+
+
+def put_a_link(folder: Path) -> None:
+    (folder / "part-0000003.parquet").unlink()
+    (folder / "part-0000003.parquet").symlink_to(folder / "part-0000000.parquet")
+
+
+def cut_manifest(folder: Path) -> None:
+    """In the middle of the last line, as a kill may leave it."""
+    manifest = folder / "_parts.jsonl"
+    lines = manifest.read_text().splitlines()
+    last = next(line for line in lines if "part-0000003" in line)
+    manifest.write_text("\n".join([*(line for line in lines if line != last), last[:-20]]))
+
+
+def exchange_lines(folder: Path) -> None:
+    manifest = folder / "_parts.jsonl"
+    text = manifest.read_text().replace("part-0000000", "part-x").replace("part-0000001", "part-0000000")
+    manifest.write_text(text.replace("part-x", "part-0000001"))
+
+
+@pytest.mark.parametrize(
+    ("tamper", "parts"),
+    [
+        (flip, [1]),
+        (copy_over, [2]),
+        (put_a_link, [3]),
+        (cut_manifest, [3]),
+        (exchange_lines, [0, 1]),
+        (lambda folder: (folder / "_parts.jsonl").unlink(), [0, 1, 2, 3]),
+        (lambda folder: (folder / "_parts.jsonl").write_bytes(b"\xff\n[]\n{}\n3\n"), [0, 1, 2, 3]),
+    ],
+)
+def test_parts_that_are_not_as_they_were_written_are_computed_again_and_said(swept, tmp_path, tamper, parts):
+    whole, folder = rows(swept / "runs"), tmp_path / "runs"
+    shutil.copytree(swept / "runs", folder)
+    tamper(folder)
+    done = sweep(*ASKED, "-o", folder)
+    assert done.returncode == 0
+    assert re.findall(r"part-\d{6}(\d)\.parquet", done.stderr) == [str(part) for part in parts]
+    assert rows(folder).equals(whole)
+    assert not (folder / "part-0000003.parquet").is_symlink()
+    assert sweep(*ASKED, "-o", folder) == (0, "")
 
 
 def test_a_sweep_of_standard_input_told_a_temporary_file(swept):
@@ -109,6 +166,10 @@ def test_another_sweep_in_the_same_folder_is_refused(swept, change, told):
         (("--grid", "m=1:2:3", "--resume"), "no sweep to resume"),
         (("--grid", "nothing=1:2:3"), "nothing is no parameter of hoisting_scene"),
         (("--grid", "m=1:2:3", "--keep", "lambda7"), "the motion has no lambda7"),
+        *(
+            (("--grid", "m=1:2:3", "--dask", address), "is no address")
+            for address in ("", "nowhere", "file:///etc/passwd", "tcp://a b:1", "inproc://x", "127.0.0.1:99999")
+        ),
     ],
 )
 def test_bad_options_are_told_in_one_sentence(tmp_path, monkeypatch, options, told):

@@ -66,6 +66,21 @@ def test_a_killed_worker_is_replaced(undisturbed, tmp_path):
     assert rows(tmp_path / "runs").equals(rows(undisturbed))
 
 
+@pytest.mark.parametrize(("killed", "status"), [(1, 0), (100, 3)])
+def test_a_worker_killed_while_it_starts_is_started_anew_some_times(killed, status, undisturbed, tmp_path):
+    process = begun(tmp_path / "runs", "--workers", "2")
+    seen: set[int] = set()
+    while process.poll() is None and len(seen) < killed:
+        for worker in workers_of(process):
+            if worker.pid not in seen:
+                seen.add(worker.pid)
+                worker.kill()
+    said = process.communicate(timeout=600)[1]
+    assert process.returncode == status
+    assert said.count("\n") == (status > 0)
+    assert status or rows(tmp_path / "runs").equals(rows(undisturbed))
+
+
 def test_a_killed_command_leaves_whole_parts_and_the_same_command_the_rest(undisturbed, tmp_path):
     process = begun(tmp_path / "runs", "--workers", "2")
     until(lambda: parts(tmp_path / "runs") > 3)

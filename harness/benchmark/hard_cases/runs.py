@@ -13,12 +13,12 @@ import numpy as np
 from mpmath import mpf
 from scipy.integrate import solve_ivp
 
-from ...confined import Limits
 from ...files import shared
 from ...language import translatable
 from ...program.motion_problem import MotionProblem, motion_problem
 from ...program.motion_program import Solve
 from ...program.request import Request
+from ...sandbox import Limits
 from ...simulation.diagnosis import HardCase
 from ...simulation.matrices import Matrix, MotionMatrices, Vector
 from ...simulation.request import FINAL_STATE_ALONE, SimulationRequest

@@ -22,11 +22,12 @@ from ...program.motion_problem import MotionProblem
 from ...program.precision import read_precision
 from ...program.request import Request
 from ...series.heyoka_series import expand, expanding_integrator
+from ...source import Source
 from .measurement import WORKING_DIGITS, Candidate, Group, Measurement, Prepared, State, relative_error
 from .operations import acceleration_program, expansion_operations
 
 if TYPE_CHECKING:
-    from ...confined import Limits
+    from ...sandbox import Limits
     from .reference import Reference
 
 EXACT = "exact"
@@ -72,7 +73,7 @@ def double_series(expansion: Expansion, orders: Sequence[int]) -> Iterator[Candi
 
 
 def maxima_series(
-    file: Path,
+    file: Source | Path,
     request: Request,
     limits: Limits,
     expansion: Expansion,

@@ -8,7 +8,6 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from ...confined import Limits
 from ...documents import Publication, published
 from ...failures import Failure, HolonomError
 from ...language import translatable
@@ -16,9 +15,11 @@ from ...program.motion_problem import MotionProblem, motion_problem, require_ana
 from ...program.motion_program import Solve
 from ...program.precision import read_precision
 from ...program.request import Request
+from ...sandbox import Limits
 from ...simulation.engines.taylor import TaylorEngine
 from ...simulation.request import Stabilization
 from ...simulation.simulate import last_instant
+from ...source import Source, source_of
 from ..machine import Machine, this_machine
 from .advice import Advice, Price, cheapest_methods, prices
 from .contest import measure, without_caches
@@ -90,7 +91,7 @@ class Study:
 
 
 def study(
-    file: Path, request: Request, limits: Limits, plan: Plan, advance: Callable[[], None] = lambda: None
+    file: Source | Path, request: Request, limits: Limits, plan: Plan, advance: Callable[[], None] = lambda: None
 ) -> Study:
     """Measure what accuracy costs in time and in operations.
 
@@ -102,13 +103,14 @@ def study(
     HolonomError
         As `holonom.program.motion_problem.motion_problem`; the scene has no motion program or names no end.
     """
-    problems, unsolved = _problems(file, request, limits, plan)
+    source = source_of(file, limits)
+    problems, unsolved = _problems(source, request, plan)
     problem, until = problems[0], _end_of(problems[0], plan)
     plan, beyond = _within_reach(plan, problem, until)
     expansion, unexpanded = _expansion(problem, until)
     instants = sorted({until, expansion.instant} if expansion else {until})
     reference = find_reference(problem, instants, plan.most_digits)
-    series, unexpandable = _series(file, request, limits, expansion, plan, reference)
+    series, unexpandable = _series(source, request, expansion, plan, reference)
     with without_caches():
         results = measure(_candidates(problems, until, expansion, plan), reference, advance)
     measurements = [*series, *(r for r in results if isinstance(r, Measurement))]
@@ -126,15 +128,15 @@ def study(
     )
 
 
-def _problems(file: Path, request: Request, limits: Limits, plan: Plan) -> tuple[list[MotionProblem], list[Omission]]:
+def _problems(source: Source, request: Request, plan: Plan) -> tuple[list[MotionProblem], list[Omission]]:
     """The problem with the solve that is asked for, then with the other one where that solves it."""
     digits = plan.most_digits + MORE_DIGITS
-    problem = motion_problem(file, request, limits, digits)
+    problem = motion_problem(source, request, source.limits, digits)
     if problem.obstacle is not None:
-        raise HolonomError(Failure.NO_MOTION_PROGRAM, file, problem.obstacle)
+        raise HolonomError(Failure.NO_MOTION_PROGRAM, source.file, problem.obstacle)
     require_analytic(problem)
     other = next(solve for solve in Solve if solve is not request.solve)
-    by_other = motion_problem(file, replace(request, solve=other), limits, digits)
+    by_other = motion_problem(source, replace(request, solve=other), source.limits, digits)
     if by_other.obstacle is not None:
         return [problem], [Omission(solve_name(other), "all tolerances", by_other.obstacle)]
     return [problem, by_other], []
@@ -173,13 +175,13 @@ def _expansion(problem: MotionProblem, until: Fraction) -> tuple[Expansion | Non
 
 
 def _series(
-    file: Path, request: Request, limits: Limits, expansion: Expansion | None, plan: Plan, reference: Reference
+    source: Source, request: Request, expansion: Expansion | None, plan: Plan, reference: Reference
 ) -> tuple[list[Measurement], list[Omission]]:
     """Maxima's series, as far as there are any."""
     measurements, omissions = [], []
     for digits in (EXACT, plan.series_digits) if expansion else ():
         try:
-            found = list(maxima_series(file, request, limits, expansion, plan.orders, digits, reference))
+            found = list(maxima_series(source, request, source.limits, expansion, plan.orders, digits, reference))
         except HolonomError as refusal:
             omissions.append(Omission(series_name(digits), translatable("all orders"), str(refusal)))
             continue

@@ -11,10 +11,11 @@ from rich.table import Table
 from rich.terminal_theme import DIMMED_MONOKAI
 from rich.text import Text
 
+from ...hidden import visible_line
 from ...language import gettext, ngettext, translatable, translated
 from ...notation import scene_text
 from .condition import condition_lines
-from .text import counted, styled
+from .text import PlainConsole, counted, styled
 
 if TYPE_CHECKING:
     from ...crosscheck import CheckReport
@@ -26,15 +27,15 @@ HELD_IN_MEMORY = 10**12  # terms of closed forms: some bytes each, and no machin
 
 def show_record(console: Console, record: "Record") -> None:
     """Print a derivation, equation by equation, under the paper's numbers."""
-    console.print(record.system.title, style="bold")
+    console.print(visible_line(record.system.title), style="bold")
     if record.system.source:
-        console.print(record.system.source, style="dim")
+        console.print(visible_line(record.system.source), style="dim")
     for derivation in record.derivations:
         console.print(f"\nDerivation with {_listed(derivation.effects)}", style="bold")
         _show_equations(console, derivation.equations)
         _show_left_out(console, derivation.left_out)
     for scene in record.scenes:
-        console.print(f"\n{scene.name}: {scene.title}", style="bold")
+        console.print(f"\n{visible_line(f'{scene.name}: {scene.title}')}", style="bold")
         _show_equations(console, scene.equations)
         _show_left_out(console, scene.left_out)
 
@@ -42,7 +43,7 @@ def show_record(console: Console, record: "Record") -> None:
 def show_reports(console: Console, reports: Iterable[tuple[str, "CheckReport"]]) -> None:
     """Print the verdicts on each scene file."""
     for scene, report in reports:
-        console.print(scene, style="italic", soft_wrap=True, markup=False)
+        console.print(scene, style="italic", soft_wrap=True)
         show_verdicts(console, report)
 
 
@@ -58,25 +59,28 @@ def show_verdicts(console: Console, report: "CheckReport") -> None:
     console.print(table)
     for found in report.verdicts:
         if found.verdict in ("disagrees", "undecided"):
-            console.print(f"({found.number}) {found.name}: {found.detail}", soft_wrap=True, markup=False)
+            console.print(f"({found.number}) {found.name}: {found.detail}", soft_wrap=True)
     for left_out in dict.fromkeys(found.left_out for found in report.verdicts if found.left_out):
         numbers = dict.fromkeys(f"({found.number})" for found in report.verdicts if found.left_out == left_out)
         said = f"{', '.join(numbers)} left out: {why_left_out(left_out)}."
-        console.print(said, soft_wrap=True, markup=False)
-    console.print(f"{_sum(report)}; random points drawn by --seed {report.seed}", soft_wrap=True, markup=False)
+        console.print(said, soft_wrap=True)
+    console.print(f"{_sum(report)}; random points drawn by --seed {report.seed}", soft_wrap=True)
 
 
 def _sum(report: "CheckReport") -> str:
     from ...crosscheck.report import Verdict
 
-    left_out, empty = report.count(Verdict.LEFT_OUT), report.count(Verdict.NOTHING)
-    agreed = report.count(Verdict.PROVED, Verdict.AGREES)
-    parts = [f"{len(report.verdicts) - left_out} equations made", f"{left_out} left out", f"{agreed} agreed"]
-    if undecided := report.count(Verdict.UNDECIDED):
-        parts.append(f"{undecided} undecided")
-    if empty:
-        parts.append(f"{empty} with nothing to check")
-    return ", ".join([*parts, counted(report.disagreements, "disagreement")])
+    expected = len(report.verdicts) - report.count(Verdict.LEFT_OUT)
+    counts = {
+        "agree": Verdict.AGREES,
+        "agree at points": Verdict.SAMPLED,
+        "undecided": Verdict.UNDECIDED,
+        "with nothing to check": Verdict.NOTHING,
+        "left out": Verdict.LEFT_OUT,
+    }
+    parts = [f"{count} {what}" for what, verdict in counts.items() if (count := report.count(verdict))]
+    proved = f"{report.count(Verdict.PROVED)} of {expected} expected equations proved"
+    return ", ".join([proved, *parts, counted(report.disagreements, "disagreement")])
 
 
 def _show_equations(console: Console, equations: Iterable["Equation"]) -> None:
@@ -84,9 +88,9 @@ def _show_equations(console: Console, equations: Iterable["Equation"]) -> None:
         console.print(Text(f"({equation.number}) {equation.name}", style="cyan"))
         if equation.id == "free_motion_condition":
             lines = [line for relation in equation.relations for line in condition_lines(relation.left_tree)]
-            console.print("\n".join(f"    {line}" for line in lines), soft_wrap=True, markup=False)
+            console.print("\n".join(f"    {line}" for line in lines), soft_wrap=True)
         elif equation.relations:
-            console.print("\n".join(map(_line, equation.relations)), soft_wrap=True, markup=False)
+            console.print("\n".join(map(_line, equation.relations)), soft_wrap=True)
         else:
             console.print("    none", style="dim")
 
@@ -147,7 +151,7 @@ def _summary(equations: int, misprints: int) -> str:
 
 def draw_errata(equations: Sequence["PrintedEquation"]) -> str:
     """Return the table of the comparison with print as an SVG picture that needs no network."""
-    console = Console(record=True, width=PICTURE_WIDTH, file=io.StringIO(), force_terminal=True)
+    console = PlainConsole(record=True, width=PICTURE_WIDTH, file=io.StringIO(), force_terminal=True)
     console.print(_errata_table(equations))
     picture = console.export_svg(title="holonom errata", theme=DIMMED_MONOKAI, unique_id="errata")
     return FONT_FROM_NETWORK.sub("", picture)
@@ -174,4 +178,4 @@ def _show_misprint(console: Console, equation: "PrintedEquation") -> None:
     console.print(Text(f"{number}{translated(equation.name)}", style="cyan"))
     for what, text in said.items():
         if text:
-            console.print(f"    {what}: {text}", soft_wrap=True, markup=False)
+            console.print(f"    {what}: {text}", soft_wrap=True)

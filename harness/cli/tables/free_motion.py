@@ -71,10 +71,10 @@ def _universal_law(law: "UniversalLaw") -> list[str]:
     free = f"{', '.join(law.free)} any function of the time" if law.free else ""
     where = " and ".join(f"{formula(each)} > 0" for each in law.positive)
     check = law.check
-    found = f"{check.verdict} to {check.digits} digits in {check.points} random states"
+    shown = "" if check.digits is None else f" to {check.digits} digits in {check.points} random states"
     return [
         ", ".join(filter(None, (_law(law.controls), free))) + (f"  where {where}" if where else ""),
-        f"  SymPy, from the equations of motion: {found}{': ' + check.detail if check.detail else ''}",
+        f"  SymPy, from the equations of motion: {check.verdict}{shown}{': ' + check.detail if check.detail else ''}",
     ]
 
 
@@ -91,7 +91,7 @@ def _show_list(console: Console, title: str, lines: Iterable[str]) -> None:
     console.print(Text(title, style="cyan"))
     for line in lines:
         if line:
-            console.print(f"    {line}", soft_wrap=True, markup=False)
+            console.print(f"    {line}", soft_wrap=True)
 
 
 def _verdict(motion: "MotionVerdict") -> str:

@@ -8,6 +8,7 @@ from rich.table import Table
 from rich.text import Text
 
 from ...benchmark.work_precision.measurement import Group
+from ...hidden import visible_line
 from .text import counted, styled
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ NANOSECONDS = 1e9  # in a second
 def show_costs(console: Console, costs: "MeasuredCosts") -> None:
     """Print the terms of (3) and (7) and the effects of a scene, with what each costs."""
     unit = f"ns in {costs.measured_in}"
-    terms = Table("eq.", "term", "status", "operations", unit, title=costs.scene, title_justify="left")
+    terms = Table("eq.", "term", "status", "operations", unit, title=visible_line(costs.scene), title_justify="left")
     for term in costs.terms:
         cost = (str(term.operations), _nanoseconds(term.seconds)) if term.status == "present" else ("", "")
         terms.add_row(term.equation, Text(term.term), styled(term.status), *cost)
@@ -67,7 +68,7 @@ TITLES = {
 
 def show_study(console: Console, study: "Study") -> None:
     """Print every measurement, what was left out and why, and the advice that follows."""
-    console.print(f"{study.scene}: {study.title}", soft_wrap=True)
+    console.print(visible_line(f"{study.scene}: {study.title}"), soft_wrap=True)
     for group, title in TITLES.items():
         rows = [m for m in study.measurements if m.group is group]
         if not rows:
@@ -128,7 +129,7 @@ def show_stability(console: Console, reports: Sequence["CaseReport"]) -> None:
     console.print(table)
     for report in reports:
         console.print(Text(report.case.name, style="cyan"))
-        console.print(f"    truth: {report.case.truth}", soft_wrap=True, markup=False)
-        console.print(f"    {advice(report.case.kind)}", soft_wrap=True, markup=False)
+        console.print(f"    truth: {report.case.truth}", soft_wrap=True)
+        console.print(f"    {advice(report.case.kind)}", soft_wrap=True)
     failed = sum(report.fails for report in reports)
     console.print(f"{counted(len(reports), 'hard case')}, {counted(failed, 'failure')}")

@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING
 
 import mpmath
 
+from ...hidden import visible_line
+
 if TYPE_CHECKING:
     from rich.console import Console
 
@@ -21,7 +23,11 @@ def show_series(console: "Console", motion: "MotionSeries", values: "Values | No
     """Print the power series of a motion, how far they hold, and values asked for."""
     from rich.table import Table
 
-    table = Table("order", title=f"{motion.scene}: {motion.title}, about t = {motion.t0}", title_justify="left")
+    from ...series.radius import described
+
+    table = Table(
+        "order", title=f"{visible_line(f'{motion.scene}: {motion.title}')}, about t = {motion.t0}", title_justify="left"
+    )
     columns = dict(motion.all_series())
     for name in columns:
         table.add_column(name)
@@ -29,10 +35,10 @@ def show_series(console: "Console", motion: "MotionSeries", values: "Values | No
         table.add_row(str(n), *map(short_number, row))
     console.print(table)
     radius = motion.radius
-    size = "" if radius.estimate is None else f"{radius.estimate:.8g}, known to {radius.uncertainty:.1g}; "
+    size = "" if radius.estimate is None else f"{radius.estimate:.8g}, {described(radius)}; "
     console.print(f"{motion.arithmetic} arithmetic; radius of convergence: {size}{radius.remark}", soft_wrap=True)
     if motion.switch is not None:
-        console.print(f"This is the motion as long as {motion.switch} keeps its sign.", soft_wrap=True, markup=False)
+        console.print(f"This is the motion as long as {motion.switch} keeps its sign.", soft_wrap=True)
     for z in radius.singularities:
         console.print(f"    singularity at t - t0 = {z.real:.8g} {z.imag:+.8g} i")
     if values is not None:
@@ -87,7 +93,7 @@ def show_report(console: "Console", scene: str, title: str, report: "Report") ->
     from ...simulation.output import report_document
 
     document = report_document(report)
-    console.print(f"{scene}: {title}, at t = {document['t']}", soft_wrap=True, markup=False)
+    console.print(f"{visible_line(f'{scene}: {title}')}, at t = {document['t']}", soft_wrap=True)
     table = Table("", "", show_header=False)
     for group in ("coordinates", "velocities", "multipliers", "controls"):
         for name, value in document[group].items():
@@ -95,7 +101,7 @@ def show_report(console: "Console", scene: str, title: str, report: "Report") ->
         table.add_section()
     console.print(table)
     for line in _quality(report):
-        console.print(line, soft_wrap=True, markup=False)
+        console.print(line, soft_wrap=True)
 
 
 def _quality(report: "Report") -> Iterator[str]:
@@ -104,6 +110,9 @@ def _quality(report: "Report") -> Iterator[str]:
     if report.correction is not None:
         name, size = report.correction
         yield f"The initial state misses the constraints in its last digits and is corrected, {name} most, by {size}."
+    if report.moved is not None:
+        name, size = report.moved
+        yield f"The start differs from initial_guess most in {name}, by {size}."
     left = ", ".join(f"{name} {value:.1e}" for name, value in report.residuals.items())
     yield f"residuals of the constraints: {left}; condition number of G: {report.condition:.3g}"
     yield f"energy error: {report.energy_error:.1e}"
@@ -171,11 +180,11 @@ def show_sweep(console: "Console", sweep: "Sweep", statuses: Mapping[str, int]) 
 
     document = sweep.document
     names = ", ".join(axis["asked"] for axis in document["parameters"])
-    console.print(f"{document['scene']['name']}: {document['rows']} motions, {names}", soft_wrap=True, markup=False)
+    console.print(f"{document['scene']['name']}: {document['rows']} motions, {names}", soft_wrap=True)
     table = Table()
     table.add_column("status")
     table.add_column("rows", justify="right")
     for status, rows in statuses.items():
         table.add_row(status, str(rows))
     console.print(table)
-    console.print(f"kept in {sweep.path}: {', '.join(document['columns'])}", soft_wrap=True, markup=False)
+    console.print(f"kept in {sweep.path}: {', '.join(document['columns'])}", soft_wrap=True)

@@ -5,6 +5,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from ...hidden import visible_line
+
 if TYPE_CHECKING:
     from rich.progress import Progress
 
@@ -44,9 +46,11 @@ def _bar(title: str, total: float, *columns: object) -> "Iterator[Progress | Non
     if not sys.stderr.isatty():
         yield None
         return
-    from rich.console import Console
+    from rich.markup import escape
     from rich.progress import Progress
 
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        bar.add_task(title, total=total, rate="")
+    from .text import PlainConsole
+
+    with Progress(*columns, console=PlainConsole(stderr=True), transient=True) as bar:
+        bar.add_task(escape(visible_line(title)), total=total, rate="")
         yield bar

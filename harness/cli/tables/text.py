@@ -1,12 +1,15 @@
 """The console, and how words, numbers and formulas are written on it."""
 
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from typing import Any
 
 import click
-from rich.console import Console
+from rich.console import Console, ConsoleOptions, RenderableType
+from rich.segment import Segment
 from rich.text import Text
 
+from ...hidden import visible
 from ...language import translated
 
 PIPE_WIDTH = 100_000  # columns where there is no terminal: no table is cut
@@ -15,6 +18,7 @@ HTML = '<pre style="white-space: pre; overflow-x: auto; line-height: normal">{co
 STYLES = {
     "proved": "green",
     "agrees": "green",
+    "agrees at points": "yellow",
     "disagrees": "bold red",
     "undecided": "yellow",
     "nothing to check": "dim",
@@ -29,10 +33,22 @@ STYLES = {
 }
 
 
+class PlainConsole(Console):
+    """A console that takes text for text: no markup, and nothing in it that steers a terminal."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(highlight=False, markup=False, emoji=False, **options)
+
+    def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterable[Segment]:
+        """Render as any console does, unseen characters by their codes."""
+        for segment in super().render(renderable, options):
+            yield segment if segment.control else segment._replace(text=visible(segment.text))
+
+
 def make_console() -> Console:
     """Console on standard output, silent where the command line says --quiet."""
     ctx = click.get_current_context(silent=True)
-    console = Console(highlight=False, quiet=ctx is not None and bool(ctx.find_root().params.get("quiet")))
+    console = PlainConsole(quiet=ctx is not None and bool(ctx.find_root().params.get("quiet")))
     if not console.is_terminal:
         console.width = PIPE_WIDTH
     return console
@@ -60,8 +76,6 @@ def counted(count: int, what: str) -> str:
 
 def _shown(show: Callable[[Console], None]) -> Console:
     kept = io.StringIO()
-    console = Console(
-        highlight=False, record=True, width=CELL_WIDTH, file=kept, force_terminal=True, force_jupyter=False
-    )
+    console = PlainConsole(record=True, width=CELL_WIDTH, file=kept, force_terminal=True, force_jupyter=False)
     show(console)
     return console

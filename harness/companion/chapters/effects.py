@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from ...benchmark.machine import this_machine
-from ...confined import Limits
 from ...figures.motion import draw_with_and_without
 from ...program.effects import MeasuredCosts, scene_costs
 from ...program.request import Request
 from ...record import Record
+from ...sandbox import Limits
 from ...simulation.result import Simulation
 from ..chapter import Page, Run
 from ..excerpts import excerpt

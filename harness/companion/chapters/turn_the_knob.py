@@ -13,7 +13,6 @@ from typing import Any
 import sympy
 from sympy import I, Symbol
 
-from ...confined import Limits
 from ...figures.curves import Panel, draw_curves
 from ...figures.style import lettered_text
 from ...free_motion import Free, FreeMotion
@@ -25,6 +24,7 @@ from ...program.motion_problem import motion_problem
 from ...program.motion_program import Program, program_of
 from ...program.request import Request
 from ...record import Scene
+from ...sandbox import Limits
 from .. import TEMPLATES
 from ..cards import scene_named
 from ..chapter import Page, Run

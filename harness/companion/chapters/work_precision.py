@@ -8,11 +8,11 @@ from typing import Any
 
 from ...benchmark.work_precision.measurement import WHOLE_MOTION, Group
 from ...benchmark.work_precision.study import Plan, Study, study
-from ...confined import Limits
 from ...figures.benchmark import draw_study
 from ...figures.curves import draw_drift
 from ...program.motion_problem import motion_problem
 from ...program.request import Request
+from ...sandbox import Limits
 from ...simulation.request import SimulationRequest, Stabilization
 from ...simulation.result import Simulation
 from ...simulation.simulate import simulate

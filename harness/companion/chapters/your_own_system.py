@@ -6,7 +6,7 @@ from typing import Any
 
 from ...documents import Document, ask
 from ...failures import HolonomError
-from ...files import private_directory
+from ...temporary import private_directory
 from ..chapter import Page, Run
 from ..excerpts import excerpt
 from ..runs import derived

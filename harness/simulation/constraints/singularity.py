@@ -163,6 +163,12 @@ def no_gradient(t: float, multiplier: str) -> HolonomError:
     return HolonomError(Failure.NO_GRADIENT, instant=float(t), multiplier=multiplier)
 
 
+def no_controls(t: float) -> HolonomError:
+    """The refusal to follow a motion to where servo-constraints leave their controls without values."""
+    reason = "the controls move what servo-constraints prescribe in fewer directions"
+    return HolonomError(Failure.NO_WAY_ON, detail=f"{t:.10g}, where {reason}")
+
+
 def zeros_of_controls(problem: MotionProblem, start: float, end: float) -> list[float]:
     """Instants inside a time span at which a control changes its sign, in order."""
     matrices = in_numbers(problem, problem.matrices)

@@ -27,10 +27,14 @@ def equations_of_motion(problem: MotionProblem, program: Program, precision: Pre
 
     Each coordinate and each velocity with its rate; what is open are heyoka's parameters.
     """
+    return dynamics(program, _beside_state(problem, precision), precision.ratio)
+
+
+def _beside_state(problem: MotionProblem, precision: Precision) -> dict[str, Any]:
+    """Values of the inputs that are neither the time nor the state: heyoka's parameters for what is open."""
     heyoka = import_heyoka()
     parameters = {name: heyoka.par[place] for place, name in enumerate(problem.open_inputs)}
-    unused = zero_multipliers(problem.multipliers, precision.number("0"))
-    return dynamics(program, parameters | unused, precision.ratio)
+    return parameters | zero_multipliers(problem.multipliers, precision.number("0"))
 
 
 def stabilized_equations(
@@ -65,5 +69,5 @@ def stabilized_equations(
 def _corrections(problem: MotionProblem, precision: Precision) -> dict[str, Any]:
     heyoka = import_heyoka()
     variables = {name: heyoka.expression(name) for name in problem.state}
-    inputs = {"t": heyoka.time, **variables, **zero_multipliers(problem.multipliers, precision.number("0"))}
+    inputs = {"t": heyoka.time, **variables, **_beside_state(problem, precision)}
     return heyoka_expressions(problem.projection, inputs, precision.ratio)

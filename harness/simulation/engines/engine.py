@@ -1,6 +1,7 @@
 """What every engine is: a motion that has come to an instant and a state, goes on, and says why where it cannot."""
 
 from collections.abc import Callable, Iterator
+from math import inf
 from typing import Any, NamedTuple, Protocol
 
 from numpy.typing import NDArray
@@ -9,6 +10,21 @@ from ...failures import Failure, HolonomError
 from ..diagnosis import HardCase
 from ..evaluation import Numbers
 from ..request import EngineName
+
+JUDGED_AFTER, MOST_STEPS = 1_000, 1e11  # steps: after which what is left is judged, and which nobody waits for
+
+
+def require_reach(steps: int, done: Any, left: Any) -> None:
+    """Refuse to go on where, by the steps taken so far in the time that is done, the time left takes too many.
+
+    Raises
+    ------
+    HolonomError
+        It takes more than `MOST_STEPS`.
+    """
+    if steps >= JUDGED_AFTER and steps * float(left) > MOST_STEPS * float(done):
+        about = steps * float(left) / float(done) if done > 0 else inf
+        raise HolonomError(Failure.TOO_MANY_STEPS, detail=f"the motion takes about {about:.0e} steps to its end")
 
 
 class Piece(NamedTuple):

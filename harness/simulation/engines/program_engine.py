@@ -18,19 +18,23 @@ from ...failures import Failure, HolonomError
 from ...language import translatable
 from ...program.motion_problem import MotionProblem, require_signs_known
 from ...program.precision import Precision
-from ..constraints.singularity import Watch, no_gradient
+from ..constraints.factorization import factored_constraints
+from ..constraints.singularity import Watch, no_controls, no_gradient
 from ..diagnosis import HardCase
 from ..evaluation import Evaluation, Numbers, as_floats, evaluation_once, zeros
 from ..matrices import MotionMatrices
 from ..open_values import OpenValues
 from ..request import EngineName
-from .engine import Obstacle, Piece, Solutions
+from .engine import Obstacle, Piece, Solutions, require_reach
 
 FIRST_BLOCK = 128  # steps; what surrounds a block, projection above all, takes as long as some small steps
 WATCHED = 32  # steps behind an obstacle
 SHRUNK = 32  # times shorter than the longest: a step that calls for a closer look; 16 occurs in quiet motions
 DECAYS_IN_A_RUN = 50.0  # gamma of Baumgarte's cure and Gear's, times the length of the time span
 SHORTEST = 1e-10  # of the longest: a step that leads nowhere
+SHORTER = 1e-3  # of the longest: a step that makes the program's pivots suspect
+LOST, KEPT = 1e-11, 1e-12  # relative errors of its accelerations: a pivot vanishes; none does any more
+VANISHING_PIVOT = translatable("a pivot of the motion program vanishes")
 NEARS_SINGULAR = translatable("the configuration nears a singular one")
 
 
@@ -123,17 +127,19 @@ class ProgramEngine:
             The motion itself ends.
         """
         self._begin()
-        ended = False
+        ended, steps, begun = False, self.steps, self.time
         while not ended:
             ended, _ = self._block(until, dense=False)
+            require_reach(self.steps - steps, self.time - begun, until - self.time)
 
     def pieces(self, until: Any) -> Iterator[Piece]:
         """Follow the motion to an instant, with its states between the steps; raises as `advance`."""
         self._begin()
-        ended = self._integrator.time == until
+        ended, steps, begun = self._integrator.time == until, self.steps, self.time
         while not ended:
             ended, pieces = self._block(until, dense=True)
             yield from pieces
+            require_reach(self.steps - steps, self.time - begun, until - self.time)
 
     def solutions(self, instants: Numbers, states: Numbers) -> Solutions:
         """What the equations of motion determine at instants, shape (k,), and states, shape (2n, k)."""
@@ -233,15 +239,26 @@ class ProgramEngine:
         t = float(self.time)
         if self.watch.singular_ahead(t, self.state):
             return self._obstacle_here(HardCase.SINGULAR_PASSAGE, NEARS_SINGULAR)
-        if self.time == until or abs(self._integrator.last_h) >= SHORTEST * self._longest:
+        if self.time == until or abs(self._integrator.last_h) >= SHORTER * self._longest:
+            return None
+        if self._pivots_lose(t, self.state) > LOST:
+            return Obstacle(t, HardCase.SINGULAR_PASSAGE, VANISHING_PIVOT, lambda t, q: self._pivots_lose(t, q) < KEPT)
+        if abs(self._integrator.last_h) >= SHORTEST * self._longest:
             return None
         vanished = self.watch.vanished(t, self.state)
         if vanished is None:
             return HolonomError(Failure.NO_WAY_ON, detail=f"{t:.10g}, where steps become too short")
         if vanished not in self._problem.reactions:
-            reason = "the controls move what servo-constraints prescribe in fewer directions"
-            return HolonomError(Failure.NO_WAY_ON, detail=f"{t:.10g}, where {reason}")
+            return no_controls(t)
         return no_gradient(t, vanished)
+
+    def _pivots_lose(self, t: Any, state: Numbers) -> float:
+        """Relative error of the program's accelerations, by a solve that chooses its pivots."""
+        at = self._matrices.independent(float(t), as_floats(state))
+        chosen = factored_constraints(at.mass, at.jacobian).accelerations(at.force, at.curvature)
+        fixed = as_floats(self.solutions(np.array([t]), np.reshape(state, (-1, 1))).accelerations[:, 0])
+        error = np.max(np.abs(fixed - chosen), initial=0.0) / np.max(np.abs(chosen), initial=1e-300)
+        return float(error) if np.isfinite(error) else np.inf
 
     def _obstacle_here(self, case: HardCase, reason: str) -> Obstacle:
         """An obstacle that is passed where the constraints are more independent again than here."""

@@ -23,7 +23,7 @@ from ..constraints.projection import InconsistentConstraints, settle
 from ..constraints.singularity import extrapolated_zero, least_of, probed, singular_values_at
 from ..matrices import Matrix, MotionMatrices, Vector, start_of
 from ..request import EngineName
-from .engine import Piece, Solutions
+from .engine import Piece, Solutions, require_reach
 from .singular_passage import NODES, Arc, arc_over
 from .stiffness import StiffnessWatch
 
@@ -103,9 +103,11 @@ class RobustEngine:
 
         Raises as `advance`.
         """
+        steps, begun = self.steps, self.time
         while self.time < until:
             yield self._along_arc(until) if self._arc or self._arc_found() else self._step(until)
             self.steps += 1
+            require_reach(self.steps - steps, self.time - begun, until - self.time)
 
     @property
     def amid_passage(self) -> bool:
@@ -161,7 +163,8 @@ class RobustEngine:
         solver.t_bound, solver.status = min(until, (start + self._vanishing) / 2), "running"
         solver.step()
         self._longest = max(self._longest, solver.h_abs)
-        if solver.status == "failed" or solver.h_abs < SHORTEST * self._longest:
+        cut_short = solver.status == "finished" and solver.t == until
+        if solver.status == "failed" or (solver.h_abs < SHORTEST * self._longest and not cut_short):
             raise HolonomError(Failure.NO_WAY_ON, detail=f"{start:.10g}, where steps become too short")
         if solver.status == "finished":
             solver.h_abs = max(solver.h_abs, length)

@@ -5,10 +5,10 @@ from math import pi
 
 import pytest
 
-from holonom.confined import Limits
 from holonom.failures import HolonomError
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request
+from holonom.sandbox import Limits
 from holonom.simulation.constraints.singularity import no_gradient, vanishing_instants, zeros_of_controls
 from holonom.simulation.matrices import MotionMatrices
 from holonom.simulation.request import FINAL_STATE_ALONE, EngineName, SimulationRequest

@@ -22,13 +22,13 @@ from holonom.benchmark.work_precision.reference import find_reference
 from holonom.benchmark.work_precision.series import double_series, expansion_of
 from holonom.benchmark.work_precision.solvers import SOLVERS, solver_ladder
 from holonom.benchmark.work_precision.study import Plan, study, study_document
-from holonom.confined import Limits
 from holonom.documents import schema
 from holonom.failures import HolonomError
 from holonom.figures.benchmark import draw_study
 from holonom.program.motion_problem import motion_problem
 from holonom.program.motion_program import Solve
 from holonom.program.request import Request
+from holonom.sandbox import Limits
 from holonom.simulation.request import Stabilization
 
 ROOT = Path(__file__).parents[3]

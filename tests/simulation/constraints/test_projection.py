@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from problems import problem
 
-from holonom.confined import Limits
 from holonom.failures import Failure
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
+from holonom.sandbox import Limits
 from holonom.simulation.constraints.projection import InconsistentConstraints, project
 from holonom.simulation.matrices import Matrices, MotionMatrices
 

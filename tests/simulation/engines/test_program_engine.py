@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from problems import problem
 
-from holonom.confined import Limits
 from holonom.failures import HolonomError
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
+from holonom.sandbox import Limits
 from holonom.simulation.engines.program_engine import FIRST_BLOCK, Obstacle
 from holonom.simulation.engines.runge_kutta import RungeKuttaEngine
 from holonom.simulation.engines.taylor import FINE_BLOCK, TaylorEngine

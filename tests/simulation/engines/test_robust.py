@@ -5,10 +5,11 @@ import pytest
 from problems import problem
 from truths import GRAVITY, four_bar, linkage_period, linkage_tip, sarrus_angles
 
-from holonom.confined import Limits
+import holonom
 from holonom.failures import Failure, HolonomError
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request
+from holonom.sandbox import Limits
 from holonom.simulation.diagnostics import condition
 from holonom.simulation.engines.robust import RobustEngine
 
@@ -209,3 +210,12 @@ def test_a_length_that_vanishes_stops_the_motion():
         motion.advance(2.0)
     assert refused.value.failure is Failure.NO_WAY_ON
     assert motion.time == pytest.approx(1.0, abs=1e-5)
+
+
+@pytest.mark.parametrize("max_step", [0.1, 0.3, 0.07])
+def test_robust_engine_ends_with_a_step_that_rounding_leaves(max_step):
+    """After a hundred steps of 0.1 the end is a rounding error away."""
+    scene = holonom.load("examples/hard/repeated_constraint.mac")
+    motion = scene.simulate(samples=2, engine="robust", max_step=max_step)
+    assert motion.report.t == 10
+    assert motion.report.trusted

@@ -10,10 +10,10 @@ import pytest
 import scipy.integrate
 from problems import problem
 
-from holonom.confined import Limits
 from holonom.failures import Failure, HolonomError
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
+from holonom.sandbox import Limits
 from holonom.simulation.engines import runge_kutta
 from holonom.simulation.engines.program_engine import FIRST_BLOCK
 from holonom.simulation.engines.runge_kutta import RungeKuttaEngine

@@ -1,0 +1,93 @@
+"""Where expressions branch: the arguments of abs, sign, roots and logarithms; and where functions such as exp change.
+
+Two expressions may be equal on one side of a branch and differ on the other. A function such as exp or tanh may differ
+from zero, or from one, only in a narrow range of its argument: there, too, points are wanted.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import sympy as sp
+from mpmath import mp
+
+CHANGING = (sp.exp, sp.sinh, sp.cosh, sp.tanh, sp.sech, sp.csch, sp.coth, sp.erf, sp.erfc, sp.atan)
+"""Functions that change in a range of their argument alone."""
+
+RANGE = 2
+"""Of their argument, around zero."""
+
+
+@dataclass(frozen=True)
+class Branch:
+    """The argument of a function that branches, or changes, where the argument is zero."""
+
+    argument: sp.Expr
+    bounds_domain: bool = False  # whether there is no real value where the argument is negative
+    is_growing: bool = False  # whether it is that of a function such as exp, which changes but has no sides
+
+    @property
+    def has_sides(self) -> bool:
+        """Whether both sides of zero are different."""
+        return not self.is_growing
+
+    def is_empty(self, side: int) -> bool:
+        """Whether the argument is known never to be on this side of zero."""
+        argument = self.argument.replace(lambda part: part.is_real is None and _branch(part) is not None, _real)
+        argument = argument.replace(_is_inverse_square, lambda part: sp.Dummy(positive=True))
+        bounds = argument.replace(_is_bounded, lambda part: sp.AccumBounds(-1, 1))
+        if isinstance(bounds, sp.AccumBounds):
+            return bool(bounds.max <= 0 if side > 0 else bounds.min >= 0)
+        return bool(argument.is_nonpositive if side > 0 else argument.is_nonnegative)
+
+    def target(self, draw: random.Random) -> mp.mpf:
+        """A value of the argument near which points are wanted."""
+        return mp.mpf(draw.uniform(-RANGE, RANGE)) if self.is_growing else mp.zero
+
+
+def _is_bounded(part: sp.Expr) -> bool:
+    """Return True for a function of a real argument with values from -1 to 1."""
+    return isinstance(part, sp.sin | sp.cos | sp.tanh) and bool(part.args[0].is_real)
+
+
+def _is_inverse_square(part: sp.Expr) -> bool:
+    """Return True for a negative even power of a real number, which is positive where it has a value."""
+    return bool(part.is_Pow and part.exp.is_even and part.exp.is_negative and part.base.is_real)
+
+
+Branches = tuple[Branch, ...]
+
+
+def branches_of(expressions: Iterable[sp.Expr]) -> Branches:
+    """All branches of some expressions, each once."""
+    parts = set().union(*(expression.atoms(sp.Function, sp.Pow) for expression in expressions))
+    found: dict[sp.Expr, Branch] = {}
+    for part in sorted(parts, key=sp.default_sort_key):
+        branch = _branch(part)
+        if branch is None or not branch.argument.free_symbols or -branch.argument in found:
+            continue
+        known = found.get(branch.argument)
+        if known is None or known.is_growing or branch.bounds_domain:
+            found[branch.argument] = branch
+    return tuple(found.values())
+
+
+def _real(part: sp.Expr) -> sp.Expr:
+    """Stand in for a root or logarithm, of which only real values count."""
+    return sp.Dummy(real=True)
+
+
+def _branch(part: sp.Expr) -> Branch | None:
+    match part:
+        case sp.Abs() | sp.sign():
+            return Branch(part.args[0])
+        case sp.log():
+            return Branch(part.args[0], bounds_domain=True)
+        case sp.Pow(args=(base, exponent)) if not exponent.is_Integer:
+            return Branch(base, bounds_domain=True)
+        case sp.Function() if isinstance(part, CHANGING):
+            return Branch(part.args[0], is_growing=True)
+        case _:
+            return None

@@ -1,0 +1,122 @@
+"""The equations of motion of a scene, from its description alone, evaluated along a curve.
+
+A curve is a Taylor polynomial in the time for each coordinate. Along it
+
+    d/dt dL/d dot(q_s) - dL/dq_s - Q_s - lambda_beta df_beta/dq_s        and        f_beta
+
+are polynomials in the time, too: on a motion they vanish. No matrix is made, and nothing is differentiated in symbols.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from mpmath import mp
+
+from ..description import DescribedScene, Description
+from .law import Law, Spline, number
+from .tape import Tape
+from .taylor import Polynomial, Taylor
+
+Curve = Mapping[str, Polynomial]
+
+
+@dataclass(frozen=True)
+class Residual:
+    """What should vanish, as a polynomial in the time, and the sum of the sizes of its terms."""
+
+    value: Polynomial
+    size: Polynomial
+
+
+class DescribedMotion:
+    """What a description says of one scene, or of its system where `scene` is None."""
+
+    def __init__(self, description: Description, scene: DescribedScene | None) -> None:
+        system = self.system = description.system
+        self.description, self.scene = description, scene
+        effects = None if scene is None else scene.effects
+        tape = self.tape = Tape()
+
+        def called(parts: Sequence) -> list:
+            return [part for part in parts if effects is None or part.effect in effects]
+
+        self._kinetic = [tape.place(part.tree) for part in called(system.kinetic_energy)]
+        self._potential = [tape.place(part.tree) for part in called(system.potential_energy)]
+        self._forces = [
+            [tape.place(part.trees[s]) for part in called(system.forces)] for s in range(len(system.coordinates))
+        ]
+        self.constraints = [tape.place(tree) for tree in system.constraint_trees]
+        self.outputs = [] if scene is None else [tape.place(tree) for tree in _plain(scene.servo_trees)]
+
+    @cached_property
+    def splines(self) -> list[Spline]:
+        """Its tables."""
+        return [Spline(table) for table in self.description.tables]
+
+    @cached_property
+    def law(self) -> Law:
+        """Its control law."""
+        return Law({} if self.scene is None else self.scene.control_law.trees, self.splines)
+
+    @cached_property
+    def reactions(self) -> Law:
+        """Its prescribed reactions."""
+        return Law({} if self.scene is None else self.scene.prescribed_reactions.trees, self.splines)
+
+    def parameters(self) -> dict[str, Polynomial]:
+        """Values of the parameters that have one."""
+        trees = {} if self.scene is None else self.scene.parameter_values.trees
+        return {name: (number(tree),) for name, tree in trees.items()}
+
+    def values(self, taylor: Taylor, curve: Curve) -> list[Polynomial]:
+        """Values of T, V, Q, f and all their parts along a curve; raises as `Tape.values`."""
+        return self.tape.values(taylor, self._with_rates(taylor, curve))
+
+    def _with_rates(self, taylor: Taylor, curve: Curve) -> dict[str, Polynomial]:
+        names = (*self.system.coordinates, *self.system.controls)
+        return {**{f"dot({name})": taylor.rate(curve[name]) for name in names if name in curve}, **curve}
+
+    def equations(
+        self, taylor: Taylor, values: Sequence[Polynomial], multipliers: Sequence[Polynomial]
+    ) -> list[Residual]:
+        """Lagrange's equations along the curve of the values."""
+        lagrangian = self._gradient_of_lagrangian(taylor, values)
+        seeds = dict.fromkeys(self.constraints, (mp.zero,))
+        for place, multiplier in zip(self.constraints, multipliers, strict=True):
+            seeds[place] = taylor.add(seeds[place], multiplier)
+        reactions = self.tape.gradient(taylor, values, seeds)
+        found = []
+        for s, q in enumerate(self.system.coordinates):
+            inertia = taylor.rate(lagrangian.get(f"dot({q})", (mp.zero,)))
+            forces = [values[place] for place in self._forces[s]]
+            terms = [lagrangian.get(q, (mp.zero,)), *forces, reactions.get(q, (mp.zero,))]
+            value = taylor.add(inertia, *(taylor.scale(-1, term) for term in terms))
+            found.append(Residual(value, taylor.add(_sizes(inertia), *map(_sizes, terms))))
+        return found
+
+    def energy(self, taylor: Taylor, values: Sequence[Polynomial], curve: Curve) -> Polynomial:
+        """The energy function dot(q_s) dL/d dot(q_s) - L along the curve."""
+        lagrangian = self._gradient_of_lagrangian(taylor, values)
+        rates = self._with_rates(taylor, curve)
+        parts = [
+            taylor.multiply(rates[rate], lagrangian[rate]) for rate in self.system.velocities if rate in lagrangian
+        ]
+        parts += [taylor.scale(-1, values[place]) for place in self._kinetic]
+        return taylor.add((mp.zero,), *parts, *(values[place] for place in self._potential))
+
+    def _gradient_of_lagrangian(self, taylor: Taylor, values: Sequence[Polynomial]) -> dict[str, Polynomial]:
+        seeds: dict[int, Polynomial] = {}
+        for place, sign in (*((each, 1) for each in self._kinetic), *((each, -1) for each in self._potential)):
+            seeds[place] = taylor.add(seeds.get(place, (mp.zero,)), (mp.mpf(sign),))
+        return self.tape.gradient(taylor, values, seeds)
+
+
+def _sizes(x: Polynomial) -> Polynomial:
+    return tuple(map(abs, x))
+
+
+def _plain(trees: Sequence) -> list:
+    return [tree for tree in trees if "Table" not in str(tree)]

@@ -1,0 +1,146 @@
+"""Expressions evaluated at points, as steps that are found once and taken at many points and in any number of digits.
+
+Values may be complex on the way. A step without a value, such as a division by zero, has none, and neither has what is
+made of it; the other values stay.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from typing import NamedTuple
+
+import sympy as sp
+from mpmath import mp
+
+from .points import FUNCTIONS
+
+Number = mp.mpf | mp.mpc
+Numbers = list[Number | None]
+Values = Mapping[sp.Symbol, Number | None]
+
+LARGEST_EXPONENT = 10**8
+"""Largest exponent of which a power is formed."""
+
+LARGEST_ANGLE = 10**12
+"""Largest argument of a periodic or special function."""
+
+LARGEST_SPECIAL = 10**3
+"""Largest argument of a function that mpmath takes a series for."""
+
+FAILURES = (ZeroDivisionError, OverflowError, ValueError, TypeError, mp.NoConvergence)
+
+GROWING = (sp.exp, sp.sinh, sp.cosh, sp.sech, sp.csch)
+
+PERIODIC = (sp.sin, sp.cos, sp.tan, sp.sec, sp.csc, sp.cot)
+REAL_ALONE = (sp.sign, sp.atan2, sp.DiracDelta)
+CHEAP = (sp.log, sp.Abs, sp.sign, sp.atan, sp.asinh, sp.tanh, sp.coth, sp.DiracDelta, sp.asin, sp.acos, sp.atan2)
+
+
+class Step(NamedTuple):
+    """A function and the places of the values that it is applied to."""
+
+    function: Callable[..., Number | None]
+    places: tuple[int, ...]
+
+
+class Steps:
+    """The steps that lead from the values of symbols to those of expressions."""
+
+    def __init__(self, expressions: Sequence[sp.Expr]) -> None:
+        self._places: dict[sp.Expr, int] = {}
+        self._steps: list[Step | sp.Symbol] = []
+        self._results = [self._place(expression) for expression in expressions]
+
+    def at(self, values: Values) -> Numbers:
+        """Evaluate the expressions in mpmath's working precision; None for each that has no value."""
+        found: Numbers = []
+        for step in self._steps:
+            found.append(_taken(step, found) if isinstance(step, Step) else values.get(step))
+        return [found[place] for place in self._results]
+
+    def _place(self, expression: sp.Expr) -> int:
+        """Find the place of an expression's value; what it is made of comes before it."""
+        waiting = [expression]
+        while waiting:
+            part = waiting[-1]
+            missing = [argument for argument in _arguments(part) if argument not in self._places]
+            if part in self._places or not missing:
+                waiting.pop()
+                self._append(part)
+            else:
+                waiting += missing
+        return self._places[expression]
+
+    def _append(self, part: sp.Expr) -> None:
+        if part not in self._places:
+            self._places[part] = len(self._steps)
+            self._steps.append(self._step(part))
+
+    def _step(self, part: sp.Expr) -> Step | sp.Symbol:
+        if isinstance(part, sp.Symbol):
+            return part
+        return Step(_function(part), tuple(self._places[argument] for argument in _arguments(part)))
+
+
+def _taken(step: Step, found: Numbers) -> Number | None:
+    arguments = [found[place] for place in step.places]
+    if None in arguments:
+        return None
+    try:
+        value = step.function(*arguments)
+    except FAILURES:
+        return None
+    return value if value is not None and mp.isfinite(value) else None
+
+
+def _arguments(part: sp.Expr) -> tuple[sp.Expr, ...]:
+    match part:
+        case sp.Pow(args=(base, sp.Integer())):
+            return (base,)
+        case sp.Add() | sp.Mul() | sp.Pow() | sp.Function():
+            return part.args
+        case _:
+            return ()
+
+
+def _function(part: sp.Expr) -> Callable[..., Number | None]:
+    match part:
+        case sp.Rational():
+            return lambda: mp.mpf(part.p) / part.q
+        case sp.Float():
+            return _function(sp.Rational(part))
+        case sp.NumberSymbol():
+            return lambda: mp.mpf(part._to_mpmath(mp.prec))
+        case sp.Add():
+            return lambda *terms: mp.fsum(terms)
+        case sp.Mul():
+            return lambda *factors: mp.fprod(factors)
+        case sp.Pow(args=(_, sp.Integer() as exponent)):
+            return partial(_whole_power, int(exponent))
+        case sp.Pow():
+            return _power
+        case sp.Function() if part.func in FUNCTIONS:
+            return partial(_applied, part.func, FUNCTIONS[part.func])
+        case _:
+            return lambda *_: None
+
+
+def _whole_power(exponent: int, base: Number) -> Number | None:
+    return base**exponent if abs(exponent) <= LARGEST_EXPONENT else None
+
+
+def _power(base: Number, exponent: Number) -> Number | None:
+    if not base:
+        return mp.zero if mp.re(exponent) > 0 else None
+    return mp.power(base, exponent) if abs(exponent * mp.log(base)) <= LARGEST_EXPONENT else None
+
+
+def _applied(kind: type, function: Callable[..., Number], *arguments: Number) -> Number | None:
+    if kind in REAL_ALONE and any(mp.im(argument) for argument in arguments):
+        return None
+    if kind not in CHEAP:
+        largest = LARGEST_EXPONENT if kind in GROWING else LARGEST_ANGLE if kind in PERIODIC else LARGEST_SPECIAL
+        if any(abs(argument) > largest for argument in arguments):
+            return None
+    return function(*arguments)

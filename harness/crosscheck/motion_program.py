@@ -1,0 +1,348 @@
+"""The verdict on a motion program: what is simulated, held against the equations of motion at random states.
+
+Nothing of it is derived from the record. Accelerations and multipliers of both solves, the control law and its rates,
+the corrections of the state, residuals, energy and power are compared with what the description says, in 50 digits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+
+from mpmath import mp
+
+from ..description import DescribedScene, Description
+from ..documents import Document, ask
+from ..failures import Failure, HolonomError
+from ..program.motion_problem import MotionProblem, read_problem
+from ..program.motion_program import Program, Solve, read_program
+from ..source import Source
+from . import motion_states as states
+from .described_motion import DescribedMotion
+from .motion_states import STATE, Claim, States
+from .points import IrregularPoint
+from .program_values import Values, run
+from .report import Verdict
+from .taylor import SPECIAL
+from .verdict import DIGITS, POINTS, WORKING_DIGITS, Judgement
+
+ATTEMPTS = 6  # draws for each state before the search for a regular one is given up
+PROBLEM_DIGITS = DIGITS + 20  # of the numbers that a document of a motion holds
+VANISHED = 2 * DIGITS // 3  # digits by which a difference shrinks in twice the digits where it is rounding
+
+Parts = Iterator[tuple[str, Claim]]  # each claim with the part of the programs that makes it
+
+
+@dataclass(frozen=True)
+class ScenePrograms:
+    """The programs of one scene, or of a system without one; or why there are none."""
+
+    scene: str | None
+    problems: Mapping[Solve, MotionProblem] = field(default_factory=dict)  # where the controls have laws
+    programs: Mapping[Solve, Program] = field(default_factory=dict)  # where they have none
+    refusals: Mapping[Solve, str] = field(default_factory=dict)
+
+
+OF_SPECIAL_FUNCTIONS = "special functions of the time are not compared in 50 digits"
+
+
+@dataclass(frozen=True)
+class ProgramVerdict:
+    """The verdict on one part of the programs of a scene."""
+
+    scene: str | None
+    part: str
+    found: Judgement
+
+
+# ---- asking ----
+
+
+def ask_programs(source: Source, settings: Mapping[str, str]) -> list[ScenePrograms]:
+    """Ask Maxima for the programs of all scenes of a description, or for those of its system if it has none."""
+    description = source.description(settings)
+    scenes = description.scenes or (None,)
+    return [_programs_of(source, settings, description, scene) for scene in scenes]
+
+
+def _programs_of(
+    source: Source, settings: Mapping[str, str], description: Description, scene: DescribedScene | None
+) -> ScenePrograms:
+    name = scene and scene.name
+    if holds_special_functions(description):
+        return ScenePrograms(name, refusals=dict.fromkeys(Solve, OF_SPECIAL_FUNCTIONS))
+    closed = scene is not None and _is_closed(description, scene)
+    found: dict[Solve, object] = {}
+    refusals: dict[Solve, str] = {}
+    for solve in Solve:
+        try:
+            if closed:
+                text = ask(Document.MOTION_PROBLEM, source, name, solve, PROBLEM_DIGITS, (), settings=settings)
+                found[solve] = read_problem(text)
+            else:
+                found[solve] = read_program(ask(Document.PROGRAM, source, name, solve, settings=settings))
+        except HolonomError as refusal:
+            if refusal.failure is not Failure.REFUSED:
+                raise
+            refusals[solve] = refusal.said
+    return ScenePrograms(name, **{"problems" if closed else "programs": found}, refusals=refusals)
+
+
+def holds_special_functions(description: Description) -> bool:
+    """Return True if a description has a special function of the time, which Maxima takes minutes for in 50 digits."""
+    return any(f'"{head}"' in description.text for head in SPECIAL)
+
+
+def _is_closed(description: Description, scene: DescribedScene) -> bool:
+    """Whether nothing of a motion is left open."""
+    free = [name for name in description.system.controls if name not in scene.control_law]
+    found = scene.prescribed_reactions or scene.servo_trees
+    return (not free or bool(found)) and set(description.system.parameters) <= set(scene.parameter_values)
+
+
+# ---- judging ----
+
+
+def judge_programs(description: Description, programs: Iterable[ScenePrograms], seed: str) -> list[ProgramVerdict]:
+    """Verdicts on the programs of the scenes of a description.
+
+    Parameters
+    ----------
+    description : Description
+        What is so.
+    programs : iterable of ScenePrograms
+        What Maxima wrote.
+    seed : str
+        Draws the states.
+    """
+    scenes = {scene.name: scene for scene in description.scenes}
+    verdicts = []
+    for each in programs:
+        motion = DescribedMotion(description, scenes.get(each.scene))
+        for solve, refusal in each.refusals.items():
+            nothing = Judgement(Verdict.NOTHING, None, None, refusal)
+            verdicts.append(ProgramVerdict(each.scene, f"motion program, {solve} solve", nothing))
+        if each.problems:
+            verdicts += _judge_problems(motion, each, seed)
+        for solve, program in each.programs.items():
+            maker = _open_states(motion, program, seed)
+            verdicts += _judged(each.scene, [f"motion program, {solve} solve"], maker)
+    return verdicts
+
+
+def _judge_problems(motion: DescribedMotion, programs: ScenePrograms, seed: str) -> list[ProgramVerdict]:
+    problems = programs.problems
+    solved = [solve for solve, problem in problems.items() if problem.motion is not None]
+    parts = [f"motion program, {solve} solve" for solve in solved]
+    verdicts = [
+        ProgramVerdict(
+            programs.scene,
+            f"motion program, {solve} solve",
+            Judgement(Verdict.NOTHING, None, None, problem.obstacle or ""),
+        )
+        for solve, problem in problems.items()
+        if problem.motion is None
+    ]
+    if motion.scene.prescribed_reactions:
+        maker = _released_states(motion, problems, seed)
+    else:
+        maker = _plain_states(motion, problems, seed)
+        parts = [MATRICES, *parts]
+    return [*verdicts, *_judged(programs.scene, parts, maker)]
+
+
+def _values_of(program: Program, inputs: Values, solve: Solve) -> Values | None:
+    """Values of a program; None where it has none and should have: the orthogonal solve needs masses that are positive.
+
+    Raises
+    ------
+    IrregularPoint
+        The orthogonal solve has none.
+    """
+    try:
+        return run(program, inputs)
+    except (IrregularPoint, ZeroDivisionError):
+        if solve is Solve.ORTHOGONAL:
+            raise
+        return None
+
+
+MATRICES = "control law, mass matrix, forces, residuals and energy of the motion"
+
+
+def _plain_states(
+    motion: DescribedMotion, problems: Mapping[Solve, MotionProblem], seed: str
+) -> Callable[[int], Parts]:
+    drawn = {solve: States(motion, problem, seed) for solve, problem in problems.items()}
+    first = next(iter(problems.values()))
+    n, names = len(first.coordinates), [*(f"ddot({q})" for q in first.coordinates), *first.multipliers]
+    redundant = next((p.motion.redundant for p in problems.values() if p.motion is not None), ())
+
+    def claims(attempt: int) -> Parts:
+        own = drawn[next(iter(problems))]
+        state = own.state(attempt)
+        x = own.random_numbers(attempt, len(names))
+        x[len(names) - first.servo :] = [mp.zero] * first.servo
+        inputs = own.inputs(state, x[n:])
+        computed, energy = run(first.matrices, inputs), run(first.energy, inputs)
+        controls = own.controls(state, computed)
+        system = states.bordered(computed, n, first.multipliers, redundant)
+        law = {name: value for name, value in controls.items() if name in motion.scene.control_law}
+        computed |= {name: energy[name] for name in ("energy", "power")}
+        for program in (computed, energy):
+            yield from ((MATRICES, claim) for claim in states.claims_of_law(law, program))
+        curve = own.curve(state, dict(zip(first.coordinates, x, strict=False)), controls)
+        yield from ((MATRICES, claim) for claim in states.claims_of_matrices(motion, system, computed, curve, x))
+        for solve, problem in problems.items():
+            if problem.projection is not None:
+                part = f"motion program, {solve} solve"
+                corrections = run(problem.projection, inputs)
+                yield from ((part, claim) for claim in states.claims_of_law(law, corrections))
+                for which in ("position", "velocity"):
+                    found = states.claims_of_projection(system, corrections, computed, which)
+                    yield from ((part, claim) for claim in found)
+        if first.servo:
+            state = own.kept(state)
+            inputs = own.inputs(state, x[n:])
+            system = states.bordered(run(first.matrices, inputs), n, first.multipliers, redundant)
+            law = own.controls(state, {})
+        solution = system.solution(system.right)
+        for solve, problem in problems.items():
+            if problem.motion is None:
+                continue
+            part = f"motion program, {solve} solve"
+            found = _values_of(problem.motion, inputs, solve)
+            if found is None:
+                yield part, Claim("a value", mp.zero, mp.one, mp.one)
+                continue
+            yield from ((part, claim) for claim in states.claims_of_law(law, found))
+            yield from ((part, each) for each in states.claims_of_solve(system, solution, found, names, problem.servo))
+            yield from ((part, each) for each in states.claims_of_constraint_forces(system, found, names))
+
+    return claims
+
+
+def _released_states(
+    motion: DescribedMotion, problems: Mapping[Solve, MotionProblem], seed: str
+) -> Callable[[int], Parts]:
+    """Of a scene that prescribes reactions: its free controls are coordinates, and what it prescribes is so."""
+    drawn = {solve: States(motion, problem, seed) for solve, problem in problems.items() if problem.motion is not None}
+
+    def claims(attempt: int) -> Parts:
+        for solve, own in drawn.items():
+            problem, part = problems[solve], f"motion program, {solve} solve"
+            state = own.state(attempt)
+            found = run(problem.motion, own.inputs(state, own.random_numbers(attempt, len(problem.multipliers))))
+            controls = own.controls(state, found)
+            prescribed = motion.reactions.at(STATE, state["t"][0], motion.parameters())
+            for name, value in prescribed.items():
+                yield part, Claim(name, found[name][0], value[0], abs(value[0]))
+            accelerations = {q: found[f"ddot({q})"][0] for q in problem.coordinates}
+            multipliers = [found[name][0] for name in motion.system.multipliers]
+            curve = own.curve(state, accelerations, controls)
+            yield from ((part, each) for each in states.claims_by_substitution(motion, curve, multipliers))
+
+    return claims
+
+
+def _open_states(motion: DescribedMotion, program: Program, seed: str) -> Callable[[int], Parts]:
+    """Of a motion program whose controls, and some of whose parameters, are inputs."""
+    system, part = motion.system, f"motion program, {program.solve} solve"
+    left_out = [place for place, name in enumerate(system.multipliers) if name in program.redundant]
+
+    def claims(attempt: int) -> Parts:
+        import random
+
+        draw = random.Random(f"{seed} {attempt}")
+        low = -2 if attempt % 4 == 1 else 0
+        inputs = {name: (mp.mpf(draw.randint(low * 2**40, 2**41)) / 2**40,) for name in program.inputs}
+        given = motion.parameters()
+        found = run(program, inputs)
+        curve: Values = {name: inputs[name] for name in system.parameters if name in inputs} | given
+        curve["t"] = (inputs.get("t", (mp.zero,))[0], mp.one)
+        for u in system.controls:
+            history = [inputs.get(name, (mp.zero,))[0] for name in (u, f"dot({u})", f"ddot({u})")]
+            curve[u] = (history[0], history[1], history[2] / 2)
+        for q in system.coordinates:
+            curve[q] = (inputs[q][0], inputs[f"dot({q})"][0], found[f"ddot({q})"][0] / 2)
+        multipliers = [found[name][0] for name in system.multipliers]
+        yield from ((part, each) for each in states.claims_by_substitution(motion, curve, multipliers, left_out))
+
+    return claims
+
+
+def _judged(scene: str | None, parts: list[str], claims: Callable[[int], Parts]) -> list[ProgramVerdict]:
+    """Compare at random states until there are enough, or one part is wrong."""
+    wrong: dict[str, str] = {}
+    compared = 0
+    for attempt in range(ATTEMPTS * POINTS):
+        if compared == POINTS or len(wrong) == len(parts):
+            break
+        told, regular = _differences(claims, attempt)
+        wrong = told | wrong
+        compared += regular
+    few = f"only {compared} regular states were found among {ATTEMPTS * POINTS}"
+    left = Judgement(Verdict.AGREES, DIGITS, POINTS) if compared == POINTS else None
+    left = left or Judgement(Verdict.UNDECIDED, None, compared or None, few)
+    return [
+        ProgramVerdict(
+            scene, part, Judgement(Verdict.DISAGREES, DIGITS, POINTS, wrong[part]) if part in wrong else left
+        )
+        for part in parts
+    ]
+
+
+def _differences(claims: Callable[[int], Parts], attempt: int) -> tuple[dict[str, str], bool]:
+    """The first claim of each part that is not so at a state, found in twice the digits once more; if it is regular."""
+    with mp.workdps(WORKING_DIGITS):
+        made, regular = _made(claims(attempt))
+        suspected = {place: abs(each.given - each.true) for place, (_, each) in enumerate(made) if _differs(each)}
+    if not suspected:
+        return {}, regular
+    found: dict[str, str] = {}
+    with mp.workdps(2 * WORKING_DIGITS):
+        again, _ = _made(claims(attempt))
+        for place, before in suspected.items():
+            part, claim = again[place] if place < len(again) else made[place]
+            rounding = abs(claim.given - claim.true) <= before * mp.mpf(10) ** -VANISHED
+            if _differs(claim) and not rounding:
+                found.setdefault(part, _told(claim))
+    return found, regular
+
+
+def differing(claims: Callable[[], Iterator[Claim]], digits: int = DIGITS) -> str:
+    """The first claim that is not so, found in twice the digits once more; empty where all are."""
+    with mp.workdps(WORKING_DIGITS):
+        suspected = {
+            place: abs(each.given - each.true) for place, each in enumerate(claims()) if _differs(each, digits)
+        }
+    if not suspected:
+        return ""
+    with mp.workdps(2 * WORKING_DIGITS):
+        for place, claim in enumerate(claims()):
+            before = suspected.get(place)
+            if before is None or abs(claim.given - claim.true) <= before * mp.mpf(10) ** -VANISHED:
+                continue
+            if _differs(claim, digits):
+                return _told(claim)
+    return ""
+
+
+def _made(claims: Parts) -> tuple[list[tuple[str, Claim]], bool]:
+    """The claims at a state, up to where something has no value; whether all have."""
+    made: list[tuple[str, Claim]] = []
+    try:
+        for each in claims:
+            made.append(each)
+    except (IrregularPoint, ZeroDivisionError, OverflowError):
+        return made, False
+    return made, True
+
+
+def _differs(claim: Claim, digits: int = DIGITS) -> bool:
+    size = max(claim.size, abs(claim.given), abs(claim.true))
+    return abs(claim.given - claim.true) > mp.mpf(10) ** -digits * size
+
+
+def _told(claim: Claim) -> str:
+    return f"{claim.quantity}: {mp.nstr(claim.given, 12)} where {mp.nstr(claim.true, 12)} is so"

@@ -1,0 +1,177 @@
+"""The verdict on power series of a motion: put into the equations of motion, they must satisfy them.
+
+So are the controls of servo-constraints: with them the motion program is expanded here, and along that motion the
+outputs must stay zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+
+from mpmath import mp
+
+from ..description import DescribedScene, Description
+from ..failures import Failure, HolonomError
+from ..mathjson import number, numbers
+from ..program.motion_problem import MotionProblem
+from ..program.motion_program import Solve
+from ..series.power_series import AUTOMATIC, EXACT, MotionSeries, SeriesRequest, compute_series
+from ..source import Source
+from .described_motion import DescribedMotion
+from .motion_program import OF_SPECIAL_FUNCTIONS, ProgramVerdict, ScenePrograms, differing, holds_special_functions
+from .motion_states import Claim
+from .points import IrregularPoint
+from .program_values import Values, letters_of_tables, run_along, with_signs
+from .report import Verdict
+from .taylor import Polynomial, Taylor
+from .verdict import DIGITS, Judgement
+
+ORDER = 7  # of the series
+MOST_COORDINATES = 100  # of a series: Maxima takes a minute for that of 512 bodies
+LOST = 8  # digits that a rounded coefficient may lose on its way into the equations
+SERIES, SERVO = "power series", "servo-constraints, along the motion"
+
+
+@dataclass(frozen=True)
+class SceneSeries:
+    """The power series of one scene; or why there are none."""
+
+    scene: str
+    series: MotionSeries | None
+    refusal: str = ""
+
+
+def ask_series(source: Source, settings: Mapping[str, str]) -> list[SceneSeries]:
+    """Ask Maxima for the power series of all scenes of a description."""
+    return [_series_of(source, settings, scene) for scene in source.description(settings).scenes]
+
+
+def _series_of(source: Source, settings: Mapping[str, str], scene: DescribedScene) -> SceneSeries:
+    description = source.description(settings)
+    if holds_special_functions(description):
+        return SceneSeries(scene.name, None, OF_SPECIAL_FUNCTIONS)
+    coordinates = len(description.system.coordinates)
+    if coordinates > MOST_COORDINATES:
+        return SceneSeries(scene.name, None, f"no power series of {coordinates} coordinates is asked for")
+    request = SeriesRequest(ORDER, scene.name, AUTOMATIC, settings=settings)
+    try:
+        series = compute_series(source, request, source.limits)
+        if series.arithmetic != EXACT:
+            series = compute_series(source, replace(request, digits=DIGITS + LOST), source.limits)
+        return SceneSeries(scene.name, series)
+    except HolonomError as refusal:
+        if refusal.failure not in (Failure.REFUSED, Failure.TOO_LONG, Failure.TOO_LARGE):
+            raise
+        return SceneSeries(scene.name, None, refusal.said)
+
+
+def judge_series(description: Description, found: Iterable[SceneSeries]) -> list[ProgramVerdict]:
+    """Verdicts on the power series of the scenes of a description."""
+    scenes = {scene.name: scene for scene in description.scenes}
+    verdicts = []
+    for each in found:
+        if scenes[each.scene].servo_trees:
+            continue  # the series does not hold the controls: `judge_servo` looks at it
+        if each.series is None:
+            judged = Judgement(Verdict.NOTHING, None, None, each.refusal)
+        else:
+            motion = DescribedMotion(description, scenes[each.scene])
+            series, digits = each.series, _digits(each.series)
+            judged = _judged(partial(_claims, motion, series), digits)
+        verdicts.append(ProgramVerdict(each.scene, SERIES, judged))
+    return verdicts
+
+
+def judge_servo(
+    description: Description, programs: Iterable[ScenePrograms], found: Iterable[SceneSeries]
+) -> list[ProgramVerdict]:
+    """Verdicts on the controls of servo-constraints, and on the power series of their motion."""
+    verdicts, series = [], {each.scene: each.series for each in found}
+    for each in programs:
+        scene = next((scene for scene in description.scenes if scene.name == each.scene), None)
+        problem = each.problems.get(Solve.DIRECT)
+        if scene is not None and scene.servo_trees and problem is not None and problem.motion is not None:
+            motion = DescribedMotion(description, scene)
+            own = series.get(each.scene)
+            claims = partial(_claims_of_servo, motion, problem, own)
+            judged = _judged(claims, DIGITS if own is None else _digits(own))
+            verdicts.append(ProgramVerdict(each.scene, SERVO, judged))
+    return verdicts
+
+
+def _digits(series: MotionSeries) -> int:
+    return DIGITS if series.arithmetic == EXACT else min(DIGITS, int(series.arithmetic[9:-1]) - LOST)
+
+
+def _judged(claims: Callable[[], Iterator[Claim]], digits: int) -> Judgement:
+    try:
+        wrong = differing(claims, digits)
+    except (IrregularPoint, ZeroDivisionError):
+        return Judgement(Verdict.NOTHING, None, None, "the equations of motion have no power series at the start")
+    return Judgement(Verdict.DISAGREES if wrong else Verdict.AGREES, digits, 1, wrong)
+
+
+def _claims(motion: DescribedMotion, series: MotionSeries) -> Iterator[Claim]:
+    """That a power series satisfies the equations of motion, and that its reactions are those prescribed."""
+    taylor, instant = Taylor(ORDER), number(series.t0)
+    curve: Values = motion.parameters() | motion.law.at(Taylor(ORDER + 1), instant, motion.parameters())
+    curve |= {name: tuple(numbers(row)) for name, row in series.coordinates.items()}
+    curve["t"] = (instant, mp.one)
+    multipliers = {name: tuple(numbers(row)) for name, row in series.multipliers.items()}
+    for name, prescribed in motion.reactions.at(taylor, instant, motion.parameters()).items():
+        for k in range(ORDER - 1):
+            true = _coefficient(prescribed, k)
+            yield Claim(f"coefficient {k} of {name}", _coefficient(multipliers[name], k), true, abs(true))
+    yield from _claims_of_equations(motion, taylor, curve, [multipliers[name] for name in motion.system.multipliers])
+
+
+def _claims_of_equations(
+    motion: DescribedMotion, taylor: Taylor, curve: Values, multipliers: list[Polynomial]
+) -> Iterator[Claim]:
+    values = motion.values(taylor, curve)
+    sizes = motion.tape.sizes(taylor, values)
+    equations = motion.equations(taylor, values, multipliers)
+    for q, equation in zip(motion.system.coordinates, equations, strict=True):
+        for k in range(taylor.order - 1):
+            value, size = _coefficient(equation.value, k), _coefficient(equation.size, k)
+            yield Claim(f"power {k} of the equation of motion of {q}", value, mp.zero, size)
+    for what, places in (("constraint", motion.constraints), ("servo-constraint", motion.outputs)):
+        for beta, place in enumerate(places, 1):
+            for k in range(taylor.order + 1):
+                value = _coefficient(values[place], k)
+                yield Claim(f"power {k} of {what} {beta}", value, mp.zero, _coefficient(sizes[place], k))
+
+
+def _claims_of_servo(motion: DescribedMotion, problem: MotionProblem, series: MotionSeries | None) -> Iterator[Claim]:
+    """That the outputs stay zero along the motion that the program makes, which is that of the power series."""
+    taylor = Taylor(ORDER)
+    curve, computed = _expanded(problem)
+    for q, row in series.coordinates.items() if series else ():
+        for k, x in enumerate(numbers(row)):
+            yield Claim(f"power {k} of {q}", x, _coefficient(curve[q], k), mp.fsum(map(abs, curve[q])))
+    found = {name: computed[name] for name in motion.system.controls if name in computed}
+    law = motion.law.at(Taylor(ORDER + 1), curve["t"][0], motion.parameters())
+    multipliers = [computed[name] for name in motion.system.multipliers]
+    yield from _claims_of_equations(motion, taylor, motion.parameters() | found | law | curve, multipliers)
+
+
+def _expanded(problem: MotionProblem) -> tuple[Values, Values]:
+    """Power series from the start, of the coordinates and of all that the program computes, by its accelerations."""
+    start = {name: mp.mpf(text) for name, text in problem.start.items()}
+    known = {q: (start[q], start[f"dot({q})"]) for q in problem.coordinates}
+    fixed = dict.fromkeys(problem.multipliers, (mp.zero,)) | letters_of_tables(problem, start["t"])
+    fixed = with_signs(problem, fixed | {name: (x,) for name, x in start.items()})
+    computed: Values = {}
+    for order in range(ORDER - 1):
+        taylor = Taylor(order)
+        state = {"t": (start["t"], mp.one)} | known | {f"dot({q})": taylor.rate(x) for q, x in known.items()}
+        computed = run_along(problem.motion, fixed | {name: x[: order + 1] for name, x in state.items()}, taylor)
+        for q, x in known.items():
+            known[q] = (*x, _coefficient(computed[f"ddot({q})"], order) / ((order + 1) * (order + 2)))
+    return known | {"t": (start["t"], mp.one)}, computed
+
+
+def _coefficient(x: Polynomial, k: int) -> mp.mpf:
+    return x[k] if k < len(x) else mp.zero

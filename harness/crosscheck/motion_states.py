@@ -1,0 +1,264 @@
+"""States of a motion at which a program is held against the equations of motion: what it claims there, and what is so.
+
+Some states are drawn over the numbers up to two, others near the start of the scene. The mass matrix, the forces and
+the constraints that Maxima wrote are compared with the description along random accelerations and multipliers, to
+which they are linear; they are right, then, and the bordered system is made of them and solved here.
+"""
+
+from __future__ import annotations
+
+import random
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+from typing import NamedTuple
+
+from mpmath import mp
+
+from ..program.motion_problem import MotionProblem
+from .described_motion import DescribedMotion
+from .points import IrregularPoint
+from .program_values import Values, letters_of_tables, run, with_signs
+from .sparse import solved
+from .taylor import Taylor
+
+STATE, SECOND = Taylor(0), Taylor(2)
+INDEXED = re.compile(r"(\w+)\[(\d+)(?:,(\d+))?\]")
+NEWTON_STEPS = 30
+SPARE = 6  # digits to which residuals need not vanish
+NEAR = mp.mpf(1) / 8  # how far from the start a state near it is, in terms of its own size
+
+
+class Claim(NamedTuple):
+    """A number that a program gives, and what it should be."""
+
+    quantity: str
+    given: mp.mpf
+    true: mp.mpf
+    size: mp.mpf  # sum of the sizes of the terms that both are made of
+
+
+class Bordered(NamedTuple):
+    """A a - J^T lambda = h, J a = -c, without the constraints that are left out."""
+
+    rows: list[dict[int, mp.mpf]]  # of n + g unknowns
+    right: list[mp.mpf]
+    n: int
+    left_out: frozenset[int]
+
+    def solution(self, right: Sequence[mp.mpf]) -> list[mp.mpf]:
+        """Accelerations, then multipliers: zero for what is left out."""
+        rows = list(self.rows)
+        for beta in self.left_out:
+            rows[self.n + beta] = {self.n + beta: mp.one}
+        kept = [mp.zero if i - self.n in self.left_out else x for i, x in enumerate(right)]
+        return solved(rows, kept)
+
+    def claims(self, what: Sequence[str], x: Sequence[mp.mpf], right: Sequence[mp.mpf]) -> Iterator[Claim]:
+        """That numbers solve the equations."""
+        for i, (row, side) in enumerate(zip(self.rows, right, strict=True)):
+            if i - self.n not in self.left_out:
+                terms = [entry * x[k] for k, entry in row.items()]
+                yield Claim(what[i], mp.fsum(terms), side, mp.fsum(map(abs, terms)) + abs(side))
+
+
+class States:
+    """Random states of one scene."""
+
+    def __init__(self, motion: DescribedMotion, problem: MotionProblem, seed: str) -> None:
+        self.motion, self.problem, self._seed = motion, problem, seed
+        self.start = {name: mp.mpf(text) for name, text in problem.start.items()}
+
+    @cached_property
+    def span(self) -> tuple[mp.mpf, mp.mpf]:
+        """First and last instant."""
+        first = self.start["t"]
+        span = self.problem.time_span
+        last = mp.mpf(span[1]) if span else first + 2
+        if self.problem.law_end is not None:
+            last = min(last, mp.mpf(self.problem.law_end))
+        return first, last
+
+    def state(self, attempt: int) -> Values:
+        """One of them: the time, coordinates and velocities."""
+        draw = random.Random(f"{self._seed} {attempt}")
+        first, last = self.span
+
+        def between(low: mp.mpf, high: mp.mpf) -> mp.mpf:
+            return low + (high - low) * mp.mpf(draw.randrange(1, 2**40)) / 2**40
+
+        state = {"t": (between(first, last), mp.one)}
+        for q in self.problem.coordinates:
+            for name in (q, f"dot({q})"):
+                value = between(mp.mpf(-2 if attempt % 4 == 1 else 0), mp.mpf(2))
+                if attempt % 2 == 0 and name in self.start:
+                    value = self.start[name] + NEAR * (value - 1) * (abs(self.start[name]) or 1)
+                state[name] = (value,)
+        return state
+
+    def kept(self, state: Values) -> Values:
+        """The state moved to where the constraints hold, if servo-constraints need it: there their conditions agree.
+
+        Raises
+        ------
+        IrregularPoint
+            Newton's method does not get there.
+        """
+        if not self.problem.servo:
+            return state
+        names = [(q, f"dot({q})") for q in self.problem.coordinates]
+        for _ in range(NEWTON_STEPS):
+            computed = run(self.problem.matrices, self.inputs(state, [mp.zero] * len(self.problem.multipliers)))
+            system = bordered(computed, len(names), self.problem.multipliers, ())
+            left = [_residuals(system, computed, which) for which in ("residual", "residual_rate")]
+            if max(abs(x) for each in left for x in each) <= mp.mpf(10) ** (SPARE - mp.dps):
+                return state
+            moves = [system.solution([*[mp.zero] * len(names), *each]) for each in left]
+            for pair, *move in zip(names, *moves, strict=False):
+                state = state | {name: (state[name][0] + by,) for name, by in zip(pair, move, strict=True)}
+        raise IrregularPoint
+
+    def inputs(self, state: Values, multipliers: Sequence[mp.mpf]) -> Values:
+        """What programs take at a state."""
+        known = {name: value[:1] for name, value in state.items()}
+        known |= {name: (x,) for name, x in zip(self.problem.multipliers, multipliers, strict=True)}
+        known |= letters_of_tables(self.problem, state["t"][0])
+        return with_signs(self.problem, known)
+
+    def curve(self, state: Values, accelerations: Mapping[str, mp.mpf], controls: Values) -> Values:
+        """The curve through a state with these accelerations."""
+        found = self.motion.parameters() | controls | {"t": state["t"]}
+        for q in self.problem.coordinates:
+            found[q] = (state[q][0], state[f"dot({q})"][0], accelerations[q] / 2)
+        return found
+
+    def random_numbers(self, attempt: int, count: int) -> list[mp.mpf]:
+        """Numbers for accelerations and multipliers."""
+        draw = random.Random(f"{self._seed} {attempt} {count}")
+        return [mp.mpf(draw.randint(-(2**40), 2**40)) / 2**40 for _ in range(count)]
+
+    def controls(self, state: Values, computed: Values) -> Values:
+        """The controls along a motion: by the law of the description, or as the program found them."""
+        law = self.motion.law.at(Taylor(3), state["t"][0], self.motion.parameters())
+        found = [name for name in self.motion.system.controls if name not in law and name in computed]
+        return law | {name: computed[name] for name in found if name not in self.problem.coordinates}
+
+
+# ---- what programs claim ----
+
+
+def claims_of_law(controls: Values, computed: Values) -> Iterator[Claim]:
+    """Controls and their rates, as a program computes them under the law."""
+    for name, x in controls.items():
+        for place, what in enumerate((name, f"dot({name})", f"ddot({name})")):
+            if what in computed:
+                true = mp.factorial(place) * x[place] if place < len(x) else mp.zero
+                yield Claim(what, computed[what][0], true, abs(true))
+
+
+def bordered(computed: Values, n: int, multipliers: Sequence[str], redundant: Sequence[str]) -> Bordered:
+    """The bordered system, of the outputs of the program of matrices."""
+    rows: list[dict[int, mp.mpf]] = [{} for _ in range(n + len(multipliers))]
+    right = [mp.zero] * len(rows)
+    for name, x in computed.items():
+        if (found := INDEXED.fullmatch(name)) is None:
+            continue
+        i, k = int(found[2]) - 1, int(found[3] or 1) - 1
+        match found[1]:
+            case "A":
+                rows[i][k] = x[0]
+            case "J":
+                rows[n + i][k], rows[k][n + i] = x[0], -x[0]
+            case "h":
+                right[i] = x[0]
+            case "c":
+                right[n + i] = -x[0]
+    left_out = frozenset(i for i, name in enumerate(multipliers) if name in redundant)
+    return Bordered(rows, right, n, left_out)
+
+
+def claims_of_matrices(
+    motion: DescribedMotion, system: Bordered, computed: Values, curve: Values, x: Sequence[mp.mpf]
+) -> Iterator[Claim]:
+    """That the matrices, energy and power are those of the description, along accelerations and multipliers x.
+
+    The rate of the energy is the power and the work of what the equations of motion lack of zero.
+    """
+    values, natural = motion.values(SECOND, curve), len(motion.constraints)
+    multipliers = [(each,) for each in x[system.n : system.n + natural]]
+    equations = motion.equations(SECOND, values, multipliers)
+    energy = (*motion.energy(SECOND, values, curve), mp.zero)
+    work = [curve[q][1] * each.value[0] for q, each in zip(motion.system.coordinates, equations, strict=True)]
+    yield Claim("energy", computed["energy"][0], energy[0], abs(energy[0]))
+    yield Claim("power", computed["power"][0], energy[1] - mp.fsum(work), abs(energy[1]) + mp.fsum(map(abs, work)))
+    for s, equation in enumerate(equations):
+        terms = [entry * x[k] for k, entry in system.rows[s].items()]
+        given = mp.fsum(terms) - system.right[s]
+        size = equation.size[0] + mp.fsum(map(abs, terms)) + abs(system.right[s])
+        yield Claim(f"equation of motion of {motion.system.coordinates[s]}", given, equation.value[0], size)
+    places = [*motion.constraints, *motion.outputs]
+    for beta, place in enumerate(places[: len(system.rows) - system.n]):
+        f = (*values[place], mp.zero, mp.zero)
+        terms = [entry * x[k] for k, entry in system.rows[system.n + beta].items()]
+        right = system.right[system.n + beta]
+        yield Claim(f"constraint {beta + 1}", computed[f"residual[{beta + 1}]"][0], f[0], abs(f[0]))
+        yield Claim(f"rate of constraint {beta + 1}", computed[f"residual_rate[{beta + 1}]"][0], f[1], abs(f[1]))
+        size = mp.fsum(map(abs, terms)) + abs(right)
+        yield Claim(f"second rate of constraint {beta + 1}", mp.fsum(terms) - right, 2 * f[2], size)
+
+
+def claims_of_solve(
+    system: Bordered, solution: Sequence[mp.mpf], computed: Values, names: Sequence[str], servo: int
+) -> Iterator[Claim]:
+    """That accelerations and multipliers solve the bordered system, servo-constraints without multipliers."""
+    x = [computed[name][0] for name in names]
+    what = [
+        f"{name}: the program gives {mp.nstr(a, 12)}, the bordered system {mp.nstr(b, 12)}; the equation of it"
+        for name, a, b in zip(names, x, solution, strict=True)
+    ]
+    worst = max(range(len(x)), key=lambda i: abs(x[i] - solution[i]) / (abs(solution[i]) or 1))
+    yield from system.claims([what[worst]] * len(x), x, system.right)
+    for beta in range(len(names) - system.n):
+        if beta in system.left_out or beta >= len(names) - system.n - servo:
+            push = max((abs(row.get(system.n + beta, 0)) for row in system.rows[: system.n]), default=mp.zero)
+            size = max(map(abs, system.right[: system.n]), default=mp.zero)
+            yield Claim(names[system.n + beta], push * x[system.n + beta], mp.zero, size)
+
+
+def claims_of_constraint_forces(system: Bordered, computed: Values, names: Sequence[str]) -> Iterator[Claim]:
+    """That constraint forces are those of the multipliers."""
+    for s in range(system.n):
+        name = f"Lambda[{s + 1}]"
+        if name in computed:
+            terms = [-entry * computed[names[k]][0] for k, entry in system.rows[s].items() if k >= system.n]
+            yield Claim(name, computed[name][0], mp.fsum(terms), mp.fsum(map(abs, terms)))
+
+
+def claims_of_projection(system: Bordered, computed: Values, residuals: Values, which: str) -> Iterator[Claim]:
+    """That a correction is the least in the mass metric that makes up for the residuals."""
+    residual = {"position": "residual", "velocity": "residual_rate"}[which]
+    right = [mp.zero] * system.n + _residuals(system, residuals, residual)
+    solution = system.solution(right)
+    correction = [computed[f"{which}_correction[{s + 1}]"][0] for s in range(system.n)]
+    what = [f"{which} correction"] * len(right)
+    yield from system.claims(what, [*correction, *solution[system.n :]], right)
+
+
+def _residuals(system: Bordered, computed: Values, which: str) -> list[mp.mpf]:
+    """What the constraints, or their rates, lack of zero."""
+    return [-computed[f"{which}[{beta + 1}]"][0] for beta in range(len(system.rows) - system.n)]
+
+
+def claims_by_substitution(
+    motion: DescribedMotion, curve: Values, multipliers: Sequence[mp.mpf], left_out: Sequence[int] = ()
+) -> Iterator[Claim]:
+    """That the equations of motion hold along a curve through a state."""
+    values = motion.values(SECOND, curve)
+    for q, equation in zip(
+        motion.system.coordinates, motion.equations(SECOND, values, [(x,) for x in multipliers]), strict=True
+    ):
+        yield Claim(f"equation of motion of {q}", equation.value[0], mp.zero, equation.size[0])
+    for beta, place in enumerate(motion.constraints):
+        if beta not in left_out:
+            f = (*values[place], mp.zero, mp.zero)
+            yield Claim(f"second rate of constraint {beta + 1}", 2 * f[2], mp.zero, mp.zero)

@@ -1,0 +1,138 @@
+"""What is known before anything is derived: the system and its scenes; and where a record says them otherwise."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import NamedTuple
+
+import sympy as sp
+from mpmath import mp
+
+from ..described import System
+from ..description import DescribedScene, Description, Table
+from ..record import Record, Scene
+from .evaluation import Steps
+from .stated_law import StatedLaw, is_switched
+from .system import exact
+from .verdict import CONFIRMING_DIGITS, DIGITS
+
+TIME = sp.Symbol("t", real=True)
+
+INSTANTS = 4
+"""Instants after the first at which a law that is held around it is that which is stated."""
+
+SHORTEST = sp.Rational(1, 10**8)
+"""Time between two of them."""
+
+
+@dataclass(frozen=True)
+class Premises:
+    """A description, and the size beyond which closed forms are left out: its own, or that of the caller."""
+
+    description: Description
+    closed_form_size: int
+
+    @property
+    def system(self) -> System:
+        """The system."""
+        return self.description.system
+
+    @property
+    def scenes(self) -> tuple[DescribedScene, ...]:
+        """The scenes that a record holds; those under prescribed reactions and servo-constraints move other systems."""
+        scenes = self.description.scenes
+        return tuple(scene for scene in scenes if not scene.prescribed_reactions and not scene.servo_trees)
+
+
+def premises_of(description: Description, closed_form_size: int | None = None) -> Premises:
+    """Take what a description says for known, with the caller's limit where there is one."""
+    return Premises(description, closed_form_size or description.closed_form_size)
+
+
+class Difference(NamedTuple):
+    """What a record says otherwise than it is stated: of the system, or of the scene with this name."""
+
+    what: str
+    detail: str
+    scene: str | None = None
+
+
+def differences(record: Record, premises: Premises) -> Iterator[Difference]:
+    """Say where the record's system, scenes and selections of effects are not the stated ones."""
+    for field in fields(System):
+        said, stated = getattr(record.system, field.name), getattr(premises.system, field.name)
+        if said != stated:
+            yield Difference(f"system.{field.name}", _told(said, stated))
+    names = tuple(scene.name for scene in premises.scenes)
+    if (said := tuple(scene.name for scene in record.scenes)) != names:
+        yield Difference("scenes", _told(said, names))
+    else:
+        for scene, stated in zip(record.scenes, premises.scenes, strict=True):
+            yield from _differences_of_scene(scene, stated, premises.description.tables)
+    yield from _differences_of_effects(record, premises)
+
+
+def _differences_of_scene(scene: Scene, stated: DescribedScene, tables: Sequence[Table]) -> Iterator[Difference]:
+    switched = any(map(is_switched, stated.control_law.trees.values()))
+    said = {
+        "title": (scene.title, stated.title),
+        "effects": (scene.effects, stated.effects),
+        "observe": (scene.observe, stated.observe),
+        "parameter_values": (dict(scene.parameter_values), dict(stated.parameter_values)),
+        "time_span": (scene.time_span, stated.time_span),
+        "given": (scene.given, tuple(stated.initial_state)),
+        "law_around_start": (scene.law_around_start, switched),
+    }
+    if not switched:
+        said["control_law"] = (dict(scene.control_law), dict(stated.control_law))
+    elif detail := _law_differs(scene, stated, tables):
+        yield Difference("control_law", detail, scene.name)
+    for what, (found, belongs) in said.items():
+        if found != belongs or _order(found) != _order(belongs):
+            yield Difference(what, _told(found, belongs), scene.name)
+
+
+def _law_differs(scene: Scene, stated: DescribedScene, tables: Sequence[Table]) -> str:
+    """Tell where a law that is held around the first instant is another than the stated one; empty where it is not."""
+    if list(scene.control_law) != list(stated.control_law):
+        return _told(scene.control_law, stated.control_law)
+    t0 = exact(stated.time_span[0]) if stated.time_span else sp.Integer(0)
+    parameters = {sp.Symbol(x, real=True): exact(y) for x, y in stated.parameter_values.items()}
+    with mp.workdps(CONFIRMING_DIGITS):
+        values = dict(zip(parameters, Steps(list(parameters.values())).at({}), strict=True))
+        for k in range(1, INSTANTS + 1):
+            (values[TIME],) = Steps([t0 + k * SHORTEST]).at({})
+            law = StatedLaw(tables, values)
+            for name, tree in stated.control_law.trees.items():
+                found, belongs = Steps([exact(scene.control_law[name])]).at(values)[0], law.number(tree)
+                if found is None or belongs is None or abs(found - belongs) > mp.mpf(10) ** -DIGITS * abs(belongs):
+                    return f"{name} is {found}, where {belongs} is stated, at t = {mp.nstr(values[TIME], 12)}"
+    return ""
+
+
+def _differences_of_effects(record: Record, premises: Premises) -> Iterator[Difference]:
+    system = premises.system
+    everything = {part.effect for part in (*system.kinetic_energy, *system.potential_energy, *system.forces)}
+    stated = list(dict.fromkeys(scene.effects for scene in premises.scenes))
+    said = [derived.effects for derived in record.derivations]
+    if premises.scenes and said != stated:
+        yield Difference("derivations", _told(said, stated))
+    elif not premises.scenes and [sorted(effects) for effects in said] != [sorted(everything)]:
+        yield Difference("derivations", _told(said, [sorted(everything)]))
+    for scene in record.scenes:
+        if scene.derivation >= len(said) or said[scene.derivation] != scene.effects:
+            yield Difference("derivation", "its effects are not those of the scene", scene.name)
+
+
+def _order(found: object) -> object:
+    return list(found) if isinstance(found, Mapping) else found
+
+
+def _told(said: object, stated: object) -> str:
+    return f"the record has {_short(said)}, the description {_short(stated)}"
+
+
+def _short(said: object, most: int = 120) -> str:
+    text = ", ".join(map(str, said)) if isinstance(said, Iterable) and not isinstance(said, str) else str(said)
+    return text if len(text) <= most else f"{text[:most]}..."

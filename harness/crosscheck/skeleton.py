@@ -1,0 +1,141 @@
+"""Which equations a record holds, in which order and under which names: known before any of them is read.
+
+Closed forms are made where their predicted length is within a limit. The prediction is Maxima's: symbols and operations
+of T, V, Q and f, times g! for the multipliers, times b! for the largest block of coordinates that a row of the mass
+matrix couples, times r + 1 for r different roots. It is made again here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from math import factorial
+from typing import NamedTuple
+
+import sympy as sp
+
+from ..described import System
+from ..record import Derivation, Equation, Scene
+from ..trees import Tree
+from .displayed import displayed, operations, roots, size
+from .system import MechanicalSystem, gradient
+
+CLOSED_NUMBERS = ("4", "5", "8", "9", "10", "11")
+"""Numbers of the equations that are left out where closed forms would be too long."""
+
+
+class Item(NamedTuple):
+    """An equation: its id, the paper's number and its name."""
+
+    id: str
+    number: str
+    name: str
+
+
+ZEROS_LEFT_OUT = ", without the zeros off the diagonal of A"
+
+
+def derivation_items(closed: bool, regular: bool, redundant: Sequence[str], all_entries: bool) -> tuple[Item, ...]:
+    """The equations of a derivation, in their order."""
+    inverse = "inverse of the mass matrix" + ("" if regular else " with J^T J added, which is singular without")
+    items = (
+        Item("constraints", "1", "constraints"),
+        Item("lagrange_equations", "2", "Lagrange's equations with multipliers"),
+        Item(
+            "kinetic_energy", "3a", "kinetic energy, split into A, B and T0" + ("" if all_entries else ZEROS_LEFT_OUT)
+        ),
+        Item("expanded_equations", "3", "equations of motion, expanded"),
+        Item("driven_accelerations", "4", "accelerations, with multipliers"),
+        Item("inverse_mass_matrix", "5", inverse),
+        Item("christoffel_symbols", "6", "Christoffel symbols of the first kind"),
+        Item("constraint_accelerations", "7", "constraints, differentiated twice"),
+        Item("multiplier_equations", "8", "equations for the multipliers"),
+        Item("multipliers", "8", _multipliers_in_words(redundant)),
+        Item("constraint_forces", "9", "constraint forces"),
+        Item("free_motion_condition", "10", "condition of free motion"),
+        Item("accelerations", "11", "accelerations, multipliers eliminated"),
+    )
+    return tuple(item for item in items if closed or item.number not in CLOSED_NUMBERS)
+
+
+def scene_items(closed: bool, series: bool, law: bool) -> tuple[Item, ...]:
+    """The equations of a scene, in their order."""
+    items = (
+        (closed and law, Item("free_motion_residual", "10", "condition of free motion under the control law")),
+        (True, Item("initial_state", "12", "initial state")),
+        (True, Item("determined_initial_values", "19", "initial values that the constraints fix")),
+        (closed, Item("initial_accelerations", "13", "initial accelerations")),
+        (closed and series, Item("initial_series", "18", "initial motion, as a series")),
+    )
+    return tuple(item for is_there, item in items if is_there)
+
+
+def scene_numbers_left_out(closed: bool, series: bool, law: bool) -> tuple[str, ...]:
+    """Numbers of the equations of a scene that are left out because they would be too long."""
+    if closed:
+        return () if series else ("18",)
+    return (*(("10",) if law else ()), "13", "18")
+
+
+def _multipliers_in_words(redundant: Sequence[str]) -> str:
+    if not redundant:
+        return "multipliers"
+    places = ", ".join(name.removeprefix("lambda") for name in redundant)
+    constraints = "constraint" if len(redundant) == 1 else "constraints"
+    return f"multipliers, not unique: those that are zero for the redundant {constraints} {places}"
+
+
+def predicted_size(system: System, derived: Derivation, known: MechanicalSystem, limit: int) -> int:
+    """Predict the length of the closed forms; `known` has the effects called for and the independent constraints."""
+    kept = {multiplier.name for multiplier in known.multipliers}
+    called = [
+        *(["=", part.effect, displayed(part.tree)] for part in _called(system.kinetic_energy, derived.effects)),
+        *(["=", part.effect, displayed(part.tree)] for part in _called(system.potential_energy, derived.effects)),
+        *(["=", part.effect, ("[", *map(displayed, part.trees))] for part in _called(system.forces, derived.effects)),
+    ]
+    constraints = (
+        displayed(tree) for name, tree in zip(system.multipliers, system.constraint_trees, strict=True) if name in kept
+    )
+    described = ("[", *map(tuple, called), *constraints)
+    length = size(described) * factorial(len(kept)) * (len(roots([described])) + 1)
+    alone = length * factorial(_largest_block(known, False))
+    if alone > limit or derived.mass_matrix == "regular":
+        return alone
+    return length * factorial(_largest_block(known, True))
+
+
+def _called(parts: Iterable, effects: Sequence[str]) -> list:
+    return [part for part in parts if part.effect in effects]
+
+
+def _largest_block(system: MechanicalSystem, supported: bool) -> int:
+    """Most coordinates that one row of the mass matrix couples, or of A + J^T J."""
+    if supported:
+        return _largest_block_supported(system)
+    rows = gradient(system.kinetic_energy, system.velocities)
+    return max(sum(momentum.diff(v) != 0 for v in system.velocities if v in momentum.free_symbols) for momentum in rows)
+
+
+def _largest_block_supported(system: MechanicalSystem) -> int:
+    v, q = system.velocities, system.coordinates
+    J = [gradient(f, q) for f in system.constraints]
+    momenta = gradient(system.kinetic_energy, v)
+    n = len(q)
+    return max(
+        sum(sp.Add(momenta[s].diff(v[k]), *(row[s] * row[k] for row in J)) != 0 for k in range(n)) for s in range(n)
+    )
+
+
+def length_of(equation: Equation) -> int:
+    """Return the length of the right sides of an equation, as a list."""
+    return size(("[", *(displayed(relation.right_tree) for relation in equation.relations)))
+
+
+def operations_of(equations: Iterable[Equation]) -> int:
+    """Return the number of operations in the right sides of equations."""
+    rights: list[Tree] = [relation.right_tree for equation in equations for relation in equation.relations]
+    return sum(operations(displayed(right)) for right in rights)
+
+
+def equation_of(part: Derivation | Scene, wanted: str) -> Equation | None:
+    """The first equation with an id."""
+    return next((equation for equation in part.equations if equation.id == wanted), None)

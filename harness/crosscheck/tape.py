@@ -1,0 +1,309 @@
+"""Expressions evaluated along a motion, with their gradients by the reverse mode of automatic differentiation.
+
+The trees of a description become one list of operations, equal parts once, and every number in it a Taylor polynomial
+in the time: the cost of all derivatives together is a small multiple of that of the values (Griewank & Walther,
+Evaluating Derivatives, chapter 3).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from fractions import Fraction
+from functools import partial
+
+from mpmath import mp
+
+from ..trees import Tree, converted, integer, refusal
+from .points import IrregularPoint
+from .taylor import COEFFICIENTS, ELLIPTIC, OF_A_NUMBER, Coefficients, Polynomial, Taylor, differentiated
+
+CONSTANTS = {"Pi": lambda: +mp.pi, "ExponentialE": lambda: +mp.e, "EulerGamma": lambda: +mp.euler}
+DECIDED = {"Sign", "UnitStep", "HalfStep", "Which", "Max", "Min"}  # by signs at the instant, where none may vanish
+RELATIONS = {"Greater": 1, "GreaterEqual": 1, "Less": -1, "LessEqual": -1}
+
+Operation = tuple[str, tuple[int, ...]]
+
+
+class Tape:
+    """A list of operations, in the order in which they can be computed."""
+
+    def __init__(self) -> None:
+        self.operations: list[Operation] = []
+        self.names: dict[str, int] = {}  # places of the quantities that they begin with
+        self.numbers: dict[int, Fraction] = {}
+        self._places: dict[object, int] = {}
+
+    def place(self, tree: Tree) -> int:
+        """Place of an expression, which is added unless it is there.
+
+        Raises
+        ------
+        HolonomError
+            It is no expression.
+        """
+        return converted(tree, self._expanded)
+
+    def _expanded(self, tree: Tree) -> tuple[object, list[Tree]]:
+        match tree:
+            case ["Rational", numerator, denominator]:
+                return partial(self._number, Fraction(integer(numerator), integer(denominator))), []
+            case {"num": str(digits)}:
+                return partial(self._number, Fraction(digits)), []
+            case bool():
+                raise refusal(tree)
+            case int():
+                return partial(self._number, Fraction(tree)), []
+            case str():
+                return partial(self._name, tree), []
+            case ["Sqrt", base]:
+                return partial(self._added, "Power"), [base, ["Rational", 1, 2]]
+            case ["Table", *_]:
+                raise refusal(tree)
+            case [str(head), *arguments]:
+                return partial(self._added, head), arguments
+            case _:
+                raise refusal(tree)
+
+    def _number(self, number: Fraction) -> int:
+        place = self._added("number", number.numerator, number.denominator)
+        self.numbers[place] = number
+        return place
+
+    def _name(self, name: str) -> int:
+        place = self._added("name", name)
+        self.names[name] = place
+        return place
+
+    def _added(self, head: str, *arguments: object) -> int:
+        key = (head, *arguments)
+        if key not in self._places:
+            self._places[key] = len(self.operations)
+            own = () if head in ("name", "number") else arguments
+            self.operations.append((head, own))
+        return self._places[key]
+
+    def values(self, taylor: Taylor, known: Mapping[str, Polynomial]) -> list[Polynomial]:
+        """Values of all operations.
+
+        Raises
+        ------
+        IrregularPoint
+            One of them has no finite real value, or changes its form at the instant.
+        """
+        values: list[Polynomial] = [()] * len(self.operations)
+        for name, place in self.names.items():
+            values[place] = _quantity(name, known)
+        for place, number in self.numbers.items():
+            values[place] = (mp.mpf(number.numerator) / number.denominator,)
+        for place, (head, arguments) in enumerate(self.operations):
+            if head not in ("name", "number"):
+                values[place] = value_of(taylor, head, [values[each] for each in arguments])
+        return values
+
+    def sizes(self, taylor: Taylor, values: Sequence[Polynomial]) -> list[Polynomial]:
+        """What the sizes of all terms of sums add up to, of each operation."""
+        found: list[Polynomial] = []
+        for place, (head, arguments) in enumerate(self.operations):
+            x = [found[each] for each in arguments]
+            match head:
+                case "Add" | "Subtract":
+                    found.append(taylor.add(*x))
+                case "Multiply":
+                    found.append(_product(taylor, x))
+                case "Negate":
+                    found.append(x[0])
+                case "Power" if self._is_small_power(arguments[1]):
+                    found.append(taylor.power(x[0], values[arguments[1]][0]))
+                case _:
+                    found.append(tuple(map(abs, values[place])))
+        return found
+
+    def _is_small_power(self, place: int) -> bool:
+        return place in self.numbers and self.numbers[place] in (2, 3, 4)
+
+    def gradient(
+        self, taylor: Taylor, values: Sequence[Polynomial], seeds: Mapping[int, Polynomial]
+    ) -> dict[str, Polynomial]:
+        """Gradient, by name, of the sum of the operations at some places, each with a factor."""
+        adjoints: list[Polynomial | None] = [None] * len(self.operations)
+        for place, seed in seeds.items():
+            adjoints[place] = seed
+        for place in range(len(self.operations) - 1, -1, -1):
+            adjoint, (head, arguments) = adjoints[place], self.operations[place]
+            if adjoint is None or not arguments:
+                continue
+            for each, share in zip(arguments, _shares(taylor, head, arguments, values, place, adjoint), strict=True):
+                if share is not None:
+                    before = adjoints[each]
+                    adjoints[each] = share if before is None else taylor.add(before, share)
+        return {name: adjoints[place] for name, place in self.names.items() if adjoints[place] is not None}
+
+
+def _quantity(name: str, known: Mapping[str, Polynomial]) -> Polynomial:
+    if name in CONSTANTS:
+        return (CONSTANTS[name](),)
+    if name in ("True", "False"):
+        return (mp.mpf(1 if name == "True" else -1),)
+    if name not in known:
+        raise refusal(name)
+    return known[name]
+
+
+def value_of(taylor: Taylor, head: str, x: Sequence[Polynomial]) -> Polynomial:
+    """Value of one operation."""
+    match head, x:
+        case "Add", _:
+            return taylor.add(*x)
+        case "Multiply", _:
+            return _product(taylor, x)
+        case "Negate", [a]:
+            return taylor.scale(-1, a)
+        case "Subtract", [a, b]:
+            return taylor.add(a, taylor.scale(-1, b))
+        case "Divide", [a, b]:
+            return taylor.divide(a, b)
+        case "Power", [a, b] if len(b) == 1:
+            return taylor.power(a, b[0])
+        case "Power", [a, b]:
+            return taylor.compose(COEFFICIENTS["Exp"], taylor.multiply(b, taylor.compose(COEFFICIENTS["Ln"], a)))
+        case "Sqrt", [a]:
+            return taylor.power(a, mp.mpf(1) / 2)
+        case "Abs", [a]:
+            return taylor.scale(_sign(a), a)
+        case "Arctan2", [a, b]:
+            return _angle(taylor, a, b)
+        case _ if (coefficients := coefficients_of(head, x)) is not None:
+            return taylor.compose(coefficients, x[0 if head in ELLIPTIC else -1])
+        case _:
+            return _decided(taylor, head, x)
+
+
+def coefficients_of(head: str, x: Sequence[Polynomial]) -> Coefficients | None:
+    """Taylor coefficients of a function, given its arguments."""
+    if head in OF_A_NUMBER:
+        return differentiated(partial(OF_A_NUMBER[head], _constant(x[0])))
+    if head in ELLIPTIC:
+        modulus = _constant(x[1])
+        return differentiated(lambda u: mp.ellipfun(ELLIPTIC[head], u, m=modulus))
+    return COEFFICIENTS.get(head)
+
+
+def _constant(x: Polynomial) -> mp.mpf:
+    if any(x[1:]):
+        raise IrregularPoint
+    return x[0]
+
+
+def _sign(x: Polynomial) -> int:
+    if not x[0]:
+        raise IrregularPoint
+    return 1 if x[0] > 0 else -1
+
+
+def _product(taylor: Taylor, factors: Iterable[Polynomial]) -> Polynomial:
+    found: Polynomial = (mp.one,)
+    for each in factors:
+        found = taylor.multiply(found, each)
+    return found
+
+
+def _angle(taylor: Taylor, y: Polynomial, x: Polynomial) -> Polynomial:
+    first = mp.atan2(y[0], x[0])
+    if len(x) == len(y) == 1:
+        return (first,)
+    turned = taylor.add(taylor.multiply(x, taylor.rate(y)), taylor.scale(-1, taylor.multiply(y, taylor.rate(x))))
+    return taylor.integral(taylor.divide(turned, _squares(taylor, x, y)), first)
+
+
+def _squares(taylor: Taylor, x: Polynomial, y: Polynomial) -> Polynomial:
+    return taylor.add(taylor.multiply(x, x), taylor.multiply(y, y))
+
+
+def _decided(taylor: Taylor, head: str, x: Sequence[Polynomial]) -> Polynomial:
+    """Value of what signs decide at the instant; a condition is 1 where it holds and -1 where it does not."""
+    match head:
+        case "Sign":
+            return (mp.mpf(_sign(x[0])),)
+        case "UnitStep" | "HalfStep":
+            return (mp.mpf((1 + _sign(x[0])) // 2),)
+        case "Max" | "Min":
+            side, best = (1 if head == "Max" else -1), x[0]
+            for other in x[1:]:
+                best = other if side * _sign(taylor.add(other, taylor.scale(-1, best))) > 0 else best
+            return best
+        case "Which":
+            return next(value for condition, value in zip(x[::2], x[1::2], strict=True) if condition[0] > 0)
+        case "And" | "Or":
+            return (min if head == "And" else max)(x)
+        case "Not":
+            return taylor.scale(-1, x[0])
+        case _ if head in RELATIONS:
+            return (mp.mpf(RELATIONS[head] * _sign(taylor.add(x[0], taylor.scale(-1, x[1])))),)
+        case _:
+            raise refusal([head])
+
+
+def _shares(
+    taylor: Taylor,
+    head: str,
+    arguments: Sequence[int],
+    values: Sequence[Polynomial],
+    place: int,
+    adjoint: Polynomial,
+) -> list[Polynomial | None]:
+    """The shares that the arguments of an operation have in its adjoint."""
+    x = [values[each] for each in arguments]
+    match head:
+        case "Add":
+            return [adjoint] * len(x)
+        case "Multiply":
+            return _shares_of_product(taylor, x, adjoint)
+        case "Negate":
+            return [taylor.scale(-1, adjoint)]
+        case "Subtract":
+            return [adjoint, taylor.scale(-1, adjoint)]
+        case "Divide":
+            share = taylor.divide(adjoint, x[1])
+            return [share, taylor.scale(-1, taylor.multiply(share, values[place]))]
+        case "Power":
+            return _shares_of_power(taylor, x, values[place], adjoint)
+        case "Abs":
+            return [taylor.scale(_sign(x[0]), adjoint)]
+        case "Arctan2":
+            share = taylor.divide(adjoint, _squares(taylor, *x))
+            return [taylor.multiply(share, x[1]), taylor.scale(-1, taylor.multiply(share, x[0]))]
+        case "Sign":
+            return [None]
+    coefficients = coefficients_of(head, x)
+    if coefficients is None:
+        raise refusal([head])
+    own = 0 if head in ELLIPTIC else len(x) - 1
+    slope = taylor.compose(_derived(coefficients), x[own])
+    return [taylor.multiply(adjoint, slope) if each == own else None for each in range(len(x))]
+
+
+def _derived(coefficients: Coefficients) -> Coefficients:
+    return lambda x, order: [k * c for k, c in enumerate(coefficients(x, order + 1))][1:]
+
+
+def _shares_of_product(taylor: Taylor, x: Sequence[Polynomial], adjoint: Polynomial) -> list[Polynomial | None]:
+    after: list[Polynomial] = [(mp.one,)]
+    for each in reversed(x[1:]):
+        after.append(taylor.multiply(each, after[-1]))
+    shares, before = [], adjoint
+    for each, rest in zip(x, reversed(after), strict=True):
+        shares.append(taylor.multiply(before, rest))
+        before = taylor.multiply(before, each)
+    return shares
+
+
+def _shares_of_power(
+    taylor: Taylor, x: Sequence[Polynomial], value: Polynomial, adjoint: Polynomial
+) -> list[Polynomial | None]:
+    base, exponent = x
+    if len(exponent) == 1:
+        slope = taylor.scale(exponent[0], taylor.power(base, exponent[0] - 1)) if exponent[0] else (mp.zero,)
+        return [taylor.multiply(adjoint, slope), None]
+    share = taylor.multiply(adjoint, value)
+    logarithm = taylor.compose(COEFFICIENTS["Ln"], base)
+    return [taylor.divide(taylor.multiply(share, exponent), base), taylor.multiply(share, logarithm)]

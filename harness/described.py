@@ -1,0 +1,137 @@
+"""A system as it is described, before anything is derived: T, V, Q and f, in names and trees (`holonom.trees`).
+
+SymPy expressions are made of the trees when they are first asked for, and SymPy is imported then.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from .trees import Tree
+
+if TYPE_CHECKING:
+    from sympy import Expr
+
+NAMED_QUANTITIES = (
+    "coordinates",
+    "velocities",
+    "accelerations",
+    "controls",
+    "control_rates",
+    "control_accelerations",
+    "parameters",
+    "multipliers",
+)
+Result = TypeVar("Result")
+
+
+@dataclass(frozen=True)
+class Effect:
+    """A named part of the kinetic or of the potential energy."""
+
+    effect: str
+    tree: Tree
+
+    @cached_property
+    def value(self) -> "Expr":
+        """The energy."""
+        return expression(self.tree)
+
+
+@dataclass(frozen=True)
+class ForceEffect:
+    """A named part of the generalized forces, one component a coordinate."""
+
+    effect: str
+    trees: tuple[Tree, ...]
+
+    @cached_property
+    def value(self) -> "tuple[Expr, ...]":
+        """The forces."""
+        return each(expression, self.trees)
+
+
+@dataclass(frozen=True)
+class System:
+    """A system as its scene file describes it, before anything is derived."""
+
+    title: str  # what the system is
+    source: str | None  # where it is published
+    time: str  # name of the time
+    # coordinates, velocities, accelerations: names of q, dot(q) and ddot(q)
+    coordinates: tuple[str, ...]
+    velocities: tuple[str, ...]
+    accelerations: tuple[str, ...]
+    # controls, control_rates, control_accelerations: names of u, dot(u) and ddot(u)
+    controls: tuple[str, ...]
+    control_rates: tuple[str, ...]
+    control_accelerations: tuple[str, ...]
+    parameters: tuple[str, ...]  # names of the constants
+    multipliers: tuple[str, ...]  # names of the constraint multipliers
+    # kinetic_energy, potential_energy: T and V as sums of named parts
+    kinetic_energy: tuple[Effect, ...]
+    potential_energy: tuple[Effect, ...]
+    forces: tuple[ForceEffect, ...]  # Q as a sum of named parts
+    constraint_trees: tuple[Tree, ...]  # each is zero on every motion
+
+    @cached_property
+    def constraints(self) -> "tuple[Expr, ...]":
+        """The constraints, g of them."""
+        return each(expression, self.constraint_trees)
+
+
+class Values(Mapping[str, "Expr"]):
+    """Expressions by name."""
+
+    def __init__(self, trees: Mapping[str, Tree]) -> None:
+        self.trees = trees
+        self._made: dict[str, Expr] = {}
+
+    def __getitem__(self, name: str) -> "Expr":
+        if name not in self._made:
+            self._made[name] = expression(self.trees[name])
+        return self._made[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.trees
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.trees)
+
+    def __len__(self) -> int:
+        return len(self.trees)
+
+
+def read_system(system: dict[str, Any]) -> System:
+    """Read a system as records and other documents hold it, with the names of all its quantities."""
+    return System(
+        title=system["title"],
+        source=system["source"],
+        time=system["time"],
+        **{kind: tuple(system[kind]) for kind in NAMED_QUANTITIES},
+        kinetic_energy=each(_effect, system["kinetic_energy"]),
+        potential_energy=each(_effect, system["potential_energy"]),
+        forces=each(_force_effect, system["forces"]),
+        constraint_trees=tuple(system["constraints"]),
+    )
+
+
+def _effect(part: dict[str, Any]) -> Effect:
+    return Effect(part["effect"], part["value"])
+
+
+def _force_effect(part: dict[str, Any]) -> ForceEffect:
+    return ForceEffect(part["effect"], tuple(part["value"]))
+
+
+def expression(tree: Tree) -> "Expr":
+    """Make a SymPy expression of a tree."""
+    from .mathjson import to_sympy
+
+    return to_sympy(tree)
+
+
+def each(read: Callable[[Any], Result], items: Sequence[Any]) -> tuple[Result, ...]:
+    """Read each item of a sequence."""
+    return tuple(read(item) for item in items)

@@ -1,0 +1,266 @@
+"""The description: all that a scene file says, as a value.
+
+It is the one document that crosses from the process that ran the scene file to those that derive, and the check takes
+its premises from it. So it is read strictly: its schema states it down to the last leaf of its expressions, and titles
+hold no characters that hide or reverse text.
+"""
+
+import json
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .described import Effect, ForceEffect, System, Values, each, expression
+from .failures import Failure, HolonomError
+from .formats import Document, read
+from .hidden import hidden_character
+from .trees import JSON_INTEGERS, Tree
+
+if TYPE_CHECKING:
+    from sympy import Expr
+
+MOST_SCENES = 1000
+LARGEST = 64 * 2**20  # characters of a description
+BEGINS = re.compile(r'\s*\{\s*"format"\s*:\s*"holonom-description"')  # no scene file in Maxima's language begins so
+TIME = "t"
+
+
+@dataclass(frozen=True)
+class Table:
+    """Points of a cubic spline in the time; `ends` are the rates at both ends, None for the natural spline."""
+
+    points: tuple[tuple[Tree, Tree], ...]
+    ends: tuple[Tree, Tree] | None
+
+
+@dataclass(frozen=True)
+class DescribedScene:
+    """A scene as its file states it. All numbers are exact; nothing is corrected or solved for.
+
+    Attributes
+    ----------
+    name, title : str
+        The name it is assigned to, and what it is.
+    effects : tuple of str
+        Names of the effects it calls for, in the order of the system's.
+    control_law : mapping of str to Expr
+        Controls as functions of the time, by name. A law may be switched, and may hold tables (`Description.tables`).
+    prescribed_reactions : mapping of str to Expr
+        Multipliers as functions of the time, by name.
+    servo_trees : tuple of trees
+        Servo-constraints: what the controls without a law are to keep at zero.
+    parameter_values : mapping of str to Expr
+        The parameters that have values; settings are among them.
+    initial_state, initial_guess : mapping of str to Expr
+        Coordinates and velocities that the scene gives, and those near which it wants the others.
+    span_trees : pair of trees or None
+        First and last instant.
+    until_trees : tuple of trees
+        Expressions whose zeros end the motion.
+    observe : tuple of str
+        What to compute.
+    """
+
+    name: str
+    title: str
+    effects: tuple[str, ...]
+    control_law: Values
+    prescribed_reactions: Values
+    servo_trees: tuple[Tree, ...]
+    parameter_values: Values
+    initial_state: Values
+    initial_guess: Values
+    span_trees: tuple[Tree, Tree] | None
+    until_trees: tuple[Tree, ...]
+    observe: tuple[str, ...]
+
+    @cached_property
+    def time_span(self) -> "tuple[Expr, Expr] | None":
+        """First and last instant."""
+        return None if self.span_trees is None else (expression(self.span_trees[0]), expression(self.span_trees[1]))
+
+    @cached_property
+    def servo_constraints(self) -> "tuple[Expr, ...]":
+        """What the controls without a law are to keep at zero."""
+        return each(expression, self.servo_trees)
+
+
+@dataclass(frozen=True)
+class Description:
+    """What one scene file says under certain settings.
+
+    Attributes
+    ----------
+    file : Path
+        The file that was run, or the document that was read.
+    content : dict
+        The document.
+    was_run : bool
+        True if the file was run.
+    """
+
+    file: Path
+    content: dict[str, Any]
+    was_run: bool = False
+
+    @property
+    def closed_form_size(self) -> int:
+        """Size beyond which closed forms are left out."""
+        return self.content["closed_form_size"]
+
+    @property
+    def settings(self) -> Values:
+        """The settings that the file was run with."""
+        return Values(self.content["settings"])
+
+    @cached_property
+    def system(self) -> System:
+        """The system that the file describes."""
+        return _system(self.content["system"])
+
+    @cached_property
+    def tables(self) -> tuple[Table, ...]:
+        """The tables of its control laws and servo-constraints."""
+        return each(_table, self.content["tables"])
+
+    @cached_property
+    def scenes(self) -> tuple[DescribedScene, ...]:
+        """Its scenes, oldest first."""
+        return each(_scene, self.content["scenes"])
+
+    @property
+    def unused_parameters(self) -> tuple[str, ...]:
+        """Parameters that the system declares, and that neither it nor a scene contains."""
+        system = {key: value for key, value in self.content["system"].items() if key != "parameters"}
+        used = set(_strings([system, *({**scene, "parameter_values": []} for scene in self.content["scenes"])]))
+        return tuple(name for name in self.content["system"]["parameters"] if name not in used)
+
+    @property
+    def text(self) -> str:
+        """The document as JSON, in which every control character is escaped."""
+        return json.dumps(self.content, ensure_ascii=False, separators=(",", ":"))
+
+    def with_settings(self, settings: Mapping[str, str]) -> "Description":
+        """The description with other values of parameters, which is what a setting can be once the file has run.
+
+        Raises
+        ------
+        HolonomError
+            The system, or a scene, has no such parameter.
+        """
+        content = self.content
+        for name, text in settings.items():
+            content = _with_value(content, name, _number(text), self.file)
+        return replace(self, content=content)
+
+
+def is_description(text: str) -> bool:
+    """Tell a description from a scene file."""
+    return BEGINS.match(text) is not None
+
+
+def read_description(text: str, file: Path) -> Description:
+    """Read a description.
+
+    Raises
+    ------
+    HolonomError
+        It is too large, it is no description, or it holds characters that hide or reverse text.
+    """
+    if len(text) > LARGEST:
+        raise HolonomError(Failure.DESCRIPTION_TOO_LARGE, file, f"{LARGEST // 2**20} MiB")
+    content = read(Document.DESCRIPTION, text)
+    if len(content["scenes"]) > MOST_SCENES:
+        raise HolonomError(Failure.TOO_MANY_SCENES, file, str(len(content["scenes"])))
+    for said in _texts(content):
+        if hidden := hidden_character(said):
+            raise HolonomError(Failure.HIDDEN_CHARACTER, file, hidden)
+    return Description(file, content)
+
+
+def _texts(content: dict[str, Any]) -> Iterator[str]:
+    """What a description holds in words; its names are of letters and digits, as the schema says."""
+    for part in (content["system"], *content["scenes"]):
+        yield part["title"]
+        yield part.get("source") or ""
+
+
+def _strings(part: Any) -> Iterator[str]:
+    """All texts of a part of a document, names among them."""
+    if isinstance(part, str):
+        yield part
+    elif isinstance(part, dict | list):
+        for each_part in part.values() if isinstance(part, dict) else part:
+            yield from _strings(each_part)
+
+
+def _system(system: dict[str, Any]) -> System:
+    coordinates, controls = tuple(system["coordinates"]), tuple(system["controls"])
+    return System(
+        title=system["title"],
+        source=system["source"],
+        time=TIME,
+        coordinates=coordinates,
+        velocities=_rates("dot", coordinates),
+        accelerations=_rates("ddot", coordinates),
+        controls=controls,
+        control_rates=_rates("dot", controls),
+        control_accelerations=_rates("ddot", controls),
+        parameters=tuple(system["parameters"]),
+        multipliers=tuple(f"lambda{place}" for place, _ in enumerate(system["constraints"], 1)),
+        kinetic_energy=tuple(Effect(part["effect"], part["value"]) for part in system["kinetic_energy"]),
+        potential_energy=tuple(Effect(part["effect"], part["value"]) for part in system["potential_energy"]),
+        forces=tuple(ForceEffect(part["effect"], tuple(part["value"])) for part in system["forces"]),
+        constraint_trees=tuple(system["constraints"]),
+    )
+
+
+def _rates(dots: str, names: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(f"{dots}({name})" for name in names)
+
+
+def _table(table: dict[str, Any]) -> Table:
+    return Table(tuple(map(tuple, table["points"])), table["ends"] and tuple(table["ends"]))
+
+
+def _scene(scene: dict[str, Any]) -> DescribedScene:
+    return DescribedScene(
+        name=scene["name"],
+        title=scene["title"],
+        effects=tuple(scene["effects"]),
+        control_law=Values(scene["control_law"]),
+        prescribed_reactions=Values(scene["prescribed_reactions"]),
+        servo_trees=tuple(scene["servo_constraints"]),
+        parameter_values=Values(scene["parameter_values"]),
+        initial_state=Values(scene["initial_state"]),
+        initial_guess=Values(scene["initial_guess"]),
+        span_trees=scene["time_span"] and tuple(scene["time_span"]),
+        until_trees=tuple(scene["until"]),
+        observe=tuple(scene["observe"]),
+    )
+
+
+def _with_value(content: dict[str, Any], name: str, value: Tree, file: Path) -> dict[str, Any]:
+    declared = name in content["system"]["parameters"]
+    having = [scene for scene in content["scenes"] if declared or name in scene["parameter_values"]]
+    if not declared and not having:
+        raise HolonomError(Failure.NOT_SETTABLE, file, name)
+    return content | {
+        "settings": content["settings"] | {name: value},
+        "scenes": [
+            scene | {"parameter_values": scene["parameter_values"] | {name: value}} if scene in having else scene
+            for scene in content["scenes"]
+        ],
+    }
+
+
+def _number(text: str) -> Tree:
+    """The tree of a number, exactly as it is written; a quotient may be one of decimals."""
+    numerator, _, denominator = text.partition("/")
+    value = Fraction(numerator) / Fraction(denominator or 1)
+    parts = [part if abs(part) < JSON_INTEGERS else {"num": str(part)} for part in value.as_integer_ratio()]
+    return parts[0] if value.denominator == 1 else ["Rational", *parts]

@@ -1,0 +1,122 @@
+"""Formats of documents: JSON with a format, a version and a schema.
+
+A schema, `schemas/NAME.json` for the format ``holonom-NAME``, states the shape of a document down to expressions and
+programs, which are read strictly where they are read.
+"""
+
+import json
+from collections.abc import Iterable, Mapping
+from enum import StrEnum
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .failures import Failure, HolonomError
+
+if TYPE_CHECKING:
+    from jsonschema_rs import Draft202012Validator
+
+SCHEMAS = Path(__file__).with_name("schemas")
+VERSION = 1
+SHOWN = 200  # characters of what a validator says
+
+
+class Document(StrEnum):
+    """What Maxima writes; the value names format and schema, and `write_...` in Maxima writes it."""
+
+    DESCRIPTION = "description"
+    RECORD = "record"
+    PROGRAM = "program"
+    EFFECTS = "effects"
+    MODEL = "model"
+    MOTION_PROBLEM = "motion-problem"
+    MOTION_SERIES = "motion-series"
+    SERIES_COSTS = "series-costs"
+    FREE_MOTION = "free-motion"
+    ERRATA = "errata"
+    VERSIONS = "versions"
+
+    @property
+    def writer(self) -> str:
+        """The Maxima function."""
+        return "write_" + self.value.replace("-", "_")
+
+
+class Publication(StrEnum):
+    """What a command publishes with ``--json`` and Maxima does not write."""
+
+    CHECK = "check"
+    SERIES = "series"
+    SIMULATION = "simulation"
+    DOCTOR = "doctor"
+    SWEEP = "sweep"
+    COSTS = "costs"
+    HARD_CASES = "hard-cases"
+    ACCURACY = "accuracy"
+    FREE = "free"
+
+
+FORMATS = tuple(f"holonom-{name}" for name in (*Document, *Publication))
+
+
+def read(document: Document, text: str) -> dict[str, Any]:
+    """Read a document as Maxima writes it.
+
+    Raises
+    ------
+    HolonomError
+        The text is no JSON, or has another shape.
+    """
+    try:
+        content = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise _refusal(document, f"it is not JSON, {error}") from None
+    require(document, content)
+    return content
+
+
+def require(document: Document | Publication, content: Any) -> None:
+    """Refuse what has not the shape of a document."""
+    try:
+        errors = list(_validator(document).iter_errors(content))
+    except UnicodeEncodeError as error:  # half of a character, which JSON can write
+        raise _refusal(document, str(error)) from None
+    if error := min(errors, key=lambda each: len(each.instance_path), default=None):
+        raise _refusal(document, f"at {_json_path(error.instance_path)}, {error.message[:SHOWN]}")
+
+
+def _json_path(steps: Iterable[str | int]) -> str:
+    return "$" + "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in steps)
+
+
+def published(name: Document | Publication, content: Mapping[str, Any]) -> dict[str, Any]:
+    """What a command publishes, with its format and version."""
+    return {"format": f"holonom-{name}", "version": VERSION, **content}
+
+
+def is_document(content: bytes) -> bool:
+    """Whether it is a document, by its format and version, or a list of documents."""
+    try:
+        found = json.loads(content)
+    except (ValueError, RecursionError):
+        return False
+    listed = found if isinstance(found, list) else [found]
+    return bool(listed) and all(
+        isinstance(each, dict) and each.get("format") in FORMATS and each.get("version") == VERSION for each in listed
+    )
+
+
+def schema(name: str) -> dict[str, Any]:
+    """The JSON schema of a format, given its name without ``holonom-``."""
+    return json.loads((SCHEMAS / f"{name}.json").read_text(encoding="utf-8"))
+
+
+@cache
+def _validator(name: str) -> "Draft202012Validator":
+    from jsonschema_rs import Draft202012Validator
+
+    return Draft202012Validator(schema(name))
+
+
+def _refusal(document: Document | Publication, detail: str) -> HolonomError:
+    return HolonomError(Failure.NOT_A_DOCUMENT, detail=f"holonom-{document}: {detail}")

@@ -1,0 +1,66 @@
+"""Consistency of the verdicts on free motion: each is tried against the equations of motion and against the others.
+
+A law that is listed must make random motions free. A motion that is free for all states is tried likewise, under the
+scene's law. The statement that there is no law must survive a random search for one. If a verdict fails, it becomes
+undecided, and its reason reports the contradiction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TypeVar
+
+from sympy import Expr, Symbol
+
+from .crosscheck.law_search import find_free_law
+from .crosscheck.points import fresh_seed
+from .crosscheck.system import MechanicalSystem
+from .crosscheck.universal_laws import LawOfControls, judge_law
+from .crosscheck.verdict import Judgement, Verdict
+
+T = TypeVar("T")
+Law = Mapping[str, Expr]
+
+
+@dataclass(frozen=True)
+class FreeMotionTrial:
+    """What verdicts on free motion are tried on."""
+
+    system: MechanicalSystem
+    values: Mapping[Symbol, Expr]  # of the parameters
+    span: tuple[Expr, Expr] | None  # first and last instant
+
+    def of_law(self, law: Law, positive: Sequence[Expr] = ()) -> Judgement:
+        """Judge a law by random motions on the time span."""
+        return judge_law(self.system, self.values, LawOfControls(_symbols(law), tuple(positive)), self.span)
+
+    def contradiction_of_free_motion(self, law: Law) -> str:
+        """Return how a random motion under the law contradicts that all are free; empty if none does."""
+        found = self.of_law(law)
+        return f"under the scene's law {found.detail}" if found.verdict is Verdict.DISAGREES else ""
+
+    def verdict_on_laws(self, verdict: str, checks: Sequence[Judgement]) -> tuple[str, str]:
+        """Return the verdict that the checks of the laws leave, and the reason for a change."""
+        found = [check.verdict for check in checks]
+        if Verdict.DISAGREES in found:
+            detail = next(check.detail for check in checks if check.verdict is Verdict.DISAGREES)
+            return "undecided", f"the equations of motion contradict a law: {detail}"
+        if Verdict.UNDECIDED in found:
+            left = "some" if Verdict.AGREES in found else "undecided"
+            return left, "a law was not confirmed on the time span by the equations of motion"
+        if verdict == "none" and (law := self._law_found()):
+            return "undecided", f"the search of closed forms found no law, a search in numbers did: {law}"
+        return verdict, ""
+
+    def _law_found(self) -> str:
+        span = self.span and (float(self.span[0]), float(self.span[1]))
+        found = find_free_law(self.system, self.values, span, fresh_seed())
+        if found is None:
+            return ""
+        numbers = ", ".join(f"{name} = {value:.6g}" for name, value in {**found.controls, **found.parameters}.items())
+        return f"{numbers} near t = {found.instant:.6g}"
+
+
+def _symbols(law: Mapping[str, T]) -> dict[Symbol, T]:
+    return {Symbol(name, real=True): value for name, value in law.items()}

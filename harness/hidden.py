@@ -1,0 +1,33 @@
+"""Characters that hide or reverse the text around them, or steer what shows it."""
+
+import re
+import unicodedata
+
+HIDDEN = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})  # Unicode categories: control, format, surrogate, line, paragraph
+
+# Control characters but line feed and tab, what joins and hides letters or turns the direction of writing, half
+# characters, and what no XML may hold.
+UNSEEN = re.compile(
+    "[\x00-\x08\x0b-\x1f\x7f-\x9f\xad\u061c\u180e\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb"
+    "\ufffe\uffff\ud800-\udfff\U000e0000-\U000e0fff]"
+)
+
+
+def hidden_character(text: str) -> str:
+    """Name the first character that hides or reverses text, as ``U+202E``; empty where there is none."""
+    return next((f"U+{ord(each):04X}" for each in text if unicodedata.category(each) in HIDDEN), "")
+
+
+def visible(text: str) -> str:
+    """A text of any number of lines in which each character is seen."""
+    return UNSEEN.sub(_code, text)
+
+
+def visible_line(text: str) -> str:
+    """A text as one line in which each character is seen: nothing in it looks like a line of its own."""
+    return visible(text).replace("\n", "\\n").replace("\t", " ")
+
+
+def _code(found: re.Match[str]) -> str:
+    number = ord(found[0])
+    return f"\\x{number:02x}" if number < 0x100 else f"\\u{number:04x}" if number < 0x10000 else f"\\U{number:08x}"

@@ -1,0 +1,124 @@
+"""The files that a scene may read in the sandbox, as copies.
+
+They are the regular files below the scene's folder that its text names, and those beside it that end in .mac, .lisp
+or .csv. Links are not followed, nor is a hidden file or folder entered, and their size is limited.
+"""
+
+import os
+import re
+import stat
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from pathlib import Path
+
+from .failures import Failure, HolonomError
+
+SUFFIXES = (".mac", ".lisp", ".csv")
+STRING = re.compile(r'"((?:[^"\\\n]|\\.)*+)')  # also one that does not end, or a search takes the square of the time
+MOST_FILES, MOST_BYTES = 500, 256 * 2**20
+
+
+def copy_scene_files(scene: Path, directory: Path, allowed: Iterable[Path]) -> Mapping[Path, Path]:
+    """Copy the files that a scene may read into a folder of a directory.
+
+    Parameters
+    ----------
+    scene : Path
+        The scene file.
+    directory : Path
+        A private directory.
+    allowed : iterable of Path
+        Further files that the scene may read.
+
+    Returns
+    -------
+    mapping of Path to Path
+        The copy of each file.
+
+    Raises
+    ------
+    HolonomError
+        The files are too many or too large, or an allowed one cannot be read.
+    """
+    folder = scene.resolve().parent
+    copies = _Copies(directory / "files")
+    for file in allowed:
+        copies.add(file.resolve(), _open_allowed(file), scene)
+    for name in (*_named_in(scene), *_beside(folder)):
+        with suppress(OSError):  # the text means something else, or the file is a link, or not to be read
+            copies.add(folder / name, _open_below(folder, name), scene)
+    return copies.of
+
+
+class _Copies:
+    """Copies of files, of limited number and size."""
+
+    def __init__(self, folder: Path) -> None:
+        folder.mkdir()
+        self.of: dict[Path, Path] = {}
+        self._folder = folder
+        self._left = MOST_BYTES
+
+    def add(self, path: Path, descriptor: int, scene: Path) -> None:
+        """Copy a file from its descriptor, and close that."""
+        with open(descriptor, "rb") as source:
+            if path in self.of:
+                return
+            content = source.read(self._left + 1)
+        self._left -= len(content)
+        if self._left < 0 or len(self.of) == MOST_FILES:
+            detail = f"more than {MOST_FILES} files or {MOST_BYTES // 2**20} MiB"
+            raise HolonomError(Failure.TOO_MUCH_BESIDE, scene, detail)
+        self.of[path] = self._folder / str(len(self.of))
+        self.of[path].write_bytes(content)
+
+
+def _named_in(scene: Path) -> list[str]:
+    """Return the strings in a scene's text that may name a file below its folder."""
+    text = scene.read_text(encoding="utf-8", errors="replace")
+    return [name for name in dict.fromkeys(STRING.findall(text)) if _is_below(name)]
+
+
+def _is_below(name: str) -> bool:
+    parts = name.split("/")
+    return len(name) < os.pathconf("/", "PC_NAME_MAX") and all(part and not part.startswith(".") for part in parts)
+
+
+def _beside(folder: Path) -> list[str]:
+    with suppress(OSError):
+        return sorted(name for name in os.listdir(folder) if name.endswith(SUFFIXES) and not name.startswith("."))
+    return []
+
+
+def _open_below(folder: Path, name: str) -> int:
+    """Open a regular file below a folder; neither it nor a folder on the way may be a link.
+
+    Raises
+    ------
+    OSError
+        There is no such file.
+    """
+    here = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    *folders, last = name.split("/")
+    try:
+        for each in folders:
+            below = os.open(each, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW, dir_fd=here)
+            os.close(here)
+            here = below
+        return _regular(os.open(last, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK, dir_fd=here))
+    finally:
+        os.close(here)
+
+
+def _open_allowed(file: Path) -> int:
+    try:
+        return _regular(os.open(file, os.O_RDONLY | os.O_NONBLOCK))
+    except OSError as error:
+        raise HolonomError(Failure.FILE_UNREADABLE, file, error.strerror or str(error)) from None
+
+
+def _regular(descriptor: int) -> int:
+    if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+        os.close(descriptor)
+        raise OSError(None, "it is no regular file")
+    return descriptor

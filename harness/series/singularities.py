@@ -1,0 +1,279 @@
+"""Singularities of the equations of motion near the start, found in the equations themselves.
+
+A motion can be singular where a divisor of its program vanishes, or what stands under a root or a logarithm. These
+functions are followed along the power series into the complex plane of the time, and their zeros are found by Newton's
+method. A zero counts if the result of the program is singular there: on a small circle around it a Laurent expansion
+has negative powers, and a shorter series gives the same ones. Singularities that are too weak to show in the
+coefficients are found as well.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from functools import partial
+from typing import Any
+
+import mpmath
+import numpy as np
+
+from ..program.arithmetic import ELEMENTARY, Arithmetic, run_program
+from ..program.motion_problem import computing
+from ..program.motion_program import Call, Constant, Expression, Name, Operation, Program, calls_in, names_in
+from .radius import TOO_FEW, UNDECIDED, Radius
+
+MOST_WORK = 40_000  # operations times critical functions beyond which nothing is looked for
+RADII, ANGLES = 36, 24  # of the points that Newton's method begins from
+REACH = 1e4  # of the unit of the time, where no coefficient tells a radius
+CORRECTIONS = 40
+CLOSE = 1e-6  # relative distance of two zeros that are one
+CONVERGED = 1e-7
+DIGITS, CIRCLE, POINTS = 60, mpmath.mpf("1e-3"), 32  # of the test on a circle around a zero
+WEAKEST = mpmath.mpf("1e-25")  # of an output on that circle: a negative power that is none
+ROUNDED = mpmath.mpf("1e-45")  # of the largest output on that circle: one that is rounding
+TRUNCATED = 1e-3  # size of the last terms beside the largest, up to which a series stands for the motion
+SHORTER = 2 / 3  # of a series: the part that must tell the same
+MOST_TESTED = 8
+UNTOLD = (TOO_FEW, UNDECIDED)
+
+Evaluate = Callable[[Any], Sequence[Any]]
+
+
+def decided(radius: Radius, series: Sequence[Sequence[mpmath.mpf]], program: Program | None, t0: mpmath.mpf) -> Radius:
+    """The radius of convergence, by a singularity of the equations if one is nearer than the coefficients tell.
+
+    Parameters
+    ----------
+    radius : Radius
+        Estimated from the coefficients.
+    series : sequence of sequence of mpf
+        Of the coordinates, in powers of t - t0.
+    program : Program or None
+        Of t, coordinates and velocities; None if it is not known.
+    """
+    if program is None or _switches(program):
+        return radius
+    bound = REACH if radius.estimate is None else radius.estimate + radius.uncertainty
+    zeros = sorted(_zeros(program, series, t0, bound), key=abs)
+    for zero in zeros[:MOST_TESTED]:
+        if abs(zero) <= bound and _is_singular(program, series, t0, zero):
+            untold = radius in UNTOLD and _follows_state(program)
+            return _at_most(abs(zero), radius) if untold else _located(zero, zeros)
+    return radius
+
+
+def _at_most(bound: float, radius: Radius) -> Radius:
+    remark = f"unknown, {bound:.8g} at most, where the equations of motion are singular; these orders do not tell more"
+    return replace(radius, remark=remark)
+
+
+def _located(zero: complex, zeros: Sequence[complex]) -> Radius:
+    """The radius that a singularity sets, with those as far away."""
+    as_far = [z for z in zeros if abs(abs(z) - abs(zero)) <= CLOSE * abs(zero)]
+    kind = "a real instant" if abs(zero.imag) <= CLOSE * abs(zero) else "a complex pair"
+    remark = f"the equations of motion are singular there; the nearest singularity is {kind}"
+    return Radius(abs(zero), CONVERGED * abs(zero), tuple(as_far), remark, located=True)
+
+
+def _follows_state(program: Program) -> bool:
+    """Whether the accelerations depend on the state: a motion may then be singular where its equations are not."""
+    used = set().union(*(names_in(expression) for _, expression in computing(program, program.outputs).assignments))
+    used |= set().union(*map(names_in, program.outputs.values()))
+    return not used.isdisjoint(program.inputs[1:])
+
+
+def _switches(program: Program) -> bool:
+    return any(
+        call.operation in (Operation.ABS, Operation.SIGN) for _, e in program.assignments for call in calls_in(e)
+    )
+
+
+# ---- functions whose zeros may be singularities ----
+
+
+def _zeros(program: Program, series: Sequence[Sequence[mpmath.mpf]], t0: mpmath.mpf, bound: float) -> Iterator[complex]:
+    """Zeros of the critical functions, each once for each function."""
+    critical = _critical_functions(program)
+    if len(critical.outputs) * critical.operations > MOST_WORK:
+        return
+    motion = [np.array([float(c) for c in row]) for row in series]
+    if not all(np.isfinite(row).all() for row in motion):
+        return
+    for name in critical.outputs:
+        part = computing(critical, {name})
+        used = set().union(*(names_in(expression) for _, expression in part.assignments))
+        within = _accurate_within([row for place, row in enumerate(motion) if used & _names_of(program, place)])
+        yield from _zeros_of(partial(_at, part, motion, float(t0)), min(bound, within))
+
+
+def _names_of(program: Program, place: int) -> set[str]:
+    """A coordinate and its velocity."""
+    n = len(program.inputs) // 2
+    return {program.inputs[1 + place], program.inputs[1 + n + place]}
+
+
+def _critical_functions(program: Program) -> Program:
+    """A program of the divisors and of what stands under roots and logarithms, as far as they are not constant."""
+    found: dict[Expression, str] = {}
+    assignments: list[tuple[str, Expression]] = []
+    moving = set(program.inputs)
+    for name, expression in program.assignments:
+        for call in calls_in(expression):
+            for argument in _critical_arguments(call):
+                if names_in(argument) & moving and argument not in found:
+                    found[argument] = f"critical[{len(found)}]"
+                    assignments.append((found[argument], argument))
+        if names_in(expression) & moving:
+            moving.add(name)
+        assignments.append((name, expression))
+    return replace(program, assignments=tuple(assignments), outputs={name: Name(name) for name in found.values()})
+
+
+def _critical_arguments(call: Call) -> Iterator[Expression]:
+    """What makes a call singular where it vanishes."""
+    one, (first, *rest) = Fraction(1), call.arguments
+    square = Call(Operation.MULTIPLY, (first, first))
+    match call.operation:
+        case Operation.DIVIDE:
+            yield rest[0]
+        case Operation.POWER if not (isinstance(rest[0], Fraction) and rest[0].denominator == 1 and rest[0] >= 0):
+            yield first
+        case Operation.SQRT | Operation.LN:
+            yield first
+        case Operation.TAN:
+            yield Call(Operation.COS, (first,))
+        case Operation.TANH:
+            yield Call(Operation.COSH, (first,))
+        case Operation.ARCTAN | Operation.ARSINH:
+            yield Call(Operation.ADD, (one, square))
+        case Operation.ARCSIN | Operation.ARCCOS | Operation.ARCOSH | Operation.ARTANH:
+            yield Call(Operation.SUBTRACT, (one, square))
+        case Operation.ARCTAN2:
+            yield Call(Operation.ADD, (square, Call(Operation.MULTIPLY, (rest[0], rest[0]))))
+
+
+def _accurate_within(motion: Sequence[np.ndarray]) -> float:
+    """Distance up to which the truncated series stand for the motion."""
+    found = np.inf
+    for row in motion:
+        last = np.abs(row[-3:]).max()
+        if last > 0:
+            found = min(found, float((TRUNCATED * np.abs(row).max() / last) ** (1 / (len(row) - 1))))
+    return found
+
+
+# ---- zeros ----
+
+
+def _zeros_of(function: Callable[[np.ndarray], np.ndarray], bound: float) -> list[complex]:
+    """Zeros of an analytic function within a distance, by Newton's method from many points at once."""
+    bound = min(bound, REACH)
+    radii = np.concatenate([np.geomspace(1e-4, 1, RADII // 2), np.linspace(0.05, 1, RADII // 2)]) * bound
+    z = (radii[:, None] * np.exp(2j * np.pi * (np.arange(ANGLES) + 0.3) / ANGLES)).ravel()
+    last = np.full(z.shape, np.inf)
+    with np.errstate(all="ignore"):
+        for _ in range(CORRECTIONS):
+            step = 1e-6 * (np.abs(z) + 1e-3 * bound)
+            value, slope = function(z), (function(z + step) - function(z - step)) / (2 * step)
+            change = value / slope
+            last = np.where(np.isfinite(change), np.abs(change), last)
+            z = z - np.where(np.isfinite(change), change, 0)
+        near = np.isfinite(z) & (np.abs(z) <= bound) & (last <= CONVERGED * np.abs(z)) & (np.abs(z) > 1e-5 * bound)
+    return _each_once(z[near])
+
+
+def _each_once(zeros: np.ndarray) -> list[complex]:
+    kept: list[complex] = []
+    for zero in sorted(map(complex, zeros), key=abs):
+        if all(abs(zero - other) > CLOSE * abs(zero) for other in kept):
+            kept.append(zero)
+    return kept
+
+
+# ---- numbers ----
+
+
+def _at(program: Program, motion: Sequence[np.ndarray], t0: float, z: np.ndarray) -> np.ndarray:
+    """The one output of a program at complex times t0 + z, along the series."""
+    states = [np.polynomial.polynomial.polyval(z, row) for row in motion]
+    rates = [np.polynomial.polynomial.polyval(z, np.polynomial.polynomial.polyder(row)) for row in motion]
+    inputs = dict(zip(program.inputs, [t0 + z, *states, *rates], strict=True))
+    (found,) = run_program(program, inputs, COMPLEX).values()
+    return np.broadcast_to(found, z.shape)
+
+
+def _in_digits(program: Program, series: Sequence[Sequence[mpmath.mpf]], t0: mpmath.mpf) -> Evaluate:
+    """All outputs of a program at a complex time t0 + z, along the series, in mpmath's numbers."""
+    rows = [list(reversed(row)) for row in series]
+
+    def evaluate(z: Any) -> Sequence[Any]:
+        states, rates = zip(*(mpmath.polyval(row, z, derivative=1) for row in rows), strict=True)
+        inputs = dict(zip(program.inputs, [t0 + z, *states, *rates], strict=True))
+        return list(run_program(program, inputs, MPMATH).values())
+
+    return evaluate
+
+
+def _is_singular(program: Program, series: Sequence[Sequence[mpmath.mpf]], t0: mpmath.mpf, zero: complex) -> bool:
+    """Whether what a program computes is singular at a zero of one of its critical functions."""
+    with mpmath.workdps(DIGITS):
+        shorter = [row[: int(len(row) * SHORTER)] for row in series]
+        found, others = (_negative_powers(program, rows, t0, mpmath.mpc(zero)) for rows in (series, shorter))
+        pairs, least = zip(found, others, strict=True), ROUNDED * max(size for _, size in found)
+        return any(a > max(least, WEAKEST * size) and abs(a - b) < a / 2 for (a, size), (b, _) in pairs)
+
+
+def _negative_powers(
+    program: Program, series: Sequence[Sequence[mpmath.mpf]], t0: mpmath.mpf, zero: Any
+) -> Sequence[tuple[Any, Any]]:
+    """Of each output the largest negative coefficient of its Laurent expansion around a zero, and its largest value."""
+    evaluate, radius = _in_digits(program, series, t0), CIRCLE * abs(zero)
+    turns = [mpmath.expjpi(mpmath.mpf(2 * k) / POINTS) for k in range(POINTS)]
+    rows = list(zip(*(evaluate(zero + radius * turn) for turn in turns), strict=True))
+    return [(_largest_negative(row, turns), max(map(abs, row))) for row in rows]
+
+
+def _largest_negative(row: Sequence[Any], turns: Sequence[Any]) -> Any:
+    sums = (mpmath.fsum(value * turns[k * power % POINTS] for k, value in enumerate(row)) for power in (1, 2, 3))
+    return max(map(abs, sums)) / POINTS
+
+
+def _arithmetic(functions: Any, number: Callable[[Fraction], Any], erf: Callable[[Any], Any]) -> Arithmetic[Any]:
+    """Arithmetic of complex numbers by the functions of a module."""
+
+    def power(base: Any, exponent: Any) -> Any:
+        return base ** (int(exponent) if exponent.denominator == 1 else number(exponent))
+
+    named = {op: getattr(functions, name) for op, name in ELEMENTARY.items() if hasattr(functions, name)}
+    return Arithmetic(
+        number=number,
+        constants={Constant.PI: functions.pi, Constant.E: functions.e},
+        power=power,
+        operations={
+            **named,
+            Operation.ADD: lambda *terms: sum(terms[1:], terms[0]),
+            Operation.MULTIPLY: lambda *factors: _product(factors),
+            Operation.SUBTRACT: lambda a, b: a - b,
+            Operation.DIVIDE: lambda a, b: a / b,
+            Operation.NEGATE: lambda a: -a,
+            Operation.POWER: lambda a, b: a**b,
+            Operation.ERF: erf,
+            Operation.ARCTAN2: lambda y, x: -1j * functions.log((x + 1j * y) / functions.sqrt(x * x + y * y)),
+        },
+    )
+
+
+def _product(factors: Sequence[Any]) -> Any:
+    found = factors[0]
+    for factor in factors[1:]:
+        found = found * factor
+    return found
+
+
+def _complex_erf(z: Any) -> Any:
+    from scipy.special import erf
+
+    return erf(z)
+
+
+COMPLEX = _arithmetic(np, lambda fraction: complex(float(fraction)), _complex_erf)
+MPMATH = _arithmetic(mpmath, lambda fraction: mpmath.mpf(fraction.numerator) / fraction.denominator, mpmath.erf)

@@ -1,0 +1,164 @@
+"""Controls that servo-constraints ask for: where along a motion they have no values.
+
+They solve M u = r. M is looked at along the whole motion as switching functions are: a determinant of as many of its
+rows as there are controls is followed. If it changes its sign or touches zero, the rank of M decides.
+"""
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from ..program.motion_problem import MotionProblem
+from ..program.motion_program import names_in
+from ..program.precision import Precision
+from .engines.engine import Piece
+from .evaluation import Numbers, as_floats, evaluation_once
+from .matrices import INDEXED, Vector
+from .open_values import BesideState
+from .surfaces import BETWEEN, CORRECTIONS, PLACES, TO_COEFFICIENTS, SignedFunctions
+
+TOUCHED = 1e-9  # of a determinant's largest size nearby: a minimum that is a zero
+ZERO = 1e-14  # of the same: a zero at a sample
+LOST = 1e-3  # of the least singular value nearby: rank is lost
+BEHIND = 1e-9  # of the part that is looked at: how far behind a zero of the determinant alone to go on
+
+
+def controls_may_fail(problem: MotionProblem) -> bool:
+    """Whether servo-constraints find controls, from a matrix that changes along the motion."""
+    if problem.servo_matrix is None:
+        return False
+    known = {*problem.parameters}
+    for name, expression in problem.servo_matrix.assignments:
+        if names_in(expression) <= known:
+            known.add(name)
+    return any(not names_in(value) <= known for value in problem.servo_matrix.outputs.values())
+
+
+class ControlMatrix(SignedFunctions):
+    """The matrix of the controls that servo-constraints find, along one analytic part of a motion.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        With servo-constraints, without signs.
+    span : float
+        Length of the time span.
+    """
+
+    def __init__(self, problem: MotionProblem, precision: Precision, span: float) -> None:
+        super().__init__(precision, span)
+        places = [INDEXED.fullmatch(name).groups()[1:] for name in problem.servo_matrix.outputs]
+        self._shape = tuple(max(map(int, numbers)) for numbers in zip(*places, strict=True))
+        self._others = BesideState(problem, precision)
+        self._evaluate = evaluation_once(problem, problem.servo_matrix, precision)
+        self._kept: Vector | None = None  # the rows whose determinant is followed
+        self._scale: Numbers | float = 1.0  # of each row
+
+    def lost(self, piece: Piece) -> float | None:
+        """The first instant of a step at which the matrix loses rank; None where it keeps it."""
+        while True:
+            self._choose_rows(piece)
+            found = self._first_zero(piece)
+            if found is None:
+                return None
+            zero, nearby = found
+            if self._loses_rank(zero, nearby, piece):
+                return zero
+            behind = zero + self._precision.number(repr(BEHIND * float(nearby.end - nearby.start)))
+            if not behind < piece.end:
+                return None
+            piece = Piece(behind, piece.end, piece.states)
+
+    def values(self, instants: Numbers, states: Numbers) -> Numbers:
+        """The determinant of the rows that are followed, shape (1, k)."""
+        return np.linalg.det(self._matrices(instants, states)[:, self._kept])[None]
+
+    def _matrices(self, instants: Numbers, states: Numbers) -> Numbers:
+        inputs = np.concatenate([np.reshape(instants, (1, -1)), states, self._others(instants)])
+        found = as_floats(np.array(self._evaluate(np.ascontiguousarray(inputs))))
+        return found.T.reshape(-1, *self._shape) / self._scale
+
+    def _choose_rows(self, piece: Piece) -> None:
+        """Follow the determinant of the rows with the largest pivots at the beginning of a step."""
+        from scipy.linalg import qr
+
+        at = np.array([piece.start])
+        self._scale = 1.0
+        matrix = self._matrices(at, piece.states(at))[0]
+        if not np.isfinite(matrix).all():
+            matrix = np.ones(self._shape)
+        sizes = np.max(np.abs(matrix), axis=1, keepdims=True)
+        self._scale = np.where(sizes > 0, sizes, 1.0)
+        self._kept = np.sort(qr((matrix / self._scale).T, mode="r", pivoting=True)[1][: self._shape[1]])
+
+    def _first_zero(self, piece: Piece) -> tuple[float, Piece] | None:
+        """The first zero of the determinant in a step, with the part of the step around it."""
+        self._rows = [("", -1, 1)]
+        for part, places, values in self._looked_at(piece):
+            zeros = [t for t in self._zeros_in(part, places, values[0]) if t is not None]
+            if zeros:
+                return min(zeros), part
+        return None
+
+    def _zeros_in(self, part: Piece, places: Numbers, values: Vector) -> list[float | None]:
+        """Candidates in a part: at samples, between samples of different signs, and at minima between them."""
+        largest = float(np.max(np.abs(values), where=np.isfinite(values), initial=0.0))
+        near_zero = np.flatnonzero(np.abs(values) <= ZERO * largest)
+        changes = np.flatnonzero(values[:-1] * values[1:] < 0)
+        return [
+            *(places[i] for i in near_zero[:1]),
+            *(self._changed(part, places[i], places[i + 1]) for i in changes[:1]),
+            *(self._touched(part, place, places, values, largest) for place in _minima(values)),
+        ]
+
+    def _changed(self, part: Piece, before: float, after: float) -> float | None:
+        """Where the determinant changes its sign between two instants; None where it does so through infinity."""
+        self._rows = [("", -1, 1 if self._value(part, before) > 0 else -1)]
+        bound = max(abs(self._value(part, t)) for t in (before, after))
+        zero = self._halved(part, 0, before, after)
+        return zero if abs(self._value(part, zero)) <= bound else None
+
+    def _halved(self, piece: Piece, row: int, before: float, after: float) -> float:
+        side, half = self._rows[0][2], self._precision.number("0.5")
+        while before < (middle := before + half * (after - before)) < after:
+            if self._value(piece, middle) * side < 0:
+                after = middle
+            else:
+                before = middle
+        return before
+
+    def _touched(self, part: Piece, place: float, places: Numbers, values: Vector, largest: float) -> float | None:
+        """A minimum of the determinant's size that is a zero, or that lies behind one."""
+        instant = part.start + (part.end - part.start) * self._precision.number(repr(float(place)))
+        value = self._value(part, instant)
+        before = places[places <= instant][-1]
+        if value * self._value(part, before) < 0:
+            return self._changed(part, before, instant)
+        return instant if abs(value) <= TOUCHED * largest else None
+
+    def _value(self, part: Piece, instant: float) -> float:
+        at = np.array([instant])
+        return float(self.values(at, part.states(at))[0, 0])
+
+    def _loses_rank(self, zero: float, nearby: Piece, piece: Piece) -> bool:
+        """Whether all rows together move the controls in fewer directions than nearby."""
+        around = np.array([zero, nearby.start, (nearby.start + nearby.end) / 2, nearby.end])
+        matrices = self._matrices(around, piece.states(around))
+        here, *others = (float(np.linalg.svd(each, compute_uv=False)[-1]) for each in matrices)
+        return here <= LOST * max(others)
+
+
+def _minima(values: Vector) -> list[float]:
+    """Places between 0 and 1 of the minima of a function's size, told by the polynomial through its samples."""
+    inner = values[1:-1]
+    if not np.isfinite(inner).all() or np.min(np.abs(inner)) > np.ptp(inner):
+        return []
+    coefficients = TO_COEFFICIENTS @ inner
+    sizes, slope = np.abs(BETWEEN @ coefficients), chebyshev.chebder(coefficients)
+    bend, found = chebyshev.chebder(slope), []
+    for least in 1 + np.flatnonzero((sizes[1:-1] <= sizes[:-2]) & (sizes[1:-1] <= sizes[2:])):
+        low, place, high = 2 * PLACES[least - 1 : least + 2] - 1
+        for _ in range(CORRECTIONS):
+            if curvature := chebyshev.chebval(place, bend):
+                place = min(max(place - chebyshev.chebval(place, slope) / curvature, low), high)
+        found.append((1 + place) / 2)
+    return found

@@ -1,0 +1,155 @@
+"""The root of constraints that is nearest to a guess, of many motions at once, in double precision.
+
+Newton's method is damped: a step is halved until the next correction with the same matrix is shorter, all of them being
+the least corrections in the mass metric (Deuflhard, Newton Methods for Nonlinear Problems, section 3.3). Unless it
+contracts at once, it begins again from points around the guess, and the nearest root that it finds is taken.
+`maxima/program/sample_point.lisp` does the same for one motion to many digits.
+"""
+
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .evaluation import Numbers
+
+ITERATIONS = 60  # Newton's method halves the way to a double root
+ROUNDING = 8 * np.finfo(float).eps  # relative size of a correction that is none
+SETTLED = 1e-12  # relative size of a last correction that rounding may have made
+HALVINGS = 30
+CONTRACTION = 1 / 16  # of a correction: what the constraints may miss of being linear along it
+ALONG = (1 / 3, 5 / 7, 1.0)  # shares of it at which that is asked
+ON_A_LINE = np.arange(1, 17) / 16  # shares of the distance of a root at which the search begins, with one unknown
+AROUND = np.arange(1, 5) / 4  # the same along each of several unknowns
+MOST_SEARCHED = 12  # unknowns up to which nearer roots are looked for
+NEARER, SAME = 0.9, 1 - 1e-6  # of a distance: another point of a manifold, or another root, that is nearer
+FARTHER = (0.25, 1.0, 4.0, 16.0)  # sizes of the guess at which the search begins where Newton's method finds nothing
+ROUNDS = 8
+
+
+class Linearized(NamedTuple):
+    """Constraints at k points of u unknowns."""
+
+    residual: Numbers  # shape (b, k)
+    jacobian: Numbers  # shape (b, u, k)
+    mass: Numbers  # shape (u, u, k)
+
+
+# Takes points, shape (u, k), and the numbers of their lanes.
+Linearize = Callable[[Numbers, NDArray[np.int64]], Linearized]
+Correct = Callable[[Linearized], Numbers]  # the least corrections in the mass metric, shape (u, k)
+
+
+class NearestRoots:
+    """The search for roots near guesses.
+
+    Parameters
+    ----------
+    linearize, correct : callable
+        What comes out for one point does not depend on the others.
+    """
+
+    def __init__(self, linearize: Linearize, correct: Correct) -> None:
+        self._linearize, self._correct = linearize, correct
+
+    def __call__(self, guess: Numbers) -> tuple[Numbers, NDArray[np.bool_]]:
+        """The roots, shape (u, k), and whether there are any."""
+        lanes = np.arange(guess.shape[1])
+        roots, found = self._newton(guess, lanes)
+        if len(guess) <= MOST_SEARCHED:
+            searched = np.flatnonzero(~(found & self._contracts(guess, lanes)))
+            roots[:, searched], found[searched] = self._search(guess, roots, found, searched)
+        return roots, found
+
+    def _newton(self, start: Numbers, lanes: NDArray[np.int64]) -> tuple[Numbers, NDArray[np.bool_]]:
+        """Damped iteration from each start."""
+        points, found, active = start.copy(), np.zeros(len(lanes), dtype=bool), np.arange(len(lanes))
+        for _ in range(ITERATIONS):
+            if not len(active):
+                break
+            here = points[:, active]
+            at = self._linearize(here, lanes[active])
+            change = self._correct(at)
+            share = np.max(np.abs(change), axis=0) / np.maximum(1.0, np.max(np.abs(here), axis=0))
+            points[:, active] = self._stepped(here, change, at, lanes[active], share <= SETTLED)
+            found[active] = share <= SETTLED
+            active = active[np.isfinite(share) & (share > ROUNDING)]
+        return points, found & np.isfinite(points).all(axis=0)
+
+    def _stepped(
+        self, here: Numbers, change: Numbers, at: Linearized, lanes: NDArray[np.int64], settled: NDArray[np.bool_]
+    ) -> Numbers:
+        """Points along the corrections from which the next ones are shorter; the full step where none is."""
+        result, size, share = here + change, np.max(np.abs(change), axis=0), 1.0
+        open_ = np.flatnonzero(~settled)
+        for _ in range(HALVINGS):
+            if not len(open_):
+                break
+            trial = here[:, open_] + share * change[:, open_]
+            following = self._following(trial, at, lanes, open_)
+            good = np.max(np.abs(following), axis=0) <= (1 - share / 4) * size[open_]
+            result[:, open_[good]] = trial[:, good]
+            open_, share = open_[~good], share / 2
+        return result
+
+    def _following(self, trial: Numbers, at: Linearized, lanes: NDArray[np.int64], some: NDArray[np.int64]) -> Numbers:
+        """The corrections at other points with the same matrices."""
+        residual = self._linearize(trial, lanes[some]).residual
+        return self._correct(Linearized(residual, at.jacobian[..., some], at.mass[..., some]))
+
+    def _contracts(self, guess: Numbers, lanes: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Whether the constraints are nearly linear along the first correction, so that a guess is next to its root."""
+        at = self._linearize(guess, lanes)
+        change = self._correct(at)
+        size, contracts = np.max(np.abs(change), axis=0), np.ones(len(lanes), dtype=bool)
+        for share in ALONG:
+            left = self._following(guess + share * change, at, lanes, lanes) - (1 - share) * change
+            contracts &= np.max(np.abs(left), axis=0) <= CONTRACTION * size
+        return contracts
+
+    def _search(
+        self, guess: Numbers, roots: Numbers, found: NDArray[np.bool_], lanes: NDArray[np.int64]
+    ) -> tuple[Numbers, NDArray[np.bool_]]:
+        """The nearest roots from starts around the guesses of some lanes."""
+        near, here = guess[:, lanes], self._linearize(guess[:, lanes], lanes)
+        best, known = roots[:, lanes].copy(), found[lanes].copy()
+        share = NEARER if len(here.residual) < len(guess) else SAME
+        distance = np.where(known, _distance(best - near, here.mass), np.inf)
+        size = np.maximum(1e-300, np.max(np.abs(near), axis=0))
+        for reach in (None, *FARTHER):
+            if reach is not None and known.all():
+                break
+            active = np.flatnonzero(known if reach is None else ~known)
+            for _ in range(ROUNDS):
+                if not len(active):
+                    break
+                far = distance[active] if reach is None else reach * np.where(size[active] > 1e-200, size[active], 1.0)
+                improved = np.zeros(len(active), dtype=bool)
+                for step in _starts(here.mass[..., active], far):
+                    points, arrived = self._newton(near[:, active] + step, lanes[active])
+                    way = np.where(arrived, _distance(points - near[:, active], here.mass[..., active]), np.inf)
+                    better = way < share * distance[active]
+                    improved |= better
+                    best[:, active[better]], distance[active[better]] = points[:, better], way[better]
+                known[active[improved]] = True
+                active = active[improved] if reach is None else active[:0]
+        return best, known
+
+
+def _starts(mass: Numbers, far: Numbers) -> Iterator[Numbers]:
+    """Steps from the guesses along each of the unknowns, shape (u, k), at shares of a distance in the mass metric."""
+    u = len(mass)
+    for unknown in range(u):
+        own = mass[unknown, unknown]
+        length = np.where(own > 0, far / np.sqrt(np.where(own > 0, own, 1.0)), 0.0)
+        for share in ON_A_LINE if u == 1 else AROUND:
+            for side in (1, -1):
+                step = np.zeros((u, len(far)))
+                step[unknown] = side * share * length
+                yield step
+
+
+def _distance(way: Numbers, mass: Numbers) -> Numbers:
+    """Lengths in the mass metric, shape (k,)."""
+    return np.sqrt(np.maximum(0.0, np.einsum("ik,ijk,jk->k", way, mass, way)))

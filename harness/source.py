@@ -1,0 +1,65 @@
+"""Where a description comes from: a scene file, which is run in the sandbox, or a description that was kept."""
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from .description import Description, is_description, read_description
+from .failures import HolonomWarning
+from .formats import Document
+from .maxima import DEFAULT_LIMITS, NO_SETTINGS, read_maxima_text, run_scene
+from .sandbox import Limits
+
+
+class Source:
+    """A scene file that is run once for each choice of settings, or the document of a description.
+
+    Parameters
+    ----------
+    file : Path
+        A scene file in Maxima's language, or a description in JSON.
+    limits : Limits
+        What a run of Maxima may take.
+    """
+
+    def __init__(self, file: Path, limits: Limits = DEFAULT_LIMITS) -> None:
+        self.file, self.limits = file, limits
+        self._described: dict[tuple[tuple[str, str], ...], Description] = {}
+
+    def description(self, settings: Mapping[str, str] = NO_SETTINGS) -> Description:
+        """What the file says under these settings; raises as `describe`."""
+        key = tuple(sorted(settings.items()))
+        if key not in self._described:
+            self._described[key] = describe(self.file, settings, self.limits)
+        return self._described[key]
+
+
+def source_of(file: Source | Path, limits: Limits) -> Source:
+    """A source of a file; a source as it is."""
+    return file if isinstance(file, Source) else Source(file, limits)
+
+
+def describe(file: Path, settings: Mapping[str, str] = NO_SETTINGS, limits: Limits = DEFAULT_LIMITS) -> Description:
+    """Run a scene file, and read what it described; of a description, read it and put in the settings.
+
+    Parameters
+    ----------
+    file : Path
+        A scene file in Maxima's language, or a description in JSON.
+    settings : mapping of str to str
+        Numbers in Maxima's notation, for what the file leaves open and for parameters.
+
+    Raises
+    ------
+    HolonomError
+        The file is missing, is refused, asks a question or exceeds a limit; Maxima is missing; what the file describes
+        is no description.
+    """
+    text = read_maxima_text(file)
+    if is_description(text):
+        return read_description(text, file).with_settings(settings)
+    described = read_description(run_scene(file, limits, settings, str(Document.DESCRIPTION)), file)
+    for name in described.unused_parameters:
+        warnings.warn(f"{file}: the parameter '{name}' is declared and not used", HolonomWarning, stacklevel=2)
+    return replace(described, was_run=True)

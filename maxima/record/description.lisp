@@ -1,0 +1,250 @@
+;;; The description, written as JSON and read again
+;;;
+;;; Expressions are MathJSON trees as in every document (mathjson.lisp). A description holds more functions than a
+;;; record: conditions, steps, extrema and tables, as the scene file states them,
+;;;
+;;;     ["Which", condition, value, ..., "True", value]     ["Max", a, b]     ["Table", k, "t"]: of "tables", from 0 on
+;;;
+;;; Nothing is evaluated while the document is read: a function that is not known is refused.
+
+(in-package :maxima)
+
+(defvar *tables-described* nil "Tables of the description that is written or read.")
+(defvar *is-description* nil "Whether what is written is a description.")
+
+(defvar *described-functions*
+  '((mcond . "Which") ($max . "Max") (%max . "Max") ($min . "Min") (%min . "Min")
+    ($unit_step . "UnitStep") (%unit_step . "UnitStep") ($hstep . "HalfStep") (%hstep . "HalfStep")
+    (mgreaterp . "Greater") (mgeqp . "GreaterEqual") (mlessp . "Less") (mleqp . "LessEqual")
+    (mand . "And") (mor . "Or") (mnot . "Not") ($equal . "Equal") ($notequal . "NotEqual")
+    (mequal . "Same") (mnotequal . "NotSame"))
+  "What a description may hold besides the functions of other documents and tables.")
+
+;;; Written by the process that ran the scene file
+
+(defun $write_described (tree file)
+  (let ((*is-description* t))
+    ($write_json tree file)))
+
+(defun $described_tables (tables)
+  (setq *tables-described* (cdr tables))
+  tables)
+
+(defun $json_described (entry e)
+  "An expression; what no document can hold is refused where the entry that holds it is known."
+  (let ((unknown (unknown-operator e)))
+    (if unknown
+        (merror "~M contains the function ~M, which no program or document can hold; write it with elementary functions, or, where it is of the time alone, as a control with a table of its values"
+                entry unknown)
+        (list '($json_expression) e))))
+
+(defun unknown-operator (e)
+  (cond ((or (atom e) (eq (caar e) 'bigfloat)) nil)
+        ((eq (caar e) 'mrat) (unknown-operator ($totaldisrep e)))
+        ((polygamma-p e) (unknown-operator (third e)))
+        ((or (member 'array (car e)) (known-operator-p (caar e)))
+         (dolist (part (cdr e)) (let ((unknown (unknown-operator part))) (when unknown (return unknown)))))
+        ((eq (caar e) '$cubic_spline) nil)
+        (t (caar e))))
+
+(defun known-operator-p (symbol)
+  (or (member symbol '(mplus mexpt rat))
+      (assoc symbol *mathjson-functions*)
+      (assoc symbol *described-functions*)))
+
+(defun $json_points (points)
+  (cons '($json_array)
+        (mapcar #'(lambda (point) (cons '($json_array) (mapcar #'(lambda (x) (list '($json_expression) x)) (cdr point))))
+                (cdr points))))
+
+(defun write-described (e out)
+  "Write an expression that only a description may hold; nil for any other."
+  (let ((head (and *is-description* (cdr (assoc (caar e) *described-functions*)))))
+    (cond (head (write-tree head (cdr e) out) t)
+          ((and *is-description* (eq (caar e) '$cubic_spline))
+           (write-tree "Table" (list (position e *tables-described* :test #'alike1) (second e)) out)
+           t))))
+
+;;; Read by the process that derives
+
+(defvar *written-otherwise*
+  (list (cons "Add" #'(lambda (&rest terms) (simplifya (cons '(mplus) (reverse terms)) nil))) ; in no time if they descend
+        (cons "Power" #'power)
+        (cons "Rational" #'div)
+        (cons "Divide" #'div)
+        (cons "Negate" #'neg)
+        (cons "Subtract" #'sub)
+        (cons "Sqrt" #'(lambda (x) (power x '((rat simp) 1 2))))
+        (cons "Exp" #'(lambda (x) (power '$%e x)))
+        (cons "PolyGamma" #'(lambda (n x) (simplifya (list '(mqapply) (list '($psi simp array) n) x) nil))))
+  "How an application is made whose head is not that of one of Maxima's operators.")
+
+(defvar *operators-of-heads* (make-hash-table :test 'equal))
+
+(defun operator-of-head (head)
+  "Of Maxima's operators that are written so the one that it simplifies; nil where there is none."
+  (when (zerop (hash-table-count *operators-of-heads*))
+    (dolist (pair (append *mathjson-functions* *described-functions*))
+      (let ((known (gethash (cdr pair) *operators-of-heads*)))
+        (unless (and known (get known 'operators))
+          (setf (gethash (cdr pair) *operators-of-heads*) (car pair))))))
+  (gethash head *operators-of-heads*))
+
+(defun describe-anew (file)
+  "Describe the system and the scenes of the description in FILE, under their names."
+  (let* ((document (with-input-from-string (in (text-of-file file)) (read-json in)))
+         (*tables-described* (mapcar #'described-table (member-of document "tables")))
+         (scenes (member-of document "scenes"))
+         (system nil))
+    (setq $closed_form_size (member-of document "closed_form_size")
+          $settings (described-values (member-of document "settings"))
+          $settings_used (listed (mapcar #'second (cdr $settings))))
+    (dolist (fact (member-of document "assumptions")) (mfuncall '$assume (described-expression fact)))
+    (dolist (fact (member-of document "declarations")) (mapply1 '$declare (mapcar #'described-symbol fact) '$declare nil))
+    (setq system (system-anew (member-of document "system")))
+    (dolist (scene scenes)
+      (bind-anew (member-of scene "name")
+                 (mapply1 '$holonomic_scene (cons system (scene-entries scene)) '$holonomic_scene nil)))))
+
+(defun system-anew (document)
+  (let ((system (mapply1 '$holonomic_system (system-entries document) '$holonomic_system nil))
+        (name (member-of document "name")))
+    (unless (eq name 'null) (bind-anew name system))
+    system))
+
+(defun bind-anew (name structure)
+  (let ((symbol (described-symbol name)))
+    (when (boundp symbol)
+      (merror "the name ~M is taken by Maxima or by the library; choose another" symbol))
+    (mset symbol structure)))
+
+(defun system-entries (document)
+  (entries-anew document
+    '(($title . text-anew) ($source . text-anew) ($coordinates . described-names) ($controls . described-names)
+      ($parameters . described-names) ($kinetic_energy . described-effects) ($potential_energy . described-effects)
+      ($forces . described-forces) ($constraints . described-list) ($drawing . described-drawing))))
+
+(defun scene-entries (document)
+  (entries-anew document
+    '(($title . text-anew) ($effects . described-names) ($control_law . described-values)
+      ($prescribed_reactions . described-values) ($servo_constraints . described-list)
+      ($parameter_values . described-values) ($initial_state . described-values) ($initial_guess . described-values)
+      ($time_span . described-list) ($until . described-list) ($observe . described-names))))
+
+(defun entries-anew (document readers)
+  "entry = value for each member of DOCUMENT that is not null, read by the function that belongs to it."
+  (mapcan #'(lambda (reader)
+              (let ((value (member-of document (string-left-trim "$" (print-invert-case (car reader))))))
+                (if (eq value 'null) nil (list (list '(mequal simp) (car reader) (funcall (cdr reader) value))))))
+          readers))
+
+(defun text-anew (text) text)
+(defun listed (items) (cons '(mlist simp) items))
+(defun described-names (names) (listed (mapcar #'described-symbol names)))
+(defun described-list (trees) (listed (mapcar #'described-expression trees)))
+
+(defun described-values (members)
+  (listed (mapcar #'(lambda (each) (list '(mequal simp) (described-symbol (car each)) (described-expression (cdr each))))
+                  (cdr members))))
+
+(defun described-effects (effects) (effects-anew effects #'described-expression))
+(defun described-forces (effects) (effects-anew effects #'described-list))
+
+(defun effects-anew (effects reader)
+  (listed (mapcar #'(lambda (each)
+                      (list '(mequal simp)
+                            (described-symbol (member-of each "effect"))
+                            (funcall reader (member-of each "value"))))
+                  effects)))
+
+(defun described-drawing (shapes) (listed (mapcar #'described-shape shapes)))
+
+(defun described-shape (shape)
+  "Places first, two numbers each, then the radius of a circle."
+  (let* ((kind (described-symbol (member-of shape "shape")))
+         (numbers (mapcar #'described-expression (member-of shape "numbers")))
+         (parts nil))
+    (do () ((null (cdr numbers))) (push (listed (list (pop numbers) (pop numbers))) parts))
+    (cons (list kind 'simp) (append (nreverse parts) numbers))))
+
+(defun described-table (document)
+  (list '($cubic_spline simp) nil
+        (listed (mapcar #'described-list (member-of document "points")))
+        (let ((ends (member-of document "ends"))) (if (eq ends 'null) nil (described-list ends)))))
+
+(defun described-expression (tree)
+  (cond ((integerp tree) tree)
+        ((stringp tree) (described-symbol tree))
+        ((eq (car tree) 'members) (described-number (member-of tree "num")))
+        (t (described-application (first tree) (rest tree)))))
+
+(defun described-symbol (name)
+  "As Maxima reads it: lambda and go are symbols of its own."
+  (let ((constant (rassoc name *mathjson-constants* :test #'string=)))
+    (if constant
+        (car constant)
+        (let ((symbol (intern-invert-case (concatenate 'string "$" name))))
+          (or (get symbol 'alias) symbol)))))
+
+(defun described-number (digits)
+  "An integer, or the fraction that decimal digits say."
+  (maxima-fraction (if (find-if #'(lambda (c) (find c ".eE")) digits) (decimal-fraction digits) (parse-integer digits))))
+
+(defun described-application (head arguments)
+  (cond ((string= head "Table")
+         (destructuring-bind (number time) arguments
+           (let ((table (nth number *tables-described*)))
+             (list* (first table) (described-expression time) (cddr table)))))
+        ((string= head "Subscript")
+         (list* (list (described-symbol (first arguments)) 'simp 'array) (mapcar #'described-expression (rest arguments))))
+        (t (applied-anew head (mapcar #'described-expression arguments)))))
+
+(defun applied-anew (head arguments)
+  (let ((made (cdr (assoc head *written-otherwise* :test #'string=))))
+    (cond (made (apply made arguments))
+          ((operator-of-head head) (simplifya (cons (list (operator-of-head head)) arguments) nil))
+          (t (merror "the description holds ~M, which no document can hold" head)))))
+
+;;; JSON: an object becomes (members (name . value) ...), an array the list of its items, null the symbol null.
+
+(defun member-of (object name) (cdr (assoc name (cdr object) :test #'string=)))
+
+(defun read-json (in)
+  (let ((c (peek-char t in)))
+    (cond ((char= c #\{) (read-char in) (cons 'members (read-items in #\} #'read-member)))
+          ((char= c #\[) (read-char in) (read-items in #\] #'read-json))
+          ((char= c #\") (read-char in) (read-json-string in))
+          ((or (digit-char-p c) (char= c #\-)) (read-json-integer in))
+          (t (read-json-word in)))))
+
+(defun read-items (in closing reader)
+  (let ((items nil))
+    (do ((c (peek-char t in) (peek-char t in)))
+        ((char= c closing) (read-char in) (nreverse items))
+      (if (char= c #\,) (read-char in) (push (funcall reader in) items)))))
+
+(defun read-member (in)
+  (peek-char t in)
+  (let ((name (read-json in)))
+    (peek-char #\: in)
+    (read-char in)
+    (cons name (read-json in))))
+
+(defun read-json-string (in)
+  (let ((letters nil))
+    (do ((c (read-char in) (read-char in)))
+        ((char= c #\") (coerce (nreverse letters) 'string))
+      (push (if (char= c #\\) (read-char in) c) letters))))
+
+(defun read-json-integer (in)
+  (let ((digits nil))
+    (do ((c (read-char in) (read-char in nil #\Space)))
+        ((not (or (digit-char-p c) (char= c #\-)))
+         (unread-char c in)
+         (parse-integer (coerce (nreverse digits) 'string)))
+      (push c digits))))
+
+(defun read-json-word (in)
+  "null, the one word that a description has."
+  (dotimes (k 4) (read-char in))
+  'null)

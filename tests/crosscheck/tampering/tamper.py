@@ -1,0 +1,104 @@
+"""Make wrong records of the scenes, and tell how many of them the check holds up: `make tampering`.
+
+    python tests/crosscheck/tampering/tamper.py [SEED [MUTANTS]]
+
+The seed draws the changes, MUTANTS (15) of each class. Exit status 1: a true record is held up, a wrong one of a class
+of algebra is not, or fewer than 99.5 % of all are.
+"""
+
+import json
+import random
+import secrets
+import sys
+import tempfile
+from collections import Counter
+from pathlib import Path
+from typing import NamedTuple
+
+from evaluator import difference
+from mutants import ALGEBRA, CLASSES, mutant
+from scenes import written
+
+from holonom.crosscheck import Verdict, check_record
+from holonom.documents import Document, ask
+from holonom.failures import HolonomError
+from holonom.record import read_record
+from holonom.source import Source
+
+WANTED = 0.995
+DRAWS = 12  # attempts to make a mutant of a class that is a wrong one
+
+
+class TrueRecord(NamedTuple):
+    """A true record and the description that it is derived from."""
+
+    name: str
+    record: dict
+    description: object
+
+
+class Wrong(NamedTuple):
+    """A wrong record, and what is wrong."""
+
+    true: TrueRecord
+    kind: str
+    record: dict
+    difference: str
+
+
+def true_records(files):
+    """The records of scene files."""
+    for file in files:
+        source = Source(file)
+        yield TrueRecord(file.stem, json.loads(ask(Document.RECORD, source)), source.description())
+
+
+def held_up(record, true, seed):
+    """Why `holonom check` would not end with status 0; empty where it would."""
+    try:
+        report = check_record(read_record(json.dumps(record)), true.description, seed)
+    except HolonomError as refusal:
+        return f"refused: {refusal}"
+    unwanted = [each for each in report.verdicts if each.verdict in (Verdict.DISAGREES, Verdict.UNDECIDED)]
+    return "; ".join(f"({each.number}) {each.id} {each.verdict}: {each.detail}" for each in unwanted)
+
+
+def wrong_records(trues, seed, count, kinds=tuple(CLASSES)):
+    """So many wrong records of each class, each shown to be wrong; of some classes there are fewer."""
+    for kind in kinds:
+        made = 0
+        for attempt in range(DRAWS * count):
+            draw = random.Random(f"{seed} {kind} {attempt}")
+            records = ((true, mutant(kind, true.record, draw)) for true in draw.sample(trues, len(trues)))
+            true, record = next(((true, record) for true, record in records if record is not None), (None, None))
+            found = record is not None and difference(true.record, record)
+            if found:
+                yield Wrong(true, kind, record, found)
+                made += 1
+            if made == count:
+                break
+
+
+def main(seed, count):
+    """Print what was found of each class, and each wrong record that was not held up."""
+    with tempfile.TemporaryDirectory() as folder:
+        trues = list(true_records(written(Path(folder))))
+    honest = [why for true in trues if (why := held_up(true.record, true, seed))]
+    print(*(f"true, and held up: {why}" for why in honest), sep="\n", flush=True)
+    made, found = Counter(), Counter()
+    for wrong in wrong_records(trues, seed, count):
+        made[wrong.kind] += 1
+        if held_up(wrong.record, wrong.true, seed):
+            found[wrong.kind] += 1
+        else:
+            print(f"missed: {wrong.kind} of {wrong.true.name}: {wrong.difference}", flush=True)
+    for kind in CLASSES:
+        print(f"{kind:45}{found[kind]:5} / {made[kind]}")
+    print(f"{'all':45}{found.total():5} / {made.total()}; seed {seed}")
+    algebra = all(found[kind] == made[kind] for kind in ALGEBRA)
+    return honest or not algebra or found.total() < WANTED * made.total()
+
+
+if __name__ == "__main__":
+    given = dict(enumerate(sys.argv[1:]))
+    sys.exit(bool(main(given.get(0, secrets.token_hex(4)), int(given.get(1, 15)))))

@@ -1,0 +1,64 @@
+"""Power series and the controls of servo-constraints, put into the equations of motion."""
+
+import random
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from holonom.crosscheck import Verdict
+from holonom.crosscheck.motion_program import ScenePrograms, ask_programs
+from holonom.crosscheck.motion_series import SceneSeries, ask_series, judge_series, judge_servo
+from holonom.program.motion_program import Call, Operation, Solve
+from holonom.source import Source
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+# Exact and rounded coefficients, a table, prescribed reactions, redundant constraints, a length that vanishes.
+FILES = ("paper/paper", "pendulum", "hoist", "prescribed_tension", "linkage", "hard/vanishing_length")
+EACH = 6  # wrong series of each file
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_right_series_agree_and_wrong_ones_are_found(name):
+    source = Source(EXAMPLES / f"{name}.mac")
+    found = ask_series(source, {})
+    verdicts = judge_series(source.description(), found)
+    assert {(each.found.verdict, each.found.digits) for each in verdicts} == {(Verdict.AGREES, 50)}
+    draw = random.Random(name)
+    for _ in range(EACH):
+        wrong = changed(draw.choice(found), draw)
+        (verdict,) = judge_series(source.description(), [wrong])
+        assert verdict.found.verdict is Verdict.DISAGREES
+
+
+def changed(found: SceneSeries, draw: random.Random) -> SceneSeries:
+    """The series with one coefficient changed: of a coordinate, or of a multiplier where it is in the equations."""
+    group = draw.choice(["coordinates", "multipliers"] if found.series.multipliers else ["coordinates"])
+    rows = dict(getattr(found.series, group))
+    name = draw.choice(list(rows))
+    place = draw.randrange(2, 8) if group == "coordinates" else draw.randrange(6)
+    row = list(rows[name])
+    row[place] = str(Fraction(row[place]) * Fraction(1001, 1000) + Fraction(1, 10**6))
+    return replace(found, series=replace(found.series, **{group: rows | {name: tuple(row)}}))
+
+
+@pytest.mark.parametrize("name", ["arm", "overhead_crane"])
+def test_wrong_controls_of_servo_constraints_are_found(name):
+    source = Source(EXAMPLES / f"{name}.mac")
+    series, (*_, programs) = ask_series(source, {}), ask_programs(source, {})
+    description = source.description()
+    assert [each.found.verdict for each in judge_servo(description, [programs], series)] == [Verdict.AGREES]
+    for control in set(description.system.controls) - set(description.scenes[-1].control_law):
+        wrong = with_control_changed(programs, control)
+        assert [each.found.verdict for each in judge_servo(description, [wrong], series)] == [Verdict.DISAGREES]
+
+
+def with_control_changed(programs: ScenePrograms, control: str) -> ScenePrograms:
+    problem = programs.problems[Solve.DIRECT]
+    assignments = tuple(
+        (name, Call(Operation.MULTIPLY, (Fraction(1001, 1000), expression)) if name == control else expression)
+        for name, expression in problem.motion.assignments
+    )
+    wrong = replace(problem, motion=replace(problem.motion, assignments=assignments))
+    return replace(programs, problems=programs.problems | {Solve.DIRECT: wrong})

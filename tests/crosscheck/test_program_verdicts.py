@@ -1,0 +1,190 @@
+"""The motion program, held against the equations of motion: right ones agree, and every wrong one is found."""
+
+import math
+import random
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from holonom.crosscheck import Verdict
+from holonom.crosscheck.motion_program import ScenePrograms, ask_programs, judge_programs
+from holonom.program.motion_problem import MotionProblem
+from holonom.program.motion_program import Call, Name, Operation, Program, Solve
+from holonom.source import Source
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+# A law of one control, tables, servo-constraints of relative degree 4, prescribed reactions, redundant constraints,
+# a mass matrix that the constraints make up for, signs that switch.
+FILES = ("paper/paper", "hoist", "overhead_crane", "prescribed_tension", "hard/repeated_constraint", "linkage", "bead")
+MUTATED = ("paper/paper", "pendulum", "arm", "crane", "prescribed_tension")
+EACH = 12  # mutants of each file
+PROGRAMS = ("motion", "projection", "matrices", "energy")
+OPEN = """
+load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [m, k], kinetic_energy = m*(dot(x)^2 +
+  dot(y)^2)/2, potential_energy = k*x^4, forces = [drag = [-abs(dot(x))*dot(x), 0]], constraints = [y - sin(u*x)])$
+"""
+ROUNDING = 1e-13
+SINES = {
+    "Sin": math.sin,
+    "Cos": math.cos,
+    "Exp": math.exp,
+    "Sqrt": math.sqrt,
+    "Abs": abs,
+    "Tan": math.tan,
+    "Sign": lambda x: (x > 0) - (x < 0),
+}
+
+
+def asked(file: Path) -> tuple[Source, list[ScenePrograms]]:
+    source = Source(file)
+    return source, ask_programs(source, {})
+
+
+@pytest.fixture(scope="module")
+def programs() -> dict[str, tuple[Source, list[ScenePrograms]]]:
+    return {name: asked(EXAMPLES / f"{name}.mac") for name in dict.fromkeys((*FILES, *MUTATED))}
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_right_programs_agree(programs, name):
+    source, written = programs[name]
+    found = judge_programs(source.description(), written, name)
+    assert {each.found.verdict for each in found} == {Verdict.AGREES}
+    assert {each.scene for each in found} == {scene.name for scene in source.description().scenes}
+    assert {(each.found.digits, each.found.points) for each in found} == {(50, 8)}
+
+
+def test_a_program_whose_controls_are_open_agrees(write_scene):
+    source, written = asked(write_scene(OPEN))
+    found = judge_programs(source.description(), written, "open")
+    assert [each.found.verdict for each in found] == [Verdict.AGREES] * len(Solve)
+    drag = replace(source.description(), content=without_drag(source.description().content))
+    assert [each.found.verdict for each in judge_programs(drag, written, "open")] == [Verdict.DISAGREES] * len(Solve)
+
+
+def without_drag(content: dict) -> dict:
+    return content | {"system": content["system"] | {"forces": []}}
+
+
+@pytest.mark.parametrize("name", MUTATED)
+def test_every_wrong_program_is_found(programs, name):
+    source, written = programs[name]
+    draw, missed, made = random.Random(name), [], 0
+    while made < EACH:
+        scene = draw.choice(written)
+        solve = draw.choice([each for each in scene.problems if scene.problems[each].motion is not None])
+        which = draw.choice(PROGRAMS)
+        wrong = mutated(getattr(scene.problems[solve], which), draw)
+        if which in ("matrices", "energy"):
+            solve = next(iter(scene.problems))  # those of the first solve are looked at
+        right = getattr(scene.problems[solve], which)
+        if wrong is None or same_values(right, wrong):
+            continue
+        if scene.scene == "thrown_scene" or not looked_at(source, scene.scene, which):
+            continue
+        made += 1
+        changed = replace(scene, problems=scene.problems | {solve: replace(scene.problems[solve], **{which: wrong})})
+        found = judge_programs(source.description(), [changed], f"{name} {made}")
+        if all(each.found.verdict is not Verdict.DISAGREES for each in found):
+            missed.append((scene.scene, solve, which, [each.found for each in found]))
+    assert missed == []
+
+
+def looked_at(source: Source, scene: str, which: str) -> bool:
+    """Of prescribed reactions the motion alone is held against its definition."""
+    described = next(each for each in source.description().scenes if each.name == scene)
+    return which == "motion" or not described.prescribed_reactions
+
+
+def mutated(program: Program, draw: random.Random) -> Program | None:
+    """The program with one operation of one assignment changed; None where there is nothing to change."""
+    places = [place for place, (_, expression) in enumerate(program.assignments) if isinstance(expression, Call)]
+    if not places:
+        return None
+    place = draw.choice(places)
+    name, expression = program.assignments[place]
+    before = [*program.inputs, *(each for each, _ in program.assignments[:place])]
+    wrong = changed(expression, before, draw)
+    return replace(
+        program, assignments=(*program.assignments[:place], (name, wrong), *program.assignments[place + 1 :])
+    )
+
+
+def changed(expression, names: list[str], draw: random.Random):
+    match expression:
+        case Call(operation, arguments) if draw.random() < 0.6:
+            place = draw.randrange(len(arguments))
+            other = changed(arguments[place], names, draw)
+            return Call(operation, (*arguments[:place], other, *arguments[place + 1 :]))
+        case Call(Operation.ADD, arguments):
+            return Call(Operation.ADD, (Call(Operation.NEGATE, (arguments[0],)), *arguments[1:]))
+        case Call(Operation.SUBTRACT, arguments):
+            return Call(Operation.ADD, arguments)
+        case Call(Operation.SIN, arguments):
+            return Call(Operation.COS, arguments)
+        case Fraction():
+            return expression + draw.choice([1, Fraction(1, 10**12), -expression / 10**6])
+        case Name():
+            return Name(draw.choice(names))
+        case _:
+            return Call(Operation.NEGATE, (expression,))
+
+
+def same_values(right: Program, wrong: Program) -> bool:
+    """Whether two programs give the same in double precision and exact rationals, without the package's evaluation."""
+    for seed in range(3):
+        draw = random.Random(seed)
+        inputs = {name: Fraction(draw.randint(1, 1000), 500) for name in right.inputs}
+        try:
+            pairs = zip(values(right, inputs), values(wrong, inputs), strict=True)
+            if any(abs(a - b) > ROUNDING * max(1, abs(a), abs(b)) for a, b in pairs):
+                return False
+        except (ValueError, ZeroDivisionError, OverflowError, TypeError):
+            continue
+    return True
+
+
+def values(program: Program, inputs: dict) -> list:
+    known = dict(inputs)
+    for name, expression in program.assignments:
+        known[name] = value(expression, known)
+    return [value(each, known) for each in program.outputs.values()]
+
+
+def value(expression, known: dict):
+    match expression:
+        case Name(text):
+            return known[text]
+        case Fraction():
+            return expression
+        case Call(operation, arguments):
+            x = [value(each, known) for each in arguments]
+            match operation:
+                case Operation.ADD:
+                    return sum(x)
+                case Operation.MULTIPLY:
+                    return math.prod(x)
+                case Operation.SUBTRACT:
+                    return x[0] - x[1]
+                case Operation.DIVIDE:
+                    return x[0] / x[1]
+                case Operation.NEGATE:
+                    return -x[0]
+                case Operation.POWER:
+                    return x[0] ** (int(x[1]) if x[1] == int(x[1]) else float(x[1]))
+                case _:
+                    return SINES[operation](float(x[0]))
+
+
+def test_a_wrong_table_is_found(programs):
+    source, scenes = programs["hoist"]
+    scene = next(each for each in scenes if each.problems[Solve.DIRECT].tables)
+    problem: MotionProblem = scene.problems[Solve.DIRECT]
+    (table,) = problem.tables
+    pieces = [(*piece[:4], str(Fraction(piece[4]) * Fraction(1001, 1000))) for piece in table.pieces]
+    wrong = replace(problem, tables=(replace(table, pieces=tuple(pieces)),))
+    found = judge_programs(source.description(), [replace(scene, problems={Solve.DIRECT: wrong})], "table")
+    assert Verdict.DISAGREES in {each.found.verdict for each in found}

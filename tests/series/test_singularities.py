@@ -1,0 +1,102 @@
+"""Radii of convergence that the equations of motion decide: closed forms of motions with weak singularities."""
+
+import math
+
+import pytest
+
+import holonom
+
+ONE = """
+system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [{force}])$
+motion : holonomic_scene(system, initial_state = [x = {x}, dot(x) = {v}])$
+"""
+TWO = """
+system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2, forces = [{x}, {y}])$
+motion : holonomic_scene(system, initial_state = [x = 0, dot(x) = 0, y = 0, dot(y) = 1])$
+"""
+LOCATED = {  # force on a free particle, and the nearest singularity of its motion
+    "1/(1 - t) + 1/10^6/(1 - 10*t/9)": 0.9,
+    "1/(1 - t) - 1/(1 - 100*t/99)": 0.99,
+    "t^40/(1 - t)": 1,
+    "exp(t) + 1/10^20/(1 - t)": 1,
+    "exp(t) + sqrt(3 - t)/10^12": 3,
+    "1/(1 + t^2) + 1/10^9/(1 - 10*t/9)": 0.9,
+    "(1 - t)^(1/3)": 1,
+    "1/10^8*log(2 + t) + 1/(3 - t)": 2,
+    "1/10^9*tan(t) + 1/(2 - t)": math.pi / 2,
+    "1/10^9*atan(t) + 1/(2 - t)": 1,
+    "1/10^9*asin(t/2) + 1/(3 - t)": 2,
+    "1/10^9/(exp(t) - 2) + 1/(1 - t)": math.log(2),
+}
+
+
+def radius(text, order=40, **options):
+    return holonom.system(text).series(order=order, **options).radius
+
+
+@pytest.mark.parametrize("order", [14, 40])
+@pytest.mark.parametrize("force", LOCATED)
+def test_weak_singularity_of_a_force_sets_the_radius(force, order):
+    found = radius(ONE.format(force=force, x=0, v=0), order)
+    if found.estimate is None:
+        assert order < 40  # few coefficients do not tell whether the motion ends before
+    else:
+        assert found.located
+        assert found.estimate == pytest.approx(LOCATED[force], rel=1e-6)
+
+
+@pytest.mark.parametrize("precision", ["double", "quadruple"])
+def test_weak_singularity_sets_the_radius_of_a_series_by_heyoka(precision):
+    found = radius(ONE.format(force="1/(1 - t) + 1/10^6/(1 - 10*t/9)", x=0, v=0), precision=precision)
+    assert found.estimate == pytest.approx(0.9, rel=1e-6)
+
+
+def test_weak_singularity_of_the_state_sets_the_radius():
+    """y = t reaches 9/10 before x'' meets t = 1."""
+    found = radius(TWO.format(x="1/(1 - t) + 1/10^6/(1 - 10*y/9)", y=0))
+    assert found.located
+    assert found.estimate == pytest.approx(0.9, rel=1e-6)
+
+
+def test_weak_singularity_before_a_pole_of_the_motion_sets_the_radius():
+    """x = 1/(1 - t)^2 but for a force of 10^-8."""
+    found = radius(ONE.format(force="6*x^2 + 1/10^8/(1 - 10*t/9)", x=1, v=2))
+    assert found.estimate == pytest.approx(0.9, rel=1e-6)
+
+
+def test_removable_zero_of_a_divisor_is_no_singularity():
+    """y = sin(t): x'' = 0."""
+    found = radius(TWO.format(x="(y - sin(t))/(t - 1/2)", y="-y"))
+    assert found.estimate is None
+    assert not found.located
+
+
+def test_pole_of_the_motion_alone_is_estimated_and_said_to_be():
+    found = radius(ONE.format(force="6*x^2", x=1, v=2))
+    assert not found.located
+    assert found.coefficients == 41
+    assert 0 < found.unseen < 1
+    assert found.estimate == pytest.approx(1, abs=found.uncertainty)
+
+
+@pytest.mark.parametrize(("force", "proved"), [("1", True), ("(1 - t^2)/(1 - t)", True), ("x", False), ("t^60", False)])
+def test_polynomial_is_claimed_if_the_equations_are_satisfied_by_it(force, proved):
+    """x'' = x from rest at zero stays there, from x = 1 it is cosh(t); of t^60 the coefficients to order 40 vanish."""
+    motion = holonom.system(ONE.format(force=force, x=int(force == "x"), v=0)).series(order=40)
+    assert motion.polynomial == proved
+    assert motion.radius.estimate is None
+
+
+def test_polynomial_motion_with_reactions_is_proved():
+    """A bead on a moving plane: z = t^2, and its multiplier is constant."""
+    motion = holonom.system("""
+system : holonomic_system(coordinates = [x, z], controls = [u], kinetic_energy = (dot(x)^2 + dot(z)^2)/2,
+  potential_energy = 10*z, constraints = [z - u])$
+lift : holonomic_scene(system, control_law = [u = t^2], initial_state = [x = 0, dot(x) = 1])$""").series(order=20)
+    assert motion.polynomial
+
+
+def test_few_coefficients_and_a_located_singularity_give_an_upper_bound_alone():
+    """x = 1/(1 - t)^2 nearly: t = 5 is beyond its pole."""
+    found = radius(ONE.format(force="6*x^2 + 1/(5 - t)/1000", x=1, v=2), order=8)
+    assert found.estimate is None
