@@ -77,6 +77,13 @@ def test_a_description_holds_what_its_file_says(switched):
     assert run.control_law.trees["u"] == ["Add", 1, ["Table", 0, "t"]]
 
 
+@pytest.mark.parametrize("name", ["θ", "x̂", "长度", "%a_b"])
+def test_names_may_be_in_any_writing(name, write_scene):
+    scene = write_scene(f"""load("holonom.mac")$
+system : holonomic_system(coordinates = [{name}], kinetic_energy = dot({name})^2/2)$""")
+    assert [str(each) for each in describe(scene).content["system"]["coordinates"]] == [name]
+
+
 def test_a_scene_file_runs_once_for_all_questions(write_scene, monkeypatch):
     runs = []
     run_scene = source.run_scene
