@@ -39,6 +39,9 @@ WORKING_DIGITS = DIGITS + 20
 CONFIRMING_DIGITS = 3 * WORKING_DIGITS
 """Digits in which each point is taken again."""
 
+SHOWN = 12
+"""Digits of two values that differ; more if these are equal."""
+
 SHRUNK = 2 * DIGITS
 """Orders of magnitude by which a rounding of zero shrinks at least, of the 140 that the digits differ by."""
 
@@ -183,9 +186,14 @@ class _Judge:
         return all(each is not None and _is_real(each, each) for each in self.evaluation.values_of(terms, point))
 
     def _told(self, i: int, found: Found, left: Number | None, right: Number, point: Point) -> str:
-        claim = mp.nstr(mp.re(left), 12) if found is Found.DIFFERENT else "no real value"
-        known = f"the independent evaluation {mp.nstr(mp.re(right), 12)}{_where(point)}"
-        return f"{self.comparison.pairs[i].quantity}: the record gives {claim}, {known}"
+        if found is Found.DIFFERENT:
+            claim, known = _told_apart(mp.re(left), mp.re(right))
+        else:
+            claim, known = "no real value", mp.nstr(mp.re(right), SHOWN)
+        return (
+            f"{self.comparison.pairs[i].quantity}: the record gives {claim}, "
+            f"the independent evaluation {known}{_where(point)}"
+        )
 
     def _too_few(self, fewest: int) -> Judgement:
         for equal, lost in zip(self.equal, self.lost, strict=True):
@@ -345,6 +353,16 @@ def confirmed(difference: Callable[[], str]) -> str:
         return ""
     with mp.workdps(CONFIRMING_DIGITS):
         return difference()
+
+
+def _told_apart(left: Number, right: Number) -> tuple[str, str]:
+    """Return two numbers with as many digits as show that they differ."""
+    with mp.workdps(CONFIRMING_DIGITS):
+        for digits in range(SHOWN, CONFIRMING_DIGITS):
+            told = mp.nstr(left, digits), mp.nstr(right, digits)
+            if told[0] != told[1]:
+                break
+    return told
 
 
 def _where(point: Point) -> str:
