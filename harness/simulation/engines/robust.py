@@ -183,7 +183,10 @@ class RobustEngine:
         if not at.finite:
             return np.full_like(state, np.nan)
         factored = factored_constraints(at.mass, at.jacobian, self.rank)
-        return np.concatenate([state[self.n :], factored.accelerations(at.force, at.curvature)])
+        accelerations = factored.accelerations(at.force, at.curvature)
+        if not np.all(np.isfinite(accelerations)):
+            self._met = t
+        return np.concatenate([state[self.n :], accelerations])
 
     def _begin(self, t: float, state: Vector, length: float | None) -> None:
         kept = self._kept(t, state)[0]
@@ -192,7 +195,7 @@ class RobustEngine:
         self._solver: OdeSolver = integrator(
             self._rates, t, kept, np.inf, rtol=self.tol, atol=self.tol, first_step=length
         )
-        self.time, self.state, self._vanishing, self._refused = t, kept, np.inf, np.inf
+        self.time, self.state, self._vanishing, self._refused, self._met = t, kept, np.inf, np.inf, np.inf
         self._longest = self._solver.h_abs
 
     def _move(self, t: float, state: Vector) -> None:
@@ -202,6 +205,8 @@ class RobustEngine:
         self._least = self._least_at(t, self.state)
         self._solver.y, self._solver.f = self.state, np.concatenate([self.state[self.n :], accelerations])
         self.time, self._vanishing = t, extrapolated_zero(before, last, t, self._least)
+        if t < self._met < self._vanishing:  # where a step that was refused found no accelerations
+            self._vanishing = self._met
 
     def _kept(self, t: float | Vector, state: Vector) -> tuple[Vector, Vector]:
         """The nearest state that keeps the constraints, and its accelerations; of states, shape (k, 2n), each."""
