@@ -50,7 +50,7 @@ from .engines.choice import Between, Choice
 from .engines.engine import Piece, Solutions
 from .engines.switching import Leg, SwitchingEngine
 from .evaluation import Evaluation, Numbers, as_floats, evaluation, evaluation_once
-from .matrices import Matrices, MotionMatrices, Vector, start_of
+from .matrices import Matrices, Matrix, MotionMatrices, Vector, start_of
 from .open_values import BesideState
 from .request import SimulationRequest
 from .surfaces import Crossing, Surfaces
@@ -337,6 +337,10 @@ class PiecewiseMotion:
         """The matrices at a state of the motion, in its phase."""
         phase = max(0, bisect_left([float(phase.start) for phase in self.phases], t) - 1)
         return self.phases[phase].part.matrices(t, state)
+
+    def matrices_by_phase(self, instants: Vector, states: Matrix) -> list[Matrices]:
+        """The matrices at instants in order, shape (k,), and states, shape (2n, k): a block for each phase."""
+        return [part.matrices(instants[here], states[:, here].T) for part, here in self._by_phase(instants)]
 
     def take_impulse(self) -> Any:
         """Energy that the impulse at the beginning of the phase at work brought; zero when asked again."""

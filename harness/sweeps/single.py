@@ -112,8 +112,8 @@ class SingleMotions:
             return np.empty((0, len(instants)))
         solved = np.concatenate(motion.solutions(instants, states))[: self._solved]
         others = np.array([motion.energy(instants, states), *motion.controls(instants, states).values()])
-        matrices = [motion.matrices(float(t), state) for t, state in zip(instants, states.T, strict=True)]
-        fields = np.array([[*at.force, *at.jacobian.ravel()] for at in matrices]).T
+        matrices = motion.matrices_by_phase(instants, states)
+        fields = np.concatenate([np.hstack([at.force, at.jacobian.reshape(len(at.force), -1)]) for at in matrices]).T
         parameters = np.repeat(np.array(problem.numbers)[:, None], len(instants), axis=1)
         inputs = [instants[None], states, solved, others, fields, parameters.reshape(-1, len(instants))]
         return self._quantities(np.concatenate(inputs))
