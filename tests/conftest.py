@@ -39,10 +39,16 @@ MADE_ONCE = {"results": "companion", "browser": "companion", "printed_equations"
 LONGEST = (
     "companion",
     "test_rtests",
-    "test_rigid_bodies",
+    "test_escapes",
     "test_preloaded",
-    "test_names",
+    "test_rigid_bodies",
+    "test_tampering",
+    "test_rows",
+    "test_servo_constraints",
+    "test_own_scenes",
+    "test_program_verdicts",
     "test_study",
+    "test_names",
     "test_wheel",
     "errata",
 )
