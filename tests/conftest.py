@@ -13,7 +13,7 @@ from subprocess import CompletedProcess
 import pytest
 from hypothesis import HealthCheck, settings
 from particle import PARTICLE
-from walls import without_notice
+from confinement import without_notice
 
 from holonom.cli import run
 from holonom.documents import Document, ask

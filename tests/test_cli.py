@@ -11,7 +11,7 @@ from string import Formatter
 import pytest
 from click.testing import CliRunner
 from particle import PARTICLE
-from walls import without_notice
+from confinement import without_notice
 
 from holonom.cli import holonom as cli
 from holonom.cli import run

@@ -2,7 +2,7 @@
 
 import pages
 from own_system import SMOOTH, TEXTS, UNCONSTRAINED, made
-from walls import without_notice
+from confinement import without_notice
 
 from holonom.files import write_files
 

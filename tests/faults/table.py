@@ -120,7 +120,7 @@ OPTIONS = [
     Fault("an unknown cure of drift", "simulate scene.mac --drift hope", "--drift"),
     Fault("an unknown solve", "program scene.mac --solve luck", "--solve"),
     Fault("an unknown form", "program scene.mac --to cobol", "--to"),
-    Fault("trusted and walled in", "derive scene.mac --trust --sandbox", "exclude one another"),
+    Fault("trusted and needs_sandbox in", "derive scene.mac --trust --sandbox", "exclude one another"),
     Fault("exact and in digits", "series scene.mac --order 4 --exact --digits 9", "exclude one another"),
     *(
         Fault(f"{text} as a setting", f"derive scene.mac --set {text}", "sets nothing")

@@ -22,7 +22,7 @@ from pathlib import Path
 import psutil
 import pytest
 from shell import SHELL
-from walls import walled
+from confinement import needs_sandbox
 
 from holonom.documents import Document, ask
 from holonom.failures import Failure, HolonomError
@@ -59,7 +59,7 @@ class TooMany(Exception):
     """A scene was ended because it started too many processes; the kernel may have refused it these before."""
 
 
-@pytest.mark.parametrize("trust", [pytest.param("--sandbox", marks=walled), "--trust"])
+@pytest.mark.parametrize("trust", [pytest.param("--sandbox", marks=needs_sandbox), "--trust"])
 @pytest.mark.parametrize("link", ["draft-1", "draft-0123456789abcdef", "anything"])
 def test_links_in_the_working_directory_delete_nothing(link, trust, tmp_path):
     victim = tmp_path / "victim"
@@ -73,7 +73,7 @@ def test_links_in_the_working_directory_delete_nothing(link, trust, tmp_path):
     assert (tmp_path / "here" / "file").exists()
 
 
-@walled
+@needs_sandbox
 def test_socket_beside_the_scene_is_out_of_reach(tmp_path):
     address, reached = tmp_path / "socket", []
     with socket.socket(socket.AF_UNIX) as server:
@@ -94,7 +94,7 @@ def accepted(server: socket.socket) -> bool:
     return False
 
 
-@walled
+@needs_sandbox
 def test_only_named_files_and_sources_beside_the_scene_are_seen(tmp_path):
     for name in ("data.csv", "part.mac", "secret", "named.txt", ".hidden.mac", "below/named", "below/other"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
@@ -113,14 +113,14 @@ def test_only_named_files_and_sources_beside_the_scene_are_seen(tmp_path):
     assert "No such file" in title
 
 
-@walled
+@needs_sandbox
 def test_allowed_file_is_seen(tmp_path):
     (tmp_path / "allowed").write_text("seen")
     limits = replace(REQUIRED, allow=(tmp_path / "allowed",))
     assert said(tmp_path / "scn", f"cat {tmp_path}/allowed", limits) == "seen/"
 
 
-@walled
+@needs_sandbox
 def test_files_beside_the_scene_keep_their_content(tmp_path):
     (tmp_path / "part.mac").write_text("as it was")
     said(tmp_path, f"cd {tmp_path}; echo x > part.mac; rm -f part.mac scene.mac; mv scene.mac part.mac; touch new.mac")
@@ -128,14 +128,14 @@ def test_files_beside_the_scene_keep_their_content(tmp_path):
     assert sorted(os.listdir(tmp_path)) == ["part.mac", "scene.mac"]
 
 
-@walled
+@needs_sandbox
 def test_kernel_files_are_read_only(tmp_path):
     script = "find /proc/sys /proc/irq /proc/acpi /proc/bus -type f -writable 2>/dev/null | while read f; do "
     script += "(exec 3>>$f) 2>/dev/null && echo $f; done; (echo x > /dev/shm/x) 2>/dev/null && echo shm; echo end"
     assert said(tmp_path, script) == "end/"
 
 
-@walled
+@needs_sandbox
 def test_process_is_nobody_without_privileges_and_namespaces(tmp_path):
     script = (
         "id -u; grep -E 'CapEff|CapBnd|NoNewPrivs' /proc/self/status | tr -d '\\t'; unshare -r true || echo refused"
@@ -145,7 +145,7 @@ def test_process_is_nobody_without_privileges_and_namespaces(tmp_path):
     assert {"CapEff:0000000000000000", "CapBnd:0000000000000000", "NoNewPrivs:1", "refused"} <= {*status}
 
 
-@walled
+@needs_sandbox
 def test_other_processes_and_their_environment_are_hidden(tmp_path, monkeypatch):
     monkeypatch.setenv("TOKEN", "secret-of-the-parent")
     title = said(tmp_path, "cat /proc/[0-9]*/environ | tr '\\0' '\\n' | grep -c secret-of; ls -d /proc/[0-9]* | wc -l")
@@ -153,7 +153,7 @@ def test_other_processes_and_their_environment_are_hidden(tmp_path, monkeypatch)
     assert (secrets, int(processes) < 20) == ("0", True)
 
 
-@walled
+@needs_sandbox
 @pytest.mark.parametrize(
     "hoard",
     [
@@ -169,7 +169,7 @@ def test_files_in_the_sandbox_count_as_memory(hoard, tmp_path):
         assert sum(int(size) for size in sizes if size.isdigit()) <= 512
 
 
-@walled
+@needs_sandbox
 def test_empty_files_count_as_memory(tmp_path):
     deed = "perl -e 'for (1 .. 1e6) { open(F, q(>), $_) or die $! }'"
     with pytest.raises(HolonomError) as refused:
@@ -177,14 +177,14 @@ def test_empty_files_count_as_memory(tmp_path):
     assert refused.value.failure is Failure.TOO_LARGE
 
 
-@walled
+@needs_sandbox
 def test_threads_count_as_processes(tmp_path):
     deed = "python3 -c 'import threading, time\nwhile 1: threading.Thread(target=time.sleep, args=[60]).start()'"
     with contextlib.suppress(TooMany):
         assert "can't start new thread" in said(tmp_path, deed)
 
 
-@walled
+@needs_sandbox
 @pytest.mark.parametrize("number", [600, 1500])
 def test_many_processes_are_ended(number, tmp_path):
     mark = f"{os.getpid()}.75"
@@ -195,7 +195,7 @@ def test_many_processes_are_ended(number, tmp_path):
     assert soon_none(mark)
 
 
-@pytest.mark.parametrize("trust", [pytest.param(Sandbox.REQUIRED, marks=walled), Sandbox.TRUSTED])
+@pytest.mark.parametrize("trust", [pytest.param(Sandbox.REQUIRED, marks=needs_sandbox), Sandbox.TRUSTED])
 def test_nested_processes_are_ended(trust, tmp_path):
     mark = f"{os.getpid()}.125"
     (tmp_path / "nest").write_text(f"[ $1 = 0 ] && exec sleep {mark}; sh $0 $(($1 - 1)) & wait\n")
@@ -205,7 +205,7 @@ def test_nested_processes_are_ended(trust, tmp_path):
     assert soon_none(mark)
 
 
-@pytest.mark.parametrize("trust", [pytest.param(Sandbox.REQUIRED, marks=walled), Sandbox.TRUSTED])
+@pytest.mark.parametrize("trust", [pytest.param(Sandbox.REQUIRED, marks=needs_sandbox), Sandbox.TRUSTED])
 def test_daemon_ends_with_the_run(trust, tmp_path):
     mark = f"{os.getpid()}.25"
     released = " ".join(f"{number}>&-" for number in range(3, 10))
@@ -224,7 +224,7 @@ def soon_none(mark: str) -> bool:
     return False
 
 
-@pytest.mark.parametrize("trust", [pytest.param("--sandbox", marks=walled), "--trust"])
+@pytest.mark.parametrize("trust", [pytest.param("--sandbox", marks=needs_sandbox), "--trust"])
 def test_deep_directories_leave_nothing_and_break_no_later_command(trust, tmp_path):
     temporary = tmp_path / "temporary"
     temporary.mkdir()
@@ -263,7 +263,7 @@ def test_sandbox_that_fails_for_a_while_ends_the_command(answer, tmp_path, monke
     assert not target.exists()
 
 
-@walled
+@needs_sandbox
 @pytest.mark.parametrize("few", [8, 10, 14])
 def test_too_few_descriptors_never_run_the_scene_unconfined(few, tmp_path):
     target = tmp_path / "victim"
@@ -293,7 +293,7 @@ def test_python_interface_warns_without_a_sandbox(tmp_path, monkeypatch):
         holonom.load(file, limits=REQUIRED)
 
 
-@walled
+@needs_sandbox
 def test_unended_strings_cost_no_more_time_than_their_length(tmp_path):
     file = scene(tmp_path, "echo seen")
     file.write_text(file.read_text() + '/* "' + '\\"' * 10**6 + "\n*/")
@@ -324,7 +324,7 @@ def compiled(program: str, folder: Path) -> Path:
 compiling = pytest.mark.skipif(shutil.which("cc") is None or sys.platform != "linux", reason="there is no compiler")
 
 
-@walled
+@needs_sandbox
 @compiling
 def test_page_tables_count_as_memory(tmp_path):
     limits = replace(REQUIRED, memory_mib=512, allow=(compiled(PAGE_TABLES, tmp_path),))
@@ -351,7 +351,7 @@ UNCOUNTED = {
 }
 
 
-@walled
+@needs_sandbox
 @compiling
 @pytest.mark.parametrize("way", UNCOUNTED)
 def test_memory_that_no_limit_counts_is_refused(way, tmp_path):
@@ -362,7 +362,7 @@ def test_memory_that_no_limit_counts_is_refused(way, tmp_path):
     assert said(tmp_path / "scn", f"cp {program} deed2; chmod +x deed2; ./deed2", limits) == f"{errno.EPERM}/"
 
 
-@walled
+@needs_sandbox
 def test_process_that_has_ended_hides_no_files_from_the_count(tmp_path):
     zombie = "if (!fork) { if (!fork) { exit if !fork; sleep 100 } sleep 100 } sleep 1; "
     deed = f"perl -e '{zombie} for (1 .. 1e6) {{ open(F, q(>), $_) or die $! }} kill 9, -1'"
@@ -374,7 +374,7 @@ def test_process_that_has_ended_hides_no_files_from_the_count(tmp_path):
 FORGED = 'M=$(head -1 outcome-*); printf "%s\\nFINISHED\\n/x\\n0\\n\\n%s\\n" $M $M > outcome-$M; kill -9 -1'
 
 
-@walled
+@needs_sandbox
 def test_description_is_not_read_beyond_its_longest(tmp_path):
     with pytest.raises(HolonomError) as refused:
         said(tmp_path, f"head -c 65M /dev/zero > $(ls document-*); {FORGED}")
@@ -390,7 +390,7 @@ def test_scene_is_not_read_beyond_its_longest(tmp_path):
     assert refused.value.failure is Failure.FILE_TOO_LARGE
 
 
-@walled
+@needs_sandbox
 @pytest.mark.skipif(not os.access("/dev/shm", os.W_OK), reason="there is no /dev/shm")
 def test_files_in_shared_memory_are_files(tmp_path, monkeypatch):
     with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from particle import PARTICLE
 from table import TABLE, Fault
-from walls import without_notice
+from confinement import without_notice
 
 SENTENCE = re.compile(r"^(holonom|Error): .+\S$", re.MULTILINE)
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from particle import PARTICLE
 from shell import SHELL
-from walls import walled
+from confinement import needs_sandbox
 
 from holonom.documents import Document, ask
 from holonom.failures import Failure, HolonomError
@@ -46,7 +46,7 @@ def test_what_a_program_says_can_be_told(tmp_path):
     assert told(tmp_path, "echo hello") == "hello"
 
 
-@walled
+@needs_sandbox
 @pytest.mark.parametrize("where", ["outside", "in /etc"])
 def test_no_file_outside_its_folder_is_read(where, tmp_path):
     folder, secret = tmp_path / "scene", tmp_path / "secret"
@@ -57,7 +57,7 @@ def test_no_file_outside_its_folder_is_read(where, tmp_path):
     assert "root:" not in said
 
 
-@walled
+@needs_sandbox
 @pytest.mark.parametrize("place", ["{outside}/new", "{outside}/old", "{library}/holonom.mac", "{folder}/scene.mac"])
 def test_no_file_is_written(place, tmp_path):
     import holonom.maxima
@@ -74,7 +74,7 @@ def test_no_file_is_written(place, tmp_path):
     assert (target.read_bytes() if target.exists() else None) == before
 
 
-@walled
+@needs_sandbox
 def test_there_is_no_network(tmp_path):
     with socket.create_server(("127.0.0.1", 0)) as server:
         server.settimeout(0.2)
@@ -84,7 +84,7 @@ def test_there_is_no_network(tmp_path):
             server.accept()
 
 
-@walled
+@needs_sandbox
 def test_no_other_process_is_seen_or_ended(tmp_path):
     victim = subprocess.Popen(["sleep", "60"])
     try:
@@ -95,7 +95,7 @@ def test_no_other_process_is_seen_or_ended(tmp_path):
         victim.wait()
 
 
-@walled
+@needs_sandbox
 def test_nothing_runs_on_that_hides_in_a_session_of_its_own(tmp_path):
     mark = f"{os.getpid()}.125"
     released = " ".join(f"{number}>&-" for number in range(3, 10))  # newer versions of GCL wait until these are closed
@@ -104,7 +104,7 @@ def test_nothing_runs_on_that_hides_in_a_session_of_its_own(tmp_path):
     assert f"sleep {mark}" not in seen
 
 
-@walled
+@needs_sandbox
 def test_the_environment_is_not_shown(tmp_path, monkeypatch):
     monkeypatch.setenv("TOKEN", "the secret")
     said = told(tmp_path, "env")
@@ -180,7 +180,7 @@ FORBIDDEN = "#!/bin/sh\necho 'bwrap: No permissions to create new namespace' >&2
 
 
 @pytest.mark.parametrize("bubblewrap", ["missing", "forbidden"])
-def test_without_walls_one_line_says_so_and_the_derivation_is_the_same(bubblewrap, tmp_path, particle_record):
+def test_missing_sandbox_is_reported_and_derivation_is_same(bubblewrap, tmp_path, particle_record):
     programs = tmp_path / "programs"
     programs.mkdir()
     found = {each.name: each for folder in reversed(os.get_exec_path()) for each in Path(folder).glob("*")}

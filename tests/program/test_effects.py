@@ -9,7 +9,7 @@ import pytest
 import sympy as sp
 from click.testing import CliRunner
 from programs import PENDULUM, document
-from walls import without_notice
+from confinement import without_notice
 
 from holonom.cli import holonom
 from holonom.crosscheck import check_record

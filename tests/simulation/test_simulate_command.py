@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 
 import pytest
-from walls import without_notice
+from confinement import without_notice
 
 from holonom.processes import descendants
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import pyarrow.dataset
 import pytest
 from click.testing import CliRunner
-from walls import without_notice
+from confinement import without_notice
 
 import holonom
 import holonom.cli

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from walls import without_notice
+from confinement import without_notice
 
 from holonom.record import derived_record, read_record
 from holonom.typeset.document import tex_document

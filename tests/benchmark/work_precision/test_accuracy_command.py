@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from walls import without_notice
+from confinement import without_notice
 
 from holonom.benchmark.work_precision import study
 from holonom.cli import holonom
