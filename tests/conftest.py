@@ -11,9 +11,9 @@ from pathlib import Path
 from subprocess import CompletedProcess
 
 import pytest
+from confinement import without_notice
 from hypothesis import HealthCheck, settings
 from particle import PARTICLE
-from confinement import without_notice
 
 from holonom.cli import run
 from holonom.documents import Document, ask

@@ -10,8 +10,8 @@ from string import Formatter
 
 import pytest
 from click.testing import CliRunner
-from particle import PARTICLE
 from confinement import without_notice
+from particle import PARTICLE
 
 from holonom.cli import holonom as cli
 from holonom.cli import run

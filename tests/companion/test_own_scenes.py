@@ -1,8 +1,8 @@
 """`holonom companion SCENE... -o DIR`: the same pages for anybody's system, and refusals that say why."""
 
 import pages
-from own_system import SMOOTH, TEXTS, UNCONSTRAINED, made
 from confinement import without_notice
+from own_system import SMOOTH, TEXTS, UNCONSTRAINED, made
 
 from holonom.files import write_files
 

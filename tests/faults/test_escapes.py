@@ -21,8 +21,8 @@ from pathlib import Path
 
 import psutil
 import pytest
-from shell import SHELL
 from confinement import needs_sandbox
+from shell import SHELL
 
 from holonom.documents import Document, ask
 from holonom.failures import Failure, HolonomError

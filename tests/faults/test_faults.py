@@ -7,9 +7,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from confinement import without_notice
 from particle import PARTICLE
 from table import TABLE, Fault
-from confinement import without_notice
 
 SENTENCE = re.compile(r"^(holonom|Error): .+\S$", re.MULTILINE)
 

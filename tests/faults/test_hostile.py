@@ -11,9 +11,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from confinement import needs_sandbox
 from particle import PARTICLE
 from shell import SHELL
-from confinement import needs_sandbox
 
 from holonom.documents import Document, ask
 from holonom.failures import Failure, HolonomError

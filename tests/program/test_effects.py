@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 import sympy as sp
 from click.testing import CliRunner
-from programs import PENDULUM, document
 from confinement import without_notice
+from programs import PENDULUM, document
 
 from holonom.cli import holonom
 from holonom.crosscheck import check_record
