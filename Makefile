@@ -53,8 +53,9 @@ check-long: setup ## Run the tests that take too long for every change
 check-lisps: setup ## Ask Debian's Maxima on ECL, maxima-sage, for the same programs as the first Maxima
 	HOLONOM_TEST_MAXIMAS="$$(command -v maxima-sage)" $(TEST) tests/test_lisps.py
 
-mutants: setup ## Make wrong programs of a fixed list, one at a time, and tell which of them no test finds
-	nice $(BIN)/python tests/mutants/run.py build/mutants.json
+mutants: setup ## Make wrong programs at random, one at a time, and count those that no test finds: SEED=... COUNT=... JOBS=...
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,motion,sweep,companion,mutants]'
+	nice $(BIN)/python tests/mutants/run.py build/mutants.json $(SEED:%=--seed %) $(COUNT:%=--count %) $(JOBS:%=--jobs %)
 
 tampering: setup ## Make wrong records of twenty scenes, and tell how many of each class `holonom check` finds
 	nice $(BIN)/python tests/crosscheck/tampering/tamper.py $(SEED)

@@ -1,90 +1,91 @@
-"""Who checks the check: wrong programs, one at a time, each of which some test has to find.
+"""Measure the tests: make wrong programs at random and count those that no test finds.
 
-mutations.toml lists them: a file, the tests beside it, and pairs of texts, what stands there once and what is put in
-its place; a third text says why no test can tell the two apart. Each mutation is made in a copy of the sources, its
-tests run there, and it is killed when one of them fails. What has been found is kept in a JSON file, under what it
-depends on, so that a run that was broken off goes on where it was, and after a change what that touches is run again.
+A seed draws functions of the sources, in each a kind of change, and a change of that kind. The nearest tests of each
+mutant run in a copy of the sources. It is killed when one of them fails or takes too long; at the end these tests have
+to pass without a mutant. A run that was broken off goes on from its JSON file; survivors meet changed tests again.
 
-    python tests/mutants/run.py build/mutants.json
+    python tests/mutants/run.py build/mutants.json [--seed SEED] [--count COUNT] [--jobs JOBS]
 """
 
 from __future__ import annotations
 
+import argparse
+import difflib
 import hashlib
 import json
 import os
+import queue
+import random
+import re
 import shutil
 import signal
 import subprocess
 import sys
 import tempfile
+import time
 import tomllib
-from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+import warnings
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-LIST = Path(__file__).with_name("mutations.toml")
-FOLDERS = ("harness", "maxima", "tests", "examples")
-SECONDS = 300
-"""A test that takes longer than this has noticed something: the unchanged program takes a tenth of it."""
+import psutil
+from changes import changes
+from scipy.stats import binomtest
+from sources import ROOT, Function, functions, nearest_tests, read
 
-LEAST_SCORE = 0.95
-"""Share of the mutations that are not equivalent which the tests have to kill."""
+EQUIVALENT = Path(__file__).with_name("equivalent.toml")
+PYTEST = ["-q", "-x", "-n0", "-rfE", "-p", "no:cacheprovider", "-m", "not long"]
+SECONDS = 240  # for one test file; the unchanged program takes less than a third of it
 
 
 @dataclass(frozen=True)
-class Mutation:
-    """One wrong program.
+class Mutant:
+    """A function and the body that replaces its own."""
 
-    Attributes
-    ----------
-    file : str
-        Its path in the repository.
-    before, after : str
-    tests : tuple of str
-        What pytest is given; one of them has to fail.
-    equivalent : str
-        Why none can; empty where one must.
-    """
-
-    file: str
-    before: str
-    after: str
-    tests: tuple[str, ...]
-    equivalent: str = ""
-
-    @property
-    def applies(self) -> bool:
-        """Whether the text to be replaced stands in the file, once."""
-        file = ROOT / self.file
-        return file.is_file() and file.read_text(encoding="utf-8").count(self.before) == 1
-
-    @property
-    def key(self) -> str:
-        """Digest of what the outcome depends on: the mutation, its file, its tests."""
-        files = [self.file, *(test.partition("::")[0] for test in self.tests)]
-        parts = [self.before, self.after, *self.tests, *((ROOT / file).read_text(encoding="utf-8") for file in files)]
-        return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+    function: Function
+    body: str
 
     def __str__(self) -> str:
-        return f"{self.file}: {self.before!r} -> {self.after!r}"
+        lines = difflib.ndiff(self.function.body.splitlines(), self.body.splitlines())
+        changed = [f"{line[0]} {line[2:].strip()}" for line in lines if line[0] in "-+"]
+        return f"{self.function}: {' '.join(changed)}"
+
+    @property
+    def source(self) -> str:
+        text = read(self.function.path)
+        return text[: self.function.start] + self.body + text[self.function.end :]
+
+    def digest(self, tests: bool) -> str:
+        """Return the digest of the mutated source, and of its tests if these count."""
+        texts = [self.source, *(read(test) for test in nearest_tests(self.function) if tests)]
+        return hashlib.sha256("\0".join(texts).encode()).hexdigest()[:16]
 
 
-def mutations() -> list[Mutation]:
-    """All mutations of the list."""
-    listed = tomllib.loads(LIST.read_text(encoding="utf-8"))["file"]
-    return [
-        Mutation(each["path"], before, after, tuple(each["tests"]), *reason)
-        for each in listed
-        for before, after, *reason in each["mutations"]
-    ]
+def draw(seed: str) -> Iterator[Mutant]:
+    """Draw mutants, at most one of each function; the functions come in an order that the seed decides."""
+    lisp = frozenset(each.name for each in functions() if each.language == "lisp")
+    for function in sorted(functions(), key=lambda each: hashlib.sha256(f"{seed} {each}".encode()).digest()):
+        chance = random.Random(f"{seed} {function}")
+        kinds = changes(function.language, function.body, lisp)
+        while kinds:
+            kind = chance.choice(sorted(kinds))
+            body = kinds[kind].pop(chance.randrange(len(kinds[kind])))()
+            kinds = {name: left for name, left in kinds.items() if left}
+            if body.split() != function.body.split() and is_a_program(function.language, body):
+                yield Mutant(function, body)
+                break
 
 
-def for_pytest(test: str) -> str:
-    """Name a test as pytest knows it: what runs a file of Maxima's own tests goes by that file."""
-    return f"tests/test_rtests.py::test_rtest[{Path(test).stem}]" if test.endswith(".mac") else test
+def is_a_program(language: str, body: str) -> bool:
+    """Return False for a body that Python cannot compile; the other languages' changes keep to the grammar."""
+    try:
+        with warnings.catch_warnings(action="ignore"):
+            return language != "py" or bool(compile(f"def _():\n{body}", "", "exec"))
+    except (SyntaxError, ValueError):
+        return False
 
 
 class Copy:
@@ -92,84 +93,113 @@ class Copy:
 
     def __init__(self, directory: Path) -> None:
         self.directory = directory
-        for folder in FOLDERS:
+        for folder in ("harness", "maxima", "tests", "examples"):
             shutil.copytree(ROOT / folder, directory / folder, ignore=shutil.ignore_patterns("__pycache__"))
         shutil.copy(ROOT / "pyproject.toml", directory)
         (directory / "site").mkdir()
         (directory / "site" / "holonom").symlink_to(directory / "harness")  # before the package that is installed
+        none = str(
+            directory / "pyproject.toml"
+        )  # no directory: an image of Maxima for one test costs more than it saves
+        own = {"PYTHONPATH": str(directory / "site"), "PYTHONDONTWRITEBYTECODE": "1", "XDG_CACHE_HOME": none}
+        self.environment = os.environ | own
 
-    def passes(self, tests: Iterable[str]) -> bool:
-        """Whether the tests pass, in time."""
-        environment = os.environ | {
-            "PYTHONPATH": str(self.directory / "site"),
-            "PYTHONDONTWRITEBYTECODE": "1",  # which two files of one size and second would share
-            "XDG_CACHE_HOME": str(
-                self.directory / "pyproject.toml"
-            ),  # no directory: an image for one test does not pay
-        }
-        command = [sys.executable, "-m", "pytest", "-q", "-x", "-n", "0", "-p", "no:cacheprovider"]
-        command += map(for_pytest, tests)
-        try:
-            done = subprocess.run(
-                command, cwd=self.directory, env=environment, capture_output=True, timeout=SECONDS, check=False
-            )
-        except subprocess.TimeoutExpired:
-            return False
-        return done.returncode == 0
+    def failing(self, *tests: str) -> str:
+        """Run tests; return the first test that fails, the last one on timeout, "" if none does."""
+        named = [re.sub(r".*/(rtest_\w+)\.mac$", r"tests/test_rtests.py::test_rtest[\1]", test) for test in tests]
+        command = [sys.executable, "-m", "pytest", *PYTEST, *named]
+        with psutil.Popen(command, cwd=self.directory, env=self.environment, stdout=-1, stderr=-1) as running:
+            try:
+                printed, _ = running.communicate(timeout=SECONDS * len(tests))
+            except subprocess.TimeoutExpired:
+                for process in [*running.children(recursive=True), running]:
+                    process.kill()
+                return tests[-1]
+        if running.returncode in (0, 5):  # 5: no tests but long ones
+            return ""
+        first = re.search(r"^(?:FAILED|ERROR) ([^\s[]+(?:\[.*?\])?)(?: - |$)", printed.decode(), re.MULTILINE)
+        return first[1] if first else tests[-1]
 
-    def survives(self, mutation: Mutation) -> bool:
-        """Whether the tests pass although the mutation has been made."""
-        file = self.directory / mutation.file
-        text = file.read_text(encoding="utf-8")
-        file.write_text(text.replace(mutation.before, mutation.after), encoding="utf-8")
+    def killer(self, mutant: Mutant) -> str:
+        """Return the first test that fails with the mutant, or "" if it survives."""
+        file, tests = self.directory / mutant.function.path, nearest_tests(mutant.function)
+        rtests = [test for test in tests if test.endswith(".mac")]  # one process: most take less than its start
+        for batch in filter(None, [rtests, *([test] for test in tests if test not in rtests)]):
+            file.write_text(mutant.source, encoding="utf-8")
+            failed = self.failing(*batch)
+            file.write_text(read(mutant.function.path), encoding="utf-8")
+            if failed:
+                return failed
+        return ""
+
+
+def judged(mutants: list[Mutant], jobs: int) -> Iterator[tuple[Mutant, str]]:
+    """Yield each mutant with the test that kills it."""
+    copies: queue.SimpleQueue[Copy] = queue.SimpleQueue()
+
+    def judge(mutant: Mutant) -> str:
+        copy = copies.get()
         try:
-            return self.passes(mutation.tests)
+            return copy.killer(mutant)
         finally:
-            file.write_text(text, encoding="utf-8")
+            copies.put(copy)
+
+    with tempfile.TemporaryDirectory(prefix="holonom-mutants-") as directory, ThreadPoolExecutor(jobs) as pool:
+        for i in range(jobs):
+            copies.put(Copy(Path(directory, str(i))))
+        try:
+            yield from zip(mutants, pool.map(judge, mutants), strict=True)
+        finally:
+            pool.shutdown(cancel_futures=True)
 
 
-def judged(wanted: Mapping[str, Mutation], copy: Copy) -> Iterator[tuple[str, bool]]:
-    """Find out of each mutation, by its key, whether it survives, after its tests have passed without it."""
-    passed: set[tuple[str, ...]] = set()
-    for key, mutation in wanted.items():
-        if mutation.tests not in passed and not copy.passes(mutation.tests):
-            raise SystemExit(f"These fail without a mutation: {' '.join(mutation.tests)}")
-        passed.add(mutation.tests)
-        yield key, copy.survives(mutation)
+def report(outcomes: dict[Mutant, str]) -> None:
+    """Print the survivors, and the score with its Wilson interval of 95 %."""
+    listed = tomllib.loads(EQUIVALENT.read_text(encoding="utf-8"))
+    reasons = {f"{each['function']}: {each['change']}": each["reason"] for each in listed.get("mutant", [])}
+    alive = [str(mutant) for mutant, killer in outcomes.items() if not killer]
+    for mutant in alive:
+        print(f"equivalent {mutant}: {reasons[mutant]}" if mutant in reasons else f"SURVIVES {mutant}")
+    killed, equivalent = len(outcomes) - len(alive), sum(mutant in reasons for mutant in alive)
+    if wrong := len(outcomes) - equivalent:
+        low, high = binomtest(killed, wrong).proportion_ci(method="wilson")
+        print(f"{killed} of {wrong} mutants killed, {killed / wrong:.1%}, 95 % interval {low:.1%} to {high:.1%}; "
+              f"{equivalent} more are equivalent.")  # fmt: skip
 
 
-def main(results: Path) -> int:
-    """Run what has not been run, print what survives and the score; 1 where the score is too low."""
+def main() -> None:
+    """Run what has not been run."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("results", type=Path)
+    parser.add_argument("--seed", help="the clock chooses it unless a run goes on")
+    parser.add_argument("--count", type=int, default=300)
+    parser.add_argument("--jobs", type=int, default=1)
+    given = parser.parse_args()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))  # the copy goes, whatever ends the run
-    stale = [mutation for mutation in mutations() if not mutation.applies]
-    wanted = {mutation.key: mutation for mutation in mutations() if mutation.applies}
-    known = json.loads(results.read_text(encoding="utf-8")) if results.is_file() else {}
-    found = {key: survived for key, survived in known.items() if key in wanted}
-    left = {key: mutation for key, mutation in wanted.items() if key not in found}
-    results.parent.mkdir(parents=True, exist_ok=True)
+    kept = json.loads(given.results.read_text(encoding="utf-8")) if given.results.is_file() else {}
+    seed = given.seed or kept.get("seed") or str(time.time_ns())
+    known = kept.get("outcomes", {}) if kept.get("seed") == seed else {}
+    print(f"seed {seed}, {given.count} mutants of {len(functions())} functions")
+    mutants = {each: (each.digest(tests=False), each.digest(tests=True)) for each in islice(draw(seed), given.count)}
+    outcomes = {}
+    for mutant, (own, with_tests) in mutants.items():
+        killer, met = known.get(own, ("", ""))
+        if killer or met == with_tests:
+            outcomes[mutant] = killer
+    given.results.parent.mkdir(parents=True, exist_ok=True)
+    left = [mutant for mutant in mutants if mutant not in outcomes]
+    for mutant, killer in judged(left, given.jobs):
+        outcomes[mutant] = killer
+        print(f"{len(outcomes)}/{len(mutants)} {f'killed by {killer}' if killer else 'SURVIVES'}: {mutant}", flush=True)
+        own, with_tests = mutants[mutant]
+        known[own] = (killer, with_tests)
+        given.results.write_text(json.dumps({"seed": seed, "outcomes": known}, indent=0), encoding="utf-8")
+    killers = sorted(set(filter(None, outcomes.values())))
     with tempfile.TemporaryDirectory(prefix="holonom-mutants-") as directory:
-        for i, (key, survived) in enumerate(judged(left, Copy(Path(directory))), start=1):
-            print(f"{i}/{len(left)} {'SURVIVES' if survived else 'killed'} {wanted[key]}", flush=True)
-            found[key] = survived
-            results.write_text(json.dumps(found, indent=0), encoding="utf-8")
-    for mutation in stale:
-        print(f"Not in the sources as it is listed, or more than once: {mutation}")
-    return report([(mutation, found[key]) for key, mutation in wanted.items()], len(stale))
-
-
-def report(outcomes: Sequence[tuple[Mutation, bool]], stale: int) -> int:
-    """Print the survivors, those that are equivalent with the reason, and the score, to which stale ones count."""
-    for mutation, survived in outcomes:
-        if survived:
-            print(f"equivalent: {mutation}: {mutation.equivalent}" if mutation.equivalent else f"SURVIVES {mutation}")
-        elif mutation.equivalent:
-            print(f"killed, although it is said to be equivalent: {mutation}")
-    counts = Counter((survived, bool(mutation.equivalent)) for mutation, survived in outcomes)
-    killed, alive = counts[False, False], counts[True, False] + stale
-    score = killed / (killed + alive)
-    print(f"{killed} of {killed + alive} mutations killed, {score:.1%}; {counts[True, True]} more are equivalent.")
-    return 0 if score >= LEAST_SCORE and not counts[False, True] else 1
+        if killers and (failed := Copy(Path(directory)).failing(*killers)):
+            raise SystemExit(f"This test fails without a mutant: {failed}")
+    report({mutant: outcomes[mutant] for mutant in mutants})
 
 
 if __name__ == "__main__":
-    sys.exit(main(Path(sys.argv[1])))
+    main()
