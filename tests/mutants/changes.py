@@ -44,7 +44,7 @@ LISP = _table(
     exchange=f"{EXCHANGED}, car cadr, cons list, notany some, remove-if remove-if-not",
 )
 LISP_ANYWHERE = _table(boolean="t nil, nil t")
-LISP_TOKEN = re.compile(r"[()]|[^\s()'`,]+")
+LISP_TOKEN = re.compile(r"(#?['`,]?@?)([()]|[^\s()'`,]+)")
 LISP_BODIES = {"progn": 1, "when": 2, "unless": 2, "let": 2, "let*": 2, "dolist": 2, "dotimes": 2}
 
 
@@ -134,38 +134,26 @@ def _maxima_list_edits(body: str, before: str, parts: list[Span]) -> Iterator[Ed
 
 
 def lisp_edits(body: str, functions: frozenset[str]) -> Iterator[Edit]:
-    """Edits of Lisp forms, list by list."""
+    """Edits of Lisp forms: first those of atoms, then those of lists."""
     hidden = re.sub(r"\(declare\b.*", lambda found: " " * len(found[0]), blanked("lisp", body))
-    opened: list[list[Span]] = [[]]
-    starts: list[int] = []
-    yield from _atom_edits(hidden)
-    for found in LISP_TOKEN.finditer(hidden):
-        if found[0] == "(":
-            starts.append(found.start())
-            opened.append([])
+    tokens = [*LISP_TOKEN.finditer(hidden)]
+    for token in tokens:
+        is_head = token[1] == "#'" or hidden[: token.start()].endswith("(")
+        kind, texts = LISP_ANYWHERE.get(token[2]) or (LISP if is_head else {}).get(token[2], ("", ()))
+        yield from ((kind, *token.span(2), new) for new in texts)
+        if token[2].isdigit():
+            yield from number_edits(token.start(2), token[2])
+    opened: list[tuple[int, list[Span]]] = [(0, [])]
+    for token in tokens:
+        start, end = token.span()
+        if token[2] == "(":
+            opened.append((start, []))
             continue
-        span = found.span()
-        if found[0] == ")":
-            span = (starts.pop(), found.end())
-            yield from _lisp_list_edits(body, hidden, opened.pop(), functions)
-        opened[-1].append(_with_quotes(hidden, span))
-    yield from _dropped(opened[0], 0)
-
-
-def _with_quotes(hidden: str, span: Span) -> Span:
-    start, end = span
-    while start and hidden[start - 1] in "'`,@#":
-        start -= 1
-    return start, end
-
-
-def _atom_edits(hidden: str) -> Iterator[Edit]:
-    for found in LISP_TOKEN.finditer(hidden):
-        is_head = hidden[: found.start()].endswith(("(", "#'"))
-        kind, texts = LISP_ANYWHERE.get(found[0]) or (LISP if is_head else {}).get(found[0], ("", ()))
-        yield from ((kind, *found.span(), new) for new in texts)
-        if found[0].isdigit():
-            yield from number_edits(found.start(), found[0])
+        if token[2] == ")":
+            start, parts = opened.pop()
+            yield from _lisp_list_edits(body, hidden, parts, functions)
+        opened[-1][1].append((start, end))
+    yield from _dropped(opened[0][1], 0)
 
 
 def _lisp_list_edits(body: str, hidden: str, parts: list[Span], functions: frozenset[str]) -> Iterator[Edit]:

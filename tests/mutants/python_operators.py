@@ -56,11 +56,8 @@ class Statement(_Ours):
     """A statement, left out."""
 
     def _changes(self, node):
-        if (
-            node.type == "simple_stmt"
-            and node.children[0].type not in KEPT
-            and node.get_code().strip() != "return None"
-        ):
+        is_kept = node.type != "simple_stmt" or node.children[0].type in KEPT
+        if not is_kept and node.get_code().strip() != "return None":
             yield "pass\n"
 
 

@@ -38,7 +38,8 @@ from sources import ROOT, Function, functions, nearest_tests, read
 
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
 PYTEST = ["-q", "-x", "-n0", "-rfE", "-p", "no:cacheprovider", "-m", "not long"]
-SECONDS = 240  # for one test file; the unchanged program takes less than a third of it
+SECONDS = 240  # of processor time for each process of a test file; the unchanged program takes less than a third
+LONGEST = 3600  # seconds by the clock, for what waits without computing
 
 
 @dataclass(frozen=True)
@@ -98,19 +99,17 @@ class Copy:
         shutil.copy(ROOT / "pyproject.toml", directory)
         (directory / "site").mkdir()
         (directory / "site" / "holonom").symlink_to(directory / "harness")  # before the package that is installed
-        none = str(
-            directory / "pyproject.toml"
-        )  # no directory: an image of Maxima for one test costs more than it saves
+        none = str(directory / "pyproject.toml")  # no directory, so no image of Maxima: it would serve one test
         own = {"PYTHONPATH": str(directory / "site"), "PYTHONDONTWRITEBYTECODE": "1", "XDG_CACHE_HOME": none}
         self.environment = os.environ | own
 
     def failing(self, *tests: str) -> str:
         """Run tests; return the first test that fails, the last one on timeout, "" if none does."""
         named = [re.sub(r".*/(rtest_\w+)\.mac$", r"tests/test_rtests.py::test_rtest[\1]", test) for test in tests]
-        command = [sys.executable, "-m", "pytest", *PYTEST, *named]
+        command = ["prlimit", f"--cpu={SECONDS}", sys.executable, "-m", "pytest", *PYTEST, *named]
         with psutil.Popen(command, cwd=self.directory, env=self.environment, stdout=-1, stderr=-1) as running:
             try:
-                printed, _ = running.communicate(timeout=SECONDS * len(tests))
+                printed, _ = running.communicate(timeout=LONGEST)
             except subprocess.TimeoutExpired:
                 for process in [*running.children(recursive=True), running]:
                     process.kill()
@@ -194,10 +193,11 @@ def main() -> None:
         own, with_tests = mutants[mutant]
         known[own] = (killer, with_tests)
         given.results.write_text(json.dumps({"seed": seed, "outcomes": known}, indent=0), encoding="utf-8")
-    killers = sorted(set(filter(None, outcomes.values())))
     with tempfile.TemporaryDirectory(prefix="holonom-mutants-") as directory:
-        if killers and (failed := Copy(Path(directory)).failing(*killers)):
-            raise SystemExit(f"This test fails without a mutant: {failed}")
+        copy = Copy(Path(directory))
+        for test in sorted(set(filter(None, outcomes.values()))):
+            if copy.failing(test):
+                raise SystemExit(f"This test fails without a mutant: {test}")
     report({mutant: outcomes[mutant] for mutant in mutants})
 
 
