@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache, cached_property
+from itertools import combinations
 from pathlib import Path
 
 from changes import blanked
@@ -96,10 +97,11 @@ def nearest_tests(function: Function) -> list[str]:
 
 
 def _mirrors(path: Path) -> list[str]:
-    folder = Path("tests", *path.parts[1:-1])
-    choices = [f"tests/maxima/rtest_{path.stem}.mac"] if path.suffix != ".py" else []
-    choices += [f"{folder}/test_{path.stem}.py", f"{folder.parent}/test_{folder.name}.py"]
-    return [choice for choice in choices if (ROOT / choice).is_file()]
+    tests = ROOT / "tests"
+    package = tests.joinpath(*path.parts[1:-1][:1])
+    choices = [tests / f"maxima/rtest_{path.stem}.mac"] if path.suffix != ".py" else []
+    choices += [*sorted(package.rglob(f"test_{path.stem}.py")), tests / f"test_{package.name}.py"]
+    return [choice.relative_to(ROOT).as_posix() for choice in choices if choice.is_file()]
 
 
 @cache
@@ -124,18 +126,26 @@ def _by_call(function: Function) -> list[str]:
 def _by_import(function: Function) -> list[str]:
     """Find the tests that import a module, then those that import the modules that import it, and so on."""
     own = {part for each in functions() if each.path == function.path for part in each.name.split(".")}
-    modules, seen, found = {Path(function.path).stem}, set(), []
+    modules, seen, found = {_module(function.path)}, set(), []
     while modules and len(found) < MOST:
-        tests = [test for test, words in _imported("tests", "test_*.py").items() if words & modules]
+        tests = [test for test, named in _imported("tests", "test_*.py").items() if named & modules]
         found += sorted(tests, key=lambda test: -len(_words_of_tests("test_*.py")[test] & own))
         seen |= modules
-        modules = {Path(file).stem for file, words in _imported("harness", "*.py").items() if words & modules} - seen
+        modules = {_module(file) for file, named in _imported("harness", "*.py").items() if named & modules} - seen
     return list(dict.fromkeys(found))[:MOST]
 
 
+def _module(path: str) -> tuple[str, str]:
+    return Path(path).parent.name, Path(path).stem
+
+
 @cache
-def _imported(folder: str, pattern: str) -> dict[str, frozenset[str]]:
-    """Return the words of the import lines of each file."""
-    files = {file.relative_to(ROOT).as_posix() for file in (ROOT / folder).rglob(pattern)}
-    lines = {file: re.findall(r"^\s*(?:from|import) .*", read(file), re.MULTILINE) for file in sorted(files)}
-    return {file: frozenset(re.findall(r"\w+", " ".join(found))) for file, found in lines.items()}
+def _imported(folder: str, pattern: str) -> dict[str, frozenset[tuple[str, str]]]:
+    """Return the pairs of words on the import lines of each file, among them folder and name of each module."""
+    found = {}
+    for file in sorted(file.relative_to(ROOT).as_posix() for file in (ROOT / folder).rglob(pattern)):
+        lines = re.findall(r"^\s*(?:from|import) (.*)", read(file).replace("holonom", "harness"), re.MULTILINE)
+        here = [_module(file)[0]]
+        words = [here * line.startswith(".") + re.findall(r"\w+", line) for line in lines]
+        found[file] = frozenset(pair for each in words for pair in combinations(each, 2))
+    return found
