@@ -1,0 +1,61 @@
+"""Taylor polynomials: coefficients of functions against mpmath's differences, and the rules of arithmetic."""
+
+import pytest
+from mpmath import mp
+
+from holonom.crosscheck.points import IrregularPoint
+from holonom.crosscheck.taylor import COEFFICIENTS, Taylor
+
+ORDER = 5
+NAMES = {"Ln": "log", "Arcsin": "asin", "Arccos": "acos", "Arctan": "atan", "Arsinh": "asinh", "Arcosh": "acosh"}
+NAMES |= {"Artanh": "atanh", "Erf": "erf"} | {
+    head: head.lower() for head in ["Exp", "Sin", "Cos", "Sinh", "Cosh", "Tan", "Tanh", "Cot", "Coth"]
+}
+TAYLOR = Taylor(ORDER)
+X = tuple(map(mp.mpf, (2, -1, 3, 1)))
+Y = tuple(map(mp.mpf, (3, 5, -2, 1, 7, 4)))
+
+
+@pytest.fixture(autouse=True)
+def digits():
+    with mp.workdps(50):
+        yield
+
+
+def agree(found, expected):
+    return len(found) <= ORDER + 1 and all(
+        mp.almosteq(a, b, rel_eps=mp.mpf(10) ** -20, abs_eps=mp.mpf(10) ** -20)
+        for a, b in zip([*found, *[0] * (ORDER + 1 - len(found))], expected, strict=True)
+    )
+
+
+@pytest.mark.parametrize(("head", "name"), sorted(NAMES.items()))
+def test_coefficients_of_functions_are_those_of_their_derivatives(head, name):
+    place = mp.mpf("1.3" if name == "acosh" else "0.3")
+    assert agree(COEFFICIENTS[head](place, ORDER), mp.taylor(getattr(mp, name), place, ORDER))
+
+
+def test_division_and_powers_undo_multiplication():
+    product = TAYLOR.multiply(X, Y)
+    assert len(product) == ORDER + 1
+    assert agree(TAYLOR.divide(product, Y), [*X, 0, 0])
+    assert agree(TAYLOR.divide(Y, (mp.mpf(2),)), [y / 2 for y in Y])
+    root = TAYLOR.power(X, mp.mpf(1) / 2)
+    assert agree(TAYLOR.multiply(root, root), [*X, 0, 0])
+    assert agree(TAYLOR.multiply(TAYLOR.power(X, mp.mpf(-2)), TAYLOR.multiply(X, X)), [1, 0, 0, 0, 0, 0])
+    assert agree(TAYLOR.power(X, mp.mpf(2)), TAYLOR.multiply(X, X))
+
+
+def test_composition_rates_and_integrals():
+    assert agree(TAYLOR.compose(COEFFICIENTS["Exp"], TAYLOR.compose(COEFFICIENTS["Ln"], X)), [*X, 0, 0])
+    assert agree(TAYLOR.integral(TAYLOR.rate(Y), Y[0]), Y)
+    assert TAYLOR.rate(X) == (-1, 6, 3)
+    assert TAYLOR.rate((mp.mpf(4),)) == (0,)
+
+
+@pytest.mark.parametrize(("x", "exponent"), [(0, -1), (-2, mp.mpf(1) / 2)])
+def test_powers_that_are_not_analytic_are_refused(x, exponent):
+    with pytest.raises(IrregularPoint):
+        TAYLOR.power((mp.mpf(x), mp.one), mp.mpf(exponent))
+    with pytest.raises(IrregularPoint):
+        TAYLOR.divide(Y, (mp.zero, mp.one))
