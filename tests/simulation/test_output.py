@@ -9,7 +9,7 @@ from problems import problem
 from pyarrow import parquet
 
 from holonom.failures import HolonomError
-from holonom.simulation.output import write_samples
+from holonom.simulation.output import streams, write_samples
 from holonom.simulation.request import SimulationRequest
 from holonom.simulation.result import Simulation
 from holonom.simulation.simulate import simulate
@@ -45,6 +45,10 @@ def test_samples_are_read_back_to_the_last_bit(swing, tmp_path, suffix):
     assert list(read) == ["t", "x", "y", "dot(x)", "dot(y)", "lambda1"]
     for name, samples in swing.columns():
         assert [float(text) for text in read[name]] == samples.tolist()
+
+
+def test_arrays_of_numpy_are_written_at_once_and_other_formats_sample_by_sample():
+    assert [streams(Path(f"swing{suffix}")) for suffix in READERS] == [True, False, True]
 
 
 @pytest.mark.parametrize("suffix", READERS)

@@ -73,6 +73,20 @@ def test_open_programs_with_numbers_in_them_are_those_derived_with_the_numbers(h
             assert found[name] == pytest.approx(row, rel=1e-12), (part, name)
 
 
+def test_motions_of_two_values_do_not_share_their_state(problem):
+    numbers = ({"l0": "3/2", "m": "2", "v": "-1/5"}, {"l0": "1", "m": "1", "v": "1/10"})
+    values = [{name: Fraction(text) for name, text in each.items()} for each in numbers]
+    alone = []
+    for each in values:
+        engine = taylor.TaylorEngine(at_values(problem, each))
+        engine.advance(1.0)
+        alone.append(engine.state.copy())
+    both = [taylor.TaylorEngine(at_values(problem, each)) for each in values]
+    for engine in both:
+        engine.advance(1.0)
+    assert [engine.state.tolist() for engine in both] == [state.tolist() for state in alone]
+
+
 def test_the_start_on_the_circle_follows_its_radius_and_its_rate(problem):
     l0, v = np.linspace(0.5, 3, 11), np.linspace(-1, 1, 11)
     starts = InitialStates(problem)(np.array([l0, np.ones(11), v]))
