@@ -262,6 +262,8 @@ class HolonomError(Exception):
         Where: a file, with the line of the statement where it is known (``scene.mac:12``).
     detail : str
         What the sentence of the failure says about this case.
+    refusal : str or None
+        The id of a refusal of the library in Maxima, a row of ``maxima/refusals.mac``.
     last_lines : tuple of str
         The last lines that Maxima printed.
     command : str
@@ -276,6 +278,7 @@ class HolonomError(Exception):
         place: str | Path = "",
         detail: str = "",
         *,
+        refusal: str | None = None,
         last_lines: tuple[str, ...] = (),
         command: str = "",
         **facts: Any,
@@ -284,6 +287,7 @@ class HolonomError(Exception):
         self.failure = failure
         self.place = str(place)
         self.detail = detail
+        self.refusal = refusal
         self.last_lines = last_lines
         self.command = command
         self.facts = facts

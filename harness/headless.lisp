@@ -10,7 +10,8 @@
 ;;;
 ;;; Each makes an error of all that would stop or prompt, a question, a syntax error, a Lisp error, and leaves the
 ;;; outcome in a file: a mark that the run is given, the kind of ending, the file, the line of the statement (0
-;;; outside of them), the message, and the mark again, a line each. Until the end the kind is STARTED.
+;;; outside of them), the id of the library's refusal (empty if it is none), the message, and the mark again, a line
+;;; each. Until the end the kind is STARTED.
 ;;;
 ;;; The kinds of endings are FINISHED, FAULT (Maxima or the file itself refused), QUESTION, SYNTAX and LISP.
 
@@ -152,11 +153,18 @@ before all, outcome, mark)."
     (catch 'macsyma-quit
       (return-from ending-of
         (handler-case (progn (funcall run) '(finished ""))
-          (maxima-$error () (list 'fault (maxima-message)))
+          (maxima-$error () (list 'fault (maxima-message) (refusal-id)))
           (unanswered-question (condition) (list 'question (text condition)))
           (unreadable-statement (condition) (list 'syntax (text condition)))
           (serious-condition (condition) (list 'lisp (lisp-message condition))))))
     '(fault "Maxima went back to its prompt")))
+
+(defun refusal-id ()
+  "The id of the refusal of the library that Maxima's error is, or an empty text."
+  (let ((met (and (boundp '*asked-for*)
+                  (symbol-value '*asked-for*)
+                  (mfuncall (funcall 'read-name '$refusal_met)))))
+    (if met (funcall 'letters-of-name (second met)) "")))
 
 ;;; Text for people: one line, names without the backslashes that Maxima's own reader wants
 
@@ -222,11 +230,11 @@ before all, outcome, mark)."
 ;;; The ending
 
 (defun write-outcome (outcome mark name ending)
-  (destructuring-bind (kind message) ending
+  (destructuring-bind (kind message &optional (refusal "")) ending
     (let* ((file (if *statement-start* (namestring (truename *statement-stream*)) name))
            (line (if *statement-start* (line-at *statement-start* file) 0)))
       (with-open-file (stream outcome :direction :output :if-exists :supersede)
-        (format stream "~A~%~A~%~A~%~D~%~A~%~A~%" mark kind file line message mark)))))
+        (format stream "~A~%~A~%~A~%~D~%~A~%~A~%~A~%" mark kind file line refusal message mark)))))
 
 (defun leave (status)
   (finish-output)

@@ -53,6 +53,7 @@ SIGNALLED = 128  # a shell adds this to the number of the signal that ended a pr
 
 LEFT_BEHIND = ("outcome", "document")
 LONGEST_OUTCOME = MIB  # bytes
+REFUSAL = re.compile(r"\w*")
 STARTED, FINISHED = "STARTED", "FINISHED"
 ENDINGS = {
     "FAULT": Failure.REFUSED,
@@ -73,6 +74,7 @@ class Ending:
     failure: Failure
     place: str
     detail: str = ""
+    refusal: str | None = None  # its id in maxima/refusals.mac
 
 
 @dataclass(frozen=True)
@@ -299,6 +301,7 @@ def _run(run: Run, start: str, writer: str) -> str:
         ending.failure,
         ending.place,
         ending.detail,
+        refusal=ending.refusal,
         last_lines=_last_lines(printed),
         command="" if run.settings is None else _repeating_command(run.file, f'{writer}("document")$', run.settings),
     )
@@ -370,19 +373,20 @@ def _read_ending(run: Run, maxima: str, status: int) -> Ending | None:
     lines = (_read_left(run.leaves("outcome"), LONGEST_OUTCOME) or b"").decode(errors="replace").split("\n")
     if lines == [""]:
         return Ending(Failure.NOT_MAXIMA, maxima, f"exit status {status}")
-    if len(lines) < 7 or [lines[0], *lines[-2:]] != [run.mark, run.mark, ""]:
+    if len(lines) < 8 or [lines[0], *lines[-2:]] != [run.mark, run.mark, ""]:
         return Ending(Failure.TORN, str(run.file), "outcome")
-    kind, running, line, message = lines[1], lines[2], lines[3], " ".join(lines[4:-2])
+    kind, running, line, refusal, message = *lines[1:5], " ".join(lines[5:-2])
     if kind == FINISHED:
         return None
     if kind == STARTED:
         return _unfinished(run, status)
-    if kind not in ENDINGS or not line.isdigit():
+    if kind not in ENDINGS or not line.isdigit() or not REFUSAL.fullmatch(refusal):
         return Ending(Failure.TORN, str(run.file), "outcome")
     own = running in (str(run.file.resolve()), str((run.directory / "file.mac").resolve()))
     shown = str(run.file) if own else visible_line(running)
     place = shown if line == "0" else f"{shown}:{line}"
-    return Ending(ENDINGS[kind], place, visible_line(" ".join(message.split())) or "it does not say which")
+    detail = visible_line(" ".join(message.split())) or "it does not say which"
+    return Ending(ENDINGS[kind], place, detail, refusal or None)
 
 
 def _unfinished(run: Run, status: int) -> Ending:

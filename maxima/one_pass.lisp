@@ -59,8 +59,7 @@
              (setf (get x dots) ($name_around (concatenate 'string (letters-of-name dots) "(") x ")"))))
         (($listp x) (mlist-of (mapcar #'(lambda (each) ($dotted dots each)) (cdr x))))
         (($mapatom x) (list (list dots 'simp) x)) ; as it is written, in index notation
-        (t (let ((dot (letters-of-name dots)))
-             (merror "~A(~M): expected a name or a list of names; write ~A of each name." dot x dot)))))
+        (t ($refuse '$dot_of_expression (letters-of-name dots) x))))
 
 (defun $contains_floats (e)
   (cond ((atom e) (floatp e))

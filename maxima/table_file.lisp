@@ -25,7 +25,7 @@
 (defun lines-of-table (name)
   (let ((path (beside-the-scene name)) (lines nil))
     (unless (and (probe-file path) (pathname-name (probe-file path)))
-      (merror "table: there is no file ~M beside the scene" name))
+      ($refuse '$missing_table_file name))
     (with-open-file (in path)
       (do ((text (read-line in nil) (read-line in nil))) ((null text))
         (dolist (line (split-at #\Return (string-right-trim '(#\Return) text))) (push line lines))))
@@ -35,7 +35,7 @@
 (defun cells-of (line name number)
   "Nil for a line without any, empty or behind a #."
   (if (find (code-char 0) line)
-      (merror "table: ~M, line ~M: it holds null characters; save the file as plain text, in UTF-8" name number))
+      ($refuse '$null_in_table_file name number))
   (let ((text (trimmed line)))
     (unless (or (string= text "") (char= (char text 0) #\#))
       (mapcar #'unquoted (split-at #\, text)))))
@@ -43,18 +43,16 @@
 (defun require-row (text cells numbers name line)
   (let ((bad (position nil numbers)))
     (cond ((some #'separated-otherwise-p cells)
-           (merror "table: ~M, line ~M: two numbers with a comma between them and decimal points, as 0.5,-1.25, must make a line; here it is '~M'"
-                   name line (shortened-text (trimmed text))))
-          (bad (merror "table: ~M, line ~M: '~M' is no number" name line (shortened-text (nth bad cells))))
+           ($refuse '$line_without_comma name line (shortened-text (trimmed text))))
+          (bad ($refuse '$number_in_table_file name line (shortened-text (nth bad cells))))
           ((/= (length numbers) 2)
-           (merror "table: ~M, line ~M: a line must hold two numbers, t and u, with decimal points; it holds ~M"
-                   name line (length numbers))))))
+           ($refuse '$columns_of_table_file name line (length numbers))))))
 
 (defun require-later (before cells numbers name line)
   "BEFORE is the time of the row before, with its text; nil for the first row."
   (if (and before (<= (first numbers) (car before)))
-      (merror "table: ~M, line ~M: the times must increase; ~M comes after ~M"
-              name line (shortened-text (first cells)) (shortened-text (cdr before)))))
+      ($refuse '$times_of_table_file name line
+                (shortened-text (first cells)) (shortened-text (cdr before)))))
 
 (defun separated-otherwise-p (cell)
   "Whether there is a semicolon, a tab or a blank where only a comma may stand."

@@ -18,11 +18,11 @@
 (defun printed-tree (e)
   (cond ((integerp e) e)
         ((symbolp e) ($sconcat e))
-        ((atom e) (merror "equation_tree: ~M is not part of an equation" e))
+        ((atom e) ($refuse '$not_in_equation e))
         ((member 'array (car e)) (printed-application "Subscript" (cons (caar e) (cdr e))))
         ((member (caar e) '(mtimes mquotient)) (sign-first (printed-application (printed-head e) (cdr e))))
         ((printed-head e) (printed-application (printed-head e) (cdr e)))
-        (t (merror "equation_tree: ~M is not in the language of the printed equations" e))))
+        (t ($refuse '$not_printed_language e))))
 
 (defun printed-head (e)
   (cdr (assoc (caar e) *printed-heads*)))

@@ -328,7 +328,7 @@
     (cond (reciprocal (power-of (apply #'call-of (cdr reciprocal) terms) -1))
           (of-reciprocal (call-of (cdr of-reciprocal) (power-of (first terms) -1)))
           ((get operator 'graph-derivative) (apply #'call-of operator terms))
-          (t (merror (intl:gettext "motion_program: the function ~M cannot be written into a motion program") operator)))))
+          (t ($refuse '$function_without_program operator)))))
 
 ;; Held, for a sum that is opened where numbers meet would double with every order.
 (defun clenshaw-term (coefficients x)

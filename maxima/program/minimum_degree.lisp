@@ -44,7 +44,7 @@ after n by that plus handicap; each waits for the neighbours in its set, and for
   (do () (nil)
     (let ((heap (ordering-heap ordering)))
       (if (null heap)
-          (merror "motion_program: no order of elimination on the diagonal solves the equations of motion; coordinates without a kinetic energy of their own wait for constraints that they do not have"))
+          ($refuse '$no_elimination_order))
       (setf (ordering-heap ordering) (melded (heap-left heap) (heap-right heap)))
       (let ((k (mod (heap-least heap) (1+ (ordering-size ordering)))))
         (when (eql (aref (ordering-ranks ordering) k) (heap-least heap))

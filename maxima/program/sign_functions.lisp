@@ -94,7 +94,7 @@
 (defun conditional-with-signs (clauses)
   "Clauses are condition, value, condition, value, ... as Maxima keeps them."
   (let ((weight (condition-weight (first clauses))) (value (with-signs (second clauses))))
-    (if (null value) (merror (intl:gettext "an if has no else; write what holds where its condition does not")))
+    (if (null value) ($refuse '$if_without_else))
     (if (eql weight 1)
         value
         (add (mul weight value)
@@ -118,7 +118,7 @@
   (weight-of-sign (sign-of-function (with-signs (sub greater less)))))
 
 (defun refuse-condition (condition)
-  (merror (intl:gettext "the condition ~M compares nothing by < or >; a motion cannot be switched by it") condition))
+  ($refuse '$condition_without_comparison condition))
 
 (defun sign-of-function (g)
   "The sign of g, by a number and the symbols of the functions that it is a product of."

@@ -34,8 +34,7 @@
   "An expression; what no document can hold is refused where the entry that holds it is known."
   (let ((unknown (unknown-operator e)))
     (if unknown
-        (merror "~M contains the function ~M, which no program or document can hold; write it with elementary functions, or, where it is of the time alone, as a control with a table of its values"
-                entry unknown)
+        ($refuse '$function_not_described entry unknown)
         (list '($json_expression) e))))
 
 (defun unknown-operator (e)
@@ -115,7 +114,7 @@
 (defun bind-anew (name structure)
   (let ((symbol (described-symbol name)))
     (when (boundp symbol)
-      (merror "the name ~M is taken by Maxima or by the library; choose another" symbol))
+      ($refuse '$taken_name symbol))
     (mset symbol structure)))
 
 (defun system-entries (document)
@@ -203,7 +202,7 @@
   (let ((made (cdr (assoc head *written-otherwise* :test #'string=))))
     (cond (made (apply made arguments))
           ((operator-of-head head) (simplifya (cons (list (operator-of-head head)) arguments) nil))
-          (t (merror "the description holds ~M, which no document can hold" head)))))
+          (t ($refuse '$head_not_described head)))))
 
 ;;; JSON: an object becomes (members (name . value) ...), an array the list of its items, null the symbol null.
 

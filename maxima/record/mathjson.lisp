@@ -43,7 +43,7 @@
         ((eq (caar tree) '$json_object) (write-members (cdr tree) out))
         ((eq (caar tree) '$json_array) (write-bracketed (cdr tree) #'write-json out))
         ((eq (caar tree) '$json_expression) (write-mathjson ($totaldisrep (cadr tree)) out))
-        (t (merror "write_json: cannot write ~M" tree))))
+        (t ($refuse '$data_not_written tree))))
 
 (defun write-members (members out)
   (let ((before #\{))
@@ -84,7 +84,7 @@
   (cond ((integerp e) (write-integer e out))
         ((floatp e) (write-number (decimal-digits (rational e) 17) out))
         ((symbolp e) (write-json-string (mathjson-symbol e) out))
-        ((atom e) (merror "write_json: ~M is not an expression" e))
+        ((atom e) ($refuse '$expression_not_written e))
         ((eq (caar e) 'rat) (write-tree "Rational" (cdr e) out))
         ((eq (caar e) 'bigfloat) (write-bigfloat e out))
         ((eq (caar e) 'mexpt) (write-power (cadr e) (caddr e) out))
@@ -94,7 +94,7 @@
         ((cdr (assoc (caar e) *mathjson-functions*))
          (write-tree (cdr (assoc (caar e) *mathjson-functions*)) (cdr e) out))
         ((write-described e out))
-        (t (merror "the function ~M is not one that the record knows" (caar e)))))
+        (t ($refuse '$function_not_written (caar e)))))
 
 (defun write-tree (head arguments out)
   (write-string "[\"" out)

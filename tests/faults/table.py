@@ -86,7 +86,7 @@ def leaving(what: str, command: str) -> Callable[[Path], object]:
     return maxima(f"#!/bin/sh\nmark=$(grep -o 'outcome-[0-9a-f]*' job.lisp | tail -n 1)\n{command.format(name=name)}\n")
 
 
-FINISHED = "printf '%s\\nFINISHED\\n-\\n0\\n\\n%s\\n' ${{mark#outcome-}} ${{mark#outcome-}} > $mark"
+FINISHED = "printf '%s\\nFINISHED\\n-\\n0\\n\\n\\n%s\\n' ${{mark#outcome-}} ${{mark#outcome-}} > $mark"
 OTHER_MAXIMA = {"PATH": "{here}/bin:" + os.environ["PATH"], "XDG_CACHE_HOME": "{here}/../cache"}
 ENVELOPE = '{"format": "holonom-free", "version": 1}'
 NO_PROGRAMS = {"PATH": "{here}"}

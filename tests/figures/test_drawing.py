@@ -6,8 +6,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from refusing import refused
 
-from holonom.failures import HolonomError
 from holonom.figures.drawing import FRAMES, POSITIONS, animation, film_of, strip
 from holonom.program.drawing import Shape
 from holonom.program.motion_problem import MotionProblem, motion_problem
@@ -158,26 +158,25 @@ def test_a_system_need_not_say_how_it_looks(pendulum):
 
 
 @pytest.mark.parametrize(
-    ("drawing", "reason"),
+    ("drawing", "refusal"),
     [
-        ("line([0, 0], [x, y])", "'line([0,0],[x,y])' is none of the shapes"),
-        ("segment([0, 0])", "'segment([0,0])' is none of the shapes"),
-        ("point([x, y, 0])", "'point([x,y,0])' is none of the shapes"),
-        ("circle([x, y])", "'circle([x,y])' is none of the shapes"),
-        ("polyline([x, y])", "'polyline([x,y])' is none of the shapes"),
-        ("x", "'x' is none of the shapes"),
-        ("point([x, z])", "drawing contains 'z', which is not declared"),
-        ("point([x, dot(y)])", "drawing contains 'dot(y)', which is not allowed there"),
+        ("line([0, 0], [x, y])", "unknown_shape"),
+        ("segment([0, 0])", "unknown_shape"),
+        ("point([x, y, 0])", "unknown_shape"),
+        ("circle([x, y])", "unknown_shape"),
+        ("polyline([x, y])", "unknown_shape"),
+        ("x", "unknown_shape"),
+        ("point([x, z])", "undeclared_name"),
+        ("point([x, dot(y)])", "rate_not_allowed"),
     ],
 )
-def test_what_is_no_drawing_is_refused(pendulum, drawing, reason):
-    with pytest.raises(HolonomError) as caught:
+def test_what_is_no_drawing_is_refused(pendulum, drawing, refusal):
+    with refused(refusal):
         motion_problem(pendulum(drawing=f", drawing = [{drawing}]"), Request(), Limits())
-    assert reason in str(caught.value)
 
 
 def test_a_drawing_that_is_no_list_is_refused(pendulum):
-    with pytest.raises(HolonomError, match="'drawing' must be a list"):
+    with refused("entry_not_list"):
         motion_problem(pendulum(drawing=", drawing = point([x, y])"), Request(), Limits())
 
 

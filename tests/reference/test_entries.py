@@ -53,7 +53,7 @@ CASES = [
     ),
     *((in_context(step, refusal.given), refusal.said) for step in step_texts() for refusal in step.refused),
     *(case for step in step_texts() for case in misused(step)),
-    ("dot(x + y)", "write dot of each name"),
+    ("dot(x + y)", "Write dot of each name"),
     *((f"{name}(x)", f"{name}: the first argument") for name in ("print_derivation", "free_motion_of")),
     ("motion_series(x, 3, exact)", "motion_series: the first argument"),
     ("continued_motion(x, 3, 16, 1)", "continued_motion: the first argument"),

@@ -6,6 +6,7 @@ from pathlib import Path
 import heyoka
 import numpy as np
 import pytest
+from refusing import refused
 
 import holonom
 from holonom.failures import HolonomError
@@ -141,7 +142,7 @@ def test_a_law_in_parts_leaves_the_start_its_first_part(write_scene):
 def test_data_that_contradict_the_constraints_for_other_values_are_refused_with_their_sentence():
     scene = holonom.load(EXAMPLES / "pendulum.mac", scene="swing_scene")
     assert scene.simulate(until=1, samples=2, g=5)["x"][0] == pytest.approx(np.sin(np.pi / 13))
-    with pytest.raises(HolonomError, match="contradicts constraint 1: the residual is"):
+    with refused("contradicting_start"):
         scene.simulate(until=1, samples=2, l0=2)
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import sympy as sp
+from refusing import refused
 
 import holonom
 from holonom.failures import Failure, HolonomError
@@ -313,7 +314,7 @@ def test_a_course_by_if_was_refused_for_a_function_that_no_program_has():
 
 def test_a_course_that_asks_for_third_rates_of_a_law_was_followed_without_them():
     """Relative degree 4, and w has two rates: dot(x) was given without the third, and the energy was lost."""
-    with pytest.raises(HolonomError, match="contains further rates of w than a control has; write its law"):
+    with refused("servo_rates_of_controls"):
         masses("y = w", ", w", entries=", drawing = [point([w, 0])]", law="control_law = [w = sin(2*t)], ").simulate(
             samples=2
         )
@@ -358,32 +359,32 @@ def test_the_document_has_the_controls(tmp_path):
 REFUSED = {
     "one output too few": (
         ARM.replace(", l*sin(a) + l*sin(b) = sin(t)/4", ""),
-        "prescribe 1 outputs, and 2 controls have no control_law (tau1, tau2); these numbers must be equal",
+        "wrong_number_of_outputs",
     ),
-    "an output with a velocity": (ARM.replace("sin(t)/4]", "dot(a)]"), "contains 'dot(a)'; an output is made of"),
+    "an output with a velocity": (ARM.replace("sin(t)/4]", "dot(a)]"), "unknown_name_in_output"),
     "a control that is squared": (
         ARM.replace("tau1 - tau2", "tau1^2 - tau2"),
-        "the forces must be linear in the controls",
+        "servo_control_not_linear",
     ),
     "a control in the constraints": (
         ROD.replace("+ q^2 - 1]", "+ q^2 - 1 - F]"),
-        "may stand in forces alone; give the others a control_law",
+        "servo_control_in_energy",
     ),
     "the same output twice": (
         ARM.replace("l*sin(a) + l*sin(b) = sin(t)/4", "2*l*cos(a) + 2*l*cos(b) = 3"),
-        "servo_constraints cannot be kept: no control reaches them",
+        "servo_condition_on_time",
     ),
     "outputs that fix what a constraint fixes": (
         ROD.replace("x - sin(2*t)/5", "(p - x)^2 + q^2 = 1"),
-        "leave the controls F undetermined: the constraints, or some of the outputs, imply",
+        "servo_undetermined",
     ),
     "what holds on the constraints alone": (
         ROD.replace("x - sin(2*t)/5", "sqrt((p - x)^2 + q^2) = 1"),
-        "leave the controls F undetermined: the constraints, or some of the outputs, imply",
+        "servo_undetermined",
     ),
     "the same output twice, in agreement": (
         ARM.replace("l*sin(a) + l*sin(b) = sin(t)/4", "2*l*cos(a) + 2*l*cos(b) = 2*({across})"),
-        "leave the controls tau1, tau2 undetermined: the constraints, or some of the outputs, imply",
+        "servo_undetermined",
     ),
     "a damper on the way, whose relative degree of four was called three": (
         """
@@ -391,41 +392,40 @@ REFUSED = {
           kinetic_energy = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2, forces = [push = [F, 0, 0],
           damping = [dot(y) - dot(x), dot(x) - 2*dot(y) + dot(z), dot(y) - dot(z)]])$
         odd : holonomic_scene(system, servo_constraints = [z - t^4], initial_state = [x = 0])$""",
-        "have a relative degree above 3",
+        "servo_of_velocities",
     ),
     "a control in no force that is called for": (
         ROD.replace("servo_constraints = ", "effects = [], servo_constraints = "),
-        "no force that the scene calls for contains F",
+        "servo_control_without_force",
     ),
     "a relative degree of three": (
         """
         system : holonomic_system(coordinates = [x, y], controls = [F], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
           forces = [push = [F, dot(x)]])$
         odd : holonomic_scene(system, servo_constraints = [y - t^4], initial_state = [x = 0])$""",
-        "have the relative degree 3",
+        "servo_of_velocities",
     ),
     "a start where the controls push nowhere": (
         """
         system : holonomic_system(coordinates = [x], controls = [F], kinetic_energy = dot(x)^2/2, forces = [x*F])$
         start : holonomic_scene(system, servo_constraints = [x - t], initial_state = [], time_span = [0, 1])$""",
-        "at the initial state the controls F move the outputs in only 0 of 1 directions",
+        "servo_rank_at_start",
     ),
 }
 
 
 @pytest.mark.parametrize("what", REFUSED)
-def test_what_no_control_can_do_is_refused_in_one_sentence(what):
-    text, said = REFUSED[what]
-    with pytest.raises(HolonomError) as refused:
+def test_what_no_control_can_do_is_refused(what):
+    text, refusal = REFUSED[what]
+    with refused(refusal):
         holonom.system(text.format(across="1 + cos(t)/4")).simulate(samples=2)
-    assert said in str(refused.value)
 
 
 def test_a_course_by_a_long_table_is_refused_before_the_work():
     """All polynomials of the table stand in the equations, and the motion meets each in equations of its own."""
     points = ", ".join(f"[{k}/100, {k % 7}]" for k in range(501))
     scene = holonom.system(ROD.replace("sin(2*t)/5", f"table([{points}])"))
-    with pytest.raises(HolonomError, match="a table in servo_constraints may have 500 points, .* this one has 501"):
+    with refused("long_servo_table"):
         scene.simulate()
 
 
@@ -458,7 +458,7 @@ def test_an_impulse_along_the_course_took_the_place_of_one_of_the_controls(cours
 
 
 def test_what_takes_the_controls_as_given_is_refused():
-    with pytest.raises(HolonomError, match="a scene with servo_constraints"):
+    with refused("servo_not_possible"):
         holonom.system(ROD).effects()
 
 

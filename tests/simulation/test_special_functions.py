@@ -6,6 +6,7 @@ from pathlib import Path
 import mpmath
 import numpy as np
 import pytest
+from refusing import refused
 from scipy import special
 from scipy.integrate import solve_ivp
 
@@ -146,40 +147,39 @@ def test_the_series_of_a_gamma_function_to_order_24(write_scene: WRITE):
 
 
 @pytest.mark.parametrize(
-    ("scene", "said"),
+    ("scene", "refusal"),
     [
-        (pushed(force="bessel_j(0, x)"), "of t and parameters alone"),
-        (pushed(law="bessel_y(0, t)"), "has no real value"),
-        (pushed(force="bessel_y(0, t)"), "singular there or nearby"),
-        (pushed(force="bessel_j(0, t^4)"), "changes too often"),
-        (pushed(more="observe = [trajectory]"), "give the scene a time_span"),
+        (pushed(force="bessel_j(0, x)"), "special_of_motion"),
+        (pushed(law="bessel_y(0, t)"), "law_not_analytic"),
+        (pushed(force="bessel_y(0, t)"), "special_not_written"),
+        (pushed(force="bessel_j(0, t^4)"), "special_not_written"),
+        (pushed(more="observe = [trajectory]"), "special_without_span"),
     ],
 )
-def test_what_cannot_be_written_out_is_said(write_scene: WRITE, scene: str, said: str):
-    with pytest.raises(HolonomError) as refused:
+def test_what_cannot_be_written_out_is_refused(write_scene: WRITE, scene: str, refusal: str):
+    with refused(refusal):
         asked(write_scene(scene))
-    assert said in str(refused.value)
 
 
 def test_no_parameter_in_a_special_function_varies(write_scene: WRITE):
-    with pytest.raises(HolonomError, match="no function of t alone"):
+    with refused("special_of_parameters"):
         asked(write_scene(pushed(force="bessel_j(0, c*t)")), 17, ("c",))
 
 
 def test_no_motion_goes_on_beyond_the_span_of_a_special_function(pushed_problem: MotionProblem):
-    with pytest.raises(HolonomError) as refused:
+    with pytest.raises(HolonomError) as caught:
         simulate(pushed_problem, SimulationRequest(until=11))
-    assert refused.value.failure is Failure.LAW_ENDS
+    assert caught.value.failure is Failure.LAW_ENDS
 
 
 def test_no_derivatives_of_high_order_are_taken_of_the_polynomials(pushed_problem: MotionProblem):
-    with pytest.raises(HolonomError) as refused:
+    with pytest.raises(HolonomError) as caught:
         expand(pushed_problem, 30, read_precision("double"))
-    assert refused.value.failure is Failure.SPECIAL_EXPANDED
+    assert caught.value.failure is Failure.SPECIAL_EXPANDED
 
 
 def test_no_exact_series_is_claimed(write_scene: WRITE):
-    with pytest.raises(HolonomError, match="no rational coefficients"):
+    with refused("special_not_rational"):
         compute_series(write_scene(pushed()), SeriesRequest(order=10, digits="exact"), Limits())
 
 

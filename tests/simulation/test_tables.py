@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from refusing import refused
 from scipy.integrate import cumulative_simpson, quad
 from scipy.interpolate import CubicSpline
 
@@ -130,48 +131,47 @@ def test_many_points(driven):
 
 
 @pytest.mark.parametrize(
-    ("law", "span", "csv", "said"),
+    ("law", "span", "csv", "refusal"),
     [
-        ("table([[0, 0], [1, 2], [1, 3]])", "0, 1", "", "table: the times must increase; point 3 has 1 after 1"),
-        ("table([[0, 0]])", "0, 1", "", "a table needs two points at least; it has 1"),
-        ("table([[0, 0], [1, u0]])", "0, 1", "", "the point [1,u0] is not made of two numbers"),
-        ("table([0, 1])", "0, 1", "", "the points must be a list of lists [t, u]"),
-        ("table([[0, 0], [1, 2]], parabolic)", "0, 1", "", "after the points stands natural, clamped, or the list"),
-        ("table([[0, 0], [1, 2]])", "0, 2", "", "time_span ends at 2, and the table of u at 1"),
-        ("table([[1, 0], [2, 2]])", "0, 2", "", "the motion starts at t = 0, and the table of u reaches from 1 to 2"),
-        ('table("drive.csv")', "0, 1", "0, 0\n1, 2x\n", "drive.csv, line 2: '2x' is no number"),
-        ('table("drive.csv")', "0, 1", "0, 0\n1, 2, 3\n", "drive.csv, line 2: a line must hold two numbers"),
-        ('table("drive.csv")', "0, 1", "0, 0\n1, 1e999\n", "drive.csv, line 2: '1e999' is no number"),
+        ("table([[0, 0], [1, 2], [1, 3]])", "0, 1", "", "times_not_increasing"),
+        ("table([[0, 0]])", "0, 1", "", "too_few_points"),
+        ("table([[0, 0], [1, u0]])", "0, 1", "", "point_without_numbers"),
+        ("table([0, 1])", "0, 1", "", "points_not_pairs"),
+        ("table([[0, 0], [1, 2]], parabolic)", "0, 1", "", "unknown_end_of_table"),
+        ("table([[0, 0], [1, 2]])", "0, 2", "", "span_beyond_table"),
+        ("table([[1, 0], [2, 2]])", "0, 2", "", "start_outside_table"),
+        ('table("drive.csv")', "0, 1", "0, 0\n1, 2x\n", "number_in_table_file"),
+        ('table("drive.csv")', "0, 1", "0, 0\n1, 2, 3\n", "columns_of_table_file"),
+        ('table("drive.csv")', "0, 1", "0, 0\n1, 1e999\n", "number_in_table_file"),
         (
             'table("drive.csv")',
             "0, 1",
             "t,u\n\n0,0\n0.50,1\n.5,1\n",
-            "drive.csv, line 5: the times must increase; .5 comes after 0.50",
+            "times_of_table_file",
         ),
         (
             'table("drive.csv")',
             "0, 1",
             "t;u\n0;0\n1;2\n",
-            "drive.csv, line 2: two numbers with a comma between them and decimal",
+            "line_without_comma",
         ),
-        ('table("drive.csv")', "0, 1", "0,0;1,5\n1,0;2,5\n", "here it is '0,0;1,5'"),
-        ('table("drive.csv")', "0, 1", "0,0,1,5\n1,0,2,5\n", "t and u, with decimal points; it holds 4"),
-        ('table("drive.csv")', "0, 1", "0,\0 0\n", "drive.csv, line 1: it holds null characters"),
-        ('table("drive.csv")', "0, 1", "", "drive.csv: a table needs two points at least; it has 0"),
-        ('table("other.csv")', "0, 1", "", "there is no file other.csv beside the scene"),
-        ("diff(table([[0, 0], [1, 2]]), t)", "0, 1", "", "derivative"),
+        ('table("drive.csv")', "0, 1", "0,0;1,5\n1,0;2,5\n", "line_without_comma"),
+        ('table("drive.csv")', "0, 1", "0,0,1,5\n1,0,2,5\n", "columns_of_table_file"),
+        ('table("drive.csv")', "0, 1", "0,\0 0\n", "null_in_table_file"),
+        ('table("drive.csv")', "0, 1", "", "too_few_points"),
+        ('table("other.csv")', "0, 1", "", "missing_table_file"),
+        ("diff(table([[0, 0], [1, 2]]), t)", "0, 1", "", "law_without_derivative"),
         (
             "subst(t = 2*t, table([[0, 0], [2, 2]]))",
             "0, 1",
             "",
-            "the table of u is put at 2*t, and a table is of t alone",
+            "table_not_of_time",
         ),
     ],
 )
-def test_a_bad_table_is_refused_in_one_sentence(driven, law, span, csv, said):
-    with pytest.raises(HolonomError) as refused:
+def test_a_bad_table_is_refused(driven, law, span, csv, refusal):
+    with refused(refusal):
         driven(law, span, csv).simulate()
-    assert said in str(refused.value)
 
 
 def test_a_series_was_summed_up_where_the_law_is_another(driven):
@@ -233,18 +233,18 @@ def test_one_program_serves_all_polynomials_of_a_table(driven):
 
 
 @pytest.mark.parametrize(
-    ("entry", "said"),
+    ("entry", "refusal"),
     [
-        ("until = [x - table([[0, 1], [1, 1], [2, 3]])]", "until contains a table, which may stand in"),
-        ("prescribed_reactions = [lambda1 = table([[0, 1], [2, 3]])]", "prescribed_reactions contains a table, which"),
+        ("until = [x - table([[0, 1], [1, 1], [2, 3]])]", "table_in_scene"),
+        ("prescribed_reactions = [lambda1 = table([[0, 1], [2, 3]])]", "table_in_scene"),
     ],
 )
-def test_a_table_elsewhere_was_a_function_called_bracket(entry, said):
+def test_a_table_elsewhere_was_a_function_called_bracket(entry, refusal):
     scene = holonom.system(f"""
 system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
   constraints = [x - u])$
 led : holonomic_scene(system, {entry}{", control_law = [u = t]" if "until" in entry else ""}, initial_state = [])$""")
-    with pytest.raises(HolonomError, match=said):
+    with refused(refusal):
         scene.simulate(until=2)
 
 
