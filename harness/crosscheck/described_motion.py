@@ -16,7 +16,8 @@ from functools import cached_property
 from mpmath import mp
 
 from ..description import DescribedScene, Description
-from .law import Law, Spline, number
+from ..trees import Tree
+from .law import DATA_DIGITS, Law, Spline, number
 from .tape import Tape
 from .taylor import Polynomial, Taylor
 
@@ -52,6 +53,20 @@ class DescribedMotion:
         self.outputs = [] if scene is None else [tape.place(tree) for tree in _plain(scene.servo_trees)]
 
     @cached_property
+    def span(self) -> tuple[mp.mpf, mp.mpf] | None:
+        """First and last instant of the scene; None if it states none."""
+        if self.scene is None or self.scene.span_trees is None:
+            return None
+        with mp.workdps(DATA_DIGITS):
+            first, last = map(number, self.scene.span_trees)
+        return first, last
+
+    @property
+    def first_instant(self) -> mp.mpf:
+        """Beginning of the time span; zero without one."""
+        return self.span[0] if self.span else mp.zero
+
+    @cached_property
     def splines(self) -> list[Spline]:
         """Its tables."""
         return [Spline(table) for table in self.description.tables]
@@ -71,11 +86,16 @@ class DescribedMotion:
         trees = {} if self.scene is None else self.scene.parameter_values.trees
         return {name: (number(tree),) for name, tree in trees.items()}
 
+    def number_of(self, tree: Tree) -> mp.mpf:
+        """Value of an expression of parameters alone."""
+        return Law({"": tree}, ()).at(Taylor(0), mp.zero, self.parameters())[""][0]
+
     def values(self, taylor: Taylor, curve: Curve) -> list[Polynomial]:
         """Values of T, V, Q, f and all their parts along a curve; raises as `Tape.values`."""
-        return self.tape.values(taylor, self._with_rates(taylor, curve))
+        return self.tape.values(taylor, self.with_rates(taylor, curve))
 
-    def _with_rates(self, taylor: Taylor, curve: Curve) -> dict[str, Polynomial]:
+    def with_rates(self, taylor: Taylor, curve: Curve) -> dict[str, Polynomial]:
+        """A curve with the rates of its coordinates and controls."""
         names = (*self.system.coordinates, *self.system.controls)
         return {**{f"dot({name})": taylor.rate(curve[name]) for name in names if name in curve}, **curve}
 
@@ -84,10 +104,7 @@ class DescribedMotion:
     ) -> list[Residual]:
         """Lagrange's equations along the curve of the values."""
         lagrangian = self._gradient_of_lagrangian(taylor, values)
-        seeds = dict.fromkeys(self.constraints, (mp.zero,))
-        for place, multiplier in zip(self.constraints, multipliers, strict=True):
-            seeds[place] = taylor.add(seeds[place], multiplier)
-        reactions = self.tape.gradient(taylor, values, seeds)
+        reactions = self.constraint_forces(taylor, values, multipliers)
         found = []
         for s, q in enumerate(self.system.coordinates):
             inertia = taylor.rate(lagrangian.get(f"dot({q})", (mp.zero,)))
@@ -97,10 +114,26 @@ class DescribedMotion:
             found.append(Residual(value, taylor.add(_sizes(inertia), *map(_sizes, terms))))
         return found
 
+    def constraint_forces(
+        self, taylor: Taylor, values: Sequence[Polynomial], multipliers: Sequence[Polynomial]
+    ) -> dict[str, Polynomial]:
+        """Gradient of lambda_beta f_beta, by the name of the coordinate."""
+        seeds = dict.fromkeys(self.constraints, (mp.zero,))
+        for place, multiplier in zip(self.constraints, multipliers, strict=True):
+            seeds[place] = taylor.add(seeds[place], multiplier)
+        return self.tape.gradient(taylor, values, seeds)
+
+    def momenta(self, taylor: Taylor, values: Sequence[Polynomial]) -> dict[str, Polynomial]:
+        """Gradient of the kinetic energy, by the name of the velocity."""
+        seeds: dict[int, Polynomial] = {}
+        for place in self._kinetic:
+            seeds[place] = taylor.add(seeds.get(place, (mp.zero,)), (mp.one,))
+        return self.tape.gradient(taylor, values, seeds)
+
     def energy(self, taylor: Taylor, values: Sequence[Polynomial], curve: Curve) -> Polynomial:
         """The energy function dot(q_s) dL/d dot(q_s) - L along the curve."""
         lagrangian = self._gradient_of_lagrangian(taylor, values)
-        rates = self._with_rates(taylor, curve)
+        rates = self.with_rates(taylor, curve)
         parts = [
             taylor.multiply(rates[rate], lagrangian[rate]) for rate in self.system.velocities if rate in lagrangian
         ]

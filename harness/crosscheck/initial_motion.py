@@ -239,8 +239,8 @@ def determined_initial_values(claims: SceneClaims, relations: Relations) -> tupl
         )
     fixed = {sp.Symbol(left, real=True): exact(r.right) for left, r in zip(lefts, relations, strict=True)}
     residuals = [
-        *_for_all_states(claims.system.coordinates, claims.known.system.constraints, fixed),
-        *_for_all_states(claims.system.velocities, claims.known.constraint_rates, fixed),
+        *_for_all_states(claims, claims.system.coordinates, claims.known.system.constraints, fixed),
+        *_for_all_states(claims, claims.system.velocities, claims.known.constraint_rates, fixed),
     ]
     always = Comparison(tuple(_vanishing("constraint", residuals)), given={**fixed, **claims.start})
     values = (Pair(name.name, fixed[name], name) for name in fixed)
@@ -248,12 +248,16 @@ def determined_initial_values(claims: SceneClaims, relations: Relations) -> tupl
 
 
 def _for_all_states(
-    symbols: Iterable[sp.Symbol], residuals: Iterable[sp.Expr], fixed: Mapping[sp.Symbol, sp.Expr]
+    claims: SceneClaims,
+    symbols: Iterable[sp.Symbol],
+    residuals: Iterable[sp.Expr],
+    fixed: Mapping[sp.Symbol, sp.Expr],
 ) -> Iterable[sp.Expr]:
     """Residuals that contain fixed symbols, and no symbol that is fixed for the scene's numbers only."""
     symbols, residuals = set(symbols), list(residuals)
     known = {symbol for symbol in symbols if initial(symbol) in fixed}
-    numbers = _without_closed_form({symbol for symbol in known if fixed[initial(symbol)].is_number}, residuals)
+    numbers = {symbol for symbol in known if fixed[initial(symbol)].is_number}
+    numbers = {x for x in _without_closed_form(numbers, residuals) if not _is_quadratic(claims, x, known, residuals)}
     for residual in residuals:
         present = residual.free_symbols & symbols
         if present & known and not (present & numbers and present - numbers):
@@ -269,6 +273,19 @@ def _without_closed_form(numbers: set[sp.Symbol], residuals: Sequence[sp.Expr]) 
     for _ in numbers:
         found = found.union(*(within for _, within in shared if within & found))
     return found
+
+
+def _is_quadratic(claims: SceneClaims, x: sp.Symbol, known: set[sp.Symbol], residuals: Sequence[sp.Expr]) -> bool:
+    """Whether a residual in the state alone fixes a symbol by a quadratic equation, whose root is a closed form."""
+    containing = [residual for residual in residuals if x in residual.free_symbols]
+    if len(containing) != 1 or containing[0].free_symbols & known != {x}:
+        return False
+    state = {*claims.state, claims.system.time}
+    numbers = {u for u, law in claims.control_law.items() if law.free_symbols <= {claims.system.time}}
+    if not containing[0].free_symbols <= state | numbers:
+        return False
+    polynomial = containing[0].as_poly(*containing[0].free_symbols)
+    return polynomial is not None and polynomial.degree(x) == 2
 
 
 def _listed(names: Iterable[str]) -> str:

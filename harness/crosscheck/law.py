@@ -19,18 +19,25 @@ from .points import IrregularPoint
 from .tape import Tape
 from .taylor import Polynomial, Taylor
 
+DATA_DIGITS = 250  # in which numbers of a description are kept, more than any comparison has
+
 
 class Spline:
     """The cubic spline of a table."""
 
     def __init__(self, table: Table) -> None:
-        self.times = [number(point[0]) for point in table.points]
-        self.heights = [number(point[1]) for point in table.points]
-        self.ends = None if table.ends is None else [number(rate) for rate in table.ends]
+        with mp.workdps(DATA_DIGITS):
+            self.times = [number(point[0]) for point in table.points]
+            self.heights = [number(point[1]) for point in table.points]
+            self.ends = None if table.ends is None else [number(rate) for rate in table.ends]
 
     @cached_property
     def bending(self) -> list[mp.mpf]:
         """Second rates at the points: a tridiagonal system, eliminated from the first row down."""
+        with mp.workdps(DATA_DIGITS):
+            return self._bending()
+
+    def _bending(self) -> list[mp.mpf]:
         h = [b - a for a, b in zip(self.times, self.times[1:], strict=False)]
         slopes = [(b - a) / step for a, b, step in zip(self.heights, self.heights[1:], h, strict=False)]
         rows = [(h[k - 1], 2 * (h[k - 1] + h[k]), h[k], 6 * (slopes[k] - slopes[k - 1])) for k in range(1, len(h))]
@@ -102,3 +109,11 @@ def _with_names(tree: Tree) -> Tree:
             return [head, *map(_with_names, arguments)]
         case _:
             return tree
+
+
+SWITCHING = ("Max", "Min", "UnitStep", "HalfStep", "Which", "Table")
+
+
+def is_switched(tree: Tree) -> bool:
+    """Whether there is a switch or a table in a law."""
+    return isinstance(tree, list) and (tree[0] in SWITCHING or any(map(is_switched, tree[1:])))

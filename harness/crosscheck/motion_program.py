@@ -6,7 +6,7 @@ the corrections of the state, residuals, energy and power are compared with what
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
 from mpmath import mp
@@ -19,18 +19,17 @@ from ..program.motion_program import Program, Solve, read_program
 from ..source import Source
 from . import motion_states as states
 from .described_motion import DescribedMotion
+from .judged_claims import Parts, first_differences
+from .motion_premises import PREMISES, claims_of_inputs, other_premises
 from .motion_states import STATE, Claim, States
 from .points import IrregularPoint
 from .program_values import Values, run
 from .report import Verdict
 from .taylor import SPECIAL
-from .verdict import DIGITS, POINTS, WORKING_DIGITS, Judgement
+from .verdict import DIGITS, POINTS, Judgement
 
 ATTEMPTS = 6  # draws for each state before the search for a regular one is given up
 PROBLEM_DIGITS = DIGITS + 20  # of the numbers that a document of a motion holds
-VANISHED = 2 * DIGITS // 3  # digits by which a difference shrinks in twice the digits where it is rounding
-
-Parts = Iterator[tuple[str, Claim]]  # each claim with the part of the programs that makes it
 
 
 @dataclass(frozen=True)
@@ -132,6 +131,8 @@ def judge_programs(description: Description, programs: Iterable[ScenePrograms], 
 
 def _judge_problems(motion: DescribedMotion, programs: ScenePrograms, seed: str) -> list[ProgramVerdict]:
     problems = programs.problems
+    if wrong := other_premises(motion, problems, seed):
+        return [ProgramVerdict(programs.scene, PREMISES, Judgement(Verdict.DISAGREES, DIGITS, 1, wrong))]
     solved = [solve for solve, problem in problems.items() if problem.motion is not None]
     parts = [f"motion program, {solve} solve" for solve in solved]
     verdicts = [
@@ -148,6 +149,7 @@ def _judge_problems(motion: DescribedMotion, programs: ScenePrograms, seed: str)
     else:
         maker = _plain_states(motion, problems, seed)
         parts = [MATRICES, *parts]
+    verdicts += _judged(programs.scene, [PREMISES], claims_of_inputs(motion, problems, seed))
     return [*verdicts, *_judged(programs.scene, parts, maker)]
 
 
@@ -278,7 +280,7 @@ def _judged(scene: str | None, parts: list[str], claims: Callable[[int], Parts])
     for attempt in range(ATTEMPTS * POINTS):
         if compared == POINTS or len(wrong) == len(parts):
             break
-        told, regular = _differences(claims, attempt)
+        told, regular = first_differences(claims, attempt)
         wrong = told | wrong
         compared += regular
     few = f"only {compared} regular states were found among {ATTEMPTS * POINTS}"
@@ -290,59 +292,3 @@ def _judged(scene: str | None, parts: list[str], claims: Callable[[int], Parts])
         )
         for part in parts
     ]
-
-
-def _differences(claims: Callable[[int], Parts], attempt: int) -> tuple[dict[str, str], bool]:
-    """The first claim of each part that is not so at a state, found in twice the digits once more; if it is regular."""
-    with mp.workdps(WORKING_DIGITS):
-        made, regular = _made(claims(attempt))
-        suspected = {place: abs(each.given - each.true) for place, (_, each) in enumerate(made) if _differs(each)}
-    if not suspected:
-        return {}, regular
-    found: dict[str, str] = {}
-    with mp.workdps(2 * WORKING_DIGITS):
-        again, _ = _made(claims(attempt))
-        for place, before in suspected.items():
-            part, claim = again[place] if place < len(again) else made[place]
-            rounding = abs(claim.given - claim.true) <= before * mp.mpf(10) ** -VANISHED
-            if _differs(claim) and not rounding:
-                found.setdefault(part, _told(claim))
-    return found, regular
-
-
-def differing(claims: Callable[[], Iterator[Claim]], digits: int = DIGITS) -> str:
-    """The first claim that is not so, found in twice the digits once more; empty where all are."""
-    with mp.workdps(WORKING_DIGITS):
-        suspected = {
-            place: abs(each.given - each.true) for place, each in enumerate(claims()) if _differs(each, digits)
-        }
-    if not suspected:
-        return ""
-    with mp.workdps(2 * WORKING_DIGITS):
-        for place, claim in enumerate(claims()):
-            before = suspected.get(place)
-            if before is None or abs(claim.given - claim.true) <= before * mp.mpf(10) ** -VANISHED:
-                continue
-            if _differs(claim, digits):
-                return _told(claim)
-    return ""
-
-
-def _made(claims: Parts) -> tuple[list[tuple[str, Claim]], bool]:
-    """The claims at a state, up to where something has no value; whether all have."""
-    made: list[tuple[str, Claim]] = []
-    try:
-        for each in claims:
-            made.append(each)
-    except (IrregularPoint, ZeroDivisionError, OverflowError):
-        return made, False
-    return made, True
-
-
-def _differs(claim: Claim, digits: int = DIGITS) -> bool:
-    size = max(claim.size, abs(claim.given), abs(claim.true))
-    return abs(claim.given - claim.true) > mp.mpf(10) ** -digits * size
-
-
-def _told(claim: Claim) -> str:
-    return f"{claim.quantity}: {mp.nstr(claim.given, 12)} where {mp.nstr(claim.true, 12)} is so"

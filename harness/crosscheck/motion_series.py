@@ -6,7 +6,8 @@ outputs must stay zero.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+import random
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -19,8 +20,10 @@ from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Solve
 from ..series.power_series import AUTOMATIC, EXACT, MotionSeries, SeriesRequest, compute_series
 from ..source import Source
-from .described_motion import DescribedMotion
-from .motion_program import OF_SPECIAL_FUNCTIONS, ProgramVerdict, ScenePrograms, differing, holds_special_functions
+from .described_motion import DescribedMotion, Residual
+from .judged_claims import differing
+from .motion_program import OF_SPECIAL_FUNCTIONS, ProgramVerdict, ScenePrograms, holds_special_functions
+from .motion_start import claims_of_start
 from .motion_states import Claim
 from .points import IrregularPoint
 from .program_values import Values, letters_of_tables, run_along, with_signs
@@ -30,6 +33,7 @@ from .verdict import DIGITS, Judgement
 
 ORDER = 7  # of the series
 MOST_COORDINATES = 100  # of a series: Maxima takes a minute for that of 512 bodies
+PERTURBATIONS = 3  # of all coefficients, by which the effect of rounding them is found
 LOST = 8  # digits that a rounded coefficient may lose on its way into the equations
 SERIES, SERVO = "power series", "servo-constraints, along the motion"
 
@@ -67,9 +71,15 @@ def _series_of(source: Source, settings: Mapping[str, str], scene: DescribedScen
         return SceneSeries(scene.name, None, refusal.said)
 
 
-def judge_series(description: Description, found: Iterable[SceneSeries]) -> list[ProgramVerdict]:
-    """Verdicts on the power series of the scenes of a description."""
+def judge_series(
+    description: Description, found: Iterable[SceneSeries], programs: Iterable[ScenePrograms] = ()
+) -> list[ProgramVerdict]:
+    """Verdicts on the power series of the scenes of a description.
+
+    The programs of the same scenes state the corrections of given values.
+    """
     scenes = {scene.name: scene for scene in description.scenes}
+    corrections = {each.scene: problem.correction for each in programs for problem in each.problems.values()}
     verdicts = []
     for each in found:
         if scenes[each.scene].servo_trees:
@@ -79,7 +89,7 @@ def judge_series(description: Description, found: Iterable[SceneSeries]) -> list
         else:
             motion = DescribedMotion(description, scenes[each.scene])
             series, digits = each.series, _digits(each.series)
-            judged = _judged(partial(_claims, motion, series), digits)
+            judged = _judged(partial(_claims, motion, series, corrections.get(each.scene)), digits)
         verdicts.append(ProgramVerdict(each.scene, SERIES, judged))
     return verdicts
 
@@ -113,8 +123,8 @@ def _judged(claims: Callable[[], Iterator[Claim]], digits: int) -> Judgement:
     return Judgement(Verdict.DISAGREES if wrong else Verdict.AGREES, digits, 1, wrong)
 
 
-def _claims(motion: DescribedMotion, series: MotionSeries) -> Iterator[Claim]:
-    """That a power series satisfies the equations of motion, and that its reactions are those prescribed."""
+def _claims(motion: DescribedMotion, series: MotionSeries, correction: tuple[str, str] | None) -> Iterator[Claim]:
+    """That a power series begins at the start and satisfies the equations, and that its reactions are as prescribed."""
     taylor, instant = Taylor(ORDER), number(series.t0)
     curve: Values = motion.parameters() | motion.law.at(Taylor(ORDER + 1), instant, motion.parameters())
     curve |= {name: tuple(numbers(row)) for name, row in series.coordinates.items()}
@@ -124,7 +134,21 @@ def _claims(motion: DescribedMotion, series: MotionSeries) -> Iterator[Claim]:
         for k in range(ORDER - 1):
             true = _coefficient(prescribed, k)
             yield Claim(f"coefficient {k} of {name}", _coefficient(multipliers[name], k), true, abs(true))
+    yield from claims_of_start(motion, _start(series, instant), correction)
+    reactions = motion.constraint_forces(taylor, motion.values(taylor, curve), list(multipliers.values()))
+    for name, row in series.constraint_forces.items():
+        q = motion.system.coordinates[int(name.removeprefix("Lambda[").removesuffix("]")) - 1]
+        for k, x in enumerate(numbers(row[: ORDER - 1])):
+            true = _coefficient(reactions.get(q, (mp.zero,)), k)
+            yield Claim(f"coefficient {k} of {name}", x, true, abs(true))
     yield from _claims_of_equations(motion, taylor, curve, [multipliers[name] for name in motion.system.multipliers])
+
+
+def _start(series: MotionSeries, instant: mp.mpf) -> dict[str, mp.mpf]:
+    found = {"t": instant}
+    for name, row in series.coordinates.items():
+        found[name], found[f"dot({name})"] = numbers(row[:2])
+    return found
 
 
 def _claims_of_equations(
@@ -133,15 +157,43 @@ def _claims_of_equations(
     values = motion.values(taylor, curve)
     sizes = motion.tape.sizes(taylor, values)
     equations = motion.equations(taylor, values, multipliers)
-    for q, equation in zip(motion.system.coordinates, equations, strict=True):
+    changes = _changes(motion, taylor, curve, multipliers, equations)
+    for q, equation, change in zip(motion.system.coordinates, equations, changes, strict=True):
         for k in range(taylor.order - 1):
-            value, size = _coefficient(equation.value, k), _coefficient(equation.size, k)
+            value, size = _coefficient(equation.value, k), max(_coefficient(equation.size, k), change[k])
             yield Claim(f"power {k} of the equation of motion of {q}", value, mp.zero, size)
     for what, places in (("constraint", motion.constraints), ("servo-constraint", motion.outputs)):
         for beta, place in enumerate(places, 1):
             for k in range(taylor.order + 1):
                 value = _coefficient(values[place], k)
                 yield Claim(f"power {k} of {what} {beta}", value, mp.zero, _coefficient(sizes[place], k))
+
+
+def _changes(
+    motion: DescribedMotion,
+    taylor: Taylor,
+    curve: Values,
+    multipliers: list[Polynomial],
+    equations: Sequence[Residual],
+) -> list[list[mp.mpf]]:
+    """By how much the powers of each equation change with relative changes of all coefficients, which are rounded."""
+    found = [[mp.zero] * taylor.order for _ in equations]
+    share = mp.mpf(10) ** (-mp.dps // 3)
+    for attempt in range(PERTURBATIONS):
+        draw = random.Random(attempt)
+
+        def moved(row: Polynomial, draw: random.Random = draw) -> Polynomial:
+            return tuple(x * (1 + share * draw.choice((-1, 1)) * (1 + draw.random())) for x in row)
+
+        changed = curve | {q: moved(curve[q]) for q in motion.system.coordinates}
+        values = motion.values(taylor, changed)
+        for own, before, after in zip(
+            found, equations, motion.equations(taylor, values, list(map(moved, multipliers))), strict=True
+        ):
+            for k in range(taylor.order):
+                change = abs(_coefficient(after.value, k) - _coefficient(before.value, k)) / share
+                own[k] = max(own[k], change)
+    return found
 
 
 def _claims_of_servo(motion: DescribedMotion, problem: MotionProblem, series: MotionSeries | None) -> Iterator[Claim]:

@@ -53,7 +53,7 @@ def motion_verdicts(
     for each in motions.programs:
         series = [found for found in motions.series if found.scene == each.scene]
         found = judged(lambda each=each: judge_programs(description, [each], seed), each.scene)
-        found += judged(lambda series=series: judge_series(description, series), each.scene)
+        found += judged(lambda each=each, series=series: judge_series(description, series, [each]), each.scene)
         found += judged(lambda each=each, series=series: judge_servo(description, [each], series), each.scene)
         for verdict in found:
             it = verdict.found

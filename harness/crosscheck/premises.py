@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields
 from typing import NamedTuple
 
@@ -10,19 +10,22 @@ import sympy as sp
 from mpmath import mp
 
 from ..described import System
-from ..description import DescribedScene, Description, Table
+from ..description import DescribedScene, Description
+from ..failures import HolonomError
 from ..record import Record, Scene
+from .described_motion import DescribedMotion
 from .evaluation import Steps
-from .stated_law import StatedLaw, is_switched
+from .law import Law, is_switched
+from .motion_start import nearer_start
+from .points import IrregularPoint
 from .system import exact
-from .verdict import CONFIRMING_DIGITS, DIGITS
-
-TIME = sp.Symbol("t", real=True)
+from .taylor import Taylor
+from .verdict import CONFIRMING_DIGITS, DIGITS, WORKING_DIGITS
 
 INSTANTS = 4
 """Instants after the first at which a law that is held around it is that which is stated."""
 
-SHORTEST = sp.Rational(1, 10**8)
+SHORTEST = mp.mpf(2) ** -27
 """Time between two of them."""
 
 
@@ -69,11 +72,12 @@ def differences(record: Record, premises: Premises) -> Iterator[Difference]:
         yield Difference("scenes", _told(said, names))
     else:
         for scene, stated in zip(record.scenes, premises.scenes, strict=True):
-            yield from _differences_of_scene(scene, stated, premises.description.tables)
+            yield from _differences_of_scene(scene, DescribedMotion(premises.description, stated))
     yield from _differences_of_effects(record, premises)
 
 
-def _differences_of_scene(scene: Scene, stated: DescribedScene, tables: Sequence[Table]) -> Iterator[Difference]:
+def _differences_of_scene(scene: Scene, motion: DescribedMotion) -> Iterator[Difference]:
+    stated = motion.scene
     switched = any(map(is_switched, stated.control_law.trees.values()))
     said = {
         "title": (scene.title, stated.title),
@@ -86,40 +90,63 @@ def _differences_of_scene(scene: Scene, stated: DescribedScene, tables: Sequence
     }
     if not switched:
         said["control_law"] = (dict(scene.control_law), dict(stated.control_law))
-    elif detail := _law_differs(scene, stated, tables):
+    elif detail := _law_differs(scene, motion):
         yield Difference("control_law", detail, scene.name)
+    if detail := _nearer_start(scene, motion):
+        yield Difference("initial_guess", detail, scene.name)
     for what, (found, belongs) in said.items():
         if found != belongs or _order(found) != _order(belongs):
             yield Difference(what, _told(found, belongs), scene.name)
 
 
-def _law_differs(scene: Scene, stated: DescribedScene, tables: Sequence[Table]) -> str:
+def _law_differs(scene: Scene, motion: DescribedMotion) -> str:
     """Tell where a law that is held around the first instant is another than the stated one; empty where it is not."""
-    if list(scene.control_law) != list(stated.control_law):
-        return _told(scene.control_law, stated.control_law)
-    t0 = exact(stated.time_span[0]) if stated.time_span else sp.Integer(0)
-    parameters = {sp.Symbol(x, real=True): exact(y) for x, y in stated.parameter_values.items()}
+    if list(scene.control_law) != list(motion.scene.control_law):
+        return _told(scene.control_law, motion.scene.control_law)
     with mp.workdps(CONFIRMING_DIGITS):
-        values = dict(zip(parameters, Steps(list(parameters.values())).at({}), strict=True))
+        held = Law(scene.control_law.trees, motion.splines)
+        parameters = {name: (mp.mpf(k) / 7,) for k, name in enumerate(motion.system.parameters, 8)}
+        parameters |= motion.parameters()
         for k in range(1, INSTANTS + 1):
-            (values[TIME],) = Steps([t0 + k * SHORTEST]).at({})
-            law = StatedLaw(tables, values)
-            for name, tree in stated.control_law.trees.items():
-                found, belongs = Steps([exact(scene.control_law[name])]).at(values)[0], law.number(tree)
-                if found is None or belongs is None or abs(found - belongs) > mp.mpf(10) ** -DIGITS * abs(belongs):
-                    return f"{name} is {found}, where {belongs} is stated, at t = {mp.nstr(values[TIME], 12)}"
+            instant = motion.first_instant + k * SHORTEST
+            try:
+                found, stated = (law.at(Taylor(0), instant, parameters) for law in (held, motion.law))
+            except IrregularPoint:
+                return f"the law has no value at t = {mp.nstr(instant, 12)}"
+            for name, (belongs,) in stated.items():
+                if abs(found[name][0] - belongs) > mp.mpf(10) ** -DIGITS * abs(belongs):
+                    return f"{name} is {found[name][0]}, where {belongs} is stated, at t = {mp.nstr(instant, 12)}"
     return ""
+
+
+def _nearer_start(scene: Scene, motion: DescribedMotion) -> str:
+    """Tell an initial value for which there is one nearer to the scene's guess; empty if there is none."""
+    if not motion.scene.initial_guess or list(scene.initial_state) != _state_of(motion):
+        return ""
+    try:
+        with mp.workdps(WORKING_DIGITS):
+            parameters = {sp.Symbol(name, real=True): value for name, (value,) in motion.parameters().items()}
+            values = Steps([exact(value) for value in scene.initial_state.values()]).at(parameters)
+            start = dict(zip(scene.initial_state, values, strict=True)) | {"t": motion.first_instant}
+            return "" if None in values else nearer_start(motion, start)
+    except HolonomError:  # a parameter or a control is left open
+        return ""
+
+
+def _state_of(motion: DescribedMotion) -> list[str]:
+    return [*motion.system.coordinates, *motion.system.velocities]
 
 
 def _differences_of_effects(record: Record, premises: Premises) -> Iterator[Difference]:
     system = premises.system
-    everything = {part.effect for part in (*system.kinetic_energy, *system.potential_energy, *system.forces)}
+    parts = (*system.kinetic_energy, *system.potential_energy, *system.forces)
+    everything = tuple(sorted({part.effect for part in parts}))  # as Maxima's sets are
     stated = list(dict.fromkeys(scene.effects for scene in premises.scenes))
     said = [derived.effects for derived in record.derivations]
     if premises.scenes and said != stated:
         yield Difference("derivations", _told(said, stated))
-    elif not premises.scenes and [sorted(effects) for effects in said] != [sorted(everything)]:
-        yield Difference("derivations", _told(said, [sorted(everything)]))
+    elif not premises.scenes and said != [everything]:
+        yield Difference("derivations", _told(said, [everything]))
     for scene in record.scenes:
         if scene.derivation >= len(said) or said[scene.derivation] != scene.effects:
             yield Difference("derivation", "its effects are not those of the scene", scene.name)

@@ -52,6 +52,12 @@ def run(program: Program, inputs: Mapping[str, Polynomial]) -> Values:
     return {name: (mp.make_mpf(x),) for name, x in known.items()}
 
 
+def outputs_of(program: Program, inputs: Mapping[str, Polynomial]) -> Values:
+    """Values of the outputs of a program; raises as `run`."""
+    values = run(program, inputs)
+    return {name: values[name] for name in program.outputs}
+
+
 def run_along(program: Program, inputs: Mapping[str, Polynomial], taylor: Taylor) -> Values:
     """Values of all names and outputs of a program along a curve; raises as `run`."""
     known: Values = {name: inputs[name] for name in program.inputs}

@@ -237,6 +237,9 @@ def _decided(taylor: Taylor, head: str, x: Sequence[Polynomial]) -> Polynomial:
             return (min if head == "And" else max)(x)
         case "Not":
             return taylor.scale(-1, x[0])
+        case "Equal" | "Same" | "NotEqual" | "NotSame":
+            _sign(taylor.add(x[0], taylor.scale(-1, x[1])))
+            return (mp.mpf(1 if head.startswith("Not") else -1),)
         case _ if head in RELATIONS:
             return (mp.mpf(RELATIONS[head] * _sign(taylor.add(x[0], taylor.scale(-1, x[1])))),)
         case _:

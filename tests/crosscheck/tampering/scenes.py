@@ -70,6 +70,51 @@ whole : holonomic_scene(system, control_law = [u = 2 + t^3], parameter_values = 
   initial_state = [x = 2, dot(x) = 1/2], time_span = [0, 1])$
 part : holonomic_scene(system, effects = [bare], parameter_values = [k = 3], initial_state = [x = 2, dot(x) = 1/2])$
 """
+SWITCHED = """
+system : holonomic_system(title = "Switches, a table, an end", coordinates = [x, y], controls = [u, v],
+  parameters = [m, c], kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2, potential_energy = c*x^2/2,
+  forces = [push = [v, -dot(y)]], constraints = [y^2 - u*x])$
+run : holonomic_scene(system, control_law = [u = if t < 1 then 2 + t elseif t < 2 then 3 + 2*(t - 1)^2 else 5,
+  v = table([[0, 2], [1, 3/2], [2, 2], [3, 1]])], parameter_values = [m = 1, c = 4],
+  initial_state = [x = 1, dot(x) = 1/2], initial_guess = [y = 1, dot(y) = 0], time_span = [0, 3],
+  until = [y - 4, lambda1], observe = [trajectory, controls])$
+"""
+SERVO = """
+system : holonomic_system(title = "A cart", coordinates = [x, th], controls = [F, w], parameters = [M, g],
+  kinetic_energy = M*dot(x)^2/2 + (dot(x)^2 + dot(th)^2 + 2*dot(x)*dot(th)*cos(th))/2,
+  potential_energy = g*cos(th) + w*x^2/2, forces = [drive = [F, 0], drag = [-dot(x), 0]])$
+run : holonomic_scene(system, servo_constraints = [x = sin(t)], control_law = [w = 1 + t],
+  parameter_values = [M = 2, g = 10], initial_state = [th = 1/5, dot(th) = 0], time_span = [0, 1],
+  observe = [trajectory, controls])$
+"""
+PRESCRIBED = """
+system : holonomic_system(title = "A bob", coordinates = [r, phi], controls = [u], parameters = [m, g],
+  kinetic_energy = m*(dot(r)^2 + r^2*dot(phi)^2)/2, potential_energy = -m*g*r*cos(phi), constraints = [r - u])$
+run : holonomic_scene(system, prescribed_reactions = [lambda1 = -3*t], parameter_values = [m = 1, g = 10],
+  initial_state = [r = 1, phi = 0, dot(r) = 0, dot(phi) = 2], time_span = [0, 1])$
+"""
+OTHERS = (
+    *((SWITCHED, "t < 2", other) for other in ("t < 9/4", "t < 2 + 1/1000")),
+    *((SWITCHED, "[2, 2]", other) for other in ("[2, 2 + 1/10^9]", "[9/4, 2]")),
+    *(
+        (SWITCHED, "until = [y - 4, lambda1]", f"until = [{other}]")
+        for other in ("y - 5, lambda1", "y - 4", "lambda1, y - 4")
+    ),
+    (SWITCHED, "initial_guess = [y = 1,", "initial_guess = [y = -1,"),
+    *((SWITCHED, "x = 1,", f"x = {other},") for other in ("2", "(1 + 1/10^20)")),
+    *((SWITCHED, "[0, 3]", other) for other in ("[0, 5/2]", "[1/2, 3]")),
+    *((SWITCHED, "c = 4", other) for other in ("c = 4 + 1/10^30", "c = 5")),
+    *((SWITCHED, "[trajectory, controls]", other) for other in ("[controls]", "[trajectory, controls, energy]")),
+    *((SERVO, "dot(th) = 0", f"dot(th) = {other}") for other in ("1", "1/10^20")),
+    *((SERVO, "x = sin(t)", f"x = {other}") for other in ("2*sin(t/2)", "sin(t) + t^5", "sin(t) + 1/7")),
+    *((SERVO, old, new) for old, new in (("w = 1 + t", "w = 1 + t^2"), ("[0, 1]", "[0, 2]"), ("-dot(x)", "dot(x)"))),
+    *((PRESCRIBED, "-3*t", other) for other in ("-3*t^2", "-3*t + 1/10^20")),
+    *((PRESCRIBED, "dot(phi) = 2", f"dot(phi) = {other}") for other in ("-2", "2 + 1/10^20")),
+    *((PRESCRIBED, old, new) for old, new in (("r = 1,", "r = 11/10,"), ("m = 1", "m = 2"), ("[0, 1]", "[0, 1/2]"))),
+    *((CIRCLE, "y = -2", other) for other in ("y = 2", "y = 1/2")),
+)
+"""Scenes, and what is written otherwise in others: a record and motions of the latter are wrong ones of the former."""
+
 TEXTS = (BRANCHES, EFFECTS, MICRO, POLAR, HOOK, CIRCLE, LARGE)
 
 NAMES = (
@@ -79,10 +124,15 @@ NAMES = (
 FILES = tuple(EXAMPLES / f"{name}.mac" for name in NAMES)
 
 
-def written(folder):
-    """Put the scenes into a folder; their files, the texts first."""
+def written_texts(folder, texts):
+    """Put scenes into a folder; their files."""
     files = []
-    for i, text in enumerate(TEXTS):
+    for i, text in enumerate(texts):
         files.append(folder / f"scene{i}.mac")
         files[-1].write_text(f'load("holonom.mac")$\n{text}', encoding="utf-8")
-    return (*files, *FILES)
+    return files
+
+
+def written(folder):
+    """Put the scenes into a folder; their files, the texts first."""
+    return (*written_texts(folder, TEXTS), *FILES)

@@ -17,15 +17,16 @@ from typing import NamedTuple
 
 from evaluator import difference
 from mutants import ALGEBRA, CLASSES, mutant
-from scenes import written
+from scenes import OTHERS, written, written_texts
 
-from holonom.crosscheck import Verdict, check_record
+from holonom.crosscheck import Verdict, ask_motions, check_record, motion_verdicts
 from holonom.documents import Document, ask
 from holonom.failures import HolonomError
 from holonom.record import read_record
 from holonom.source import Source
 
 WANTED = 0.995
+RECORD, MOTION = "record of another scene", "motion of another scene"
 DRAWS = 12  # attempts to make a mutant of a class that is a wrong one
 
 
@@ -79,6 +80,19 @@ def wrong_records(trues, seed, count, kinds=tuple(CLASSES)):
                 break
 
 
+def of_other_scenes(folder, draw, count):
+    """Whether the records and the motions of other scenes are held up: class, what is other, why."""
+    for text, old, new in draw.sample(OTHERS, min(count, len(OTHERS))):
+        described, other = map(Source, written_texts(folder, (text, text.replace(old, new))))
+        description, what = described.description(), f"{old} is {new}"
+        record = json.loads(ask(Document.RECORD, other))
+        true = TrueRecord("", json.loads(ask(Document.RECORD, described)), description)
+        if difference(true.record, record):
+            yield RECORD, what, held_up(record, true, what)
+        verdicts = motion_verdicts(description, ask_motions(other, {}), what)
+        yield MOTION, what, "; ".join(each.detail for each in verdicts if each.verdict is Verdict.DISAGREES)
+
+
 def main(seed, count):
     """Print what was found of each class, and each wrong record that was not held up."""
     with tempfile.TemporaryDirectory() as folder:
@@ -92,7 +106,12 @@ def main(seed, count):
             found[wrong.kind] += 1
         else:
             print(f"missed: {wrong.kind} of {wrong.true.name}: {wrong.difference}", flush=True)
-    for kind in CLASSES:
+    with tempfile.TemporaryDirectory() as folder:
+        for kind, what, why in of_other_scenes(Path(folder), random.Random(seed), count):
+            made[kind] += 1
+            found[kind] += bool(why)
+            print(*([] if why else [f"missed: {kind}: {what}"]), sep="\n", end="\n" * (not why), flush=True)
+    for kind in (*CLASSES, RECORD, MOTION):
         print(f"{kind:45}{found[kind]:5} / {made[kind]}")
     print(f"{'all':45}{found.total():5} / {made.total()}; seed {seed}")
     algebra = all(found[kind] == made[kind] for kind in ALGEBRA)

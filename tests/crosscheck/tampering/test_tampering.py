@@ -5,8 +5,8 @@ import random
 import pytest
 from evaluator import difference
 from mutants import CLASSES
-from scenes import CIRCLE, KINKS
-from tamper import held_up, true_records, wrong_records
+from scenes import CIRCLE, KINKS, OTHERS, written_texts
+from tamper import held_up, of_other_scenes, true_records, wrong_records
 
 SEED = "make check"
 SOME = 18  # classes of which a wrong record is made for every change
@@ -15,11 +15,7 @@ SOME = 18  # classes of which a wrong record is made for every change
 @pytest.fixture(scope="module")
 def trues(tmp_path_factory):
     folder = tmp_path_factory.mktemp("tampering")
-    files = []
-    for name, text in (("kinks", KINKS), ("circle", CIRCLE)):
-        files.append(folder / f"{name}.mac")
-        files[-1].write_text(f'load("holonom.mac")$\n{text}', encoding="utf-8")
-    return list(true_records(files))
+    return list(true_records(written_texts(folder, (KINKS, CIRCLE))))
 
 
 def test_true_records_are_not_held_up(trues):
@@ -35,6 +31,17 @@ def require_found(trues, kinds):
 
 def test_wrong_records_of_some_classes_are_held_up(trues):
     require_found(trues, random.Random(SEED).sample(sorted(CLASSES), SOME))
+
+
+def test_records_and_motions_of_some_other_scenes_are_held_up(tmp_path):
+    found = list(of_other_scenes(tmp_path, random.Random(SEED), 3))
+    assert [(kind, what) for kind, what, why in found if not why] == []
+
+
+@pytest.mark.long
+def test_records_and_motions_of_other_scenes_are_held_up(tmp_path):
+    found = list(of_other_scenes(tmp_path, random.Random(SEED), len(OTHERS)))
+    assert [(kind, what) for kind, what, why in found if not why] == []
 
 
 @pytest.mark.long

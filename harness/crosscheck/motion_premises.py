@@ -1,0 +1,125 @@
+"""The premises of motions: their names, start, time span, laws, controls and events, held against the description."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+
+from mpmath import mp
+
+from ..program.motion_problem import MotionProblem, computing
+from ..program.motion_program import Name, Program, Solve
+from .described_motion import DescribedMotion
+from .judged_claims import Parts, differing
+from .law import Law
+from .motion_start import START_DIGITS, claims_of_start, nearer_start
+from .motion_states import STATE, Claim, States, claims_of_law
+from .points import IrregularPoint
+from .program_values import outputs_of, run
+from .switches import law_instants
+from .taylor import Taylor
+from .verdict import WORKING_DIGITS
+
+PREMISES = "start, time span, laws, controls and events of the motion"
+LAW = Taylor(3)
+
+
+def other_premises(motion: DescribedMotion, problems: Mapping[Solve, MotionProblem], seed: str) -> str:
+    """Tell what problems take for known otherwise than the description states it; empty if they do not."""
+    for problem in problems.values():
+        for what, (found, belongs) in _stated(motion, problem).items():
+            if tuple(found) != tuple(belongs):
+                return f"{what}: {_listed(found)}, where {_listed(belongs)} is stated"
+        if wrong := differing(lambda problem=problem: _claims(motion, problem, seed), START_DIGITS):
+            return wrong
+    with mp.workdps(WORKING_DIGITS):
+        return nearer_start(motion, _start(next(iter(problems.values()))))
+
+
+def _stated(motion: DescribedMotion, problem: MotionProblem) -> dict[str, tuple[Sequence[str], Sequence[str]]]:
+    """Names as a problem has them and as they are stated."""
+    scene, system = motion.scene, motion.system
+    released = [name for name in system.controls if scene.prescribed_reactions and name not in scene.control_law]
+    events = [f"event[{i}]" for i in range(1, len(scene.until_trees) + 1)]
+    return {
+        "coordinates": (problem.coordinates, (*system.coordinates, *released)),
+        "multipliers": (problem.multipliers[: len(problem.multipliers) - problem.servo], system.multipliers),
+        "observe": (problem.observe, scene.observe),
+        "time span": (["some"] * bool(problem.time_span), ["some"] * bool(motion.span)),
+        "events": (list(problem.events.outputs) if problem.events else [], events),
+        "until": (["one"] * len(problem.until), ["one"] * len(events)),
+    }
+
+
+def _listed(names: Sequence[str]) -> str:
+    return ", ".join(names) or "none"
+
+
+def _start(problem: MotionProblem) -> dict[str, mp.mpf]:
+    return {name: mp.mpf(text) for name, text in problem.start.items()}
+
+
+def _claims(motion: DescribedMotion, problem: MotionProblem, seed: str) -> Iterator[Claim]:
+    """Compare the start, the time span, and the laws of all programs of a problem at the instants of `law_instants`."""
+    yield from claims_of_start(motion, _start(problem), problem.correction)
+    for found, belongs in zip(problem.time_span or (), motion.span or (), strict=True):
+        yield Claim("time span", mp.mpf(found), belongs, abs(belongs))
+    own = States(motion, problem, seed)
+    programs = law_programs(motion, problem)
+    for place, instant in enumerate(law_instants(motion, problem, own.span)):
+        state = own.state(place) | {"t": (instant, mp.one)}
+        try:
+            inputs = own.inputs(state, own.random_numbers(place, len(problem.multipliers)))
+            law = motion.law.at(LAW, instant, motion.parameters())
+            law |= motion.reactions.at(LAW, instant, motion.parameters())
+            computed = [outputs_of(program, inputs) for program in programs]
+        except (IrregularPoint, ZeroDivisionError, OverflowError):
+            continue
+        for values in computed:
+            for claim in claims_of_law(law, values):
+                yield claim._replace(quantity=f"{claim.quantity} at t = {mp.nstr(instant, 12)}")
+
+
+def law_programs(motion: DescribedMotion, problem: MotionProblem) -> list[Program]:
+    """The parts of a problem's programs that compute laws, each once."""
+    laws = [
+        f"{dots}{name}{end}" for name in motion.law.places for dots, end in (("", ""), ("dot(", ")"), ("ddot(", ")"))
+    ]
+    found: list[Program] = []
+    for program in (problem.matrices, problem.energy, problem.motion, problem.projection):
+        if program is None:
+            continue
+        assigned = {name for name, _ in program.assignments}
+        outputs = {name: Name(name) for name in laws if name in assigned}
+        outputs |= {name: program.outputs[name] for name in motion.reactions.places if name in program.outputs}
+        part = computing(replace(program, outputs=outputs), outputs)
+        if part not in found:
+            found.append(part)
+    return found
+
+
+def claims_of_inputs(
+    motion: DescribedMotion, problems: Mapping[Solve, MotionProblem], seed: str
+) -> Callable[[int], Parts]:
+    """Controls and events, at random states."""
+    drawn = {solve: States(motion, problem, seed) for solve, problem in problems.items()}
+    until = Law({f"event[{i}]": tree for i, tree in enumerate(motion.scene.until_trees, 1)}, motion.splines)
+
+    def claims(attempt: int) -> Parts:
+        for solve, own in drawn.items():
+            problem, state = problems[solve], own.state(attempt)
+            inputs = own.inputs(state, own.random_numbers(attempt, len(problem.multipliers)))
+            found = inputs if problem.motion is None else inputs | run(problem.motion, inputs)
+            law = motion.law.at(LAW, state["t"][0], motion.parameters())
+            controls = {name: law.get(name) or found[name] for name in motion.system.controls if name in law | found}
+            if problem.controls is not None:
+                computed = run(problem.controls, inputs)
+                for name, true in controls.items():
+                    yield PREMISES, Claim(name, computed[name][0], true[0], abs(true[0]))
+            if problem.events is not None:
+                known = motion.parameters() | inputs | motion.with_rates(LAW, controls | inputs)
+                computed = run(problem.events, inputs)
+                for name, true in until.at(STATE, state["t"][0], known).items():
+                    yield PREMISES, Claim(name, computed[name][0], true[0], abs(true[0]))
+
+    return claims

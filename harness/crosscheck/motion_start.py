@@ -1,0 +1,185 @@
+"""The start of a motion, from its description alone: given values, constraints, and the branch that a guess chooses.
+
+What a scene leaves out is found near its guess, by Newton's method with the shortest corrections in the mass metric
+(eqs. (12), (19)). The method is applied here once more. A start is wrong if the method arrives at a nearer one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from mpmath import mp
+
+from .described_motion import DescribedMotion
+from .motion_states import Claim
+from .points import IrregularPoint
+from .ranks import Elimination, Row
+from .taylor import Polynomial, Taylor
+
+State = Mapping[str, mp.mpf]
+VALUE, RATE = Taylor(0), Taylor(1)
+START_DIGITS = 45  # to which constraints hold at a start
+NEWTON_STEPS, HALVINGS = 60, 20
+CONVERGED = 20  # digits of a root that is only compared by its distance
+NEARER = (
+    mp.mpf(9) / 10
+)  # share of a distance on a manifold, where the shortest corrections do not find the nearest point
+NEARER_ROOT = 1 - mp.mpf(10) ** -6  # the same of isolated roots
+FAINT = mp.mpf(10) ** -20  # share of the metric that coordinates without mass have
+
+
+def claims_of_start(motion: DescribedMotion, start: State, correction: tuple[str, str] | None) -> Iterator[Claim]:
+    """Compare a start with the given values, and the constraints and their rates with zero there.
+
+    Parameters
+    ----------
+    motion : DescribedMotion
+        The scene.
+    start : mapping of str to mpf
+        The time, coordinates and velocities.
+    correction : tuple of str and str or None
+        The given value that is said to be corrected most, and by how much.
+    """
+    yield Claim("first instant", start["t"], motion.first_instant, abs(motion.first_instant))
+    allowed = mp.mpf(correction[1]) * mp.mpf("1.01") if correction else mp.zero
+    for name, tree in motion.scene.initial_state.trees.items():
+        given = motion.number_of(tree)
+        if abs(start[name] - given) > allowed:
+            yield Claim(f"initial value of {name}", start[name], given, abs(given))
+    values = motion.values(RATE, _curve(motion, start))
+    sizes = motion.tape.sizes(RATE, values)
+    for what, places in (("constraint", motion.constraints), ("servo-constraint", motion.outputs)):
+        for beta, place in enumerate(places, 1):
+            slopes = motion.tape.gradient(RATE, values, {place: (mp.one,)})
+            for order, rate in enumerate(("", "rate of ")):
+                value, size = ((*each[place], mp.zero)[order] for each in (values, sizes))
+                size += mp.fsum(abs(x) for q in motion.system.coordinates for x in _changes(slopes, start, q, order))
+                yield Claim(f"{rate}{what} {beta} at the start", value, mp.zero, size)
+
+
+def _changes(slopes: Mapping[str, Polynomial], start: State, q: str, order: int) -> list[mp.mpf]:
+    """Return what relative changes of a coordinate and its velocity make of a constraint, or of its rate."""
+    slope, slope_rate = (*slopes.get(q, ()), mp.zero, mp.zero)[:2]
+    if order == 0:
+        return [slope * start.get(q, mp.zero)]
+    return [slope * start.get(f"dot({q})", mp.zero), slope_rate * start.get(q, mp.zero)]
+
+
+def nearer_start(motion: DescribedMotion, start: State) -> str:
+    """Tell which value Newton's method finds nearer to the guess than that of a start; empty if it finds none."""
+    if motion.scene is None or not motion.scene.initial_guess:
+        return ""
+    guessed = {name: motion.number_of(tree) for name, tree in motion.scene.initial_guess.trees.items()}
+    guess = {name: value for name, value in guessed.items() if name not in motion.scene.initial_state}
+    places = {q: q for q in motion.system.coordinates}
+    rates = {f"dot({q})": q for q in motion.system.coordinates}
+    for order, columns in enumerate((places, rates)):
+        own = {name: guess[name] for name in columns if name in guess}
+        if own and (found := _Search(motion, start, own, columns, order).nearer()):
+            return found
+    return ""
+
+
+def _curve(motion: DescribedMotion, state: State) -> dict[str, Polynomial]:
+    law = motion.law.at(Taylor(2), state["t"], motion.parameters())
+    places = {q: (state[q], rate) for q in state if (rate := state.get(f"dot({q})")) is not None}
+    forcing = dict.fromkeys(
+        motion.system.controls if motion.scene.servo_trees else (), (mp.zero,)
+    )  # not in constraints
+    return motion.parameters() | forcing | law | places | {"t": (state["t"], mp.one)}
+
+
+class _Search:
+    """Newton's method from a guess of coordinates (order 0) or velocities (order 1), by the shortest corrections."""
+
+    def __init__(
+        self, motion: DescribedMotion, start: State, guess: State, columns: Mapping[str, str], order: int
+    ) -> None:
+        self._motion, self._start, self._guess, self._order = motion, start, guess, order
+        self._columns = {columns[name]: i for i, name in enumerate(guess)}  # place of each coordinate among the names
+        self._conditions = [*motion.constraints, *motion.outputs]
+
+    def nearer(self) -> str:
+        """Tell a value of a nearer root than the start is; empty if none is found."""
+        try:
+            guess = {**self._start, **self._guess}
+            metric = self._metric(guess)
+            found, is_open = self._root(guess, metric)
+            if is_open and self._motion.scene.servo_trees:  # rates of the outputs are conditions as well
+                return ""
+            ways = [[state[name] - at for name, at in self._guess.items()] for state in (found, self._start)]
+            own, other = (_length(metric, way) for way in ways)
+        except (IrregularPoint, ZeroDivisionError, OverflowError):
+            return ""
+        if own >= (NEARER if is_open else NEARER_ROOT) * other:
+            return ""
+        name = max(self._guess, key=lambda name: abs(found[name] - self._start[name]))
+        given, true = mp.nstr(self._start[name], 12), mp.nstr(found[name], 12)
+        return f"initial value of {name}: {given}, where {true} is nearer to the guess"
+
+    def _metric(self, state: State) -> list[Row]:
+        """Mass matrix of the names at a state; coordinates without mass get a faint one."""
+        motion, rates = self._motion, [f"dot({q})" for q in self._columns]
+        at_rest = state | {f"dot({q})": mp.zero for q in motion.system.coordinates if q in state}
+        momenta = [
+            motion.momenta(VALUE, motion.values(VALUE, _curve(motion, each)))
+            for each in (at_rest, *({**at_rest, rate: mp.one} for rate in rates))
+        ]
+        resting, *moving = ([each.get(rate, (mp.zero,))[0] for rate in rates] for each in momenta)
+        rows = [{k: a - b for k, (a, b) in enumerate(zip(row, resting, strict=True)) if a != b} for row in moving]
+        faint = FAINT * (max((abs(x) for row in rows for x in row.values()), default=mp.zero) or 1)
+        return [row | {i: row.get(i, mp.zero) + faint} for i, row in enumerate(rows)]
+
+    def _root(self, state: State, metric: Sequence[Row]) -> tuple[State, bool]:
+        """Return the root that the method arrives at, and whether it is one of a continuum.
+
+        Raises
+        ------
+        IrregularPoint
+            It arrives at none.
+        """
+        left, rows = self._residuals(state)
+        for _ in range(NEWTON_STEPS):
+            step = _shortest(metric, rows, left)
+            if max(map(abs, step), default=mp.zero) <= mp.mpf(10) ** -CONVERGED * max(map(abs, state.values())):
+                return state, Elimination(rows).rank < len(metric)
+            state, left, rows = self._damped(state, step, left)
+        raise IrregularPoint
+
+    def _damped(self, state: State, step: Sequence[mp.mpf], left: Sequence[mp.mpf]) -> tuple:
+        """Return the state after a step that is halved until the residuals are smaller, with them and their slopes."""
+        for halving in range(HALVINGS):
+            share = mp.mpf(2) ** -halving
+            moved = state | {name: state[name] - share * by for name, by in zip(self._guess, step, strict=True)}
+            try:
+                found, rows = self._residuals(moved)
+            except (IrregularPoint, ZeroDivisionError, OverflowError):
+                continue
+            if mp.norm(found) < mp.norm(left) or not any(left):
+                return moved, found, rows
+        raise IrregularPoint
+
+    def _residuals(self, state: State) -> tuple[list[mp.mpf], list[Row]]:
+        """Return what should vanish, and its slopes by the names."""
+        tape, order = self._motion.tape, Taylor(self._order)
+        values = self._motion.values(order, _curve(self._motion, state))
+        left = [(*values[place], mp.zero)[self._order] for place in self._conditions]
+        slopes = [tape.gradient(order, values, {place: (mp.one,)}) for place in self._conditions]
+        rows = [{i: slope[q][0] for q, i in self._columns.items() if q in slope and slope[q][0]} for slope in slopes]
+        return left, rows
+
+
+def _shortest(metric: Sequence[Row], rows: Sequence[Row], left: Sequence[mp.mpf]) -> list[mp.mpf]:
+    """Solve J x = f by the x that is shortest in the metric: A x + J^T y = 0."""
+    n = len(metric)
+    bordered = [dict(row) for row in metric]
+    for beta, row in enumerate(rows):
+        for k, x in row.items():
+            bordered[k][n + beta] = x
+    solution = Elimination([*bordered, *rows], [*[mp.zero] * n, *left]).solution()
+    return [solution.get(k, mp.zero) for k in range(n)]
+
+
+def _length(metric: Sequence[Row], way: Sequence[mp.mpf]) -> mp.mpf:
+    """Length of a way in the metric."""
+    return mp.sqrt(max(mp.fsum(way[i] * a * way[k] for i, row in enumerate(metric) for k, a in row.items()), mp.zero))

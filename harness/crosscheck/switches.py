@@ -1,0 +1,127 @@
+"""Instants at which control laws are compared: on each piece of a table, and on both sides of each switch."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from itertools import combinations, pairwise
+
+from mpmath import mp
+
+from ..program.motion_problem import By, MotionProblem
+from ..trees import Tree
+from .described_motion import DescribedMotion
+from .law import Law
+from .points import IrregularPoint
+from .program_values import run
+from .taylor import Taylor
+
+SAMPLES = 199  # instants between which the sign of a switching function is looked for
+BISECTIONS = 60
+BESIDE = mp.mpf(10) ** -6  # of the time span: how far from a switch the laws are compared
+SWITCHES = ("UnitStep", "HalfStep", "Sign", "Abs")
+
+Functions = Callable[[mp.mpf], Sequence[mp.mpf]]
+
+
+def law_instants(motion: DescribedMotion, problem: MotionProblem, span: tuple[mp.mpf, mp.mpf]) -> Iterator[mp.mpf]:
+    """Instants within a span: one on each piece of a law, and two beside each instant that parts two pieces.
+
+    Parameters
+    ----------
+    motion : DescribedMotion
+        Its switches and tables count, and
+    problem : MotionProblem
+        those of the problem.
+    span : tuple of mpf
+        First and last instant.
+    """
+    first, last = span
+    breaks = [*_knots(motion, problem), *_zeros(_stated(motion), span), *_zeros(_claimed(problem), span)]
+    inside = sorted({each for each in breaks if first < each < last})
+    yield from ((a + b) / 2 for a, b in pairwise([first, *inside, last]))
+    for each in inside:
+        yield from (x for x in (each - BESIDE * (last - first), each + BESIDE * (last - first)) if first < x < last)
+
+
+def _knots(motion: DescribedMotion, problem: MotionProblem) -> Iterator[mp.mpf]:
+    for spline in motion.splines:
+        yield from spline.times
+    for table in problem.tables:
+        yield from (mp.mpf(begin.numerator) / begin.denominator for begin in table.begins)
+
+
+def _stated(motion: DescribedMotion) -> Functions:
+    trees = [*motion.scene.control_law.trees.values(), *motion.scene.prescribed_reactions.trees.values()]
+    functions = dict(enumerate(function for tree in trees for function in switching_functions(tree)))
+    law = Law({str(place): function for place, function in functions.items()}, motion.splines)
+    parameters = motion.parameters()
+    return lambda instant: [value[0] for value in law.at(Taylor(0), instant, parameters).values()]
+
+
+def switching_functions(tree: Tree) -> Iterator[Tree]:
+    """Functions whose signs decide the form of an expression."""
+    match tree:
+        case ["Which", *parts]:
+            for condition in parts[::2]:
+                yield from _compared(condition)
+        case ["Max" | "Min", *parts]:
+            yield from (["Subtract", a, b] for a, b in combinations(parts, 2))
+        case [str(head), argument] if head in SWITCHES:
+            yield argument
+    if isinstance(tree, list):
+        for part in tree[1:]:
+            yield from switching_functions(part)
+
+
+def _compared(condition: Tree) -> Iterator[Tree]:
+    match condition:
+        case ["And" | "Or" | "Not", *parts]:
+            for part in parts:
+                yield from _compared(part)
+        case [str(), a, b]:
+            yield ["Subtract", a, b]
+
+
+def _claimed(problem: MotionProblem) -> Functions:
+    of_time = [f"switch[{place}]" for place, sign in enumerate(problem.signs, 1) if sign.by is By.TIME]
+    signs = {sign.name: (mp.one,) for sign in problem.signs}
+
+    def values(instant: mp.mpf) -> list[mp.mpf]:
+        if not of_time:
+            return []
+        known = dict.fromkeys(problem.switching.inputs, (mp.one,)) | signs | {"t": (instant,)}
+        found = run(problem.switching, known)
+        return [found[name][0] for name in of_time]
+
+    return values
+
+
+def _zeros(functions: Functions, span: tuple[mp.mpf, mp.mpf]) -> Iterator[mp.mpf]:
+    """Instants at which one of some functions changes its sign."""
+    first, last = span
+
+    def signs(instant: mp.mpf) -> list[mp.mpf] | None:
+        try:
+            return [mp.sign(value) for value in functions(instant)]
+        except (IrregularPoint, ZeroDivisionError, OverflowError):
+            return None
+
+    grid = [first + (last - first) * mp.mpf(k) / SAMPLES for k in range(SAMPLES + 1)]
+    if signs(grid[0]) == []:
+        return
+    for (a, before), (b, after) in pairwise((each, signs(each)) for each in grid):
+        for i, (of_a, of_b) in enumerate(zip(before or (), after or (), strict=False)):
+            if of_a != of_b:
+                yield _bisected(signs, i, a, b)
+
+
+def _bisected(signs: Callable[[mp.mpf], list[mp.mpf] | None], i: int, a: mp.mpf, b: mp.mpf) -> mp.mpf:
+    """Return the instant between two at which a function changes its sign."""
+    of_a = signs(a)[i]
+    for _ in range(BISECTIONS):
+        middle = (a + b) / 2
+        found = signs(middle)
+        if found is None:
+            return middle
+        a, b = (middle, b) if found[i] == of_a else (a, middle)
+    return b

@@ -1,0 +1,116 @@
+"""The premises of a motion, changed one at a time, and a start on another branch than the guess chooses."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+from mpmath import mp
+
+from holonom.crosscheck import Verdict
+from holonom.crosscheck.described_motion import DescribedMotion
+from holonom.crosscheck.motion_program import ask_programs, judge_programs
+from holonom.crosscheck.motion_series import ask_series, judge_series
+from holonom.crosscheck.motion_start import nearer_start
+from holonom.crosscheck.switches import law_instants
+from holonom.crosscheck.verdict import WORKING_DIGITS
+from holonom.program.motion_program import Call, Name, Operation, Solve
+from holonom.source import Source
+
+SCENE = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [m],
+  kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2, potential_energy = m*y, constraints = [x^2 + y^2 - u^2])$
+run : holonomic_scene(system, control_law = [u = if t < 3/2 then 2 else t + 1/2], parameter_values = [m = 1],
+  initial_state = [x = 1, dot(x) = 1/2], initial_guess = [y = -1, dot(y) = 0], time_span = [0, 3],
+  until = [y - x, lambda1], observe = [trajectory, controls, constraint_forces])$
+"""
+
+
+@pytest.fixture(scope="module")
+def asked(tmp_path_factory):
+    file = tmp_path_factory.mktemp("premises") / "scene.mac"
+    file.write_text(SCENE, encoding="utf-8")
+    source = Source(file)
+    return source.description(), ask_programs(source, {})[0], ask_series(source, {})[0]
+
+
+def judged(description, programs, **changes):
+    direct = replace(programs.problems[Solve.DIRECT], **changes)
+    changed = replace(programs, problems={**programs.problems, Solve.DIRECT: direct})
+    return {each.found.verdict for each in judge_programs(description, [changed], "premises")}
+
+
+def negated(program, name):
+    return replace(program, outputs=program.outputs | {name: Name("x")})
+
+
+def changes_of(problem):
+    start = problem.start
+    return {
+        "another branch": {"start": start | {"y": start["y"].removeprefix("-"), "dot(y)": f"-{start['dot(y)']}"}},
+        "off the constraint": {"start": start | {"y": "-1.7320508075688772935"}},
+        "another given value": {"start": start | {"dot(x)": "0.5000000000000000000000000000001"}},
+        "another instant": {"start": start | {"t": "0.1"}},
+        "another end": {"time_span": ("0", "3.0000001")},
+        "no end": {"time_span": None},
+        "fewer events": {"until": problem.until[:1]},
+        "another event": {"events": negated(problem.events, "event[1]")},
+        "another control": {"controls": negated(problem.controls, "u")},
+        "observations": {"observe": problem.observe[:-1]},
+        "coordinates": {"coordinates": problem.coordinates[::-1]},
+        "a switch": {"switching": replace(problem.switching, assignments=moved(problem.switching))},
+        "nothing": {},
+    }
+
+
+def moved(program):
+    """The assignments, with t later by a little in all of them."""
+
+    def later(expression):
+        match expression:
+            case Name("t"):
+                return Call(Operation.SUBTRACT, (Name("t"), Fraction(1, 1000)))
+            case Call(operation, arguments):
+                return Call(operation, tuple(map(later, arguments)))
+            case _:
+                return expression
+
+    return tuple((name, later(expression)) for name, expression in program.assignments)
+
+
+def test_each_other_premise_is_found_and_the_right_ones_agree(asked):
+    description, programs, _ = asked
+    found = {
+        what: judged(description, programs, **changes)
+        for what, changes in changes_of(programs.problems[Solve.DIRECT]).items()
+    }
+    assert found.pop("nothing") == {Verdict.AGREES}
+    assert [what for what, verdicts in found.items() if Verdict.DISAGREES not in verdicts] == []
+
+
+def test_a_series_from_another_start_or_with_other_constraint_forces_is_found(asked):
+    description, programs, series = asked
+    (right,) = judge_series(description, [series], [programs])
+    assert right.found.verdict is Verdict.AGREES
+    for group in ("coordinates", "constraint_forces"):
+        rows = getattr(series.series, group)
+        for name, row in rows.items():
+            wrong = {**rows, name: (f"{row[0]}1" if "." in row[0] else str(Fraction(row[0]) + 1), *row[1:])}
+            changed = replace(series, series=replace(series.series, **{group: wrong}))
+            (verdict,) = judge_series(description, [changed], [programs])
+            assert verdict.found.verdict is Verdict.DISAGREES, (group, name)
+
+
+def test_laws_are_compared_on_each_piece_and_beside_each_switch(asked):
+    description, programs, _ = asked
+    motion = DescribedMotion(description, description.scenes[0])
+    instants = sorted(law_instants(motion, programs.problems[Solve.DIRECT], (mp.mpf(0), mp.mpf(3))))
+    assert [round(float(each), 9) for each in instants] == pytest.approx([0.75, 1.499997, 1.500003, 2.25], abs=1e-5)
+
+
+def test_only_a_nearer_start_is_told(asked):
+    description, programs, _ = asked
+    motion = DescribedMotion(description, description.scenes[0])
+    with mp.workdps(WORKING_DIGITS):
+        start = {name: mp.mpf(text) for name, text in programs.problems[Solve.DIRECT].start.items()}
+        assert nearer_start(motion, start) == ""
+        assert "nearer to the guess" in nearer_start(motion, start | {"y": -start["y"], "dot(y)": -start["dot(y)"]})
