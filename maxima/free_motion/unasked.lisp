@@ -12,6 +12,6 @@
            (setf (symbol-function 'retrieve)
                  (lambda (message flag)
                    (declare (ignore message flag))
-                   (merror "a question")))
+                   ($refuse '$unanswered_question)))
            (mfuncall '$found_quietly thunk))
       (setf (symbol-function 'retrieve) asking))))
