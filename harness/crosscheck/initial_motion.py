@@ -116,7 +116,7 @@ class SceneClaims:
         }
         return {symbol: value for symbol, value in at_start.items() if value.is_number}
 
-    @property
+    @cached_property
     def given_values(self) -> Definitions:
         """Initial values as the scene gives them, by the symbols q1_0, dot(q1)_0."""
         return {

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
+from heapq import heapify, heappop, heappush
 
 from mpmath import mp
 
@@ -13,13 +15,20 @@ SMALLEST = 30
 """Digits below the largest entry of its row at which what is left of an entry is rounding."""
 
 
+SPARSE_RATIO = 1000
+"""A pivot is at least the largest entry of its row over this: three digits lost for sparse rows."""
+
+
 class Elimination:
     """Rows of a matrix, reduced by one another in their order; a row that follows from those before is not kept."""
 
     def __init__(self, rows: Sequence[Row], right: Sequence[mp.mpf] | None = None) -> None:
         self.kept: list[int] = []
         self._pivots: dict[int, tuple[Row, mp.mpf]] = {}
+        self._order: dict[int, int] = {}  # place of each pivot among them
+        self._uses = Counter(column for row in rows for column in row)  # in the rows that are still to come
         for place, row in enumerate(rows):
+            self._uses.subtract(row.keys())
             if self._add(row, right[place] if right else mp.zero):
                 self.kept.append(place)
 
@@ -39,18 +48,50 @@ class Elimination:
     def _add(self, row: Row, right: mp.mpf) -> bool:
         scale = max(map(abs, row.values()), default=mp.zero)
         left = dict(row)
-        for column, (pivot_row, pivot_right) in self._pivots.items():
+        waiting = [(self._order[column], column) for column in left if column in self._order]
+        heapify(waiting)
+        while waiting:
+            column = heappop(waiting)[1]
             if column in left:
+                pivot_row, pivot_right = self._pivots[column]
                 factor = left[column] / pivot_row[column]
+                for each in pivot_row:
+                    if each in self._order and each not in left:
+                        heappush(waiting, (self._order[each], each))
                 scale = max(scale, _subtract(left, factor, pivot_row))
                 del left[column]
                 right -= factor * pivot_right
         left = {k: value for k, value in left.items() if abs(value) > mp.mpf(10) ** -SMALLEST * scale}
         if not left:
             return False
-        pivot = max(left, key=lambda k: abs(left[k]))
-        self._pivots[pivot] = (left, right)
+        pivot = self._pivot(left)
+        self._pivots[pivot], self._order[pivot] = (left, right), len(self._order)
         return True
+
+    def _pivot(self, left: Row) -> int:
+        """Return the column of few rows to come, so that these stay sparse, among those with large entries."""
+        least = max(map(abs, left.values())) / SPARSE_RATIO
+        return min((k for k, value in left.items() if abs(value) >= least), key=lambda k: self._uses[k])
+
+
+def least_solution(rows: Sequence[Row], right: Sequence[mp.mpf]) -> Row:
+    """Return the solution J^T (J J^T)^-1 r of the equations J x = r with independent rows: the shortest one."""
+    users: dict[int, list[tuple[int, mp.mpf]]] = {}
+    for place, row in enumerate(rows):
+        for column, value in row.items():
+            users.setdefault(column, []).append((place, value))
+    products: list[Row] = []
+    for row in rows:
+        product: Row = {}
+        for column, value in row.items():
+            for place, other in users[column]:
+                product[place] = product.get(place, mp.zero) + value * other
+        products.append(product)
+    weights = Elimination(products, right).solution()
+    return {
+        column: mp.fsum(value * weights.get(place, mp.zero) for place, value in found)
+        for column, found in users.items()
+    }
 
 
 def _subtract(left: Row, factor: mp.mpf, row: Row) -> mp.mpf:

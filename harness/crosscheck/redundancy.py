@@ -17,7 +17,7 @@ from mpmath import mp
 from .draws import Point
 from .evaluation import Number, Steps
 from .points import random_point
-from .ranks import Elimination, Row
+from .ranks import Elimination, Row, least_solution
 from .report import Verdict
 from .system import MechanicalSystem, gradient
 from .verdict import DIGITS, WORKING_DIGITS, Judgement
@@ -128,7 +128,7 @@ class _Manifold:
             values, rows = self._constraints.at(state), self._jacobian.at(state)
             if rows is None or any(value is None or mp.im(value) for value in values):
                 return False
-            step = Elimination([rows[i] for i in self._kept], [values[i] for i in self._kept]).solution()
+            step = least_solution([rows[i] for i in self._kept], [values[i] for i in self._kept])
             for place, by in step.items():
                 state[self._coordinates[place]] -= by
             size = 1 + max((abs(state[q]) for q in self._coordinates), default=mp.zero)
