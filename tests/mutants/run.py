@@ -26,7 +26,7 @@ import time
 import tomllib
 import warnings
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -133,7 +133,7 @@ class Copy:
 
 
 def judged(mutants: list[Mutant], jobs: int) -> Iterator[tuple[Mutant, str]]:
-    """Yield each mutant with the test that kills it."""
+    """Yield each mutant with the test that kills it, as they come."""
     copies: queue.SimpleQueue[Copy] = queue.SimpleQueue()
 
     def judge(mutant: Mutant) -> str:
@@ -146,8 +146,9 @@ def judged(mutants: list[Mutant], jobs: int) -> Iterator[tuple[Mutant, str]]:
     with tempfile.TemporaryDirectory(prefix="holonom-mutants-") as directory, ThreadPoolExecutor(jobs) as pool:
         for i in range(jobs):
             copies.put(Copy(Path(directory, str(i))))
+        running = {pool.submit(judge, mutant): mutant for mutant in mutants}
         try:
-            yield from zip(mutants, pool.map(judge, mutants), strict=True)
+            yield from ((running[done], done.result()) for done in as_completed(running))
         finally:
             pool.shutdown(cancel_futures=True)
 
