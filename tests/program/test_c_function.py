@@ -2,6 +2,7 @@
 
 import ctypes
 import shutil
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -9,7 +10,8 @@ from programs import PENDULUM, program
 
 from holonom.failures import HolonomError
 from holonom.program.c_function import compile_c, load_c
-from holonom.program.c_source import c_source
+from holonom.program.c_source import MANY, ONE, c_source
+from holonom.program.infix import atom
 
 
 def test_without_a_compiler_one_sentence_says_so(monkeypatch, tmp_path):
@@ -43,6 +45,20 @@ def test_a_compiler_that_knows_no_native_processor_was_no_compiler(monkeypatch, 
     native = compile_c(PENDULUM)(points)
     monkeypatch.setenv("CC", str(refusing))
     assert compile_c(PENDULUM)(points) == pytest.approx(native, rel=1e-12)
+
+
+def test_square_roots_and_small_powers_do_not_call_pow():
+    def written(target, exponent):
+        return target.arithmetic.power(atom("x"), Fraction(exponent)).text
+
+    assert [written(ONE, exponent) for exponent in ("1/2", 2, 3, 1)] == ["sqrt(x)", "square(x)", "cube(x)", "x"]
+    assert [written(ONE, exponent) for exponent in (4, 9, -2)] == [
+        "square(square(x))",
+        "cube(cube(x))",
+        "1.0/square(x)",
+    ]
+    assert written(MANY, "1/2") == "lanes_sqrt(x)"
+    assert all(written(ONE, exponent).startswith("pow(x, ") for exponent in ("1/3", 5, 17, 18))
 
 
 def test_names_from_the_program_stay_inside_the_comment():
