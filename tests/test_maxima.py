@@ -1,5 +1,6 @@
 """Headless runs of Maxima: whatever a file does, one clear sentence in bounded time, with the place if known."""
 
+import re
 import subprocess
 from dataclasses import replace
 
@@ -9,7 +10,7 @@ from shell import SHELL
 
 from holonom.documents import Document, ask
 from holonom.failures import Failure, HolonomError
-from holonom.maxima import count_statements, run_batch, run_rtest
+from holonom.maxima import LIBRARY, count_statements, run_batch, run_rtest
 from holonom.sandbox import Limits
 
 LONG = Limits(seconds=100, memory_mib=512, output_mib=1)
@@ -50,6 +51,7 @@ def test_a_statement_that_fails_is_found(text, line, failure, detail, write_scen
     assert error.failure is failure
     assert error.place == f"{file}:{line}"
     assert detail in error.detail
+    assert error.refusal is None
     assert "\n" not in str(error)
 
 
@@ -95,6 +97,28 @@ def test_an_error_is_caught_by_the_file_itself(write_scene):
 def test_a_lisp_error_without_a_message_ended_in_an_empty_sentence(write_scene):
     error = failure_of(write_scene('?error("")$'))
     assert (error.failure, error.detail) == (Failure.LISP_ERROR, "it does not say which")
+
+
+def test_a_refusal_has_its_id_with_its_place(write_scene):
+    file = write_scene('load("holonom.mac")$\ndot(x + y)$')
+    error = failure_of(file)
+    assert (error.failure, error.refusal, error.place) == (Failure.REFUSED, "dot_of_expression", f"{file}:2")
+
+
+def test_an_error_after_a_refusal_that_was_caught_has_no_id(write_scene):
+    assert failure_of(write_scene('load("holonom.mac")$ errcatch(dot(x + y))$ 1/0$')).refusal is None
+
+
+def test_the_prompt_shows_the_sentence_without_the_id():
+    command = [
+        "maxima",
+        "--very-quiet",
+        "--init=/dev/null",
+        f'--batch-string=load("{LIBRARY}/holonom.mac")$ dot(x + y);',
+    ]
+    done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=100)
+    assert "Write dot of each name." in done.stdout + done.stderr
+    assert not re.search("refuse|dot_of_expression", done.stdout + done.stderr)
 
 
 def test_a_file_without_a_system_is_refused(write_scene):

@@ -279,7 +279,7 @@ def test_text_that_is_not_json_is_refused():
 
 def test_an_effect_that_does_not_exist_is_refused(write_scene):
     file = write_scene(spherical_scene(["antigravity"]))
-    assert "there is no effect 'antigravity'" in refusal_of(file)
+    assert "unknown effect 'antigravity'" in refusal_of(file)
 
 
 def test_a_scene_without_motion_is_refused(write_scene):
@@ -302,6 +302,6 @@ def test_a_redundant_constraint_costs_nothing(write_scene):
 
 
 def test_a_value_for_an_undeclared_parameter_is_refused(write_scene):
-    assert "'mass' is set from outside" in refusal_of(SPHERICAL, "--set", "mass=2")
+    assert "setting 'mass' is neither" in refusal_of(SPHERICAL, "--set", "mass=2")
     file = write_scene(spherical_scene([]).replace("m = 3/2", "mass = 3/2"))
     assert "parameter_values names 'mass'" in refusal_of(file)
