@@ -7,7 +7,7 @@ made of it; the other values stay.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
+from functools import lru_cache, partial
 from typing import NamedTuple
 
 import sympy as sp
@@ -25,8 +25,11 @@ LARGEST_EXPONENT = 10**8
 LARGEST_ANGLE = 10**12
 """Largest argument of a periodic or special function."""
 
-LARGEST_SPECIAL = 10**3
-"""Largest argument of a function that mpmath takes a series for."""
+LARGEST_SPECIAL = 10**2
+"""Largest argument of a function that mpmath takes a series for: it needs a term or more for each unit."""
+
+REMEMBERED = 2**12
+"""Values of such functions that are kept: several expressions contain them at the same point."""
 
 FAILURES = (ZeroDivisionError, OverflowError, ValueError, TypeError, mp.NoConvergence)
 
@@ -121,7 +124,7 @@ def _function(part: sp.Expr) -> Callable[..., Number | None]:
         case sp.Pow():
             return _power
         case sp.Function() if part.func in FUNCTIONS:
-            return partial(_applied, part.func, FUNCTIONS[part.func])
+            return partial(_applied, part.func)
         case _:
             return lambda *_: None
 
@@ -136,11 +139,18 @@ def _power(base: Number, exponent: Number) -> Number | None:
     return mp.power(base, exponent) if abs(exponent * mp.log(base)) <= LARGEST_EXPONENT else None
 
 
-def _applied(kind: type, function: Callable[..., Number], *arguments: Number) -> Number | None:
+def _applied(kind: type, *arguments: Number) -> Number | None:
     if kind in REAL_ALONE and any(mp.im(argument) for argument in arguments):
         return None
-    if kind not in CHEAP:
-        largest = LARGEST_EXPONENT if kind in GROWING else LARGEST_ANGLE if kind in PERIODIC else LARGEST_SPECIAL
-        if any(abs(argument) > largest for argument in arguments):
-            return None
-    return function(*arguments)
+    if kind in CHEAP:
+        return FUNCTIONS[kind](*arguments)
+    largest = LARGEST_EXPONENT if kind in GROWING else LARGEST_ANGLE if kind in PERIODIC else LARGEST_SPECIAL
+    if any(abs(argument) > largest for argument in arguments):
+        return None
+    return _remembered(kind, mp.prec, *arguments)
+
+
+@lru_cache(REMEMBERED)
+def _remembered(kind: type, precision: int, *arguments: Number) -> Number:
+    """Value of a function in the working precision, which is `precision`."""
+    return FUNCTIONS[kind](*arguments)
