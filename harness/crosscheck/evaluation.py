@@ -88,8 +88,9 @@ class Steps:
 
 def _taken(step: Step, found: Numbers) -> Number | None:
     arguments = [found[place] for place in step.places]
-    if None in arguments:
-        return None
+    for argument in arguments:
+        if argument is None:  # `None in arguments` would make a number of None to compare it
+            return None
     try:
         value = step.function(*arguments)
     except FAILURES:
