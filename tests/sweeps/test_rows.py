@@ -44,6 +44,7 @@ system : holonomic_system(coordinates = [x], parameters = [k, m, q],
   constraints = [])$
 pushed : holonomic_scene(system, parameter_values = [k = 4, m = 1, q = 1],
   initial_state = [x = 0, dot(x) = 0], time_span = [0, 3])$"""
+STRUCK = PUSHED.replace("if t < q then 1 else 0", "exp(-10^8*(t - q)^2)")
 DRIVEN = OSCILLATOR.replace("constraints", "forces = [drive = [sin(k*t)]], constraints")
 NAMES = """load("holonom.mac")$
 system : holonomic_system(coordinates = [x], parameters = [t0, q, h, row],
@@ -69,6 +70,7 @@ def scenes(tmp_path_factory):
         "beyond_a_kink": BEYOND_A_KINK,
         "skidding": SKIDDING,
         "pushed": PUSHED,
+        "struck": STRUCK,
         "names": NAMES,
         "driven": DRIVEN,
     }.items():
@@ -135,6 +137,11 @@ def test_the_time_is_scanned_once_for_each_set_of_parameters_in_it(rows_of, scen
             maker.table(first, first + 3)
         assert len(scanned) == times
         scanned.clear()
+
+
+def test_a_narrow_pulse_in_the_time_span_takes_its_row_out_of_the_lanes(rows_of, scenes):
+    problem = rows_of(scenes / "struck.mac", "x", "q=1:5:2").plan.problem
+    assert time_watch.TimeWatch(problem, 3.0).look(np.array([[1.0, 5.0]]))[0].tolist() == [True, False]
 
 
 def test_rows_are_those_of_single_simulations(rows_of):
