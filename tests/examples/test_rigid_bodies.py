@@ -5,11 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from refusing import refused
 from scipy.integrate import quad, solve_ivp
 
 import holonom
 from holonom.crosscheck import Verdict
-from holonom.failures import HolonomError
 from holonom.simulation.result import Simulation
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -158,11 +158,11 @@ def test_every_question_is_answered_of_bricards_linkage():
     assert scene.program().program.redundant == ("lambda24",)
 
 
-def test_what_neither_forces_nor_constraints_decide_is_refused_with_its_direction():
+def test_what_neither_forces_nor_constraints_decide_is_refused():
     scene = holonom.system("""
         system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x) + dot(y))^2/2, constraints = [x + y])$
         resting : holonomic_scene(system, initial_state = [x = 0, dot(x) = 0])$""")
-    with pytest.raises(HolonomError, match=r"in the direction ddot\(x\) = 1, ddot\(y\) = -1"):
+    with refused("open_acceleration"):
         scene.free()
 
 
