@@ -1,0 +1,31 @@
+"""The instants at which the matrix of sought controls loses rank, of one column and two rows."""
+
+import numpy as np
+import pytest
+
+from holonom.program.precision import read_precision
+from holonom.simulation.control_matrix import ControlMatrix
+from holonom.simulation.engines.engine import Piece
+from holonom.simulation.surfaces import SignedFunctions
+
+
+class OneControl(ControlMatrix):
+    def __init__(self, *rows):
+        SignedFunctions.__init__(self, read_precision("double"), 3.0)
+        self._shape, self._scale, self._of_time = (len(rows), 1), 1.0, rows
+
+    def _matrices(self, instants, states):
+        return np.stack([row(instants) for row in self._of_time], axis=1)[..., None] / self._scale
+
+
+@pytest.mark.parametrize(
+    ("rows", "lost"),
+    [
+        ((lambda t: 1 - t, lambda t: 4 + t), None),
+        ((lambda t: 1 - t, lambda t: 2 - 2 * t), 1.0),
+        ((lambda t: (1 - t) * (2 - t), lambda t: (4 - t) * (2 - t)), 2.0),
+    ],
+)
+def test_rank_is_lost_when_all_rows_vanish_and_not_when_one_does(rows, lost):
+    found = OneControl(*rows).lost(Piece(0.0, 3.0, lambda instants: np.zeros((2, len(instants)))))
+    assert found == (None if lost is None else pytest.approx(lost, rel=1e-8))
