@@ -48,13 +48,13 @@ def supervise(command: Callable[[], int]) -> Ending:
     """
     global _board
     remove_abandoned_directories()
+    heeded = [each for each in ENDING_SIGNALS if signal.getsignal(each) is not signal.SIG_IGN]
+    signal.signal(signal.SIGCHLD, lambda *_: None)  # what is ignored may be lost while it is blocked
+    signal.pthread_sigmask(signal.SIG_BLOCK, [*heeded, signal.SIGCHLD])  # none comes before the directory is removed
     with private_directory() as directory:
         _board = mmap.mmap(-1, BOARD)
         become_subreaper()
-        heeded = [each for each in ENDING_SIGNALS if signal.getsignal(each) is not signal.SIG_IGN]
         supervisor = os.getpid()
-        signal.signal(signal.SIGCHLD, lambda *_: None)  # what is ignored may be lost while it is blocked
-        signal.pthread_sigmask(signal.SIG_BLOCK, [*heeded, signal.SIGCHLD])
         child = os.fork()
         if child == 0:
             signal.signal(signal.SIGCHLD, signal.SIG_DFL)
