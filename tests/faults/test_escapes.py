@@ -371,7 +371,7 @@ def test_process_that_has_ended_hides_no_files_from_the_count(tmp_path):
     assert refused.value.failure is Failure.TOO_LARGE
 
 
-FORGED = 'M=$(head -1 outcome-*); printf "%s\\nFINISHED\\n/x\\n0\\n\\n%s\\n" $M $M > outcome-$M; kill -9 -1'
+FORGED = 'M=$(head -1 outcome-*); printf "%s\\nFINISHED\\n/x\\n0\\n\\n\\n%s\\n" $M $M > outcome-$M; kill -9 -1'
 
 
 @needs_sandbox
