@@ -145,8 +145,8 @@ def printed_equations() -> tuple[PrintedEquation, ...]:
 
 
 def pytest_xdist_auto_num_workers() -> int:
-    """One more than there are cores: some tests wait, for a browser, a signal, or the end of a time limit."""
-    return (os.cpu_count() or 1) + 1
+    """Two more than there are cores: some tests wait, for a browser, a signal, or the end of a time limit."""
+    return (os.cpu_count() or 1) + 2
 
 
 @pytest.hookimpl(tryfirst=True)
