@@ -14,7 +14,6 @@ Row = dict[int, mp.mpf]
 SMALLEST = 30
 """Digits below the largest entry of its row at which what is left of an entry is rounding."""
 
-
 SPARSE_RATIO = 1000
 """A pivot is at least the largest entry of its row over this: three digits lost for sparse rows."""
 
@@ -23,19 +22,17 @@ class Elimination:
     """Rows of a matrix, reduced by one another in their order; a row that follows from those before is not kept."""
 
     def __init__(self, rows: Sequence[Row], right: Sequence[mp.mpf] | None = None) -> None:
-        self.kept: list[int] = []
         self._pivots: dict[int, tuple[Row, mp.mpf]] = {}
         self._order: dict[int, int] = {}  # place of each pivot among them
         self._uses = Counter(column for row in rows for column in row)  # in the rows that are still to come
         for place, row in enumerate(rows):
             self._uses.subtract(row.keys())
-            if self._add(row, right[place] if right else mp.zero):
-                self.kept.append(place)
+            self._add(row, right[place] if right else mp.zero)
 
     @property
     def rank(self) -> int:
         """The number of independent rows."""
-        return len(self.kept)
+        return len(self._pivots)
 
     def solution(self) -> Row:
         """A solution of the equations kept: what no pivot determines is zero."""
@@ -45,7 +42,7 @@ class Elimination:
             found[column] = (right - others) / row[column]
         return found
 
-    def _add(self, row: Row, right: mp.mpf) -> bool:
+    def _add(self, row: Row, right: mp.mpf) -> None:
         scale = max(map(abs, row.values()), default=mp.zero)
         left = dict(row)
         waiting = [(self._order[column], column) for column in left if column in self._order]
@@ -62,11 +59,9 @@ class Elimination:
                 del left[column]
                 right -= factor * pivot_right
         left = {k: value for k, value in left.items() if abs(value) > mp.mpf(10) ** -SMALLEST * scale}
-        if not left:
-            return False
-        pivot = self._pivot(left)
-        self._pivots[pivot], self._order[pivot] = (left, right), len(self._order)
-        return True
+        if left:
+            pivot = self._pivot(left)
+            self._pivots[pivot], self._order[pivot] = (left, right), len(self._order)
 
     def _pivot(self, left: Row) -> int:
         """Return the column of few rows to come, so that these stay sparse, among those with large entries."""
