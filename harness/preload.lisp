@@ -26,9 +26,7 @@ working directory; where no image can serve, do nothing."
   "The text of all functions that the library, in its namespace, and the files JOBS define in Lisp."
   (with-output-to-string (out)
     (let ((*package* (find-package :maxima)) (*print-pretty* nil))
-      (dolist (path (append (mapcan #'(lambda (name) (directory (concatenate 'string library name)))
-                                    (list "/names.lisp" "/one_pass.lisp" "/table_file.lisp" "/spline.lisp"))
-                            (directory (concatenate 'string library "/*/*.lisp"))))
+      (dolist (path (directory (concatenate 'string library "/*/*.lisp")))
         (write-functions (lisp-in-namespace (forms-in path)) out))
       (dolist (path jobs) (write-functions (forms-in path) out)))))
 

@@ -2,6 +2,7 @@
 
 import re
 from collections import Counter
+from pathlib import Path
 
 from holonom.maxima import LIBRARY, run_batch
 from holonom.preloaded import JOBS
@@ -15,6 +16,41 @@ def test_no_function_is_defined_twice():
     lisp = "\n".join(file.read_text() for file in (*LIBRARY.rglob("*.lisp"), *JOBS))  # they meet in one Lisp
     names = [*(f"${name}" for name in DEFINITION.findall(maxima)), *LISP_DEFINITION.findall(lisp)]
     assert [name for name, times in Counter(names).items() if times > 1] == []
+
+
+def layers() -> dict[str, int]:
+    """The layer of each file of the load list, by the headings there."""
+    _, *groups = (LIBRARY / "holonom.mac").read_text().split("/* ---- ")
+    return {file: layer for layer, group in enumerate(groups) for file in re.findall(r'"([\w/]+\.\w+)"', group)}
+
+
+def called_names(file: Path) -> set[str]:
+    """The functions that a file calls or hands on to others that call them, spelt as Lisp does."""
+    if file.suffix == ".lisp":
+        code = re.sub(r'"(?:\\.|[^"\\])*"|;[^\n]*', "", file.read_text())
+        return set(re.findall(r"(?:(?<!\()\(|#'|mfuncall ')([^\s()'`,\"]+)", code))
+    code = re.sub(r'/\*.*?\*/|"(?:\\.|[^"\\])*"', "", file.read_text(), flags=re.DOTALL)
+    called = re.findall(r"(?<![\w%'@])(\w+)(?=\()|\((?<!refuse\()'(\w+)", code)
+    return {f"${name}" for names in called for name in names if name}
+
+
+def test_no_layer_calls_one_above_it():
+    layer = layers()
+    home = {f"${name}": file for file in layer for name in DEFINITION.findall((LIBRARY / file).read_text())}
+    home |= {name: file for file in layer for name in LISP_DEFINITION.findall((LIBRARY / file).read_text())}
+    upwards = [
+        f"{file} calls {name} of {home[name]}"
+        for file in layer
+        for name in sorted(called_names(LIBRARY / file) & home.keys())
+        if layer[home[name]] > layer[file]
+    ]
+    assert upwards == []
+
+
+def test_every_file_of_the_library_has_its_place_in_the_load_list():
+    files = {file.relative_to(LIBRARY).as_posix() for kind in ("mac", "lisp") for file in LIBRARY.rglob(f"*.{kind}")}
+    apart = {"holonom.mac", "namespace.lisp", "help.lisp"}
+    assert {file for file in files - apart if not file.startswith("paper/")} == set(layers())
 
 
 def test_the_steps_take_lists_and_matrices_and_no_structures():

@@ -1,7 +1,7 @@
 """Tables that a law is given by: of thousands of cubic polynomials one counts at an instant.
 
 Programs have the letters of such a polynomial among their inputs, t_k and the coefficients of powers of t - t_k
-(`maxima/table.mac`); its numbers are data, and found by the time.
+(`maxima/laws/table.mac`); its numbers are data, and found by the time.
 """
 
 from collections.abc import Iterator, Mapping, Sequence

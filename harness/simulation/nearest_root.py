@@ -3,7 +3,7 @@
 Newton's method is damped: a step is halved until the next correction with the same matrix is shorter, all of them being
 the least corrections in the mass metric (Deuflhard, Newton Methods for Nonlinear Problems, section 3.3). Unless it
 contracts at once, it begins again from points around the guess, and the nearest root that it finds is taken.
-`maxima/program/sample_point.lisp` does the same for one motion to many digits.
+`maxima/algebra/sample_point.lisp` does the same for one motion to many digits.
 """
 
 from collections.abc import Callable, Iterator

@@ -72,20 +72,6 @@
     (push mantissa (power-series-mantissas x))
     (times-power-of-two mantissa exponent)))
 
-(defun binary-magnitude (x)
-  (- (integer-length (numerator x)) (integer-length (denominator x))))
-
-(defun nearest-integer (value exponent)
-  "value/2^exponent, rounded."
-  (let ((n (numerator value)) (d (denominator value)))
-    (if (minusp exponent) (setq n (ash n (- exponent))) (setq d (ash d exponent)))
-    (floor (+ n n d) (+ d d))))
-
-(defun times-power-of-two (integer exponent)
-  (cond ((eql integer 0) 0)
-        ((minusp exponent) (/ integer (ash 1 (- exponent))))
-        (t (ash integer exponent))))
-
 ;;; ---- sums of products ------------------------------------------------------------------
 
 (defvar *binomials* nil "(n 0), (n 1), ..., (n n) for the order n that is being formed.")
@@ -365,8 +351,6 @@
                       (maxima-number (/ derivative unit)))
                   (reverse (power-series-derivatives x))))))
 
-(defun rational-of (e) (if (integerp e) e (/ (second e) (third e))))
-
 ;;; ---- two expansions compared --------------------------------------------------------------
 ;;;
 ;;; What rounding leaves of a zero shrinks with the digits of the arithmetic: a coefficient that
@@ -469,29 +453,3 @@ more of them in a row than between coefficients that both expansions know."
     (if (eql difference 0)
         most-positive-fixnum
         (floor (* (log 2d0 10d0) (- (binary-magnitude b) (binary-magnitude difference)))))))
-
-;;; ---- numbers as text -----------------------------------------------------------------------
-
-(defun $exact_text (number)
-  "A rational number: \"-1/3\", \"2\"."
-  (let ((value (rational-of number)))
-    (format nil "~d~:[/~d~;~]" (numerator value) (eql (denominator value) 1) (denominator value))))
-
-(defun $decimal_text (number digits)
-  "A rational number, rounded to so many significant digits: \"-1.23e-4\"."
-  (let ((value (rational-of number)))
-    (if (eql value 0)
-        "0"
-        (multiple-value-bind (mantissa exponent) (decimal-parts (abs value) digits)
-          (let ((text (format nil "~d" mantissa)))
-            (format nil "~:[~;-~]~a.~ae~d" (minusp value) (subseq text 0 1) (subseq text 1)
-                    exponent))))))
-
-(defun decimal-parts (value digits)
-  "m and e, so that m has so many digits and value = m*10^(e+1-digits)."
-  (let ((exponent (floor (* (1- (binary-magnitude value)) (log 2d0 10d0)))))
-    (do () ((< value (expt 10 (1+ exponent)))) (incf exponent))
-    (let ((mantissa (round (* value (expt 10 (- digits 1 exponent))))))
-      (if (eql mantissa (expt 10 digits))
-          (values (expt 10 (1- digits)) (1+ exponent))
-          (values mantissa exponent)))))

@@ -21,9 +21,6 @@
     (%airy_ai . "AiryAi") (%airy_bi . "AiryBi") (%airy_dai . "AiryAiPrime") (%airy_dbi . "AiryBiPrime")
     (%jacobi_sn . "JacobiSn") (%jacobi_cn . "JacobiCn") (%jacobi_dn . "JacobiDn")))
 
-(defvar *mathjson-constants*
-  '(($%pi . "Pi") ($%e . "ExponentialE") ($%i . "ImaginaryUnit") ($%gamma . "EulerGamma") (t . "True") (nil . "False")))
-
 (defun $write_json (tree file)
   (let ((*print-base* 10) (*print-radix* nil)) ; obase : 8 of a scene is none of a document's
     (write-file file (with-output-to-string (out) (write-json tree out) (terpri out)))))
@@ -149,7 +146,3 @@
 (defun mathjson-symbol (symbol)
   (or (cdr (assoc symbol *mathjson-constants*))
       (letters-of-name symbol)))
-
-(defun $reads_as_constant (name)
-  "Whether a document that holds the name says a number or a truth value."
-  (and (member (letters-of-name name) (mapcar #'cdr *mathjson-constants*) :test #'string=) t))

@@ -14,7 +14,7 @@ from ..mathematics import description
 from ..runs import derived, free, series, simulation
 from . import PRESCRIBED_TENSION
 
-SOURCE = "maxima/free_motion/prescribed_reactions.mac"
+SOURCE = "maxima/control/prescribed_reactions.mac"
 FUNCTIONS = ("released_system", "controls_under_reactions")
 SCENES = ("thrown_scene", "steady_scene", "growing_scene")
 ORDER = 40

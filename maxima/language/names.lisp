@@ -19,3 +19,10 @@
   (and (> (length text) (length prefix))
        (starts-with prefix text)
        (not (find-if-not #'digit-char-p text :start (length prefix)))))
+
+(defvar *mathjson-constants*
+  '(($%pi . "Pi") ($%e . "ExponentialE") ($%i . "ImaginaryUnit") ($%gamma . "EulerGamma") (t . "True") (nil . "False")))
+
+(defun $reads_as_constant (name)
+  "Whether a document that holds the name says a number or a truth value."
+  (and (member (letters-of-name name) (mapcar #'cdr *mathjson-constants*) :test #'string=) t))

@@ -494,11 +494,6 @@
                      (car numbers)
                      1))))
 
-(defun maxima-number (number)
-  (if (typep number 'ratio)
-      (list '(rat simp) (numerator number) (denominator number))
-      number))
-
 (defun $graph_gradient (term)
   "List of  [position, derivative]  for the variables the term contains."
   (cons '(mlist)
