@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
 from re import compile as pattern
+from typing import NamedTuple
 
 from .failures import Failure, HolonomError
 from .formats import SCHEMAS, VERSION, Document, Publication, is_document, published, read, require, schema
@@ -16,18 +17,33 @@ __all__ = [
     "VERSION",
     "Document",
     "Publication",
+    "Question",
     "ask",
+    "ask_all",
     "is_document",
     "published",
     "read",
     "require",
     "schema",
+    "written",
 ]
 
 NAME = pattern(r"[^\W\d]\w*")
 NO_SCENE = frozenset({Document.ERRATA, Document.VERSIONS})  # the paper's file holds more than a system
 
 Argument = None | int | Fraction | str | Sequence["Argument"]
+
+
+class Question(NamedTuple):
+    """A document that is asked for, and what its writer in Maxima takes behind the name of the file that it writes."""
+
+    document: Document
+    arguments: tuple[Argument, ...] = ()
+
+    def writer(self) -> str:
+        """Maxima's function of the name of the file; raises where a string can be no name."""
+        call = ", ".join(["file", *map(_maxima_text, self.arguments)])
+        return f"lambda([file], {self.document.writer}({call}))"
 
 
 def ask(
@@ -39,24 +55,58 @@ def ask(
 ) -> str:
     """Ask Maxima for a document about a scene file, which is run first unless it was before.
 
+    Raises as `ask_all`, and where there is no document.
+
+    Parameters
+    ----------
+    document : Document
+        What is asked for.
+    file, settings, limits
+        As for `ask_all`.
+    *arguments : None, int, Fraction, str or sequence of these
+        What the writer in Maxima takes behind the name of the file that it writes; a string is a name.
+    """
+    question = Question(document, arguments)
+    if document in NO_SCENE:
+        return run_batch(file, question.writer(), limits, settings)
+    return written(*ask_all([question], file, settings, limits))
+
+
+def ask_all(
+    questions: Sequence[Question],
+    file: Source | Path,
+    settings: Mapping[str, str] = NO_SETTINGS,
+    limits: Limits = DEFAULT_LIMITS,
+) -> list[str | HolonomError]:
+    """Ask one process for several documents; of each, the text, or why there is none.
+
     Raises as `holonom.source.describe` and `holonom.maxima.run_description`; and where a string can be no name.
 
     Parameters
     ----------
+    questions : sequence of Question
+        What is asked for.
     file : Source or Path
         A path is run; of a source, what it has described before serves, and its limits hold.
-    *arguments : None, int, Fraction, str or sequence of these
-        What the writer in Maxima takes behind the name of the file that it writes; a string is a name.
     settings : mapping of str to str
         Numbers in Maxima's notation, for what the file leaves open and for parameters.
+    limits : Limits
+        What a run of Maxima about a path may take.
     """
-    call = ", ".join(["file", *map(_maxima_text, arguments)])
-    writer = f"lambda([file], {document.writer}({call}))"
-    if document in NO_SCENE:
-        return run_batch(file, writer, limits, settings)
-    described = file.description(settings) if isinstance(file, Source) else describe(file, settings, limits)
+    writers = [each.writer() for each in questions]
+    if isinstance(file, Source):
+        described, limits = file.description(settings), file.limits
+    else:
+        described = describe(file, settings, limits)
     repeated = settings if described.was_run else None
-    return run_description(described.text, described.file, writer, limits, repeated)
+    return run_description(described.text, described.file, writers, limits, repeated)
+
+
+def written(answer: str | HolonomError) -> str:
+    """A document; raises where there is none."""
+    if isinstance(answer, HolonomError):
+        raise answer
+    return answer
 
 
 def _maxima_text(argument: Argument) -> str:

@@ -6,7 +6,7 @@
 ;;;   RUN-FILE         reads a file statement by statement, as batchload does, remembering where each one starts, and
 ;;;                    evaluates a closing call, for instance write_record("record.json");
 ;;;   RUN-SCENE        reads the file likewise and writes down what it described, if it loaded the library;
-;;;   RUN-DESCRIPTION  reads no file but such a description, and evaluates the closing call.
+;;;   RUN-DESCRIPTION  reads no file but such a description, and evaluates calls, each of which has its own outcome.
 ;;;
 ;;; Each makes an error of all that would stop or prompt, a question, a syntax error, a Lisp error, and leaves the
 ;;; outcome in a file: a mark that the run is given, the kind of ending, the file, the line of the statement (0
@@ -82,12 +82,15 @@
                    (when (and (boundp '*asked-for*) (symbol-value '*asked-for*))
                      (mfuncall '$write_description description))))))
 
-(defun run-description (description call job)
-  "Describe anew what DESCRIPTION holds, then run the Maxima text CALL."
-  (run-job job (lambda ()
-                 (mfuncall '$load "holonom.mac")
-                 (describe-anew description)
-                 (evaluate-text call))))
+(defun run-description (description calls job)
+  "Describe anew what DESCRIPTION holds, then run CALLS, each a Maxima text and the file of its outcome."
+  (destructuring-bind (name mark) (list (first job) (fifth job))
+    (run-job job (lambda ()
+                   (mfuncall '$load "holonom.mac")
+                   (describe-anew description)
+                   (loop for (call outcome) in calls
+                         do (write-outcome outcome mark name '(started ""))
+                            (write-outcome outcome mark name (ending-of (lambda () (evaluate-text call)))))))))
 
 (defun run-job (job run)
   "Do what JOB prepares, then RUN. A job is (name of the file run, where load() looks first, Maxima text that comes
@@ -153,11 +156,16 @@ before all, outcome, mark)."
     (catch 'macsyma-quit
       (return-from ending-of
         (handler-case (progn (funcall run) '(finished ""))
-          (maxima-$error () (list 'fault (maxima-message) (refusal-id)))
-          (unanswered-question (condition) (list 'question (text condition)))
-          (unreadable-statement (condition) (list 'syntax (text condition)))
-          (serious-condition (condition) (list 'lisp (lisp-message condition))))))
+          (maxima-$error () (unbound errcatch (list 'fault (maxima-message) (refusal-id))))
+          (unanswered-question (condition) (unbound errcatch (list 'question (text condition))))
+          (unreadable-statement (condition) (unbound errcatch (list 'syntax (text condition))))
+          (serious-condition (condition) (unbound errcatch (list 'lisp (lisp-message condition)))))))
     '(fault "Maxima went back to its prompt")))
+
+(defun unbound (outside ending)
+  "ENDING, after the variables of the blocks that it broke off have got back their values of OUTSIDE."
+  (errlfun1 outside)
+  ending)
 
 (defun refusal-id ()
   "The id of the refusal of the library that Maxima's error is, or an empty text."

@@ -15,11 +15,12 @@ import shlex
 import shutil
 import signal
 import stat
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from itertools import chain
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, NamedTuple
 
 from .failures import Failure, HolonomError
 from .files import near_file, shared
@@ -51,7 +52,7 @@ BYTE_ORDER_MARK = "\ufeff"
 SIGNALS = frozenset(signal.Signals)
 SIGNALLED = 128  # a shell adds this to the number of the signal that ended a process
 
-LEFT_BEHIND = ("outcome", "document")
+OUTCOME, DOCUMENT = "outcome", "document"  # what a run leaves behind
 LONGEST_OUTCOME = MIB  # bytes
 REFUSAL = re.compile(r"\w*")
 STARTED, FINISHED = "STARTED", "FINISHED"
@@ -86,11 +87,33 @@ class Run:
     limits: Limits
     settings: Mapping[str, str] | None
     mark: str  # what only this run can know: the names of what it leaves behind end in it, and the outcome holds it
-    reads_files: bool = True  # whether it is given the files that the scene names, and those beside it
+    reads_files: bool  # whether it is given the files that the scene names, and those beside it
+    left_behind: tuple[str, ...]
 
     def leaves(self, what: str) -> Path:
         """The file that the run is to leave behind."""
         return self.directory / f"{what}-{self.mark}"
+
+
+class Ended(NamedTuple):
+    """A run that is over, or one part of it: how it ended if that was before its time, and what Maxima printed."""
+
+    ending: Ending | None
+    printed: str
+
+    def require_finished(self, run: Run, writer: str) -> None:
+        """Raise where it ended before its time."""
+        if self.ending is None:
+            return
+        command = "" if run.settings is None else _repeating_command(run.file, f'{writer}("document")$', run.settings)
+        raise HolonomError(
+            self.ending.failure,
+            self.ending.place,
+            self.ending.detail,
+            refusal=self.ending.refusal,
+            last_lines=_last_lines(self.printed),
+            command=command,
+        )
 
 
 def get_ready(file: Path, limits: Limits) -> None:
@@ -122,15 +145,17 @@ def run_scene(file: Path, limits: Limits, settings: Mapping[str, str], document:
         The file is missing, is refused, asks a question, exceeds a limit, or Maxima is missing.
     """
     with doing("running the scene file"), _new_run(file, limits, settings) as run:
-        printed = _run(run, f"run-scene {_copy(run)} {quoted(run.leaves('document').name)}", f"write_{document}")
-        left = run.leaves("document")
-        if left.is_file() and left.stat().st_size > LARGEST:
+        left = run.leaves(DOCUMENT)
+        ended = _run(run, f"run-scene {_copy(run)} {quoted(left.name)}")
+        if ended.ending is None and left.is_file() and left.stat().st_size > LARGEST:
             raise HolonomError(Failure.DESCRIPTION_TOO_LARGE, file, f"{LARGEST // MIB} MiB")
-        return _document(run, printed)
+        return _finished_document(run, ended, f"write_{document}")
 
 
-def run_description(text: str, file: Path, writer: str, limits: Limits, settings: Mapping[str, str] | None) -> str:
-    """Have a document derived from a description, by a process that never sees the file.
+def run_description(
+    text: str, file: Path, writers: Sequence[str], limits: Limits, settings: Mapping[str, str] | None
+) -> list[str | HolonomError]:
+    """Have documents derived from a description, by one process, which never sees the file.
 
     Parameters
     ----------
@@ -138,20 +163,42 @@ def run_description(text: str, file: Path, writer: str, limits: Limits, settings
         The description.
     file : Path
         The file that it is of, for messages.
-    writer : str
-        The library's function that writes the document, given the name of the file to write.
+    writers : sequence of str
+        Of each document the library's function that writes it, given the name of the file to write.
     settings : mapping of str to str, or None
         What the file was run with, for the command that repeats the run; None if no file was run.
+
+    Returns
+    -------
+    list of str or HolonomError
+        The documents; or why there is none: the description is refused, a limit is exceeded. Those written before a
+        limit is exceeded are there.
 
     Raises
     ------
     HolonomError
-        The description is refused, a limit is exceeded, or Maxima is missing.
+        Maxima is missing.
     """
-    with doing("deriving with Maxima"), _new_run(file, limits, settings, reads_files=False) as run:
+    left = [(f"{OUTCOME}{k}", f"{DOCUMENT}{k}") for k in range(len(writers))]
+    left_behind = (OUTCOME, *chain.from_iterable(left))
+    with doing("deriving with Maxima"), _new_run(file, limits, settings, False, left_behind) as run:
         (run.directory / "description").write_text(text, encoding="utf-8")
-        printed = _run(run, f'run-description "description" {_call(writer, run)}', writer)
-        return _document(run, printed)
+        calls = [
+            f"({_call(writer, run, document)} {quoted(run.leaves(outcome).name)})"
+            for writer, (outcome, document) in zip(writers, left, strict=True)
+        ]
+        ended = _run(run, f'run-description "description" \'({" ".join(calls)})')
+        return [_written(run, ended, writer, *names) for writer, names in zip(writers, left, strict=True)]
+
+
+def _written(run: Run, ended: Ended, writer: str, outcome: str, document: str) -> str | HolonomError:
+    """One of the documents of a run, or why there is none."""
+    broken_off = ended.ending or Ending(Failure.TORN, str(run.file), OUTCOME)
+    own = Ended(_read_ending(run, outcome, broken_off), ended.printed)
+    try:
+        return _finished_document(run, own, writer, document)
+    except HolonomError as error:
+        return error
 
 
 def run_batch(
@@ -172,8 +219,7 @@ def run_batch(
         As `run_scene`.
     """
     with doing("deriving with Maxima"), _new_run(file, replace(limits, sandbox=Sandbox.TRUSTED), settings) as run:
-        printed = _run(run, f"run-file {_copy(run)} {_call(writer, run)}", writer)
-        return _document(run, printed)
+        return _finished_document(run, _run(run, f"run-file {_copy(run)} {_call(writer, run)}"), writer)
 
 
 def run_rtest(rtest: Path) -> int:
@@ -196,9 +242,10 @@ def run_rtest(rtest: Path) -> int:
     with _new_run(LIBRARY / "holonom.mac", DEFAULT_LIMITS, NO_SETTINGS) as run:
         shutil.copy(rtest, run.directory)  # for Maxima leaves a list of errors beside the file it tests
         test = quoted(f"(open_namespace(), batch({quoted(rtest.name)}, test))$")
-        printed = _run(run, f"run-file {_copy(run)} {test}", test)
-    if re.findall(r"(\d+)/(\d+) tests passed", printed) != [(str(tests), str(tests))]:
-        raise HolonomError(Failure.RTEST_FAILED, rtest, str(tests), last_lines=tuple(printed.splitlines()))
+        ended = _run(run, f"run-file {_copy(run)} {test}")
+        ended.require_finished(run, test)
+    if re.findall(r"(\d+)/(\d+) tests passed", ended.printed) != [(str(tests), str(tests))]:
+        raise HolonomError(Failure.RTEST_FAILED, rtest, str(tests), last_lines=tuple(ended.printed.splitlines()))
     return tests
 
 
@@ -218,9 +265,15 @@ def statement_ends(text: str, position: int = 0) -> Iterator[int]:
 
 
 @contextmanager
-def _new_run(file: Path, limits: Limits, settings: Mapping[str, str] | None, reads_files: bool = True) -> Iterator[Run]:
+def _new_run(
+    file: Path,
+    limits: Limits,
+    settings: Mapping[str, str] | None,
+    reads_files: bool = True,
+    left_behind: tuple[str, ...] = (OUTCOME, DOCUMENT),
+) -> Iterator[Run]:
     with private_directory() as directory:
-        yield Run(file, directory, limits, settings, secrets.token_hex(16), reads_files)
+        yield Run(file, directory, limits, settings, secrets.token_hex(16), reads_files, left_behind)
 
 
 def _copy(run: Run) -> str:
@@ -280,13 +333,13 @@ def read_maxima_text(file: Path) -> str:
     return text.removeprefix(BYTE_ORDER_MARK).replace("\r\n", "\n").replace("\r", "\n")
 
 
-def _call(writer: str, run: Run) -> str:
-    """Maxima text that writes the document, as Lisp text."""
-    return quoted(f"{writer}({quoted(run.leaves('document').name)})$")
+def _call(writer: str, run: Run, document: str = DOCUMENT) -> str:
+    """Maxima text that writes a document, as Lisp text."""
+    return quoted(f"{writer}({quoted(run.leaves(document).name)})$")
 
 
-def _run(run: Run, start: str, writer: str) -> str:
-    """Do what `start` says; return what Maxima printed."""
+def _run(run: Run, start: str) -> Ended:
+    """Do what `start` says."""
     maxima = _maxima()
     image = _image(maxima)
     place = _place(run, Path(maxima))
@@ -294,23 +347,13 @@ def _run(run: Run, start: str, writer: str) -> str:
     ending = _attempt(run, start, maxima, image, place, output)
     if ending is not None and ending.failure is Failure.NOT_MAXIMA and image and is_removed_as_broken(image, place):
         ending = _attempt(run, start, maxima, None, place, output)
-    printed = output.decode(errors="replace")
-    if ending is None:
-        return printed
-    raise HolonomError(
-        ending.failure,
-        ending.place,
-        ending.detail,
-        refusal=ending.refusal,
-        last_lines=_last_lines(printed),
-        command="" if run.settings is None else _repeating_command(run.file, f'{writer}("document")$', run.settings),
-    )
+    return Ended(ending, output.decode(errors="replace"))
 
 
 def _attempt(run: Run, start: str, maxima: str, image: Path | None, place: Place, output: bytearray) -> Ending | None:
     """Run Maxima, or an image of it; return how it ended before its time, if it did."""
     preparation = f"(holonom_print : false, {_set(run.settings or NO_SETTINGS)})$"
-    facts = (run.file.resolve(), LIBRARY, preparation, run.leaves("outcome").name, run.mark)
+    facts = (run.file.resolve(), LIBRARY, preparation, run.leaves(OUTCOME).name, run.mark)
     known = [] if image else [each.read_text(encoding="utf-8") for each in JOBS]
     job = "\n".join(["(in-package :maxima)", *known, f"({start} '({' '.join(map(quoted, facts))}))\n"])
     (run.directory / "job.lisp").write_bytes(os.fsencode(job))
@@ -321,7 +364,9 @@ def _attempt(run: Run, start: str, maxima: str, image: Path | None, place: Place
         return Ending(exceeded.failure, str(run.file), exceeded.detail)
     except OSError as error:
         return Ending(Failure.NOT_MAXIMA, maxima, error.strerror or str(error))
-    return _read_ending(run, maxima, status)
+    begun = _read_left(run.leaves(OUTCOME), LONGEST_OUTCOME)
+    not_begun = Ending(Failure.NOT_MAXIMA, maxima, f"exit status {status}")
+    return _read_ending(run, OUTCOME, _unfinished(run, status) if begun else not_begun)
 
 
 def _maxima() -> str:
@@ -356,7 +401,7 @@ def _place(run: Run, maxima: Path) -> Place:
         # the same memory. With a fifth, 24 derivatives of a gamma function take 3.7 GiB, with this 1.3 (measured).
         "GCL_GC_ALLOC_MIN": "0.13",
     }
-    outputs = [run.leaves(what) for what in LEFT_BEHIND]
+    outputs = [run.leaves(what) for what in run.left_behind]
     for each in outputs:
         each.touch()
     read = run.reads_files and is_isolated(run.limits)
@@ -368,20 +413,18 @@ def _memory_of_the_machine() -> int:
     return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
 
 
-def _read_ending(run: Run, maxima: str, status: int) -> Ending | None:
-    """The ending that `headless.lisp` wrote; None when the run is finished."""
-    lines = (_read_left(run.leaves("outcome"), LONGEST_OUTCOME) or b"").decode(errors="replace").split("\n")
+def _read_ending(run: Run, what: str, broken_off: Ending) -> Ending | None:
+    """The ending that `headless.lisp` wrote; None of what is finished."""
+    lines = (_read_left(run.leaves(what), LONGEST_OUTCOME) or b"").decode(errors="replace").split("\n")
     if lines == [""]:
-        return Ending(Failure.NOT_MAXIMA, maxima, f"exit status {status}")
+        return broken_off
     if len(lines) < 8 or [lines[0], *lines[-2:]] != [run.mark, run.mark, ""]:
-        return Ending(Failure.TORN, str(run.file), "outcome")
+        return Ending(Failure.TORN, str(run.file), OUTCOME)
     kind, running, line, refusal, message = *lines[1:5], " ".join(lines[5:-2])
-    if kind == FINISHED:
-        return None
-    if kind == STARTED:
-        return _unfinished(run, status)
+    if kind in (FINISHED, STARTED):
+        return None if kind == FINISHED else broken_off
     if kind not in ENDINGS or not line.isdigit() or not REFUSAL.fullmatch(refusal):
-        return Ending(Failure.TORN, str(run.file), "outcome")
+        return Ending(Failure.TORN, str(run.file), OUTCOME)
     own = running in (str(run.file.resolve()), str((run.directory / "file.mac").resolve()))
     shown = str(run.file) if own else visible_line(running)
     place = shown if line == "0" else f"{shown}:{line}"
@@ -397,18 +440,16 @@ def _unfinished(run: Run, status: int) -> Ending:
     return Ending(Failure.KILLED, str(run.file), signal.Signals(number).name)
 
 
-def _document(run: Run, printed: str) -> str:
-    text = _left_behind(run, "document", printed).decode(errors="replace")
-    if not text.endswith("\n"):
-        raise HolonomError(Failure.TORN, run.file, "document", last_lines=_last_lines(printed))
-    return text
-
-
-def _left_behind(run: Run, what: str, printed: str) -> bytes:
-    content = _read_left(run.leaves(what), run.limits.file_mib * MIB)
+def _finished_document(run: Run, ended: Ended, writer: str, document: str = DOCUMENT) -> str:
+    """What a run left; raise where it did not come to its end."""
+    ended.require_finished(run, writer)
+    last_lines = _last_lines(ended.printed)
+    content = _read_left(run.leaves(document), run.limits.file_mib * MIB)
     if not content:
-        raise HolonomError(Failure.NOTHING_WRITTEN, run.file, last_lines=_last_lines(printed))
-    return content
+        raise HolonomError(Failure.NOTHING_WRITTEN, run.file, last_lines=last_lines)
+    if not content.endswith(b"\n"):
+        raise HolonomError(Failure.TORN, run.file, DOCUMENT, last_lines=last_lines)
+    return content.decode(errors="replace")
 
 
 def _read_left(path: Path, most: int) -> bytes | None:

@@ -25,7 +25,7 @@ from .source import Source
 from .temporary import KeptDirectory
 
 if TYPE_CHECKING:
-    from .crosscheck import CheckReport
+    from .crosscheck.report import CheckReport
     from .described import System
     from .description import Description
     from .free_motion import FreeMotion
@@ -254,9 +254,11 @@ class Scene:
 
     def check(self) -> "CheckReport":
         """Compare every equation of the file with an independent SymPy evaluation."""
-        from .crosscheck import ask_motions, check_record, motion_verdicts
+        from .crosscheck.check import check_record
+        from .crosscheck.motions import motion_verdicts, read_motions
+        from .crosscheck.questions import ask_for_check
 
-        motions = ask_motions(self._source, self.settings)
+        motions = read_motions(self.description, ask_for_check(self._source, self.settings))
         report = check_record(self.record, self.description)
         return report.with_verdicts(motion_verdicts(self.description, motions, report.seed))
 

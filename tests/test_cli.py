@@ -17,10 +17,10 @@ from holonom.cli import holonom as cli
 from holonom.cli import run
 from holonom.cli.tables.condition import condition_lines
 from holonom.cli.tables.derivation import why_left_out
-from holonom.crosscheck import Verdict
+from holonom.crosscheck.report import Verdict
 from holonom.crosscheck.verdict import Judgement
 from holonom.failures import Failure, HolonomError
-from holonom.record import LeftOut
+from holonom.record import LeftOut, read_record
 
 HOLONOM = [sys.executable, "-m", "holonom"]
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -79,7 +79,7 @@ def test_a_disagreement_is_reported_and_leaves_with_one(particle_record, monkeyp
     wrong = json.loads(particle_record)
     multipliers = next(e for e in wrong["derivations"][0]["equations"] if e["id"] == "multipliers")
     multipliers["relations"][0]["right"] = ["Multiply", 2, multipliers["relations"][0]["right"]]
-    monkeypatch.setattr("holonom.record.ask", lambda *_, **__: json.dumps(wrong))
+    monkeypatch.setattr("holonom.record.read_record", lambda _: read_record(json.dumps(wrong)))
     monkeypatch.setattr("sys.argv", ["holonom", "check", str(particle_scene)])
     assert run() == 1
     assert "disagrees" in capsys.readouterr().out

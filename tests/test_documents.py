@@ -6,8 +6,10 @@ from pathlib import Path
 import pytest
 from jsonschema import Draft202012Validator
 
-from holonom.documents import SCHEMAS, Document, Publication, ask, is_document, read, schema
+from holonom.documents import SCHEMAS, Document, Publication, Question, ask, ask_all, is_document, read, schema
 from holonom.failures import Failure, HolonomError
+from holonom.maxima import DEFAULT_LIMITS, run_description
+from holonom.source import Source
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 PAPER, PENDULUM = EXAMPLES / "paper" / "paper.mac", EXAMPLES / "pendulum.mac"
@@ -98,3 +100,31 @@ def test_what_is_no_name_never_reaches_maxima(scene):
     with pytest.raises(HolonomError) as raised:
         ask(Document.FREE_MOTION, PAPER, scene)
     assert raised.value.failure is Failure.NOT_A_SCENE_NAME
+
+
+def test_one_run_writes_the_documents_of_several():
+    source = Source(EXAMPLES / "pendulum.mac")
+    scene = source.description().scenes[-1].name
+    no_series = Question(Document.MOTION_SERIES, (scene, -1, "automatic", None))
+    questions = [
+        Question(Document.RECORD),
+        no_series,
+        Question(Document.PROGRAM, (scene, "orthogonal")),
+        Question(Document.MOTION_SERIES, (scene, 5, "automatic", None)),
+        Question(Document.RECORD),
+    ]
+    together = ask_all(questions, source)
+    alone = [answer for each in questions for answer in ask_all([each], source)]
+    refusals = [(each.failure, each.refusal, each.detail) for each in (together.pop(1), alone.pop(1))]
+    assert refusals[0] == refusals[1]
+    assert refusals[0][0] is Failure.REFUSED
+    assert together == alone
+
+
+def test_documents_written_before_a_limit_are_kept():
+    description = Source(EXAMPLES / "bead.mac").description()
+    endless = "lambda([file], do print(file))"
+    writers = ["write_record", endless, "write_record"]
+    record, *broken_off = run_description(description.text, description.file, writers, DEFAULT_LIMITS, None)
+    read(Document.RECORD, record)
+    assert [each.failure for each in broken_off] == [Failure.TOO_MUCH_TEXT] * 2

@@ -19,7 +19,7 @@ import pytest
 import sympy as sp
 from scipy.optimize import least_squares
 
-from holonom.crosscheck import Verdict
+from holonom.crosscheck.report import Verdict
 from holonom.free_motion import Free, UniversalLaw, free_motion
 from holonom.sandbox import Limits
 

@@ -11,11 +11,12 @@ from ..language import ENGLISH, LANGUAGES, speaking
 from ..sandbox import Limits
 from ..supervisor import doing, time_to_limit
 from .group import holonom
+from .meanwhile import meanwhile
 from .options import DISAGREEMENT, present, publish, runs_scenes, takes_settings, writes_json
 from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile, as_given
 
 if TYPE_CHECKING:
-    from ..crosscheck import CheckReport
+    from ..crosscheck.report import CheckReport
     from ..record import Record
 
 TIME_TO_TELL = 1.0  # seconds that are kept for the verdicts found within a time limit
@@ -94,27 +95,40 @@ def check(
     limits: Limits,
 ) -> int:
     """Derive each SCENE and compare every equation with an independent SymPy evaluation."""
-    from ..crosscheck import Verdict, ask_motions, check_record, motion_verdicts
-    from ..crosscheck.points import fresh_seed
-    from ..record import derived_record
+    from ..crosscheck.questions import ask_for_check
+    from ..documents import Document, Question, written
     from ..source import Source
+
+    sources = [Source(scene, limits) for scene in scenes]
+    record = Question(Document.RECORD, (closed_form_size,))
+    with meanwhile(scenes[0], limits, _import_what_checks):
+        asked = [ask_for_check(source, settings, [record]) for source in sources]
+
+    from ..crosscheck.check import check_record
+    from ..crosscheck.motions import motion_verdicts, read_motions
+    from ..crosscheck.points import fresh_seed
+    from ..crosscheck.report import Verdict
+    from ..record import read_record
     from .tables.derivation import show_reports
 
     seed = seed or fresh_seed()
-    sources = [Source(scene, limits) for scene in scenes]
-    records = [derived_record(source, settings, limits, closed_form_size) for source in sources]
-    programs = [ask_motions(source, settings) for source in sources]
     reports = []
     with doing("checking with SymPy"):
-        for source, record, written in zip(sources, records, programs, strict=True):
+        for source, answers in zip(sources, asked, strict=True):
             said, left = source.description(settings), time_to_limit() - TIME_TO_TELL
-            report = check_record(record, said, seed, closed_form_size, left)
-            motions = motion_verdicts(said, written, seed, time_to_limit() - TIME_TO_TELL)
-            reports.append((as_given(source.file), report.with_verdicts(motions)))
+            report = check_record(read_record(written(*answers.others)), said, seed, closed_form_size, left)
+            motions = read_motions(said, answers)
+            verdicts = motion_verdicts(said, motions, seed, time_to_limit() - TIME_TO_TELL)
+            reports.append((as_given(source.file), report.with_verdicts(verdicts)))
     documents = [_report_document(scene, report) for scene, report in reports]
     present(documents[0] if len(documents) == 1 else documents, json_file, show_reports, reports)
     unwanted = (Verdict.DISAGREES,) if allow_undecided else (Verdict.DISAGREES, Verdict.UNDECIDED)
     return DISAGREEMENT if any(report.count(*unwanted) for _, report in reports) else 0
+
+
+def _import_what_checks() -> None:
+    """Import SymPy, and what needs it."""
+    from ..crosscheck import check, lagranges_method, motions  # noqa: F401
 
 
 @holonom.command()
@@ -150,7 +164,7 @@ def _publish_document(record: "Record", tex_file: Path | None) -> None:
 
 
 def _report_document(scene: str, report: "CheckReport") -> dict[str, Any]:
-    from ..crosscheck import Verdict
+    from ..crosscheck.report import Verdict
     from ..documents import Publication, published
     from .tables.derivation import why_left_out
 

@@ -43,7 +43,7 @@ def free(
     with meanwhile(scene_file, limits, _import_what_follows):
         text = ask(Document.FREE_MOTION, scene_file, request.scene, order, settings=request.settings, limits=limits)
 
-    from ..crosscheck import Verdict
+    from ..crosscheck.report import Verdict
     from ..free_motion import read_free_motion
     from .tables.free_motion import show_free_motion
 

@@ -5,8 +5,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..crosscheck import EquationVerdict, Verdict
 from ..crosscheck.lagranges_method import OPINION
+from ..crosscheck.report import EquationVerdict, Verdict
 from ..errata import PrintedEquation
 from ..language import translatable
 from ..record import Equation, Scene

@@ -13,7 +13,8 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-from ..crosscheck import CheckReport, check_record
+from ..crosscheck.check import check_record
+from ..crosscheck.report import CheckReport
 from ..errata import errata
 from ..failures import Failure, HolonomError
 from ..free_motion import FreeMotion, free_motion

@@ -3,9 +3,3 @@
 The record is Maxima's word. What is compared with it is made here, by SymPy, from the system's
 description only; the two meet in the comparison and nowhere before.
 """
-
-from .check import check_record
-from .motions import ask_motions, motion_verdicts
-from .report import CheckReport, EquationVerdict, Verdict
-
-__all__ = ["CheckReport", "EquationVerdict", "Verdict", "ask_motions", "check_record", "motion_verdicts"]

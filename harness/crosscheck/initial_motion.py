@@ -18,10 +18,11 @@ from ..description import DescribedScene
 from ..record import Relation, Scene
 from .claims import NotComparable, list_of, solved_for
 from .derivation import DerivationClaims
+from .digits import WORKING_DIGITS
 from .evaluation import Steps
 from .independent import IndependentEquations
 from .system import MechanicalSystem, exact, history, initial
-from .verdict import WORKING_DIGITS, Comparison, Pair
+from .verdict import Comparison, Pair
 
 STATED_DIGITS = 2
 """Digits in which a stated correction is the one that was made."""

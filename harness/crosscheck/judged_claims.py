@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator
 
 from mpmath import mp
 
+from .digits import DIGITS, WORKING_DIGITS
 from .motion_states import Claim
 from .points import IrregularPoint
-from .verdict import DIGITS, WORKING_DIGITS
 
 VANISHED = 2 * DIGITS // 3  # digits by which a difference shrinks in twice the digits where it is rounding
 

@@ -10,6 +10,7 @@ from mpmath import mp
 from ..program.motion_problem import MotionProblem, computing
 from ..program.motion_program import Name, Program, Solve
 from .described_motion import DescribedMotion
+from .digits import WORKING_DIGITS
 from .judged_claims import Parts, differing
 from .law import Law
 from .motion_start import START_DIGITS, claims_of_start, nearer_start
@@ -18,7 +19,6 @@ from .points import IrregularPoint
 from .program_values import outputs_of, run
 from .switches import law_instants
 from .taylor import Taylor
-from .verdict import WORKING_DIGITS
 
 PREMISES = "start, time span, laws, controls and events of the motion"
 LAW = Taylor(3)

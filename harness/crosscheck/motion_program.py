@@ -12,24 +12,22 @@ from dataclasses import dataclass, field
 from mpmath import mp
 
 from ..description import DescribedScene, Description
-from ..documents import Document, ask
 from ..failures import Failure, HolonomError
 from ..program.motion_problem import MotionProblem, read_problem
 from ..program.motion_program import Program, Solve, read_program
-from ..source import Source
 from . import motion_states as states
 from .described_motion import DescribedMotion
+from .digits import DIGITS
 from .judged_claims import Parts, first_differences
 from .motion_premises import PREMISES, claims_of_inputs, other_premises
 from .motion_states import STATE, Claim, States
 from .points import IrregularPoint
 from .program_values import Values, run
+from .questions import Answer, SceneAndSolve, holds_special_functions, is_closed
 from .report import Verdict
-from .taylor import SPECIAL
-from .verdict import DIGITS, POINTS, Judgement
+from .verdict import POINTS, Judgement
 
 ATTEMPTS = 6  # draws for each state before the search for a regular one is given up
-PROBLEM_DIGITS = DIGITS + 20  # of the numbers that a document of a motion holds
 
 
 @dataclass(frozen=True)
@@ -39,10 +37,12 @@ class ScenePrograms:
     scene: str | None
     problems: Mapping[Solve, MotionProblem] = field(default_factory=dict)  # where the controls have laws
     programs: Mapping[Solve, Program] = field(default_factory=dict)  # where they have none
-    refusals: Mapping[Solve, str] = field(default_factory=dict)
+    missing: Mapping[Solve, Judgement] = field(default_factory=dict)
 
 
-OF_SPECIAL_FUNCTIONS = "special functions of the time are not compared in 50 digits"
+OF_SPECIAL_FUNCTIONS = Judgement(
+    Verdict.NOTHING, None, None, "special functions of the time are not compared in 50 digits"
+)
 
 
 @dataclass(frozen=True)
@@ -54,52 +54,32 @@ class ProgramVerdict:
     found: Judgement
 
 
-# ---- asking ----
-
-
-def ask_programs(source: Source, settings: Mapping[str, str]) -> list[ScenePrograms]:
-    """Ask Maxima for the programs of all scenes of a description, or for those of its system if it has none."""
-    description = source.description(settings)
-    scenes = description.scenes or (None,)
-    return [_programs_of(source, settings, description, scene) for scene in scenes]
+def read_programs(description: Description, answers: Mapping[SceneAndSolve, Answer]) -> list[ScenePrograms]:
+    """Read what Maxima answers; raises where that is no document."""
+    return [_programs_of(description, scene, answers) for scene in description.scenes or (None,)]
 
 
 def _programs_of(
-    source: Source, settings: Mapping[str, str], description: Description, scene: DescribedScene | None
+    description: Description, scene: DescribedScene | None, answers: Mapping[SceneAndSolve, Answer]
 ) -> ScenePrograms:
     name = scene and scene.name
     if holds_special_functions(description):
-        return ScenePrograms(name, refusals=dict.fromkeys(Solve, OF_SPECIAL_FUNCTIONS))
-    closed = scene is not None and _is_closed(description, scene)
-    found: dict[Solve, object] = {}
-    refusals: dict[Solve, str] = {}
-    for solve in Solve:
-        try:
-            if closed:
-                text = ask(Document.MOTION_PROBLEM, source, name, solve, PROBLEM_DIGITS, (), settings=settings)
-                found[solve] = read_problem(text)
-            else:
-                found[solve] = read_program(ask(Document.PROGRAM, source, name, solve, settings=settings))
-        except HolonomError as refusal:
-            if refusal.failure is not Failure.REFUSED:
-                raise
-            refusals[solve] = refusal.said
-    return ScenePrograms(name, **{"problems" if closed else "programs": found}, refusals=refusals)
+        return ScenePrograms(name, missing=dict.fromkeys(Solve, OF_SPECIAL_FUNCTIONS))
+    own = {solve: answers[name, solve] for solve in Solve}
+    missing = {solve: why_missing(answer) for solve, answer in own.items() if isinstance(answer, HolonomError)}
+    closed = is_closed(description, scene)
+    read = read_problem if closed else read_program
+    found = {solve: read(answer) for solve, answer in own.items() if solve not in missing}
+    return ScenePrograms(name, **{"problems" if closed else "programs": found}, missing=missing)
 
 
-def holds_special_functions(description: Description) -> bool:
-    """Return True if a description has a special function of the time, which Maxima takes minutes for in 50 digits."""
-    return any(f'"{head}"' in description.text for head in SPECIAL)
-
-
-def _is_closed(description: Description, scene: DescribedScene) -> bool:
-    """Whether nothing of a motion is left open."""
-    free = [name for name in description.system.controls if name not in scene.control_law]
-    found = scene.prescribed_reactions or scene.servo_trees
-    return (not free or bool(found)) and set(description.system.parameters) <= set(scene.parameter_values)
-
-
-# ---- judging ----
+def why_missing(error: HolonomError) -> Judgement:
+    """The verdict where Maxima has written nothing; raises what is neither a refusal nor a limit."""
+    if error.failure is Failure.REFUSED:
+        return Judgement(Verdict.NOTHING, None, None, error.said)
+    if error.failure in (Failure.TOO_LONG, Failure.TOO_LARGE):
+        return Judgement(Verdict.UNDECIDED, None, None, error.said)
+    raise error
 
 
 def judge_programs(description: Description, programs: Iterable[ScenePrograms], seed: str) -> list[ProgramVerdict]:
@@ -118,9 +98,8 @@ def judge_programs(description: Description, programs: Iterable[ScenePrograms], 
     verdicts = []
     for each in programs:
         motion = DescribedMotion(description, scenes.get(each.scene))
-        for solve, refusal in each.refusals.items():
-            nothing = Judgement(Verdict.NOTHING, None, None, refusal)
-            verdicts.append(ProgramVerdict(each.scene, f"motion program, {solve} solve", nothing))
+        for solve, judged in each.missing.items():
+            verdicts.append(ProgramVerdict(each.scene, f"motion program, {solve} solve", judged))
         if each.problems:
             verdicts += _judge_problems(motion, each, seed)
         for solve, program in each.programs.items():

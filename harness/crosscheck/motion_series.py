@@ -8,31 +8,30 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 
 from mpmath import mp
 
-from ..description import DescribedScene, Description
-from ..failures import Failure, HolonomError
+from ..description import Description
+from ..failures import HolonomError
 from ..mathjson import number, numbers
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Solve
-from ..series.power_series import AUTOMATIC, EXACT, MotionSeries, SeriesRequest, compute_series
-from ..source import Source
+from ..series.power_series import EXACT, MotionSeries, read_series
 from .described_motion import DescribedMotion, Residual
+from .digits import DIGITS
 from .judged_claims import differing
-from .motion_program import OF_SPECIAL_FUNCTIONS, ProgramVerdict, ScenePrograms, holds_special_functions
+from .motion_program import OF_SPECIAL_FUNCTIONS, ProgramVerdict, ScenePrograms, why_missing
 from .motion_start import claims_of_start
 from .motion_states import Claim
 from .points import IrregularPoint
 from .program_values import Values, letters_of_tables, run_along, with_signs
+from .questions import ORDER, Answer, holds_special_functions
 from .report import Verdict
 from .taylor import Polynomial, Taylor
-from .verdict import DIGITS, Judgement
+from .verdict import Judgement
 
-ORDER = 7  # of the series
-MOST_COORDINATES = 100  # of a series: Maxima takes a minute for that of 512 bodies
 PERTURBATIONS = 3  # of all coefficients, by which the effect of rounding them is found
 LOST = 8  # digits that a rounded coefficient may lose on its way into the equations
 SERIES, SERVO = "power series", "servo-constraints, along the motion"
@@ -44,31 +43,23 @@ class SceneSeries:
 
     scene: str
     series: MotionSeries | None
-    refusal: str = ""
+    missing: Judgement | None = None
 
 
-def ask_series(source: Source, settings: Mapping[str, str]) -> list[SceneSeries]:
-    """Ask Maxima for the power series of all scenes of a description."""
-    return [_series_of(source, settings, scene) for scene in source.description(settings).scenes]
+def read_all_series(description: Description, answers: Mapping[str, Answer]) -> list[SceneSeries]:
+    """Read what Maxima answers; raises where that is no document."""
+    return [_series_of(description, scene.name, answers.get(scene.name)) for scene in description.scenes]
 
 
-def _series_of(source: Source, settings: Mapping[str, str], scene: DescribedScene) -> SceneSeries:
-    description = source.description(settings)
+def _series_of(description: Description, scene: str, answer: Answer | None) -> SceneSeries:
+    if isinstance(answer, str):
+        return SceneSeries(scene, read_series(answer))
+    if isinstance(answer, HolonomError):
+        return SceneSeries(scene, None, why_missing(answer))
     if holds_special_functions(description):
-        return SceneSeries(scene.name, None, OF_SPECIAL_FUNCTIONS)
-    coordinates = len(description.system.coordinates)
-    if coordinates > MOST_COORDINATES:
-        return SceneSeries(scene.name, None, f"no power series of {coordinates} coordinates is asked for")
-    request = SeriesRequest(ORDER, scene.name, AUTOMATIC, settings=settings)
-    try:
-        series = compute_series(source, request, source.limits)
-        if series.arithmetic != EXACT:
-            series = compute_series(source, replace(request, digits=DIGITS + LOST), source.limits)
-        return SceneSeries(scene.name, series)
-    except HolonomError as refusal:
-        if refusal.failure not in (Failure.REFUSED, Failure.TOO_LONG, Failure.TOO_LARGE):
-            raise
-        return SceneSeries(scene.name, None, refusal.said)
+        return SceneSeries(scene, None, OF_SPECIAL_FUNCTIONS)
+    said = f"no power series of {len(description.system.coordinates)} coordinates is asked for"
+    return SceneSeries(scene, None, Judgement(Verdict.NOTHING, None, None, said))
 
 
 def judge_series(
@@ -85,7 +76,7 @@ def judge_series(
         if scenes[each.scene].servo_trees:
             continue  # the series does not hold the controls: `judge_servo` looks at it
         if each.series is None:
-            judged = Judgement(Verdict.NOTHING, None, None, each.refusal)
+            judged = each.missing
         else:
             motion = DescribedMotion(description, scenes[each.scene])
             series, digits = each.series, _digits(each.series)

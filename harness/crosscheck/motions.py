@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from ..description import Description
-from ..source import Source
-from .motion_program import ProgramVerdict, ScenePrograms, ask_programs, judge_programs
-from .motion_series import SceneSeries, ask_series, judge_series, judge_servo
+from .motion_program import ProgramVerdict, ScenePrograms, judge_programs, read_programs
+from .motion_series import SceneSeries, judge_series, judge_servo, read_all_series
+from .questions import Answers
 from .report import EquationVerdict, Verdict
 from .time_limit import TimeLimit
 from .verdict import Judgement
@@ -23,9 +23,9 @@ class Motions:
     series: Sequence[SceneSeries]
 
 
-def ask_motions(source: Source, settings: Mapping[str, str]) -> Motions:
-    """Ask Maxima for the programs and the power series of all scenes."""
-    return Motions(ask_programs(source, settings), ask_series(source, settings))
+def read_motions(description: Description, answers: Answers) -> Motions:
+    """Read what Maxima answers about a description; raises where that is no document."""
+    return Motions(read_programs(description, answers.programs), read_all_series(description, answers.series))
 
 
 def motion_verdicts(

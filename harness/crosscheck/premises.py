@@ -14,13 +14,13 @@ from ..description import DescribedScene, Description
 from ..failures import HolonomError
 from ..record import Record, Scene
 from .described_motion import DescribedMotion
+from .digits import CONFIRMING_DIGITS, DIGITS, WORKING_DIGITS
 from .evaluation import Steps
 from .law import Law, is_switched
 from .motion_start import nearer_start
 from .points import IrregularPoint
 from .system import exact
 from .taylor import Taylor
-from .verdict import CONFIRMING_DIGITS, DIGITS, WORKING_DIGITS
 
 INSTANTS = 4
 """Instants after the first at which a law that is held around it is that which is stated."""

@@ -14,13 +14,14 @@ from typing import NamedTuple
 import sympy as sp
 from mpmath import mp
 
+from .digits import DIGITS, WORKING_DIGITS
 from .draws import Point
 from .evaluation import Number, Steps
 from .points import random_point
 from .ranks import Elimination, Row, least_solution
 from .report import Verdict
 from .system import MechanicalSystem, gradient
-from .verdict import DIGITS, WORKING_DIGITS, Judgement
+from .verdict import Judgement
 
 STEP = sp.Rational(1, 1000)
 """Of the random step away from a start, in terms of the random numbers up to two."""

@@ -15,13 +15,14 @@ from functools import partial
 import sympy as sp
 from mpmath import mp
 
+from .digits import DIGITS, WORKING_DIGITS
 from .independent import IndependentEquations
 from .linear import LinearEquations
 from .manifold import moved_onto, valuation
 from .points import IrregularPoint, Valuation, fresh_seed, random_point
 from .report import Verdict
 from .system import MechanicalSystem, dotted
-from .verdict import DIGITS, POINTS, WORKING_DIGITS, Judgement, confirmed
+from .verdict import POINTS, Judgement, confirmed
 
 DRAWS = 40
 """Draws for each state before the search for a regular one is given up."""

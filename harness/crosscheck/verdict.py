@@ -23,21 +23,13 @@ import sympy as sp
 from mpmath import mp
 
 from .branches import Branches, branches_of
+from .digits import CONFIRMING_DIGITS, DIGITS, WORKING_DIGITS
 from .draws import Draws, Point
 from .evaluation import Number, Steps, Values
 from .independent_functions import with_independent_functions
 from .linear import LinearEquations
 from .normal_form import is_identically_zero
 from .report import Verdict
-
-DIGITS = 50
-"""Digits to which two values agree at least."""
-
-WORKING_DIGITS = DIGITS + 20
-"""Digits carried, so that cancellation and a linear solve leave the stated ones untouched."""
-
-CONFIRMING_DIGITS = 3 * WORKING_DIGITS
-"""Digits in which each point is taken again."""
 
 SHOWN = 12
 """Digits of two values that differ; more if these are equal."""

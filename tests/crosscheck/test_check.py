@@ -9,9 +9,10 @@ import dataclasses
 import pytest
 import sympy as sp
 
-from holonom.crosscheck import EquationVerdict, Verdict, check_record
+from holonom.crosscheck.check import check_record
 from holonom.crosscheck.draws import Draws
 from holonom.crosscheck.points import fresh_seed, random_point
+from holonom.crosscheck.report import EquationVerdict, Verdict
 from holonom.crosscheck.verdict import Comparison, Pair, judge
 from holonom.description import Description
 from holonom.record import Equation, Record, Relation

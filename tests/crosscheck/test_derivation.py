@@ -4,10 +4,10 @@ import dataclasses
 
 import pytest
 
-from holonom.crosscheck import Verdict
 from holonom.crosscheck.claims import NotComparable
 from holonom.crosscheck.derivation import COMPARISONS, DerivationClaims
 from holonom.crosscheck.independent import IndependentEquations
+from holonom.crosscheck.report import Verdict
 from holonom.crosscheck.system import described_system
 from holonom.crosscheck.verdict import judge
 from holonom.record import Equation, Record, Relation

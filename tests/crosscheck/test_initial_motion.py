@@ -4,11 +4,11 @@ import dataclasses
 
 import pytest
 
-from holonom.crosscheck import Verdict
 from holonom.crosscheck.claims import NotComparable
 from holonom.crosscheck.derivation import DerivationClaims
 from holonom.crosscheck.independent import IndependentEquations
 from holonom.crosscheck.initial_motion import COMPARISONS, SceneClaims
+from holonom.crosscheck.report import Verdict
 from holonom.crosscheck.system import described_system
 from holonom.crosscheck.verdict import judge_all
 from holonom.description import Description

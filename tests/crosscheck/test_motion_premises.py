@@ -6,13 +6,15 @@ from fractions import Fraction
 import pytest
 from mpmath import mp
 
-from holonom.crosscheck import Verdict
 from holonom.crosscheck.described_motion import DescribedMotion
-from holonom.crosscheck.motion_program import ask_programs, judge_programs
-from holonom.crosscheck.motion_series import ask_series, judge_series
+from holonom.crosscheck.digits import WORKING_DIGITS
+from holonom.crosscheck.motion_program import judge_programs
+from holonom.crosscheck.motion_series import judge_series
 from holonom.crosscheck.motion_start import nearer_start
+from holonom.crosscheck.motions import read_motions
+from holonom.crosscheck.questions import ask_for_check
+from holonom.crosscheck.report import Verdict
 from holonom.crosscheck.switches import law_instants
-from holonom.crosscheck.verdict import WORKING_DIGITS
 from holonom.program.motion_program import Call, Name, Operation, Solve
 from holonom.source import Source
 
@@ -30,7 +32,8 @@ def asked(tmp_path_factory):
     file = tmp_path_factory.mktemp("premises") / "scene.mac"
     file.write_text(SCENE, encoding="utf-8")
     source = Source(file)
-    return source.description(), ask_programs(source, {})[0], ask_series(source, {})[0]
+    motions = read_motions(source.description(), ask_for_check(source, {}))
+    return source.description(), motions.programs[0], motions.series[0]
 
 
 def judged(description, programs, **changes):

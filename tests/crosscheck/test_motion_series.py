@@ -7,10 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from holonom.crosscheck import Verdict
-from holonom.crosscheck.motion_program import ScenePrograms, ask_programs
-from holonom.crosscheck.motion_series import SceneSeries, ask_series, judge_series, judge_servo
+from holonom.crosscheck.motion_program import ScenePrograms
+from holonom.crosscheck.motion_series import SceneSeries, judge_series, judge_servo
+from holonom.crosscheck.motions import read_motions
+from holonom.crosscheck.questions import ask_for_check
+from holonom.crosscheck.report import Verdict
 from holonom.program.motion_program import Call, Operation, Solve
+from holonom.series.power_series import EXACT
 from holonom.source import Source
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -22,9 +25,10 @@ EACH = 6  # wrong series of each file
 @pytest.mark.parametrize("name", FILES)
 def test_right_series_agree_and_wrong_ones_are_found(name):
     source = Source(EXAMPLES / f"{name}.mac")
-    found = ask_series(source, {})
+    found = read_motions(source.description(), ask_for_check(source, {})).series
     verdicts = judge_series(source.description(), found)
-    assert {(each.found.verdict, each.found.digits) for each in verdicts} == {(Verdict.AGREES, 50)}
+    digits = [50 if each.series.arithmetic == EXACT else 22 for each in found]
+    assert [(each.found.verdict, each.found.digits) for each in verdicts] == [(Verdict.AGREES, n) for n in digits]
     draw = random.Random(name)
     for _ in range(EACH):
         wrong = changed(draw.choice(found), draw)
@@ -46,7 +50,8 @@ def changed(found: SceneSeries, draw: random.Random) -> SceneSeries:
 @pytest.mark.parametrize("name", ["arm", "overhead_crane"])
 def test_wrong_controls_of_servo_constraints_are_found(name):
     source = Source(EXAMPLES / f"{name}.mac")
-    series, (*_, programs) = ask_series(source, {}), ask_programs(source, {})
+    motions = read_motions(source.description(), ask_for_check(source, {}))
+    series, (*_, programs) = motions.series, motions.programs
     description = source.description()
     assert [each.found.verdict for each in judge_servo(description, [programs], series)] == [Verdict.AGREES]
     for control in set(description.system.controls) - set(description.scenes[-1].control_law):

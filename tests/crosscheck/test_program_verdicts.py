@@ -8,8 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from holonom.crosscheck import Verdict
-from holonom.crosscheck.motion_program import ScenePrograms, ask_programs, judge_programs
+from holonom.crosscheck.motion_program import ScenePrograms, judge_programs
+from holonom.crosscheck.motions import read_motions
+from holonom.crosscheck.questions import ask_for_check
+from holonom.crosscheck.report import Verdict
 from holonom.program.motion_problem import MotionProblem
 from holonom.program.motion_program import Call, Name, Operation, Program, Solve
 from holonom.source import Source
@@ -40,7 +42,7 @@ SINES = {
 
 def asked(file: Path) -> tuple[Source, list[ScenePrograms]]:
     source = Source(file)
-    return source, ask_programs(source, {})
+    return source, read_motions(source.description(), ask_for_check(source, {})).programs
 
 
 @pytest.fixture(scope="module")

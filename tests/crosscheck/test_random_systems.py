@@ -15,7 +15,8 @@ import pytest
 from hypothesis import HealthCheck, Phase, example, given, settings
 from hypothesis import strategies as st
 
-from holonom.crosscheck import Verdict, check_record
+from holonom.crosscheck.check import check_record
+from holonom.crosscheck.report import Verdict
 from holonom.record import derived_record
 from holonom.source import Source
 

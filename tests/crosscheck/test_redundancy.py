@@ -5,7 +5,7 @@ import dataclasses
 import pytest
 
 import holonom
-from holonom.crosscheck import check_record
+from holonom.crosscheck.check import check_record
 from holonom.crosscheck.report import Verdict
 
 SLIDE = """

@@ -4,7 +4,8 @@ import dataclasses
 
 import pytest
 
-from holonom.crosscheck import Verdict, check_record
+from holonom.crosscheck.check import check_record
+from holonom.crosscheck.report import Verdict
 from holonom.record import Record, derived_record
 from holonom.source import Source
 

@@ -5,7 +5,9 @@ from collections.abc import Callable
 
 import pytest
 
-from holonom.crosscheck import Verdict, check, check_record, lagranges_method
+from holonom.crosscheck import check, lagranges_method
+from holonom.crosscheck.check import check_record
+from holonom.crosscheck.report import Verdict
 from holonom.crosscheck.time_limit import TimeLimit
 from holonom.crosscheck.verdict import Judgement
 from holonom.description import Description

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from holonom import maxima
-from holonom.crosscheck import check_record
+from holonom.crosscheck.check import check_record
 from holonom.maxima import run_batch
 from holonom.record import derived_record, read_record
 from holonom.source import describe

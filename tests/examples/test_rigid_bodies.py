@@ -9,7 +9,7 @@ from refusing import refused
 from scipy.integrate import quad, solve_ivp
 
 import holonom
-from holonom.crosscheck import Verdict
+from holonom.crosscheck.report import Verdict
 from holonom.simulation.result import Simulation
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

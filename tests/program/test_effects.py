@@ -12,7 +12,7 @@ from confinement import without_notice
 from programs import PENDULUM, document
 
 from holonom.cli import holonom
-from holonom.crosscheck import check_record
+from holonom.crosscheck.check import check_record
 from holonom.crosscheck.independent import IndependentEquations
 from holonom.crosscheck.points import Valuation, random_point
 from holonom.crosscheck.system import described_system

@@ -11,7 +11,7 @@ import sympy
 from refusing import refused
 
 import holonom
-from holonom.crosscheck import Verdict
+from holonom.crosscheck.report import Verdict
 from holonom.program.c_function import compile_c
 from holonom.program.heyoka_function import heyoka_function
 from holonom.program.numpy_function import NumpyFunction

@@ -18,7 +18,7 @@ from .condition import condition_lines
 from .text import PlainConsole, counted, styled
 
 if TYPE_CHECKING:
-    from ...crosscheck import CheckReport
+    from ...crosscheck.report import CheckReport
     from ...errata import PrintedEquation
     from ...record import Equation, LeftOut, Record, Relation
 

@@ -19,7 +19,10 @@ from evaluator import difference
 from mutants import ALGEBRA, CLASSES, mutant
 from scenes import OTHERS, written, written_texts
 
-from holonom.crosscheck import Verdict, ask_motions, check_record, motion_verdicts
+from holonom.crosscheck.check import check_record
+from holonom.crosscheck.motions import motion_verdicts, read_motions
+from holonom.crosscheck.questions import ask_for_check
+from holonom.crosscheck.report import Verdict
 from holonom.documents import Document, ask
 from holonom.failures import HolonomError
 from holonom.record import read_record
@@ -89,7 +92,7 @@ def of_other_scenes(folder, draw, count):
         true = TrueRecord("", json.loads(ask(Document.RECORD, described)), description)
         if difference(true.record, record):
             yield RECORD, what, held_up(record, true, what)
-        verdicts = motion_verdicts(description, ask_motions(other, {}), what)
+        verdicts = motion_verdicts(description, read_motions(other.description(), ask_for_check(other, {})), what)
         yield MOTION, what, "; ".join(each.detail for each in verdicts if each.verdict is Verdict.DISAGREES)
 
 

@@ -1,0 +1,10 @@
+"""Decimal digits of the comparison."""
+
+DIGITS = 50
+"""Digits to which two values agree at least."""
+
+WORKING_DIGITS = DIGITS + 20
+"""Digits carried, so that cancellation and a linear solve leave the stated ones untouched."""
+
+CONFIRMING_DIGITS = 3 * WORKING_DIGITS
+"""Digits in which each point is taken again."""

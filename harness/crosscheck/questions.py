@@ -1,0 +1,81 @@
+"""The questions of a check to Maxima: the programs of motions and their power series, in one run.
+
+Nothing of SymPy is loaded for it, so that SymPy is loaded while Maxima runs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from ..description import DescribedScene, Description
+from ..documents import Document, Question, ask_all
+from ..failures import HolonomError
+from ..program.motion_program import Solve
+from ..source import Source
+from .digits import WORKING_DIGITS
+from .taylor import SPECIAL
+
+ORDER = 7  # of power series
+MOST_COORDINATES = 100  # of a power series: Maxima takes a minute for that of 512 bodies
+
+Answer = str | HolonomError
+SceneAndSolve = tuple[str | None, Solve]
+
+
+class Answers(NamedTuple):
+    """Documents, or why there are none."""
+
+    others: Sequence[Answer]
+    programs: Mapping[SceneAndSolve, Answer]  # empty where none are asked for
+    series: Mapping[str, Answer]
+
+
+def ask_for_check(source: Source, settings: Mapping[str, str], others: Sequence[Question] = ()) -> Answers:
+    """Ask Maxima for all that is checked of motions, and for other documents; raises as `holonom.documents.ask_all`."""
+    description = source.description(settings)
+    programs, series = _programs(description), _series(description)
+    answers = iter(ask_all([*others, *programs.values(), *series.values()], source, settings))
+    return Answers(
+        [next(answers) for _ in others],
+        {each: next(answers) for each in programs},
+        {each: next(answers) for each in series},
+    )
+
+
+def holds_special_functions(description: Description) -> bool:
+    """Return True if a description has a special function of the time, which Maxima takes minutes for in 50 digits."""
+    return any(f'"{head}"' in description.text for head in SPECIAL)
+
+
+def is_closed(description: Description, scene: DescribedScene | None) -> bool:
+    """Return True if there is a motion of which nothing is left open."""
+    if scene is None:
+        return False
+    free = [name for name in description.system.controls if name not in scene.control_law]
+    found = scene.prescribed_reactions or scene.servo_trees
+    return (not free or bool(found)) and set(description.system.parameters) <= set(scene.parameter_values)
+
+
+def _programs(description: Description) -> dict[SceneAndSolve, Question]:
+    """Of all scenes, or of the system if there is none."""
+    if holds_special_functions(description):
+        return {}
+    scenes: Sequence[DescribedScene | None] = description.scenes or (None,)
+    return {(scene and scene.name, solve): _program(description, scene, solve) for scene in scenes for solve in Solve}
+
+
+def _program(description: Description, scene: DescribedScene | None, solve: Solve) -> Question:
+    name = scene and scene.name
+    if is_closed(description, scene):
+        return Question(Document.MOTION_PROBLEM, (name, solve, WORKING_DIGITS, ()))
+    return Question(Document.PROGRAM, (name, solve))
+
+
+def _series(description: Description) -> dict[str, Question]:
+    if holds_special_functions(description) or len(description.system.coordinates) > MOST_COORDINATES:
+        return {}
+    return {
+        scene.name: Question(Document.MOTION_SERIES, (scene.name, ORDER, "automatic", None))
+        for scene in description.scenes
+    }
