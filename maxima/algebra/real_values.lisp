@@ -1,0 +1,43 @@
+;;; Parts of an expression that are not real: what a description must not contain
+;;;
+;;; Text, truth values, %i, infinities, lists, relations and constants such as log(-2) and asin(2).
+
+(in-package :maxima)
+
+(defvar *unreal-symbols* '($%i $inf $minf $infinity $und $ind $unknown t nil))
+
+(defvar *unreal-operators* '(mlist $matrix $set mequal mnotequal mlessp mleqp mgreaterp mgeqp mand mor mnot lambda))
+
+(defvar *partial-functions* '(mexpt %log %asin %acos %acosh %atanh %asec %acsc %asech %acoth)
+  "Functions with real arguments and no real value there.")
+
+(defun $unreal_parts (e)
+  "A list of the first part that is not real, empty if there is none."
+  (cons '(mlist) (catch 'unreal (require-real-parts e) nil)))
+
+(defun require-real-parts (e)
+  (cond ((or (stringp e) (and (symbolp e) (member e *unreal-symbols*))) (throw 'unreal (list e)))
+        ((or (atom e) (member (caar e) '(bigfloat rat $cubic_spline))) nil)
+        ((member (caar e) *unreal-operators*) (throw 'unreal (list e)))
+        ((eq (caar e) 'mcond)
+         (do ((rest (cdr e) (cddr rest))) ((null rest)) (if (second rest) (require-real-parts (second rest)))))
+        (t (mapc #'require-real-parts (cdr e))
+           (if (and (member (caar e) *partial-functions*) (null (cdr ($listofvars e))) (not (real-constant-p e)))
+               (throw 'unreal (list e))))))
+
+(defun real-constant-p (e)
+  (let* (($errormsg nil)
+         (found (errset ($rectform ($bfloat e))))
+         (imaginary (if found ($float ($imagpart (car found))))))
+    (and found (not (and (floatp imaginary) (> (abs imaginary) 1d-20))))))
+
+(defun $partial_functions_of (names e)
+  "A list of the powers, roots, logarithms and inverse functions in an expression that contain these names and no others."
+  (let ((found nil) (known (cdr names)))
+    (labels ((contents (e)
+               (cond ((atom e) (if (and (symbolp e) (not ($constantp e))) (if (member e known) 'known 'other)))
+                     (t (let ((inside (remove nil (mapcar #'contents (cdr e)))))
+                          (cond ((member 'other inside) 'other)
+                                (inside (if (member (caar e) *partial-functions*) (push e found)) 'known)))))))
+      (contents e))
+    (cons '(mlist) (nreverse found))))
