@@ -1,7 +1,10 @@
 """The commands that derive and compare: derive, check, errata."""
 
+import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +20,7 @@ from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile, as_given
 
 if TYPE_CHECKING:
     from ..crosscheck.report import CheckReport
+    from ..description import Description
     from ..record import Record
 
 TIME_TO_TELL = 1.0  # seconds that are kept for the verdicts found within a time limit
@@ -102,6 +106,8 @@ def check(
     sources = [Source(scene, limits) for scene in scenes]
     record = Question(Document.RECORD, (closed_form_size,))
     with meanwhile(scenes[0], limits, _import_what_checks):
+        described = [source.description(settings) for source in sources]
+    with meanwhile(scenes[0], limits, partial(_derive_beforehand, described)):
         asked = [ask_for_check(source, settings, [record]) for source in sources]
 
     from ..crosscheck.check import check_record
@@ -114,8 +120,8 @@ def check(
     seed = seed or fresh_seed()
     reports = []
     with doing("checking with SymPy"):
-        for source, answers in zip(sources, asked, strict=True):
-            said, left = source.description(settings), time_to_limit() - TIME_TO_TELL
+        for source, said, answers in zip(sources, described, asked, strict=True):
+            left = time_to_limit() - TIME_TO_TELL
             report = check_record(read_record(written(*answers.others)), said, seed, closed_form_size, left)
             motions = read_motions(said, answers)
             verdicts = motion_verdicts(said, motions, seed, time_to_limit() - TIME_TO_TELL)
@@ -129,6 +135,22 @@ def check(
 def _import_what_checks() -> None:
     """Import SymPy, and what needs it."""
     from ..crosscheck import check, lagranges_method, motions  # noqa: F401
+    from ..program import drawing  # noqa: F401
+
+
+def _derive_beforehand(descriptions: Sequence["Description"]) -> None:
+    """Have SymPy form Lagrange's equations, which are kept; no time limit would interrupt it here."""
+    if math.isfinite(time_to_limit()):
+        return
+    from ..crosscheck.lagranges_method import bordered_equations, can_take
+    from ..crosscheck.system import described_system
+
+    for each in descriptions:
+        for effects in {scene.effects for scene in each.scenes}:
+            system = described_system(each.system, effects)
+            if can_take(system):
+                with suppress(Exception):  # it fails again where it is compared
+                    bordered_equations(system)
 
 
 @holonom.command()

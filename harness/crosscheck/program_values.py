@@ -15,10 +15,13 @@ from mpmath.libmp import (
     from_rational,
     fzero,
     mpf_add,
+    mpf_cos,
     mpf_div,
+    mpf_exp,
     mpf_mul,
     mpf_neg,
     mpf_pow_int,
+    mpf_sin,
     mpf_sub,
     round_nearest,
     to_rational,
@@ -33,6 +36,7 @@ from .taylor import Polynomial, Taylor
 Values = dict[str, Polynomial]
 Number = tuple  # sign, mantissa, exponent, bits of the mantissa, as mpmath keeps a number
 STATE = Taylor(0)
+ENTIRE = {Operation.SIN: mpf_sin, Operation.COS: mpf_cos, Operation.EXP: mpf_exp}
 LARGEST_POWER = 64  # up to which a power is made of products
 
 
@@ -125,6 +129,8 @@ def _is_whole(exponent: Expression) -> bool:
 
 
 def _of_function(operation: Operation, x: list[Number]) -> Number:
+    if operation in ENTIRE:
+        return ENTIRE[operation](x[0], mp.prec, round_nearest)
     (found,) = value_of(STATE, str(operation), [(mp.make_mpf(each),) for each in x])
     if isinstance(found, mp.mpf) and mp.isfinite(found):
         return found._mpf_
