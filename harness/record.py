@@ -51,6 +51,9 @@ class Equation:
     relations: tuple[Relation, ...]  # its components
 
 
+LARGEST_SIZE = 10**300  # predicted sizes beyond are said to be this
+
+
 class LeftOut(NamedTuple):
     """Equations that were not made."""
 

@@ -20,7 +20,7 @@ from holonom.cli.tables.derivation import why_left_out
 from holonom.crosscheck.report import Verdict
 from holonom.crosscheck.verdict import Judgement
 from holonom.failures import Failure, HolonomError
-from holonom.record import LeftOut, read_record
+from holonom.record import LARGEST_SIZE, LeftOut, read_record
 
 HOLONOM = [sys.executable, "-m", "holonom"]
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -247,6 +247,7 @@ def test_closed_forms_that_no_memory_holds_were_promised_by_an_option_of_thirty_
     """--closed-form-size 220755541336686592524288000000 was advised for a slider-crank of three bodies in space."""
     said = why_left_out(LeftOut(("4",), 220755541336686592524288000000, 500))
     assert said == "closed forms of 2e+29 terms are expected, more than closed_form_size = 500 and than memory holds"
+    assert why_left_out(LeftOut(("4",), LARGEST_SIZE, 500)).startswith("closed forms of 1e+300 terms or more")
 
 
 def test_equations_left_out_for_a_small_limit_were_called_missing(particle_scene, holonom_here):

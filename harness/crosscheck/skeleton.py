@@ -14,7 +14,7 @@ from typing import NamedTuple
 import sympy as sp
 
 from ..described import System
-from ..record import Derivation, Equation, Scene
+from ..record import LARGEST_SIZE, Derivation, Equation, Scene
 from ..trees import Tree
 from .displayed import displayed, operations, roots, size
 from .system import MechanicalSystem, gradient
@@ -99,8 +99,8 @@ def predicted_size(system: System, derived: Derivation, known: MechanicalSystem,
     length = size(described) * factorial(len(kept)) * (len(roots([described])) + 1)
     alone = length * factorial(_largest_block(known, False))
     if alone > limit or derived.mass_matrix == "regular":
-        return alone
-    return length * factorial(_largest_block(known, True))
+        return min(alone, LARGEST_SIZE)
+    return min(length * factorial(_largest_block(known, True)), LARGEST_SIZE)
 
 
 def _called(parts: Iterable, effects: Sequence[str]) -> list:

@@ -14,6 +14,7 @@ from rich.text import Text
 from ...hidden import visible_line
 from ...language import gettext, ngettext, translatable, translated
 from ...notation import scene_text
+from ...record import LARGEST_SIZE
 from .condition import condition_lines
 from .text import PlainConsole, counted, styled
 
@@ -109,7 +110,8 @@ def why_left_out(left_out: "LeftOut") -> str:
     """The sentence that says why equations were not made, and how to get them."""
     size, limit = left_out.size, f"more than closed_form_size = {left_out.limit}"
     if size > HELD_IN_MEMORY:
-        return f"closed forms of {size:.0e} terms are expected, {limit} and than memory holds"
+        terms = f"{size:.0e} terms{' or more' if size == LARGEST_SIZE else ''}"
+        return f"closed forms of {terms} are expected, {limit} and than memory holds"
     return (
         f"closed forms of {size} terms are expected, {limit}; "
         f"--closed-form-size {size} makes them, if time and memory suffice"
