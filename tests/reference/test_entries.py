@@ -88,7 +88,7 @@ def test_maxima_answers_as_the_text_says(answers, number):
 
 @pytest.mark.parametrize("function", [SYSTEM, SCENE], ids=lambda function: function.name)
 def test_every_entry_that_maxima_reads_is_explained(function):
-    source = "\n".join(file.read_text(encoding="utf-8") for file in Path(LIBRARY).glob("*.mac"))
+    source = "\n".join(file.read_text(encoding="utf-8") for file in Path(LIBRARY).rglob("*.mac"))
     reading = re.search(rf'read_entries\("{function.name}", entries,\s*\[(.*?)\],\s*\[(.*?)\]\)', source, re.DOTALL)
     known = re.findall(r"'(\w+) =", reading[1]) + re.findall(r"'(\w+)", reading[2])
     assert sorted(entry.name for entry in function.entries) == sorted(known)
