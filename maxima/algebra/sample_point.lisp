@@ -425,12 +425,11 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
 (defun landed (coordinate)
   (if (< (abs coordinate) *small-coordinate*) 0 coordinate))
 
-(defun $moved_point (point names)
-  "A point close by, moved in these names in a direction without symmetry."
-  (let ((moved (converted-point point #'identity)) (column 0))
-    (dolist (name (cdr names) moved)
-      (incf (gethash name (sample-point-symbols moved))
-            (/ (1+ (mod (* 7 (incf column)) 11)) 10007)))))
+(defun $moved_point (point shifts)
+  "The point moved by  name = number, ..."
+  (let ((moved (converted-point point #'identity)))
+    (dolist (shift (cdr shifts) moved)
+      (incf (gethash (second shift) (sample-point-symbols moved)) (rational-of (third shift))))))
 
 (defun converted-point (point conversion)
   "The point, its numbers converted, and nothing else known of it."
