@@ -7,6 +7,7 @@ initial jerks from the bordered system differentiated once more along the motion
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -258,27 +259,38 @@ def _for_all_states(
     symbols, residuals = set(symbols), list(residuals)
     known = {symbol for symbol in symbols if initial(symbol) in fixed}
     numbers = {symbol for symbol in known if fixed[initial(symbol)].is_number}
-    numbers = {x for x in _without_closed_form(numbers, residuals) if not _is_quadratic(claims, x, known, residuals)}
+    containing = _containing(known, residuals)
+    without = _without_closed_form(numbers, containing)
+    numbers = {x for x in without if not _is_quadratic(claims, x, known, containing[x])}
     for residual in residuals:
         present = residual.free_symbols & symbols
         if present & known and not (present & numbers and present - numbers):
             yield residual
 
 
-def _without_closed_form(numbers: set[sp.Symbol], residuals: Sequence[sp.Expr]) -> set[sp.Symbol]:
-    """Those of the symbols that share residuals with one that is not linear in them: others have a closed form."""
-    shared = [(residual, residual.free_symbols & numbers) for residual in residuals]
-    found = set().union(
-        *(within for residual, within in shared if any(residual.diff(x).free_symbols & within for x in within))
-    )
-    for _ in numbers:
-        found = found.union(*(within for _, within in shared if within & found))
+def _containing(symbols: set[sp.Symbol], residuals: Iterable[sp.Expr]) -> Mapping[sp.Symbol, list[sp.Expr]]:
+    """The residuals that contain each symbol."""
+    found: dict[sp.Symbol, list[sp.Expr]] = defaultdict(list)
+    for residual in residuals:
+        for symbol in residual.free_symbols & symbols:
+            found[symbol].append(residual)
     return found
 
 
-def _is_quadratic(claims: SceneClaims, x: sp.Symbol, known: set[sp.Symbol], residuals: Sequence[sp.Expr]) -> bool:
+def _without_closed_form(numbers: set[sp.Symbol], containing: Mapping[sp.Symbol, Sequence[sp.Expr]]) -> set[sp.Symbol]:
+    """Those of the symbols that share residuals with one that is not linear in them: others have a closed form."""
+    waiting = [x for x in numbers if any(residual.diff(x).free_symbols & numbers for residual in containing[x])]
+    found: set[sp.Symbol] = set()
+    while waiting:
+        x = waiting.pop()
+        if x not in found:
+            found.add(x)
+            waiting += [y for residual in containing[x] for y in residual.free_symbols & numbers]
+    return found
+
+
+def _is_quadratic(claims: SceneClaims, x: sp.Symbol, known: set[sp.Symbol], containing: Sequence[sp.Expr]) -> bool:
     """Whether a residual in the state alone fixes a symbol by a quadratic equation, whose root is a closed form."""
-    containing = [residual for residual in residuals if x in residual.free_symbols]
     if len(containing) != 1 or containing[0].free_symbols & known != {x}:
         return False
     state = {*claims.state, claims.system.time}

@@ -47,13 +47,13 @@ def claims_of_start(motion: DescribedMotion, start: State, correction: tuple[str
         if abs(start[name] - given) > allowed:
             yield Claim(f"initial value of {name}", start[name], given, abs(given))
     values = motion.values(RATE, _curve(motion, start))
-    sizes = motion.tape.sizes(RATE, values)
+    sizes, coordinates = motion.tape.sizes(RATE, values), set(motion.system.coordinates)
     for what, places in (("constraint", motion.constraints), ("servo-constraint", motion.outputs)):
         for beta, place in enumerate(places, 1):
             slopes = motion.tape.gradient(RATE, values, {place: (mp.one,)})
             for order, rate in enumerate(("", "rate of ")):
                 value, size = ((*each[place], mp.zero)[order] for each in (values, sizes))
-                size += mp.fsum(abs(x) for q in motion.system.coordinates for x in _changes(slopes, start, q, order))
+                size += mp.fsum(abs(x) for q in slopes.keys() & coordinates for x in _changes(slopes, start, q, order))
                 yield Claim(f"{rate}{what} {beta} at the start", value, mp.zero, size)
 
 

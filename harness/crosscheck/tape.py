@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import partial
+from heapq import heapify, heappop, heappush
 
 from mpmath import mp
 
@@ -32,6 +33,7 @@ class Tape:
         self.names: dict[str, int] = {}  # places of the quantities that they begin with
         self.numbers: dict[int, Fraction] = {}
         self._places: dict[object, int] = {}
+        self._named: dict[int, str] = {}  # names by their places
 
     def place(self, tree: Tree) -> int:
         """Place of an expression, which is added unless it is there.
@@ -71,7 +73,7 @@ class Tape:
 
     def _name(self, name: str) -> int:
         place = self._added("name", name)
-        self.names[name] = place
+        self.names[name], self._named[place] = place, name
         return place
 
     def _added(self, head: str, *arguments: object) -> int:
@@ -125,18 +127,20 @@ class Tape:
         self, taylor: Taylor, values: Sequence[Polynomial], seeds: Mapping[int, Polynomial]
     ) -> dict[str, Polynomial]:
         """Gradient, by name, of the sum of the operations at some places, each with a factor."""
-        adjoints: list[Polynomial | None] = [None] * len(self.operations)
-        for place, seed in seeds.items():
-            adjoints[place] = seed
-        for place in range(len(self.operations) - 1, -1, -1):
-            adjoint, (head, arguments) = adjoints[place], self.operations[place]
-            if adjoint is None or not arguments:
-                continue
-            for each, share in zip(arguments, _shares(taylor, head, arguments, values, place, adjoint), strict=True):
-                if share is not None:
-                    before = adjoints[each]
-                    adjoints[each] = share if before is None else taylor.add(before, share)
-        return {name: adjoints[place] for name, place in self.names.items() if adjoints[place] is not None}
+        adjoints = dict(seeds)
+        waiting = [-place for place in adjoints]  # the last first: it is an argument of none before
+        heapify(waiting)
+        while waiting:
+            place = -heappop(waiting)
+            head, arguments = self.operations[place]
+            shares = _shares(taylor, head, arguments, values, place, adjoints[place]) if arguments else ()
+            for each, share in zip(arguments, shares, strict=True):
+                if share is None:
+                    continue
+                if each not in adjoints:
+                    heappush(waiting, -each)
+                adjoints[each] = taylor.add(adjoints[each], share) if each in adjoints else share
+        return {self._named[place]: adjoint for place, adjoint in adjoints.items() if place in self._named}
 
 
 def _quantity(name: str, known: Mapping[str, Polynomial]) -> Polynomial:
