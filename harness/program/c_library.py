@@ -52,7 +52,7 @@ void {name}_values(double *p);
 /* The control law with its rates: {law}. Other controls are left as they are. */
 void {name}_law(double t, const double *p, double *u);
 
-/* Accelerations a and multipliers lambda; infinite or NAN where a pivot vanishes. */
+/* Accelerations a and multipliers lambda; infinite or NAN where a pivot vanishes, which is outside the range above. */
 void {name}_motion(double t, const double *q, const double *v, const double *u, const double *p,
     double *a, double *lambda);
 

@@ -135,7 +135,17 @@ def title_of(program: Program) -> str:
     """One line on what the program is."""
     scene = f" of {program.scene}" if program.scene else ""
     operations = f"{program.operations} operations, {program.solve} solve ({program.method})"
-    return f"Motion program{scene}: {operations}{_redundancy(program)}"
+    return f"Motion program{scene}: {operations}{_redundancy(program)}; {range_of(program)}"
+
+
+def range_of(program: Program) -> str:
+    """Return the states at which no pivot of the program vanishes."""
+    if program.method == "supported":
+        return "valid where forces and constraints determine the motion, if the rank of the mass matrix is constant"
+    return (
+        "valid where the constraints are independent and the mass matrix, apart from massless coordinates, is positive "
+        "definite"
+    )
 
 
 def _redundancy(program: Program) -> str:

@@ -17,6 +17,7 @@ from ..hidden import visible
 from ..temporary import private_directory
 from .c_function import compile_shared
 from .c_library import c_library
+from .c_source import range_of
 from .model import Model
 
 XML = "<?xml version='1.0' encoding='utf-8'?>\n"
@@ -74,7 +75,7 @@ def model_description(model: Model, name: str, token: str) -> ElementTree.Elemen
         "fmiModelDescription",
         fmiVersion="3.0",
         modelName=model.title,
-        description=model.system,
+        description=f"{model.system}; {range_of(model.motion)}",
         instantiationToken=token,
         generationTool="Holonom",
         variableNamingConvention="flat",

@@ -60,6 +60,7 @@
 
 (defstruct sample-point
   (symbols (make-hash-table))              ; symbol -> rational
+  (scattered nil)                          ; whether other symbols have values of their own
   (known (make-hash-table)))               ; node number -> rational
 
 (defun $sample_point (equations)
@@ -67,6 +68,18 @@
   (let ((point (make-sample-point)))
     (dolist (e (cdr equations) point)
       (setf (gethash (second e) (sample-point-symbols point)) (rational-of (third e))))))
+
+(defun scattered-value (symbol point)
+  "A fraction between 1 and 2 of its own."
+  (let ((symbols (sample-point-symbols point)))
+    (setf (gethash symbol symbols) (1+ (/ (mod (* 7919 (+ 13 (hash-table-count symbols))) 10007) 10007)))))
+
+(defun $vanish_in_a_point (expressions)
+  "Whether all are zero where every symbol has a value of its own."
+  (let ((point (make-sample-point :scattered t)) (zero nil))
+    (catch 'irregular-point
+      (setq zero (every #'(lambda (e) (zerop (value-at (expression-term e) point))) (cdr expressions))))
+    zero))
 
 ;;; ---- values ------------------------------------------------------------------------------
 
@@ -83,6 +96,8 @@
 (defun value-by-parts (node point)
   (case (node-kind node)
     (symbol (or (gethash (node-parts node) (sample-point-symbols point))
+                (if (and (sample-point-scattered point) (not ($constantp (node-parts node))))
+                    (scattered-value (node-parts node) point))
                 (number-from-maxima (node-parts node))))
     (held (node-value (node-parts node) point))
     (sum (sum-of-numbers (mapcar #'(lambda (term) (value-at term point)) (node-parts node))))

@@ -23,6 +23,11 @@ system : holonomic_system(coordinates = [x, y, z], kinetic_energy = ((dot(x) + d
   constraints = [x^2 + z^2 - 1, y - sin(x)])$
 round : holonomic_scene(system, initial_state = [x = -3/5, z = 4/5, dot(x) = 4/5], time_span = [0, 5])$
 """
+SEESAW = """
+system : holonomic_system(coordinates = [x, y, z], kinetic_energy = ((dot(x) + dot(y))^2 + dot(z)^2)/2,
+  forces = [1, 2, 3], constraints = [x^2/2 - y^2/2 + z, x - y - sin(z)])$
+start : holonomic_scene(system, initial_guess = [x = 1/2, y = 1/2, z = 0, dot(x) = 0, dot(y) = 0, dot(z) = 0])$
+"""
 
 
 def closed(q1, near):
@@ -99,3 +104,27 @@ def test_vanishing_pivot_of_a_singular_mass_matrix_hands_over(options):
     motion = holonom.system(LOST).simulate(samples=2, **options)
     assert motion["x"][-1] == pytest.approx(np.sin(truth), abs=1e-9)
     assert motion.report.trusted
+
+
+@pytest.mark.parametrize("solve", ["direct", "orthogonal"])
+@pytest.mark.parametrize("x", [0.0, 0.5])
+def test_program_has_values_where_one_of_two_constraints_replaces_the_mass(solve, x):
+    """At y = -x the first constraint holds nothing of x - y, which has no mass; these were NaN."""
+    seesaw = holonom.system(SEESAW)
+    v = np.array([0.1, 0.2, 0.3])
+    mass, jacobian = np.array([[1, 1, 0], [1, 1, 0], [0, 0, 1]]), np.array([[x, x, 1], [1, -1, -1]])
+    bordered = np.block([[mass, -jacobian.T], [jacobian, np.zeros((2, 2))]])
+    truth = np.linalg.solve(bordered, [1, 2, 3, v[1] ** 2 - v[0] ** 2, 0])
+    assert seesaw.program(solve=solve).compile()([0, x, -x, 0, *v]) == pytest.approx(truth, rel=1e-12)
+
+
+HEAVY = LOST.replace("(dot(x) + dot(y))^2", "dot(x)^2 + y^2*dot(y)^2")
+
+
+@pytest.mark.parametrize(("scene", "words"), [(SEESAW, "determine the motion"), (HEAVY, "positive definite")])
+def test_exported_program_states_its_range(scene, words, tmp_path):
+    described = holonom.system(scene)
+    program = described.program()
+    program.to_c(tmp_path / "library", name="motion")
+    assert words in " ".join((tmp_path / "library" / "motion.h").read_text().split())
+    assert words in program.to_python()
