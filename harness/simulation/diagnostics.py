@@ -18,7 +18,7 @@ from ..program.motion_problem import MotionProblem, computing
 from ..program.motion_program import names_in
 from ..program.precision import Precision, read_precision
 from .constraints.directions import weighted_constraints
-from .evaluation import Numbers, evaluation_once, zeros
+from .evaluation import Numbers, as_floats, evaluation_once, zeros
 from .matrices import Matrices, Vector
 from .open_values import OpenValues
 from .trust import may_hide
@@ -73,6 +73,8 @@ class EnergyBalance:
     ----------
     conservative : bool
         Whether the power vanishes: then there is nothing to integrate. Power that may hide is not taken for none.
+    passing : float
+        The largest work in a part of an interval: a pulse within a step may give energy and take it back.
     """
 
     def __init__(
@@ -89,6 +91,7 @@ class EnergyBalance:
         self._g, self._multipliers = len(problem.multipliers), multipliers
         self._moving = _constraints_move(problem)
         hidden = bool(problem.tables) or may_hide(computing(problem.energy, {"power"}), problem.parameters)
+        self.passing = 0.0
         self.conservative = not self._moving and not hidden and self._without_power(2 * len(problem.coordinates))
 
     def energy(self, instants: Numbers, states: Numbers) -> Numbers:
@@ -123,7 +126,9 @@ class EnergyBalance:
             return zeros(self._precision, len(starts))
         instants, states = (np.concatenate(each, axis=-1) for each in zip(*between, strict=True))
         power = self.power(instants, states).reshape(len(starts), -1)
-        return (ends - starts) / 2 * (power * self._weights).sum(axis=1)
+        parts = ((ends - starts) / 2)[:, None] * (power * self._weights)
+        self.passing = float(np.max(np.abs(as_floats(np.cumsum(parts, axis=1))), initial=self.passing))
+        return parts.sum(axis=1)
 
     def _output(self, name: str, instants: Numbers, states: Numbers, multipliers: Numbers) -> Numbers:
         inputs = np.concatenate([np.reshape(instants, (1, -1)), states, multipliers, self._values(instants)])

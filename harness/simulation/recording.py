@@ -55,6 +55,8 @@ class Recording:
     ----------
     work : number
         Work done in all.
+    passing : float
+        The largest work within an interval.
     """
 
     def __init__(
@@ -71,6 +73,7 @@ class Recording:
         self._inside: list[tuple[Numbers, Numbers]] = []  # where the power is needed
         self._balance: EnergyBalance | None = None
         self.work = self._zero = zero
+        self.passing = 0.0
 
     def begin(self, instant: Any, state: Numbers) -> None:
         """Keep the first state, if it is wanted."""
@@ -110,6 +113,7 @@ class Recording:
             self.work = self.work + (interval.impulse + work)
             if interval.state is not None:
                 self._keep(interval.end, interval.state)
+        self.passing = max(self.passing, self._balance.passing)
 
     def end(self, instant: Any, state: Numbers) -> None:
         """Keep the last state, projected as it is, in the place of the one that the last piece ended with."""

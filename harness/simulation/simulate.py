@@ -281,7 +281,9 @@ class _Simulation:
         first, last = as_floats(self.first), as_floats(self.motion.state)
         scale = max(energy_scale(self.motion.matrices(float(self.start), first), first), energy_scale(at, last))
         at_rest = float(np.max(at.mass.diagonal(), initial=0.0)) * expected(self.motion.tol, self.motion.steps) ** 2
-        return max(0.0, self.exchange.error - at_rest), max(scale, self.exchange.work, self.exchange.exchanged)
+        return max(0.0, self.exchange.error - at_rest), max(
+            scale, self.recording.passing, self.exchange.work, self.exchange.exchanged
+        )
 
     def _cases(self, state: Numbers) -> tuple[HardCase, ...]:
         """Those that the robust engine was called for, then those that the ends tell; each once."""

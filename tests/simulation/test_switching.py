@@ -150,6 +150,19 @@ def test_a_narrow_smooth_feature_was_stepped_over(engine):
     assert report.trusted
 
 
+def test_motion_under_a_pulse_within_a_step_is_trusted():
+    """The energy 10^5 comes and goes between two samples; the rounding of its work was taken for an error of 1/2."""
+    pulse = "(if t < 1/2 then 0 else if t < 501/1000 then (t - 1/2)^3*(501/1000 - t)^3*10^19 else 0)"
+    scene = holonom.system(f"""
+        system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+          constraints = [x - u])$
+        pulsed : holonomic_scene(system, control_law = [u = {pulse}], time_span = [0, 1], initial_state = [y = 0, dot(y) = 1])$
+    """)
+    motion = scene.simulate()
+    assert (motion["x"][-1], motion["y"][-1]) == (0, pytest.approx(1, rel=1e-14))
+    assert motion.report.trusted
+
+
 def test_an_odd_root_of_a_size_had_no_real_value_before_the_zero():
     """x(2) is the integral of (2 - t) abs(t - 1)^(5/3) from 0 on, 3/4."""
     report = end_of(mass(force="abs(t - 1)^(5/3)", end="2"), EngineName.RUNGE_KUTTA)
