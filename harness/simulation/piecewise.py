@@ -40,6 +40,7 @@ from ..program.sign_pattern import (
     switching_function,
 )
 from .clock import Tick, ticks
+from .constraints.factorization import factored_constraints
 from .constraints.program_projection import ProgramProjection
 from .constraints.projection import project
 from .constraints.singularity import no_controls, require_gradient, shortly_before, vanishing_instants
@@ -117,8 +118,12 @@ class Part:
         self.engine = SwitchingEngine(self.problem, request, precision, end, self.matrices, between)
         self._start, self._end = float(problem.start["t"]), float(end)
         self.doubtful = vanishing_instants(self.problem, self.matrices, self._end)
+        to_come = (float(tick.t) for name, tick in clock.items() if pattern[name] != tick.to)
         self.by_time = time_dependence(
-            in_numbers(self.problem, self.problem.matrices), self._start, self._end, self.problem.tables
+            in_numbers(self.problem, self.problem.matrices),
+            self._start,
+            min([self._end, *to_come]),
+            self.problem.tables,
         )
         ends = () if self.by_time.end is None else (self.by_time.end,)
         before = (shortly_before(t, self._start) for t in self.doubtful)
@@ -468,7 +473,7 @@ class PiecewiseMotion:
         if np.max(np.abs(kick), initial=0.0) > CONTINUOUS * _size(state):
             if self._precision.name != "double":
                 self._refuse(t, f"momenta jump as {sign.of} changes its sign, which takes double precision")
-            moved[n:] += np.linalg.solve(new.mass, kick)
+            moved[n:] += factored_constraints(new.mass, new.jacobian).accelerations(kick, new.residual_rate)
         if after.problem.projection is None:
             moved = project(after.matrices, float(t), as_floats(moved))
         else:

@@ -11,7 +11,7 @@ import numpy as np
 
 from .diagnostics import EnergyBalance
 from .engines.engine import Piece
-from .evaluation import Numbers
+from .evaluation import Numbers, as_floats
 from .piecewise import PiecewiseMotion
 
 STRETCH = 2**14
@@ -55,8 +55,8 @@ class Recording:
     ----------
     work : number
         Work done in all.
-    passing : float
-        The largest work within an interval.
+    largest_work : float
+        The largest work done up to an instant, between the samples and within a step as well.
     """
 
     def __init__(
@@ -73,7 +73,7 @@ class Recording:
         self._inside: list[tuple[Numbers, Numbers]] = []  # where the power is needed
         self._balance: EnergyBalance | None = None
         self.work = self._zero = zero
-        self.passing = 0.0
+        self.largest_work = 0.0
 
     def begin(self, instant: Any, state: Numbers) -> None:
         """Keep the first state, if it is wanted."""
@@ -109,11 +109,13 @@ class Recording:
         intervals, inside = self._intervals, self._inside
         self._intervals, self._inside = [], []
         starts, ends = (np.array([interval[side] for interval in intervals]) for side in (0, 1))
+        until = []
         for interval, work in zip(intervals, self._balance.works(starts, ends, inside), strict=True):
             self.work = self.work + (interval.impulse + work)
+            until.append(self.work)
             if interval.state is not None:
                 self._keep(interval.end, interval.state)
-        self.passing = max(self.passing, self._balance.passing)
+        self.largest_work = max(largest(until, self.largest_work), self._balance.passing)
 
     def end(self, instant: Any, state: Numbers) -> None:
         """Keep the last state, projected as it is, in the place of the one that the last piece ended with."""
@@ -140,3 +142,8 @@ class Recording:
         while self._next is not None and self._next <= end:
             instant, self._next = self._next, next(self._waiting, None)
             yield instant
+
+
+def largest(numbers: Numbers | list[Any], known: float) -> float:
+    """The largest of them and of what is known; no number where one of them is none."""
+    return float(np.max(np.abs([*as_floats(numbers), known])))

@@ -21,7 +21,7 @@ from .events import Ending, first_event
 from .matrices import Matrices
 from .passed_over import StepsHeldAgainstTheEquations
 from .piecewise import PiecewiseMotion
-from .recording import Recording, Stretch
+from .recording import Recording, Stretch, largest
 from .request import FINAL_STATE_ALONE, EngineName, SimulationRequest, Stabilization
 from .result import Report, Sampled, Samples, Simulation, joined
 from .trust import doubts, energy_scale, expected, may_hide
@@ -159,10 +159,10 @@ class _Simulation:
         instants, states, works = stretch
         self.solutions = self.motion.solutions(instants, states)
         self.reactions = np.array(
-            [_largest(row, known) for row, known in zip(self.solutions.multipliers, self.reactions, strict=True)]
+            [largest(row, known) for row, known in zip(self.solutions.multipliers, self.reactions, strict=True)]
         )
         energies = self._energies(instants, states, works)
-        self.exchange.add(works, energies["energy"], energies["energy_error"])
+        self.exchange.add(energies["energy"], energies["energy_error"])
         self.take(
             Sampled(
                 instants=instants,
@@ -281,9 +281,7 @@ class _Simulation:
         first, last = as_floats(self.first), as_floats(self.motion.state)
         scale = max(energy_scale(self.motion.matrices(float(self.start), first), first), energy_scale(at, last))
         at_rest = float(np.max(at.mass.diagonal(), initial=0.0)) * expected(self.motion.tol, self.motion.steps) ** 2
-        return max(0.0, self.exchange.error - at_rest), max(
-            scale, self.recording.passing, self.exchange.work, self.exchange.exchanged
-        )
+        return max(0.0, self.exchange.error - at_rest), max(scale, self.recording.largest_work, self.exchange.exchanged)
 
     def _cases(self, state: Numbers) -> tuple[HardCase, ...]:
         """Those that the robust engine was called for, then those that the ends tell; each once."""
@@ -298,22 +296,16 @@ class _Simulation:
 
 
 class Exchange:
-    """What energy did on the way: the largest work, the largest change and the largest error, stretch by stretch."""
+    """What energy did on the way: the largest change and the largest error, stretch by stretch."""
 
     def __init__(self) -> None:
-        self.work = self.exchanged = self.error = self.last_error = 0.0
+        self.exchanged = self.error = self.last_error = 0.0
         self._first: Any = None
 
-    def add(self, works: Numbers, energy: Numbers, error: Numbers) -> None:
+    def add(self, energy: Numbers, error: Numbers) -> None:
         """Take in samples, each of shape (k,)."""
         if self._first is None:
             self._first = energy[0]
-        self.work = _largest(works, self.work)
-        self.exchanged = _largest(energy - self._first, self.exchanged)
-        self.error = _largest(error, self.error)
+        self.exchanged = largest(energy - self._first, self.exchanged)
+        self.error = largest(error, self.error)
         self.last_error = float(error[-1])
-
-
-def _largest(numbers: Numbers, known: float) -> float:
-    """The largest of them and of what is known; no number where one of them is none."""
-    return float(np.max(np.abs([*as_floats(numbers), known])))
