@@ -271,6 +271,8 @@ class _Simulation:
         error, scale = self._energy_missed(at)
         within = {} if self.steps is None else {"acceleration": self.steps.missed}
         kept = {name: left[name] for name in ("position", "velocity")}
+        if not np.isfinite(self.reactions).all():
+            kept["multipliers"] = np.nan
         return {**kept, "energy": error / scale if 0 < scale < np.inf else error, **within}
 
     def _energy_missed(self, at: Matrices) -> tuple[float, float]:
@@ -281,7 +283,9 @@ class _Simulation:
         first, last = as_floats(self.first), as_floats(self.motion.state)
         scale = max(energy_scale(self.motion.matrices(float(self.start), first), first), energy_scale(at, last))
         at_rest = float(np.max(at.mass.diagonal(), initial=0.0)) * expected(self.motion.tol, self.motion.steps) ** 2
-        return max(0.0, self.exchange.error - at_rest), max(scale, self.recording.largest_work, self.exchange.exchanged)
+        return max(self.exchange.error - at_rest, 0.0), max(  # NaN stays
+            scale, self.recording.largest_work, self.exchange.exchanged
+        )
 
     def _cases(self, state: Numbers) -> tuple[HardCase, ...]:
         """Those that the robust engine was called for, then those that the ends tell; each once."""

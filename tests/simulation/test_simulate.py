@@ -176,6 +176,18 @@ def test_a_run_that_ended_in_a_singular_configuration_was_an_internal_error(writ
         final(cross, engine=EngineName.TAYLOR)
 
 
+LOST_LOGARITHM = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  forces = [(log(u) - log(t))*y, 0], constraints = [x])$
+s : holonomic_scene(system, control_law = [u = t], time_span = [-2, -1], initial_state = [y = 1, dot(y) = 0])$"""
+
+
+def test_a_multiplier_without_a_finite_value_is_no_result(write_scene):
+    """The accelerations need no logarithm of t; lambda1 was NaN, with exit status 0."""
+    report = final(motion_problem(write_scene(LOST_LOGARITHM), Request(), Limits()))
+    assert "multipliers" in {doubt.quantity for doubt in report.doubts}
+
+
 PULSE = """load("holonom.mac")$
 system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
   potential_energy = x^2/2, constraints = [y - u])$

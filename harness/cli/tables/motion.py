@@ -1,6 +1,7 @@
 """A motion on the console: its power series, where a simulation ends and how well it was followed, a sweep of many."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from math import isnan
 from typing import TYPE_CHECKING
 
 import mpmath
@@ -166,8 +167,11 @@ def distrust(doubt: "Doubt") -> str:
     whats = {
         "energy": "the energy",
         "acceleration": "a force that acts within a step",
+        "multipliers": "a multiplier",
     }
     what = whats.get(doubt.quantity, f"the {doubt.quantity} that the constraints allow")
+    if isnan(doubt.missed):
+        return f"holonom: this is no result: {what} has no finite value; end the run before that."
     return (
         f"holonom: this is no result: {what} is missed by {doubt.missed:.1e} of its size, where the tolerance lets "
         f"expect {doubt.expected:.1e} at most; take a smaller --max-step, another --engine or more --precision."
