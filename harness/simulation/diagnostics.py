@@ -9,8 +9,10 @@ integral of the power is an error of the motion (Goldstein, Poole & Safko, secti
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import cache, partial
 from typing import Any
 
+import mpmath
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
@@ -23,7 +25,8 @@ from .matrices import Matrices, Vector
 from .open_values import OpenValues
 from .trust import may_hide
 
-POINTS, WEIGHTS = leggauss(10)  # exact to order 20 over a piece, as the Taylor engine is in double precision
+POINTS_PER_DIGIT = 10 / 17  # of the quadrature: exact over a piece to about the order of the Taylor engine
+MORE_DIGITS = 10  # in which they are found
 PROBES = (0.3127, -0.7411, 1.2713)  # seeds of states at which power that vanishes identically is told from other power
 
 
@@ -87,12 +90,18 @@ class EnergyBalance:
         self._evaluate = evaluation_once(problem, problem.energy, self._precision)
         self._values = OpenValues(problem, self._precision)
         self._rows = {name: row for row, name in enumerate(problem.energy.outputs)}
-        self._points, self._weights = 1 + self._numbers(POINTS), self._numbers(WEIGHTS)
+        points, weights = _gauss_legendre(self._precision)
+        self._points, self._weights = 1 + points, weights
         self._g, self._multipliers = len(problem.multipliers), multipliers
         self._moving = _constraints_move(problem)
         hidden = bool(problem.tables) or may_hide(computing(problem.energy, {"power"}), problem.parameters)
         self.passing = 0.0
         self.conservative = not self._moving and not hidden and self._without_power(2 * len(problem.coordinates))
+
+    @property
+    def inner_states(self) -> int:
+        """How many states `works` needs within an interval."""
+        return 0 if self.conservative else len(self._points)
 
     def energy(self, instants: Numbers, states: Numbers) -> Numbers:
         """The energy function at states of the motion."""
@@ -104,7 +113,7 @@ class EnergyBalance:
         return self._output("power", instants, states, reactions)
 
     def instants_between(self, starts: Sequence[Any], ends: Sequence[Any]) -> Numbers:
-        """Where `works` needs the motion in intervals: ten instants in each, one interval after the other.
+        """Where `works` needs the motion in intervals: `inner_states` in each, one interval after the other.
 
         None at all where there is nothing to integrate.
         """
@@ -145,6 +154,32 @@ class EnergyBalance:
         states = self._numbers(np.outer(np.arange(1, size + 1), PROBES).ravel() % 1).reshape(size, -1)
         instants = self._numbers(np.array(PROBES))
         return not any(self._output("power", instants, states, self._no_multipliers(len(PROBES))))
+
+
+def _gauss_legendre(precision: Precision) -> tuple[Numbers, Numbers]:
+    """Points in [-1, 1] and weights in the numbers of a precision."""
+    n = round(POINTS_PER_DIGIT * precision.digits)
+    if precision.name == "double":
+        return leggauss(n)
+    points, weights = (
+        np.array([precision.number(text) for text in texts]) for texts in _in_digits(n, precision.digits)
+    )
+    return points, weights
+
+
+@cache
+def _in_digits(n: int, digits: int) -> tuple[list[str], list[str]]:
+    """The roots of P_n, near cos(pi (k - 1/4)/(n + 1/2)), and 2/((1 - x^2) P_n'(x)^2) (Abramowitz & Stegun 25.4.29)."""
+
+    def slope(x: mpmath.mpf) -> mpmath.mpf:
+        return n * (mpmath.legendre(n - 1, x) - x * mpmath.legendre(n, x)) / (1 - x**2)
+
+    with mpmath.workdps(digits + MORE_DIGITS):
+        guesses = [mpmath.cos(mpmath.pi * (k - 0.25) / (n + 0.5)) for k in range(n, 0, -1)]
+        points = [mpmath.findroot(partial(mpmath.legendre, n), x, solver="newton", df=slope) for x in guesses]
+        weights = [2 / ((1 - x**2) * slope(x) ** 2) for x in points]
+        points, weights = ([mpmath.nstr(x, digits + MORE_DIGITS) for x in each] for each in (points, weights))
+    return points, weights
 
 
 def _constraints_move(problem: MotionProblem) -> bool:

@@ -46,7 +46,7 @@ from .constraints.projection import project
 from .constraints.singularity import no_controls, require_gradient, shortly_before, vanishing_instants
 from .control_matrix import ControlMatrix, controls_may_fail
 from .diagnosis import Instant, dependence
-from .diagnostics import POINTS, EnergyBalance, residuals
+from .diagnostics import EnergyBalance, residuals
 from .engines.choice import Between, Choice
 from .engines.engine import Piece, Solutions
 from .engines.switching import Leg, SwitchingEngine
@@ -113,8 +113,7 @@ class Part:
         obstacle = analytic.obstacle or dependence(self.matrices, Instant(*start_of(analytic)))
         self.problem = replace(analytic, obstacle=obstacle)
         self.balance = EnergyBalance(self.problem, self._multipliers, precision)
-        inner = 0 if self.balance.conservative else len(POINTS)
-        between = None if problem.signs or problem.tables else Between(request.samples or 0, inner)
+        between = None if problem.signs or problem.tables else Between(request.samples or 0, self.balance.inner_states)
         self.engine = SwitchingEngine(self.problem, request, precision, end, self.matrices, between)
         self._start, self._end = float(problem.start["t"]), float(end)
         self.doubtful = vanishing_instants(self.problem, self.matrices, self._end)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from problems import problem
 
+import holonom
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
 from holonom.sandbox import Limits
@@ -56,6 +57,18 @@ def test_energy_gained_is_work_done(name, scene, until):
     assert not balance.conservative
     assert abs(gained) > 1e-3
     assert abs(gained - work) <= 1e-9 * max(1.0, abs(gained))
+
+
+@pytest.mark.parametrize(("precision", "digits"), [("extended", 17), ("quadruple", 31), ("50", 55)])
+def test_work_is_integrated_in_the_digits_of_the_motion(precision, digits, write_scene):
+    """With nodes and weights in double precision the energy was missed by 1e-14 in any."""
+    scene = write_scene("""load("holonom.mac")$
+      system : holonomic_system(coordinates = [x], controls = [u], kinetic_energy = dot(x)^2/2,
+        potential_energy = x^2/2, forces = [push = [u - dot(x)/10]])$
+      run : holonomic_scene(system, control_law = [u = cos(3*t)], initial_state = [x = 1, dot(x) = 0],
+        time_span = [0, 5])$""")
+    report = holonom.load(scene).simulate(precision=precision).report
+    assert abs(report.energy_error) < 10.0**-digits
 
 
 def test_where_nothing_does_work_the_energy_stays():
