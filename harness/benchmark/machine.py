@@ -1,12 +1,13 @@
 """What measured: every table and figure of times says so."""
 
-import os
 import platform
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import date
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+
+from ..processes import usable_cores
 
 PROCESSORS = Path("/proc/cpuinfo")
 PACKAGES = ("heyoka", "numpy", "scipy", "scikit-sundae", "mpmath")
@@ -38,16 +39,11 @@ def this_machine(packages: tuple[str, ...] = PACKAGES) -> Machine:
             continue
     return Machine(
         processor=_processor(),
-        cores=_cores(),
+        cores=usable_cores(),
         system=f"{platform.system()} {platform.machine()}",
         versions=versions,
         date=date.today().isoformat(),
     )
-
-
-def _cores() -> int:
-    """Those that this process may use, where the system can tell; else those that there are."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _processor() -> str:

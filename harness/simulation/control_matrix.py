@@ -112,19 +112,10 @@ class ControlMatrix(SignedFunctions):
 
     def _changed(self, part: Piece, before: float, after: float) -> float | None:
         """Where the determinant changes its sign between two instants; None where it does so through infinity."""
-        self._rows = [("", -1, 1 if self._value(part, before) > 0 else -1)]
+        side = 1 if self._value(part, before) > 0 else -1
         bound = max(abs(self._value(part, t)) for t in (before, after))
-        zero = self._halved(part, 0, before, after)
+        zero = self._last_inside(lambda at: side * self.values(at, part.states(at))[0], before, after)
         return zero if abs(self._value(part, zero)) <= bound else None
-
-    def _halved(self, piece: Piece, row: int, before: float, after: float) -> float:
-        side, half = self._rows[0][2], self._precision.number("0.5")
-        while before < (middle := before + half * (after - before)) < after:
-            if self._value(piece, middle) * side < 0:
-                after = middle
-            else:
-                before = middle
-        return before
 
     def _touched(self, part: Piece, place: float, places: Numbers, values: Vector, largest: float) -> float | None:
         """A minimum of the determinant's size that is a zero, or that lies behind one."""

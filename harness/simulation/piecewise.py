@@ -224,7 +224,9 @@ class PiecewiseMotion:
         self.switchings: list[Switching] = []
         start = np.array([precision.number(problem.start[name]) for name in problem.state])
         pattern = self._first_pattern(precision.number(problem.start["t"]), start)
-        self.phases = [Phase(precision.number(problem.start["t"]), self._part(pattern, problem))]
+        self.phases: list[Phase] = []
+        self._starts: list[float] = []
+        self._add_phase(precision.number(problem.start["t"]), self._part(pattern, problem))
 
     @property
     def part(self) -> Part:
@@ -339,8 +341,7 @@ class PiecewiseMotion:
 
     def matrices(self, t: float, state: Vector) -> Matrices:
         """The matrices at a state of the motion, in its phase."""
-        phase = max(0, bisect_left([float(phase.start) for phase in self.phases], t) - 1)
-        return self.phases[phase].part.matrices(t, state)
+        return self.phases[self._phase_at(t)].part.matrices(t, state)
 
     def matrices_by_phase(self, instants: Vector, states: Matrix) -> list[Matrices]:
         """The matrices at instants in order, shape (k,), and states, shape (2n, k): a block for each phase."""
@@ -353,11 +354,17 @@ class PiecewiseMotion:
 
     def _by_phase(self, instants: Numbers) -> Iterator[tuple[Part, slice]]:
         """The instants, in order, by the phases that end with them or hold them."""
-        ends = [phase.start for phase in self.phases[1:]]
-        bounds = [0, *(int(np.searchsorted(as_floats(instants), float(end), side="right")) for end in ends)]
-        for phase, first, last in zip(self.phases, bounds, [*bounds[1:], len(instants)], strict=True):
-            if first < last:
-                yield phase.part, slice(first, last)
+        floats, first = as_floats(instants), 0
+        while first < len(floats):
+            phase = self._phase_at(floats[first])
+            ends = self._starts[phase + 1 : phase + 2]
+            last = int(np.searchsorted(floats, ends[0], side="right")) if ends else len(floats)
+            yield self.phases[phase].part, slice(first, last)
+            first = last
+
+    def _phase_at(self, t: float) -> int:
+        """Place of the phase that ends with an instant or holds it."""
+        return max(0, bisect_left(self._starts, t) - 1)
 
     # ---- steps ----
 
@@ -434,9 +441,13 @@ class PiecewiseMotion:
         """Go on with another part; how the surface is passed where nothing holds the motion on it."""
         moved = self._passed(before, after, sign, t, state)
         after.engine.restart(t, moved)
-        self.phases.append(Phase(t, after))
+        self._add_phase(t, after)
         self._jump = self._jump + (self._energy(after, t, moved) - self._energy(before, t, state))
         return Passage.CROSSED if _close(moved, state) else Passage.IMPULSE
+
+    def _add_phase(self, start: Any, part: Part) -> None:
+        self.phases.append(Phase(start, part))
+        self._starts.append(float(start))
 
     def _behind(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers, to: int) -> int | str:
         """The sign with which a motion goes on from a surface of the state."""

@@ -4,11 +4,11 @@ A step is looked at in parts, each a small part of the time span, and shorter wh
 sampled at Chebyshev's points of a part and interpolated between, by a polynomial of degree 32, whose last coefficients
 tell. So nothing is passed over that lasts longer than 1/2048 of the time span; a step says only how smooth the state
 is, not what a function makes of it. Two zeros close together show by the polynomial's minimum between them. The instant
-is found by halving, to the last bit of its numbers.
+is found by taking sections, to the last bit of its numbers.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from fractions import Fraction
 from itertools import pairwise
 from math import ceil
@@ -33,6 +33,7 @@ TO_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(2 * NODES[1:-1] - 1, DEGREE
 BETWEEN = chebyshev.chebvander(2 * PLACES - 1, DEGREE)
 CORRECTIONS = 4  # of a minimum, by Newton's method
 PARTS, SHORTEST = 128, 1 / 1024  # of the time span: parts that are looked at, at least; parts that are not halved
+SECTIONS = 32  # of an interval with a zero, of which the one that has it is taken
 SURE = 2  # digits that a function loses beside its largest value: what touches zero may be that much below
 LAST, RESOLVED = 4, 1e-8  # coefficients of a polynomial, and what they are of the largest where it is near
 
@@ -52,6 +53,7 @@ class SignedFunctions(ABC):
         self._precision, self._span = precision, span
         self._rows: list[tuple[str, int, int]] = []  # name, value after the crossing, sign before it
         self._sizes: dict[str, float] = {}  # the largest that each function has been
+        self._sections = np.array([precision.ratio(Fraction(place, SECTIONS)) for place in range(1, SECTIONS)])
 
     @abstractmethod
     def values(self, instants: Numbers, states: Numbers) -> Numbers:
@@ -115,7 +117,13 @@ class SignedFunctions(ABC):
         dip = self._dip(piece, row, values, NODES[last] if negative.size else 1.0)
         if dip is not None:
             before, after = dip
-        return None if after is None else Crossing(self._halved(piece, row, before, after), name, to)
+        if after is None:
+            return None
+
+        def inside(instants: Numbers) -> Vector:
+            return self.values(instants, piece.states(instants))[row]
+
+        return Crossing(self._last_inside(inside, before, after), name, to)
 
     def _dip(self, piece: Piece, row: int, values: Numbers, end: float) -> tuple[Any, Any] | None:
         """Between two samples, instants between which the function becomes negative to rise again."""
@@ -140,15 +148,20 @@ class SignedFunctions(ABC):
             instants[-1] = piece.end
         return instants, self.values(instants, piece.states(instants))
 
-    def _halved(self, piece: Piece, row: int, before: Any, after: Any) -> Any:
-        half = self._precision.number("0.5")
-        while before < (middle := before + half * (after - before)) < after:
-            at = np.array([middle])
-            if self.values(at, piece.states(at))[row, 0] < 0:
-                after = middle
-            else:
-                before = middle
-        return before
+    def _last_inside(self, values: Callable[[Numbers], Vector], before: Any, after: Any) -> Any:
+        """The last instant before a function of instants is negative, between one where it is not and one where it is.
+
+        A look at several instants takes as long as one at one.
+        """
+        while True:
+            between = before + (after - before) * self._sections
+            between = between[(before < between) & (between < after)]
+            if not between.size:
+                return before
+            edges = [before, *between, after]
+            negative = np.flatnonzero(values(between) < 0)
+            first = 1 + int(negative[0]) if negative.size else len(edges) - 1
+            before, after = edges[first - 1], edges[first]
 
 
 class Surfaces(SignedFunctions):

@@ -1,7 +1,6 @@
 """A sweep from its request to its folder: derived once, computed chunk by chunk, read lazily."""
 
 import hashlib
-import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -10,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..failures import Failure, HolonomError
+from ..processes import usable_cores
 from ..program.motion_problem import DOUBLE_DIGITS, MotionProblem, problem_document, read_problem
 from ..program.precision import read_precision
 from ..program.request import Request
@@ -145,7 +145,7 @@ def run_sweep(
                 progress(done)
 
         if chunks:
-            compute(plan, chunks, take, wanted.workers or os.cpu_count() or 1, wanted.scheduler)
+            compute(plan, chunks, take, wanted.workers or usable_cores(), wanted.scheduler)
     return Sweep(folder, target.document, tuple(chunk.name for chunk in altered))
 
 

@@ -261,7 +261,8 @@ class RobustEngine:
         state, factored = settle(self.matrices, self.time, self.state, rank)
         at = self.matrices(self.time, state)
         guess = np.tile(factored.accelerations(at.force, at.curvature), (NODES, 1))
-        for length in FIRST_ARCS / np.max(np.abs(state[self.n :])):
+        speed = np.max(np.abs(state[self.n :]))
+        for length in FIRST_ARCS / speed if speed else ():
             arc = arc_over(self._accelerations, self.time, self.time + length, state, guess)
             if arc is not None and self._trusted(arc):
                 return self._taken(arc)
