@@ -6,6 +6,7 @@ from contextlib import suppress
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
+from queue import SimpleQueue
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -105,9 +106,13 @@ def check(
 
     sources = [Source(scene, limits) for scene in scenes]
     record = Question(Document.RECORD, (closed_form_size,))
-    with meanwhile(scenes[0], limits, _import_what_checks):
-        described = [source.description(settings) for source in sources]
+    described: SimpleQueue[Description | None] = SimpleQueue()
     with meanwhile(scenes[0], limits, partial(_derive_beforehand, described)):
+        try:
+            for source in sources:
+                described.put(source.description(settings))
+        finally:
+            described.put(None)
         asked = [ask_for_check(source, settings, [record]) for source in sources]
 
     from ..crosscheck.check import check_record
@@ -120,8 +125,8 @@ def check(
     seed = seed or fresh_seed()
     reports = []
     with doing("checking with SymPy"):
-        for source, said, answers in zip(sources, described, asked, strict=True):
-            left = time_to_limit() - TIME_TO_TELL
+        for source, answers in zip(sources, asked, strict=True):
+            said, left = source.description(settings), time_to_limit() - TIME_TO_TELL
             report = check_record(read_record(written(*answers.others)), said, seed, closed_form_size, left)
             motions = read_motions(said, answers)
             verdicts = motion_verdicts(said, motions, seed, time_to_limit() - TIME_TO_TELL)
@@ -132,20 +137,17 @@ def check(
     return DISAGREEMENT if any(report.count(*unwanted) for _, report in reports) else 0
 
 
-def _import_what_checks() -> None:
-    """Import SymPy, and what needs it."""
-    from ..crosscheck import check, lagranges_method, motions  # noqa: F401
-    from ..program import drawing  # noqa: F401
-
-
-def _derive_beforehand(descriptions: Sequence["Description"]) -> None:
-    """Have SymPy form Lagrange's equations, which are kept; no time limit would interrupt it here."""
-    if math.isfinite(time_to_limit()):
-        return
+def _derive_beforehand(descriptions: "SimpleQueue[Description | None]") -> None:
+    """Import what checks, and have SymPy form Lagrange's equations, which are kept, of descriptions up to None."""
+    from ..crosscheck import check, motions  # noqa: F401
     from ..crosscheck.lagranges_method import bordered_equations, can_take
     from ..crosscheck.system import described_system
+    from ..program import drawing  # noqa: F401
+    from .tables import derivation  # noqa: F401
 
-    for each in descriptions:
+    if math.isfinite(time_to_limit()):  # which would not interrupt it here
+        return
+    for each in iter(descriptions.get, None):
         for effects in {scene.effects for scene in each.scenes}:
             system = described_system(each.system, effects)
             if can_take(system):
