@@ -25,8 +25,8 @@ FINEST = 1e-15  # relative error of a step, however fine its tolerance: residual
 class Doubt(NamedTuple):
     """A quantity that is out of proportion."""
 
-    # ``position``, ``velocity``, ``energy``, ``multipliers`` without a finite value, or ``acceleration``: of the equations
-    # of motion within a step
+    # ``position``, ``velocity``, ``energy``, ``multipliers``, or ``acceleration``: of the equations of motion within a
+    # step
     quantity: str
     # missed, expected: relative: what was found, and the most that the tolerance lets expect
     missed: float
