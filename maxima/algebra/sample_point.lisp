@@ -511,26 +511,31 @@ vanish; false where Newton's method does not get there."
     (largest-correction differences)))
 
 (defun nearest-within (distance found point constraints jacobian metric names)
-  "The nearest root from starts at this distance of the point at most, or as far as the one found; nil where there is no nearer one."
+  "The nearest root from starts at this distance of the point at most, or as far as the one found; nil where none is nearer."
   (let* ((*floating* t)
          (*zero-share* *zero-share-of-floats*)
          (*most-corrections* *most-corrections-of-search*)
          (*most-halvings* *most-halvings-of-search*)
          (guess (converted-point point #'float-of))
          (rows (catch 'irregular-point (numeric-rows metric (converted-point point #'float-of))))
-         (reach (if found (distance-in-metric (converted-point found #'float-of) guess rows names) (float-of distance)))
-         (share (if (< (length (cdr constraints)) (length (cdr names))) *nearer* (- 1 1/1000000)))
-         (known (if found reach))
+         (known (if found (distance-in-metric (converted-point found #'float-of) guess rows names)))
          (best nil))
-    (do ((improved t)) ((or (not improved) (not (plusp reach))))
-      (setq improved nil)
-      (dolist (start (starts-around guess reach rows names))
-        (let* ((root (car (errset (catch 'irregular-point
-                                    (newton-iteration start constraints jacobian names metric t)))))
-               (way (if root (distance-in-metric root guess rows names))))
-          (if (and way (or (null known) (< way (* share known))))
-              (setq improved t best root known way reach way)))))
-    (if best (converted-point best #'rational))))
+    (do* ((reach (or known (float-of distance)) (second best))
+          (nearer (nearest-of-starts guess reach known rows constraints jacobian metric names)
+                  (nearest-of-starts guess reach reach rows constraints jacobian metric names)))
+         ((null nearer) (if best (converted-point (first best) #'rational)))
+      (setq best nearer))))
+
+(defun nearest-of-starts (guess reach known rows constraints jacobian metric names)
+  "Of the roots from starts at this distance the one that is nearer than KNOWN, with its distance; nil where there is none."
+  (let ((share (if (< (length (cdr constraints)) (length (cdr names))) *nearer* (- 1 1/1000000))) (best nil))
+    (if (plusp reach)
+        (dolist (start (starts-around guess reach rows names) best)
+          (let* ((root (car (errset (catch 'irregular-point
+                                      (newton-iteration start constraints jacobian names metric t)))))
+                 (way (if root (distance-in-metric root guess rows names))))
+            (if (and way (or (null known) (< way (* share known))))
+                (setq known way best (list root way))))))))
 
 (defun starts-around (guess distance rows names)
   "Points at shares of a distance from the guess, along each of the names."
