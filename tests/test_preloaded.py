@@ -46,13 +46,17 @@ def made(first_made, cache) -> Path:
 
 
 @pytest.mark.parametrize(
-    ("document", "example"), [(Document.RECORD, "paper/paper.mac"), (Document.FREE_MOTION, "pendulum.mac")]
+    ("document", "example", "arguments", "settings"),
+    [
+        (Document.RECORD, "paper/paper.mac", (None,), {}),
+        (Document.FREE_MOTION, "pendulum.mac", (None, None), {}),
+        (Document.PROGRAM, "chain.mac", (None, "direct"), {"N": "70"}),  # calls in GCL take 63 arguments
+    ],
 )
-def test_with_the_image_and_without_the_documents_are_the_same(monkeypatch, document, example):
-    arguments = (None,) if document is Document.RECORD else (None, None)
-    with_image = ask(document, EXAMPLES / example, *arguments)
+def test_with_the_image_and_without_the_documents_are_the_same(monkeypatch, document, example, arguments, settings):
+    with_image = ask(document, EXAMPLES / example, *arguments, settings=settings)
     monkeypatch.setattr(maxima, "preloaded_image", lambda *_: None)
-    assert ask(document, EXAMPLES / example, *arguments) == with_image
+    assert ask(document, EXAMPLES / example, *arguments, settings=settings) == with_image
 
 
 def test_image_that_does_not_run_is_made_again(made, particle_scene, monkeypatch):

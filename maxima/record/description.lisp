@@ -67,8 +67,7 @@
 ;;; Read by the process that derives
 
 (defvar *written-otherwise*
-  (list (cons "Add" #'(lambda (&rest terms) (simplifya (cons '(mplus) (reverse terms)) nil))) ; in no time if they descend
-        (cons "Power" #'power)
+  (list (cons "Power" #'power)
         (cons "Rational" #'div)
         (cons "Divide" #'div)
         (cons "Negate" #'neg)
@@ -200,7 +199,8 @@
 
 (defun applied-anew (head arguments)
   (let ((made (cdr (assoc head *written-otherwise* :test #'string=))))
-    (cond (made (apply made arguments))
+    (cond ((string= head "Add") (simplifya (cons '(mplus) (reverse arguments)) nil)) ; in no time if they descend
+          (made (apply made arguments))
           ((operator-of-head head) (simplifya (cons (list (operator-of-head head)) arguments) nil))
           (t ($refuse '$head_not_described head)))))
 
