@@ -32,6 +32,7 @@ LIMITED_DIGITS = mp.mpf("2e-9")
 """Largest correction of given values, as a share of the largest of them."""
 
 FEWEST_ROUNDED_DIGITS = 40
+MANY_TOGETHER = 4  # initial values that equations fix together: such closed forms may be too long
 """Digits of the denominator of a number that may be rounded."""
 
 Relations = Sequence[Relation]
@@ -262,9 +263,11 @@ def _for_all_states(
     containing = _containing(known, residuals)
     without = _without_closed_form(numbers, containing)
     numbers = {x for x in without if not _is_quadratic(claims, x, known, containing[x])}
+    left_open = {x for x in claims.state if initial(x) not in fixed or not fixed[initial(x)].is_number}
     for residual in residuals:
         present = residual.free_symbols & symbols
-        if present & known and not (present & numbers and present - numbers):
+        others = (present - numbers) | (residual.free_symbols & left_open)
+        if present & known and not (present & numbers and others):
             yield residual
 
 
@@ -278,14 +281,27 @@ def _containing(symbols: set[sp.Symbol], residuals: Iterable[sp.Expr]) -> Mappin
 
 
 def _without_closed_form(numbers: set[sp.Symbol], containing: Mapping[sp.Symbol, Sequence[sp.Expr]]) -> set[sp.Symbol]:
-    """Those of the symbols that share residuals with one that is not linear in them: others have a closed form."""
-    waiting = [x for x in numbers if any(residual.diff(x).free_symbols & numbers for residual in containing[x])]
+    """Those of the symbols that share residuals with many, or with one that is not linear in them."""
     found: set[sp.Symbol] = set()
+    for x in numbers:
+        not_linear = any(residual.diff(x).free_symbols & numbers for residual in containing[x])
+        sharing = _sharing(x, numbers, containing)
+        if not_linear or len(sharing) >= MANY_TOGETHER:
+            found |= sharing
+    return found
+
+
+def _sharing(
+    x: sp.Symbol, numbers: set[sp.Symbol], containing: Mapping[sp.Symbol, Sequence[sp.Expr]]
+) -> set[sp.Symbol]:
+    """The symbols that share residuals with one, directly or through others."""
+    found: set[sp.Symbol] = set()
+    waiting = [x]
     while waiting:
-        x = waiting.pop()
-        if x not in found:
-            found.add(x)
-            waiting += [y for residual in containing[x] for y in residual.free_symbols & numbers]
+        y = waiting.pop()
+        if y not in found:
+            found.add(y)
+            waiting += [z for residual in containing[y] for z in residual.free_symbols & numbers]
     return found
 
 

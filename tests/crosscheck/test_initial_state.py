@@ -106,3 +106,21 @@ def test_a_number_in_the_place_of_a_closed_form_is_found(record, description):
             number = Relation(relation.left_tree, 0)
             wrong = with_relations(scene, (*relations[:i], number, *relations[i + 1 :]))
             assert verdicts(record, description, wrong)["19"] is Verdict.DISAGREES
+
+
+def test_numbers_stand_for_closed_forms_that_are_too_long(tmp_path):
+    """Of seven velocities that seven constraints fix together; 1/(2 j) each, and another number is found."""
+    file = tmp_path / "scene.mac"
+    file.write_text("""
+load("holonom.mac")$
+q : makelist(concat(q, j), j, 7)$
+system : holonomic_system(coordinates = q, kinetic_energy = apply("+", dot(q)^2),
+  constraints = makelist(apply("+", makelist((q[j]^2 - j^2 - t)/(i + j), j, 7)), i, 7))$
+scene : holonomic_scene(system, initial_state = makelist(q[j] = j, j, 7))$
+""")
+    record, described = derived_record(file), describe(file)
+    (scene,) = record.scenes
+    assert verdicts(record, described, scene)["19"] in (Verdict.PROVED, Verdict.AGREES)
+    first, *others = fixed_values(scene).relations
+    wrong = with_relations(scene, (Relation(first.left_tree, ["Rational", 1, 3]), *others))
+    assert verdicts(record, described, wrong)["19"] is Verdict.DISAGREES
