@@ -35,7 +35,7 @@
 (defvar *steps* nil "The calls of public steps, each as its definition begins: ((name) a b ((mlist) c)).")
 
 (defvar *namespace-open* nil "Whether everything is read as the library's files are.")
-(defvar *loaded-from* nil "The lists of files that are loaded, the latest first, each with its directory: (files . directory).")
+(defvar *loaded-from* nil "The lists of files that are loaded, the latest first: (files . directory).")
 (defvar *asked-for* nil "Whether a file has loaded the library: it may be there before, in an image.")
 
 (defun note (name table kind)
@@ -91,7 +91,7 @@
   (or (get name 'plain-name) name))
 
 (defun letters-of-name (name)
-  "As the user writes it: Maxima reads  lambda  and  go  as symbols of its own, without the sign that stands before names."
+  "As the user writes it: Maxima reads  lambda  and  go  as symbols of its own, without the sign before names."
   (let ((letters (print-invert-case (plain-name (or (get name 'reversealias) name)))))
     (if (member (char letters 0) '(#\$ #\%)) (subseq letters 1) letters)))
 

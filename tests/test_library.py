@@ -18,6 +18,31 @@ def test_no_function_is_defined_twice():
     assert [name for name, times in Counter(names).items() if times > 1] == []
 
 
+def sources() -> list[Path]:
+    return sorted(file for kind in ("mac", "lisp") for file in LIBRARY.rglob(f"*.{kind}"))
+
+
+def without_comments(file: Path) -> str:
+    comment = r"/\*.*?\*/" if file.suffix == ".mac" else r"^\s*;[^\n]*"
+    return re.sub(comment, "", file.read_text(), flags=re.DOTALL | re.MULTILINE)
+
+
+def test_no_line_is_over_120_characters():
+    lines = [(file.name, line) for file in sources() for line in file.read_text().splitlines()]
+    assert [(name, line) for name, line in lines if len(line) > 120] == []
+
+
+def test_no_function_is_over_20_lines():
+    long = []
+    for file in sources():
+        ends, begins = (r"\$\n", r"\w+\([^()]*\)\s*:=") if file.suffix == ".mac" else (r"\n(?=\()", r"\(def(un|macro) ")
+        for statement in re.split(ends, without_comments(file)):
+            lines = [line for line in statement.strip().splitlines() if line.strip()]
+            if re.match(begins, statement.strip()) and len(lines) > 20:
+                long.append((file.name, lines[0]))
+    assert long == []
+
+
 def layers() -> dict[str, int]:
     """The layer of each file of the load list, by the headings there."""
     _, *groups = (LIBRARY / "holonom.mac").read_text().split("/* ---- ")

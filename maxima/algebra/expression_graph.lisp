@@ -335,7 +335,8 @@
   "c_0 + c_1 T_1(x) + ... + c_n T_n(x) by Clenshaw's recurrence b_k = c_k + 2 x b_(k+1) - b_(k+2)."
   (let ((b (number-term 0)) (above (number-term 0)))
     (dolist (c (reverse (cdr coefficients)))
-      (psetq b (held-term (sum-of (list (number-term c) (product-of (list (number-term 2) x b)) (scaled-term -1 above))))
+      (psetq b (held-term (sum-of (list (number-term c) (product-of (list (number-term 2) x b))
+                                        (scaled-term -1 above))))
              above b))
     (sum-of (list (number-term (car coefficients)) (product-of (list x b)) (scaled-term -1 above)))))
 

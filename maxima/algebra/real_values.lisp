@@ -32,7 +32,7 @@
     (and found (not (and (floatp imaginary) (> (abs imaginary) 1d-20))))))
 
 (defun $partial_functions_of (names e)
-  "A list of the powers, roots, logarithms and inverse functions in an expression that contain these names and no others."
+  "The powers, roots, logarithms and inverse functions in an expression that contain these names and no others."
   (let ((found nil) (known (cdr names)))
     (labels ((contents (e)
                (cond ((atom e) (if (and (symbolp e) (not ($constantp e))) (if (member e known) 'known 'other)))

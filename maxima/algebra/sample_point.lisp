@@ -42,7 +42,8 @@
 
 (defvar *small-correction* (expt 10 -12) "Of the largest coordinate: a correction that needs no line search.")
 
-(defvar *contraction* 1/16 "Of a correction: what the constraints may miss of being linear along it, where the start is next to its root.")
+(defvar *contraction* 1/16
+  "Of a correction: what the constraints may miss of being linear along it, where the start is next to its root.")
 
 (defvar *starts-on-a-line* '(1/16 -1/16 1/8 -1/8 3/16 -3/16 1/4 -1/4 5/16 -5/16 3/8 -3/8 7/16 -7/16 1/2 -1/2
                              9/16 -9/16 5/8 -5/8 11/16 -11/16 3/4 -3/4 13/16 -13/16 7/8 -7/8 15/16 -15/16 1 -1)
@@ -246,7 +247,8 @@
   (let ((dependent (echelon-dependent (echelon-of (mapcar #'row-from-maxima (cdr rows))))))
     (cons '(mlist)
           (remove-if #'(lambda (i) (member i dependent))
-                     (let ((numbers nil)) (dotimes (i (length (cdr rows)) (nreverse numbers)) (push (1+ i) numbers)))))))
+                     (let ((numbers nil))
+                       (dotimes (i (length (cdr rows)) (nreverse numbers)) (push (1+ i) numbers)))))))
 
 (defun $null_vector (rows size)
   "A list x of so many numbers, not all of them zero, with  rows . x = 0; false where there is none."
@@ -321,8 +323,8 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
 
 (defun float-of (number) (float number 1d0))
 
-;; In floating point a residual whose terms all vanish, as y where y = 0, may stay: whoever has a point that no correction
-;; changes any more goes on from there with more digits.
+;; In floating point a residual whose terms all vanish, as y where y = 0, may stay: whoever has a point that no
+;; correction changes any more goes on from there with more digits.
 (defun newton-iteration (point constraints jacobian coordinates &optional metric damped)
   (let ((last-size nil))
     (dotimes (attempt *most-corrections* nil)
@@ -342,7 +344,7 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
           (if (null point) (return nil)))))))
 
 (defun point-of-line-search (point corrections size constraints jacobian metric coordinates)
-  "A point along the corrections, of this size, where the next ones with the same matrix are shorter; nil where none is."
+  "A point along the corrections, of this size, where the next with the same matrix are shorter; nil where none is."
   (do ((share 1 (/ share 2)) (halvings 0 (1+ halvings)))
       ((> halvings *most-halvings*) nil)
     (let* ((trial (corrected-point point (shortened corrections share) (cdr coordinates)))
@@ -350,7 +352,8 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
       (if (and residuals
                (or (every #'zerop residuals)
                    (< size (* *small-correction* (largest-coordinate point coordinates)))
-                   (<= (largest-correction (corrections-in-metric residuals jacobian metric point (length (cdr coordinates))))
+                   (<= (largest-correction
+                        (corrections-in-metric residuals jacobian metric point (length (cdr coordinates))))
                        (* (- 1 (/ share 4)) size))))
           (return trial)))))
 
@@ -476,7 +479,7 @@ vanish; false where Newton's method does not get there."
                             (cdr names)))))))))
 
 (defun nearer-root (found point constraints jacobian metric names)
-  "The root nearest to the point, of those that Newton's method gets to from starts around it; found, if it is none of them."
+  "The root nearest to the point, of those that Newton's method gets to from around it; found, if it is none of them."
   (let ((close (if (and (<= (length (cdr names)) *most-unknowns-searched*)
                         (not (contracts-at-once point constraints jacobian metric names)))
                    (nearest-within nil found point constraints jacobian metric names))))
@@ -484,7 +487,7 @@ vanish; false where Newton's method does not get there."
         found)))
 
 (defun root-from-around (point constraints jacobian metric names)
-  "The nearest root that Newton's method gets to from starts around the point, where it gets to none from there; or nil."
+  "The nearest root that Newton's method gets to from around the point, where it gets to none from there; or nil."
   (if (<= (length (cdr names)) *most-unknowns-searched*)
       (let ((size (let ((largest (largest-coordinate point names))) (if (zerop largest) 1 largest))))
         (some #'(lambda (distance)
@@ -507,11 +510,12 @@ vanish; false where Newton's method does not get there."
 
 (defun largest-difference (corrections others)
   (let ((differences (make-hash-table)))
-    (maphash #'(lambda (column value) (setf (gethash column differences) (- value (gethash column others 0)))) corrections)
+    (maphash #'(lambda (column value) (setf (gethash column differences) (- value (gethash column others 0))))
+             corrections)
     (largest-correction differences)))
 
 (defun nearest-within (distance found point constraints jacobian metric names)
-  "The nearest root from starts at this distance of the point at most, or as far as the one found; nil where none is nearer."
+  "The nearest root from starts within this distance of the point, or that of the one found; nil where none is nearer."
   (let* ((*floating* t)
          (*zero-share* *zero-share-of-floats*)
          (*most-corrections* *most-corrections-of-search*)
@@ -527,7 +531,7 @@ vanish; false where Newton's method does not get there."
       (setq best nearer))))
 
 (defun nearest-of-starts (guess reach known rows constraints jacobian metric names)
-  "Of the roots from starts at this distance the one that is nearer than KNOWN, with its distance; nil where there is none."
+  "Of the roots from starts at this distance the nearest, with its distance; nil where none is nearer than KNOWN."
   (let ((share (if (< (length (cdr constraints)) (length (cdr names))) *nearer* (- 1 1/1000000))) (best nil))
     (if (plusp reach)
         (dolist (start (starts-around guess reach rows names) best)
@@ -550,7 +554,8 @@ vanish; false where Newton's method does not get there."
                 (push start starts))))))))
 
 (defun distance-in-metric (point guess rows names)
-  (let ((ways (mapcar #'(lambda (x) (- (gethash x (sample-point-symbols point)) (gethash x (sample-point-symbols guess))))
+  (let ((ways (mapcar #'(lambda (x) (- (gethash x (sample-point-symbols point))
+                                       (gethash x (sample-point-symbols guess))))
                       (cdr names)))
         (square 0))
     (mapc #'(lambda (row way) (dolist (e row) (incf square (* way (cdr e) (nth (1- (car e)) ways))))) rows ways)

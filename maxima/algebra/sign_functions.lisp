@@ -68,12 +68,14 @@
 
 (defun weight-of-sign (sign) (div (add 1 sign) 2))
 
-;; Of an if that it cannot decide Maxima evaluates the first condition alone: what is called behind it is not called yet.
+;; Of an if that it cannot decide Maxima evaluates the first condition alone: what is called behind it is not called
+;; yet.
 (defun $with_branches_evaluated (e)
   "The expression with the functions called that the branches of an if in it call."
   (cond ((or (atom e) (member 'array (car e))) e)
         ((eq (caar e) 'mcond)
-         (cons (car e) (mapcar #'(lambda (part) ($with_branches_evaluated (if (calls-p part) (meval part) part))) (cdr e))))
+         (cons (car e) (mapcar #'(lambda (part) ($with_branches_evaluated (if (calls-p part) (meval part) part)))
+                               (cdr e))))
         (t (let ((parts (mapcar #'$with_branches_evaluated (cdr e))))
              (if (same-items-p parts (cdr e)) e (simplifya (cons (car e) parts) t))))))
 

@@ -1,9 +1,10 @@
 ;;; The cubic polynomials of a spline, from the points that it runs through       (table.mac)
 ;;;
-;;; The tridiagonal system for the second rates is eliminated from the first row down, then back. Its matrix is made of
-;;; times, which are fractions; heights may be other constants, as sqrt(2). With few points the solution is exact, but for
-;;; fractions of more than spline_digits digits, which are rounded: exact ones gain some with every point. With many points
-;;; it is computed in integers, multiples of a unit so small that as many digits are right: that is forty times as quick.
+;;; The tridiagonal system for the second rates is eliminated from the first row down, then back. Its matrix is made
+;;; of times, which are fractions; heights may be other constants, as sqrt(2). With few points the solution is
+;;; exact, but for fractions of more than spline_digits digits, which are rounded: exact ones gain some with every
+;;; point. With many points it is computed in integers, multiples of a unit so small that as many digits are right:
+;;; that is forty times as quick.
 
 (in-package :maxima)
 
@@ -47,7 +48,8 @@
     (flet ((in-units-of-all (numbers) (mapcar #'(lambda (x) (in-units x bits)) numbers)))
       (cons '(mlist simp)
             (mapcar #'(lambda (units) (maxima-fraction (/ units (ash 1 bits))))
-                    (tridiagonal-solution (in-units-of-all lower) (in-units-of-all diagonal) (in-units-of-all upper) right
+                    (tridiagonal-solution (in-units-of-all lower) (in-units-of-all diagonal) (in-units-of-all upper)
+                                          right
                                           #'(lambda (x pivot) (floor (ash x bits) pivot))
                                           #'(lambda (x ratio y) (- x (ash (* ratio y) (- bits))))))))))
 
@@ -102,7 +104,8 @@
                       (let ((h (- (exact-number (second next-row)) (exact-number (second row)))))
                         (list* '($json_array) ($exact_text (second row))
                                (mapcar #'(lambda (units) (decimal-of-units units bits digits))
-                                       (coefficients-in-units h (in-units (third row) bits) (in-units (third next-row) bits)
+                                       (coefficients-in-units h (in-units (third row) bits)
+                                                              (in-units (third next-row) bits)
                                                               (in-units bend bits) (in-units next-bend bits))))))
                   (cdr rows) (cddr rows) (cdr curvatures) (cddr curvatures)))))
 

@@ -7,7 +7,8 @@
 (in-package :maxima)
 
 (defvar *printed-heads*
-  '((mequal . "Equal") (mnotequal . "NotEqual") (mlist . "List") (mplus . "Add") (mminus . "Negate") (mtimes . "Multiply")
+  '((mequal . "Equal") (mnotequal . "NotEqual") (mlist . "List") (mplus . "Add") (mminus . "Negate")
+    (mtimes . "Multiply")
     (mquotient . "Divide") (mexpt . "Power") (mfactorial . "Factorial") (mqapply . "Apply")
     ($exp . "Exp") (%exp . "Exp") ($det . "Determinant")
     ($dot . "Dot") ($ddot . "Ddot") ($dddot . "Dddot") ($rate . "Rate") ($partial . "Partial")))

@@ -53,7 +53,8 @@
 
 (defun $json_points (points)
   (cons '($json_array)
-        (mapcar #'(lambda (point) (cons '($json_array) (mapcar #'(lambda (x) (list '($json_expression) x)) (cdr point))))
+        (mapcar #'(lambda (point)
+                    (cons '($json_array) (mapcar #'(lambda (x) (list '($json_expression) x)) (cdr point))))
                 (cdr points))))
 
 (defun write-described (e out)
@@ -98,7 +99,8 @@
           $settings (described-values (member-of document "settings"))
           $settings_used (listed (mapcar #'second (cdr $settings))))
     (dolist (fact (member-of document "assumptions")) (mfuncall '$assume (described-expression fact)))
-    (dolist (fact (member-of document "declarations")) (mapply1 '$declare (mapcar #'described-symbol fact) '$declare nil))
+    (dolist (fact (member-of document "declarations"))
+      (mapply1 '$declare (mapcar #'described-symbol fact) '$declare nil))
     (setq system (system-anew (member-of document "system")))
     (dolist (scene scenes)
       (bind-anew (member-of scene "name")
@@ -142,7 +144,8 @@
 (defun described-list (trees) (listed (mapcar #'described-expression trees)))
 
 (defun described-values (members)
-  (listed (mapcar #'(lambda (each) (list '(mequal simp) (described-symbol (car each)) (described-expression (cdr each))))
+  (listed (mapcar #'(lambda (each)
+                      (list '(mequal simp) (described-symbol (car each)) (described-expression (cdr each))))
                   (cdr members))))
 
 (defun described-effects (effects) (effects-anew effects #'described-expression))
@@ -186,7 +189,8 @@
 
 (defun described-number (digits)
   "An integer, or the fraction that decimal digits say."
-  (maxima-fraction (if (find-if #'(lambda (c) (find c ".eE")) digits) (decimal-fraction digits) (parse-integer digits))))
+  (maxima-fraction
+   (if (find-if #'(lambda (c) (find c ".eE")) digits) (decimal-fraction digits) (parse-integer digits))))
 
 (defun described-application (head arguments)
   (cond ((string= head "Table")
@@ -194,7 +198,8 @@
            (let ((table (nth number *tables-described*)))
              (list* (first table) (described-expression time) (cddr table)))))
         ((string= head "Subscript")
-         (list* (list (described-symbol (first arguments)) 'simp 'array) (mapcar #'described-expression (rest arguments))))
+         (list* (list (described-symbol (first arguments)) 'simp 'array)
+                (mapcar #'described-expression (rest arguments))))
         (t (applied-anew head (mapcar #'described-expression arguments)))))
 
 (defun applied-anew (head arguments)
