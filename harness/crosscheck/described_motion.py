@@ -9,7 +9,7 @@ are polynomials in the time, too: on a motion they vanish. No matrix is made, an
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -90,9 +90,9 @@ class DescribedMotion:
         """Value of an expression of parameters alone."""
         return Law({"": tree}, ()).at(Taylor(0), mp.zero, self.parameters())[""][0]
 
-    def values(self, taylor: Taylor, curve: Curve) -> list[Polynomial]:
-        """Values of T, V, Q, f and all their parts along a curve; raises as `Tape.values`."""
-        return self.tape.values(taylor, self.with_rates(taylor, curve))
+    def values(self, taylor: Taylor, curve: Curve, needed: Container[int] | None = None) -> list[Polynomial]:
+        """Values of T, V, Q, f and all their parts along a curve, or of those needed; raises as `Tape.values`."""
+        return self.tape.values(taylor, self.with_rates(taylor, curve), needed)
 
     def with_rates(self, taylor: Taylor, curve: Curve) -> dict[str, Polynomial]:
         """A curve with the rates of its coordinates and controls."""

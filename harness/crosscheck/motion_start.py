@@ -46,8 +46,9 @@ def claims_of_start(motion: DescribedMotion, start: State, correction: tuple[str
         given = motion.number_of(tree)
         if abs(start[name] - given) > allowed:
             yield Claim(f"initial value of {name}", start[name], given, abs(given))
-    values = motion.values(RATE, _curve(motion, start))
-    sizes, coordinates = motion.tape.sizes(RATE, values), set(motion.system.coordinates)
+    needed = motion.tape.needed_for([*motion.constraints, *motion.outputs])  # forces may have no value at the start
+    values = motion.values(RATE, _curve(motion, start), needed)
+    sizes, coordinates = motion.tape.sizes(RATE, values, needed), set(motion.system.coordinates)
     for what, places in (("constraint", motion.constraints), ("servo-constraint", motion.outputs)):
         for beta, place in enumerate(places, 1):
             slopes = motion.tape.gradient(RATE, values, {place: (mp.one,)})

@@ -7,7 +7,7 @@ Evaluating Derivatives, chapter 3).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import partial
 from heapq import heapify, heappop, heappush
@@ -84,8 +84,21 @@ class Tape:
             self.operations.append((head, own))
         return self._places[key]
 
-    def values(self, taylor: Taylor, known: Mapping[str, Polynomial]) -> list[Polynomial]:
-        """Values of all operations.
+    def needed_for(self, places: Iterable[int]) -> set[int]:
+        """Operations that those at some places are made of, themselves among them."""
+        needed: set[int] = set()
+        waiting = [*places]
+        while waiting:
+            place = waiting.pop()
+            if place not in needed:
+                needed.add(place)
+                waiting += self.operations[place][1]
+        return needed
+
+    def values(
+        self, taylor: Taylor, known: Mapping[str, Polynomial], needed: Container[int] | None = None
+    ) -> list[Polynomial]:
+        """Values of all operations, or of those that are needed.
 
         Raises
         ------
@@ -98,16 +111,20 @@ class Tape:
         for place, number in self.numbers.items():
             values[place] = (mp.mpf(number.numerator) / number.denominator,)
         for place, (head, arguments) in enumerate(self.operations):
-            if head not in ("name", "number"):
+            if head not in ("name", "number") and (needed is None or place in needed):
                 values[place] = value_of(taylor, head, [values[each] for each in arguments])
         return values
 
-    def sizes(self, taylor: Taylor, values: Sequence[Polynomial]) -> list[Polynomial]:
-        """What the sizes of all terms of sums add up to, of each operation."""
+    def sizes(
+        self, taylor: Taylor, values: Sequence[Polynomial], needed: Container[int] | None = None
+    ) -> list[Polynomial]:
+        """What the sizes of all terms of sums add up to, of each operation, or of those that are needed."""
         found: list[Polynomial] = []
         for place, (head, arguments) in enumerate(self.operations):
             x = [found[each] for each in arguments]
             match head:
+                case _ if needed is not None and place not in needed:
+                    found.append(())
                 case "Add" | "Subtract":
                     found.append(taylor.add(*x))
                 case "Multiply":

@@ -124,3 +124,16 @@ scene : holonomic_scene(system, initial_state = makelist(q[j] = j, j, 7))$
     first, *others = fixed_values(scene).relations
     wrong = with_relations(scene, (Relation(first.left_tree, ["Rational", 1, 3]), *others))
     assert verdicts(record, described, wrong)["19"] is Verdict.DISAGREES
+
+
+def test_force_without_a_value_at_the_start_is_no_error(tmp_path):
+    """The start itself is compared; the check ended as an internal error."""
+    file = tmp_path / "scene.mac"
+    file.write_text("""
+load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2, forces = [log(x), 0],
+  constraints = [y - 2*x])$
+scene : holonomic_scene(system, initial_state = [x = 0, dot(x) = 1], time_span = [0, 1])$
+""")
+    report = check_record(derived_record(file), describe(file))
+    assert Verdict.DISAGREES not in {found.verdict for found in report.verdicts}
