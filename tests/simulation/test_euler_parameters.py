@@ -146,3 +146,23 @@ spin : holonomic_scene(system, initial_state = [x = 0, y = 0, z = 0, dot(x) = 0,
     e1 = {e1}, e2 = 0, e3 = 0, dot(e1) = 1/2, dot(e2) = 1/3, dot(e3) = 1],
   initial_guess = [e0 = 1, dot(e0) = 0], time_span = [0, 1/10])$""").simulate(samples=2)
     assert HardCase.MASS_RATIO not in motion.report.cases
+
+
+PLATFORM = """
+foot(k) := (4*floor(k/2) + (-1)^k)*%pi/6$
+head(k) := foot(k) - (-1)^k*%pi/12$
+plate : rigid_body(2, [1/3, 1/2, 1], [x, y, z], [e0, e1, e2, e3])$
+leg(k) := distance_joint(marker(plate, [cos(head(k)), sin(head(k)), 0]), [2*cos(foot(k)), 2*sin(foot(k)), 0], u)$
+system : holonomic_system(controls = [u], apply('assembly, append([plate], makelist(leg(k), k, 0, 5),
+  ['gravity = uniform_gravity(10, plate)])))$
+lift : holonomic_scene(system, control_law = [u = sqrt(5 - 4*cos(%pi/12) + (2 + t)^2)], time_span = [0, 1],
+  initial_state = [x = 0, y = 0, z = 2, e0 = 1, e1 = 0, e2 = 0, e3 = 0])$
+"""
+
+
+def test_platform_on_legs_of_exact_lengths_is_lifted():
+    """cos(%pi/12) was expanded in the seven velocities that are left out, for more than two minutes."""
+    motion = holonom.system(PLATFORM).simulate(samples=2)
+    assert motion["z"][-1] == pytest.approx(3, rel=1e-12)
+    assert motion["dot(z)"][-1] == pytest.approx(1, rel=1e-12)
+    assert motion.report.trusted
