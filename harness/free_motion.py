@@ -11,8 +11,8 @@ from pathlib import Path
 
 from sympy import Add, Expr, Mul, Symbol
 
+from .crosscheck.report import Judgement
 from .crosscheck.system import described_system
-from .crosscheck.verdict import Judgement
 from .described import read_system
 from .documents import Document, ask, read
 from .free_verdicts import FreeMotionTrial

@@ -14,10 +14,11 @@ from typing import TypeVar
 from sympy import Expr, Symbol
 
 from .crosscheck.law_search import find_free_law
-from .crosscheck.points import fresh_seed
+from .crosscheck.report import Judgement
+from .crosscheck.seed import fresh_seed
 from .crosscheck.system import MechanicalSystem
 from .crosscheck.universal_laws import LawOfControls, judge_law
-from .crosscheck.verdict import Judgement, Verdict
+from .crosscheck.verdict import Verdict
 
 T = TypeVar("T")
 Law = Mapping[str, Expr]

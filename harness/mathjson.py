@@ -1,10 +1,8 @@
 """MathJSON trees (`holonom.trees`) to SymPy expressions and back; nothing in a tree is ever evaluated as code."""
 
-import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from operator import neg, sub, truediv
 
-import mpmath
 import sympy
 from sympy import Expr, Float, Indexed, IndexedBase, Integer, Rational, S, Symbol
 
@@ -13,7 +11,6 @@ from .trees import FLOAT, INTEGER, JSON_INTEGERS, Tree, converted, integer, quan
 
 DOUBLE_DIGITS = 17  # decimal digits that tell any two doubles apart
 DOUBLE_BITS = 53
-SPARE_DIGITS = 11  # of a number longer than Python reads, beyond those that mpmath keeps
 
 CONSTANTS = {"Pi": S.Pi, "ExponentialE": S.Exp1, "ImaginaryUnit": S.ImaginaryUnit, "EulerGamma": S.EulerGamma}
 CONSTANT_NAMES = {constant: name for name, constant in CONSTANTS.items()}
@@ -203,22 +200,3 @@ def _digits(value: Float) -> str:
 
 
 # ---- numbers as text ----
-
-
-def number(text: str) -> mpmath.mpf:
-    """The value of p/q or of decimal digits, rounded to the digits that mpmath works with."""
-    numerator, _, denominator = text.partition("/")
-    return _decimal(numerator) / _decimal(denominator or "1")
-
-
-def numbers(texts: Iterable[str]) -> list[mpmath.mpf]:
-    """The values of several."""
-    return [number(text) for text in texts]
-
-
-def _decimal(text: str) -> mpmath.mpf:
-    """Of an integer longer than Python reads, the first digits, which are more than mpmath keeps."""
-    kept = mpmath.mp.dps + SPARE_DIGITS
-    if len(text) <= sys.int_info.default_max_str_digits or not text.lstrip("-").isdigit():
-        return mpmath.mpf(text)
-    return mpmath.mpf(text[:kept]) * mpmath.mpf(10) ** (len(text) - kept)

@@ -136,10 +136,10 @@ def _kill_at_end_of_input(child: int) -> None:
         os.kill(child, signal.SIGKILL)
 
 
-if __name__ == "__main__":
-    os._exit(_run(int(sys.argv[1]), sys.argv[2:]))
-
-
 def usable_cores() -> int:
     """Those that this process may use, where the system can tell; else those that there are."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+if __name__ == "__main__":
+    os._exit(_run(int(sys.argv[1]), sys.argv[2:]))

@@ -17,8 +17,7 @@ from holonom.cli import holonom as cli
 from holonom.cli import run
 from holonom.cli.tables.condition import condition_lines
 from holonom.cli.tables.derivation import why_left_out
-from holonom.crosscheck.report import Verdict
-from holonom.crosscheck.verdict import Judgement
+from holonom.crosscheck.report import Judgement, Verdict
 from holonom.failures import Failure, HolonomError
 from holonom.record import LARGEST_SIZE, LeftOut, read_record
 

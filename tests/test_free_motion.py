@@ -13,7 +13,7 @@ from sympy import Function, Symbol, cos, exp, symbols
 
 from holonom.cli.tables.free_motion import formula, power_series
 from holonom.free_motion import FirstCoefficient, Free, free_motion
-from holonom.mathjson import number
+from holonom.number_texts import number
 from holonom.program.forms import MotionProgram
 from holonom.program.numpy_function import NumpyFunction
 from holonom.program.request import Request

@@ -3,8 +3,9 @@
 import pytest
 import sympy as sp
 
+from holonom.crosscheck.report import Judgement
 from holonom.crosscheck.system import MechanicalSystem, dotted
-from holonom.crosscheck.verdict import Judgement, Verdict
+from holonom.crosscheck.verdict import Verdict
 from holonom.free_verdicts import FreeMotionTrial
 
 t, u, x, y = sp.symbols("t u x y", real=True, seq=True)

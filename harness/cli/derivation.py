@@ -1,12 +1,8 @@
 """The commands that derive and compare: derive, check, errata."""
 
-import math
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import asdict
-from functools import partial
 from pathlib import Path
-from queue import SimpleQueue
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -14,15 +10,16 @@ import click
 from ..language import ENGLISH, LANGUAGES, speaking
 from ..sandbox import Limits
 from ..supervisor import doing, time_to_limit
+from .beside import beside, result_of
 from .group import holonom
 from .meanwhile import meanwhile
 from .options import DISAGREEMENT, present, publish, runs_scenes, takes_settings, writes_json
 from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile, as_given
 
 if TYPE_CHECKING:
-    from ..crosscheck.report import CheckReport
-    from ..description import Description
+    from ..crosscheck.report import CheckReport, EquationVerdict
     from ..record import Record
+    from ..source import Source
 
 TIME_TO_TELL = 1.0  # seconds that are kept for the verdicts found within a time limit
 
@@ -100,59 +97,65 @@ def check(
     limits: Limits,
 ) -> int:
     """Derive each SCENE and compare every equation with an independent SymPy evaluation."""
-    from ..crosscheck.questions import ask_for_check
-    from ..documents import Document, Question, written
+    from ..crosscheck.seed import fresh_seed
+    from ..record import derived_record
     from ..source import Source
 
-    sources = [Source(scene, limits) for scene in scenes]
-    record = Question(Document.RECORD, (closed_form_size,))
-    described: SimpleQueue[Description | None] = SimpleQueue()
-    with meanwhile(scenes[0], limits, partial(_derive_beforehand, described)):
-        try:
-            for source in sources:
-                described.put(source.description(settings))
-        finally:
-            described.put(None)
-        asked = [ask_for_check(source, settings, [record]) for source in sources]
-
-    from ..crosscheck.check import check_record
-    from ..crosscheck.motions import motion_verdicts, read_motions
-    from ..crosscheck.points import fresh_seed
-    from ..crosscheck.report import Verdict
-    from ..record import read_record
-    from .tables.derivation import show_reports
-
     seed = seed or fresh_seed()
-    reports = []
-    with doing("checking with SymPy"):
-        for source, answers in zip(sources, asked, strict=True):
-            said, left = source.description(settings), time_to_limit() - TIME_TO_TELL
-            report = check_record(read_record(written(*answers.others)), said, seed, closed_form_size, left)
-            motions = read_motions(said, answers)
-            verdicts = motion_verdicts(said, motions, seed, time_to_limit() - TIME_TO_TELL)
-            reports.append((as_given(source.file), report.with_verdicts(verdicts)))
+    sources = [Source(scene, limits) for scene in scenes]
+    with beside(_judge_motions, settings, seed) as child:
+        with meanwhile(scenes[0], limits, _import_what_checks):
+            described = [source.description(settings) for source in sources]
+            child.send(sources)
+            records = [derived_record(source, settings, closed_form_size=closed_form_size) for source in sources]
+
+        from ..crosscheck.check import check_record
+        from ..crosscheck.report import Verdict
+        from .tables.derivation import show_reports
+
+        with doing("checking with SymPy"):
+            checked = [
+                check_record(record, said, seed, closed_form_size, time_to_limit() - TIME_TO_TELL)
+                for record, said in zip(records, described, strict=True)
+            ]
+            motions = result_of(child)
+    reports = [
+        (as_given(source.file), report.with_verdicts(verdicts))
+        for source, report, verdicts in zip(sources, checked, motions, strict=True)
+    ]
     documents = [_report_document(scene, report) for scene, report in reports]
     present(documents[0] if len(documents) == 1 else documents, json_file, show_reports, reports)
     unwanted = (Verdict.DISAGREES,) if allow_undecided else (Verdict.DISAGREES, Verdict.UNDECIDED)
     return DISAGREEMENT if any(report.count(*unwanted) for _, report in reports) else 0
 
 
-def _derive_beforehand(descriptions: "SimpleQueue[Description | None]") -> None:
-    """Import what checks, and have SymPy form Lagrange's equations, which are kept, of descriptions up to None."""
-    from ..crosscheck import check, motions  # noqa: F401
-    from ..crosscheck.lagranges_method import bordered_equations, can_take
-    from ..crosscheck.system import described_system
-    from ..program import drawing  # noqa: F401
+def _judge_motions(sources: Sequence["Source"], settings: dict[str, str], seed: str) -> list[list["EquationVerdict"]]:
+    """Ask Maxima for the motions of each source, and judge them."""
+    from ..crosscheck.questions import ask_for_check
+
+    with meanwhile(sources[0].file, sources[0].limits, _import_what_judges_motions):
+        asked = [ask_for_check(source, settings) for source in sources]
+
+    from ..crosscheck.motions import motion_verdicts, read_motions
+
+    verdicts = []
+    for source, answers in zip(sources, asked, strict=True):
+        said = source.description(settings)
+        motions = read_motions(said, answers)
+        verdicts.append(list(motion_verdicts(said, motions, seed, time_to_limit() - TIME_TO_TELL)))
+    return verdicts
+
+
+def _import_what_checks() -> None:
+    """Import SymPy, and what needs it."""
+    from ..crosscheck import check, lagranges_method  # noqa: F401
     from .tables import derivation  # noqa: F401
 
-    if math.isfinite(time_to_limit()):  # which would not interrupt it here
-        return
-    for each in iter(descriptions.get, None):
-        for effects in {scene.effects for scene in each.scenes}:
-            system = described_system(each.system, effects)
-            if can_take(system):
-                with suppress(Exception):  # it fails again where it is compared
-                    bordered_equations(system)
+
+def _import_what_judges_motions() -> None:
+    """Import it, and what reads motions."""
+    from ..crosscheck import motions  # noqa: F401
+    from ..program import drawing  # noqa: F401
 
 
 @holonom.command()

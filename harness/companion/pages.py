@@ -14,7 +14,7 @@ from sympy import Expr
 from ..explanations import advice, engine_text, remarks
 from ..free_motion import UniversalLaw
 from ..language import ENGLISH, LANGUAGES, gettext, ngettext, spoken, translated
-from ..mathjson import number
+from ..number_texts import number
 from ..record import Scene
 from ..reference.topics import Topic
 from . import TEMPLATES, mathematics

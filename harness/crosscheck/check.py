@@ -14,10 +14,10 @@ from .claims import NotComparable
 from .derivation import DerivationClaims
 from .independent import IndependentEquations
 from .initial_motion import SceneClaims
-from .points import fresh_seed
 from .premises import Difference, Premises, differences, premises_of
 from .redundancy import judge_redundancy
-from .report import CheckReport, EquationVerdict, Verdict
+from .report import CheckReport, EquationVerdict, Judgement, Verdict
+from .seed import fresh_seed
 from .skeleton import (
     CLOSED_NUMBERS,
     Item,
@@ -30,7 +30,7 @@ from .skeleton import (
 )
 from .system import MechanicalSystem, described_system
 from .time_limit import TimeLimit
-from .verdict import Comparison, Judgement, judge_all
+from .verdict import Comparison, judge_all
 
 Claims = TypeVar("Claims", DerivationClaims, SceneClaims)
 Compare = Callable[[Claims, tuple[Relation, ...]], Comparison | tuple[Comparison, ...]]

@@ -1,4 +1,4 @@
-"""Decimal digits of the comparison."""
+"""Decimal digits and points of the comparison."""
 
 DIGITS = 50
 """Digits to which two values agree at least."""
@@ -8,3 +8,6 @@ WORKING_DIGITS = DIGITS + 20
 
 CONFIRMING_DIGITS = 3 * WORKING_DIGITS
 """Digits in which each point is taken again."""
+
+POINTS = 8
+"""Random points at which two expressions are compared."""

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator
 from mpmath import mp
 
 from .digits import DIGITS, WORKING_DIGITS
+from .irregular_point import IrregularPoint
 from .motion_states import Claim
-from .points import IrregularPoint
 
 VANISHED = 2 * DIGITS // 3  # digits by which a difference shrinks in twice the digits where it is rounding
 

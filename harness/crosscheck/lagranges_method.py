@@ -8,7 +8,6 @@ full mass matrix have the paper's sign; those in its equations of motion have th
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import lru_cache
 
 import sympy as sp
 from sympy.physics.mechanics import LagrangesMethod, Point, ReferenceFrame, dynamicsymbols
@@ -32,7 +31,7 @@ def can_take(system: MechanicalSystem) -> bool:
 
 def compare(known: IndependentEquations) -> Comparison:
     """Accelerations and multipliers of the method against those of the bordered system."""
-    theirs = bordered_equations(known.system)
+    theirs = _bordered_equations(known.system)
     return Comparison(
         pairs=tuple(
             Pair(ours.name, their_own, ours)
@@ -42,8 +41,7 @@ def compare(known: IndependentEquations) -> Comparison:
     )
 
 
-@lru_cache(maxsize=16)
-def bordered_equations(system: MechanicalSystem) -> LinearEquations:
+def _bordered_equations(system: MechanicalSystem) -> LinearEquations:
     """Write the method's full mass matrix and forcing in our symbols, for unknowns of its own."""
     ours = {function: symbol for symbol, function in _functions_of_time(system).items()}
     method = _method(system)

@@ -15,7 +15,7 @@ from mpmath import mp
 
 from ..description import Table
 from ..trees import Tree
-from .points import IrregularPoint
+from .irregular_point import IrregularPoint
 from .tape import Tape
 from .taylor import Polynomial, Taylor
 

@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 import sympy as sp
 from mpmath import mp
 
-from .points import IrregularPoint, Valuation
+from .irregular_point import IrregularPoint
+from .points import Valuation
 
 SPARE_DIGITS = 10
 """Of those that are carried, digits to which residuals need not vanish."""

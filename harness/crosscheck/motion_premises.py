@@ -11,11 +11,11 @@ from ..program.motion_problem import MotionProblem, computing
 from ..program.motion_program import Name, Program, Solve
 from .described_motion import DescribedMotion
 from .digits import WORKING_DIGITS
+from .irregular_point import IrregularPoint
 from .judged_claims import Parts, differing
 from .law import Law
 from .motion_start import START_DIGITS, claims_of_start, nearer_start
 from .motion_states import STATE, Claim, States, claims_of_law
-from .points import IrregularPoint
 from .program_values import outputs_of, run
 from .switches import law_instants
 from .taylor import Taylor

@@ -17,15 +17,14 @@ from ..program.motion_problem import MotionProblem, read_problem
 from ..program.motion_program import Program, Solve, read_program
 from . import motion_states as states
 from .described_motion import DescribedMotion
-from .digits import DIGITS
+from .digits import DIGITS, POINTS
+from .irregular_point import IrregularPoint
 from .judged_claims import Parts, first_differences
 from .motion_premises import PREMISES, claims_of_inputs, other_premises
 from .motion_states import STATE, Claim, States
-from .points import IrregularPoint
 from .program_values import Values, run
 from .questions import Answer, SceneAndSolve, holds_special_functions, is_closed
-from .report import Verdict
-from .verdict import POINTS, Judgement
+from .report import Judgement, Verdict
 
 ATTEMPTS = 6  # draws for each state before the search for a regular one is given up
 

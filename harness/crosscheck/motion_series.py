@@ -15,22 +15,21 @@ from mpmath import mp
 
 from ..description import Description
 from ..failures import HolonomError
-from ..mathjson import number, numbers
+from ..number_texts import number, numbers
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Solve
 from ..series.power_series import EXACT, MotionSeries, read_series
 from .described_motion import DescribedMotion, Residual
 from .digits import DIGITS
+from .irregular_point import IrregularPoint
 from .judged_claims import differing
 from .motion_program import OF_SPECIAL_FUNCTIONS, ProgramVerdict, ScenePrograms, why_missing
 from .motion_start import claims_of_start
 from .motion_states import Claim
-from .points import IrregularPoint
 from .program_values import Values, letters_of_tables, run_along, with_signs
 from .questions import ORDER, Answer, holds_special_functions
-from .report import Verdict
+from .report import Judgement, Verdict
 from .taylor import Polynomial, Taylor
-from .verdict import Judgement
 
 PERTURBATIONS = 3  # of all coefficients, by which the effect of rounding them is found
 LOST = 8  # digits that a rounded coefficient may lose on its way into the equations

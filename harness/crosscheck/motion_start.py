@@ -11,8 +11,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from mpmath import mp
 
 from .described_motion import DescribedMotion
+from .irregular_point import IrregularPoint
 from .motion_states import Claim
-from .points import IrregularPoint
 from .ranks import Elimination, Row
 from .taylor import Polynomial, Taylor
 

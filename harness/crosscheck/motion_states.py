@@ -17,7 +17,7 @@ from mpmath import mp
 
 from ..program.motion_problem import MotionProblem
 from .described_motion import DescribedMotion
-from .points import IrregularPoint
+from .irregular_point import IrregularPoint
 from .program_values import Values, letters_of_tables, run, with_signs
 from .sparse import solved
 from .taylor import Taylor

@@ -10,9 +10,8 @@ from ..description import Description
 from .motion_program import ProgramVerdict, ScenePrograms, judge_programs, read_programs
 from .motion_series import SceneSeries, judge_series, judge_servo, read_all_series
 from .questions import Answers
-from .report import EquationVerdict, Verdict
+from .report import EquationVerdict, Judgement, Verdict
 from .time_limit import TimeLimit
-from .verdict import Judgement
 
 
 @dataclass(frozen=True)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import random
-import secrets
 from collections.abc import Iterable, Mapping
 
 import sympy as sp
 from mpmath import mp
 
 from ..elliptic import JacobiCn, JacobiDn, JacobiSn
+from .irregular_point import IrregularPoint
 
 PARTS = 1_000_003
 """Coordinates of a random point are multiples of its inverse, up to two: small, rarely special, too many to foresee."""
@@ -53,15 +53,6 @@ FUNCTIONS = {
     sp.sign: mp.sign,
     sp.DiracDelta: lambda x, order=0: mp.zero if x else mp.inf,
 }
-
-
-class IrregularPoint(ArithmeticError):
-    """An expression has no finite real value at the point."""
-
-
-def fresh_seed() -> str:
-    """A seed that nobody can foresee, for points at which no equation can have been made to vanish."""
-    return secrets.token_hex(8)
 
 
 def random_point(names: Iterable[str], attempt: int, seed: str) -> dict[sp.Symbol, sp.Rational]:

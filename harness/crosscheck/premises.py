@@ -16,9 +16,9 @@ from ..record import Record, Scene
 from .described_motion import DescribedMotion
 from .digits import CONFIRMING_DIGITS, DIGITS, WORKING_DIGITS
 from .evaluation import Steps
+from .irregular_point import IrregularPoint
 from .law import Law, is_switched
 from .motion_start import nearer_start
-from .points import IrregularPoint
 from .system import exact
 from .taylor import Taylor
 

@@ -29,7 +29,7 @@ from mpmath.libmp import (
 
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Call, Constant, Expression, Name, Operation, Program
-from .points import IrregularPoint
+from .irregular_point import IrregularPoint
 from .tape import value_of
 from .taylor import Polynomial, Taylor
 

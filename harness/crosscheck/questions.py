@@ -26,21 +26,16 @@ SceneAndSolve = tuple[str | None, Solve]
 class Answers(NamedTuple):
     """Documents, or why there are none."""
 
-    others: Sequence[Answer]
     programs: Mapping[SceneAndSolve, Answer]  # empty where none are asked for
     series: Mapping[str, Answer]
 
 
-def ask_for_check(source: Source, settings: Mapping[str, str], others: Sequence[Question] = ()) -> Answers:
-    """Ask Maxima for all that is checked of motions, and for other documents; raises as `holonom.documents.ask_all`."""
+def ask_for_check(source: Source, settings: Mapping[str, str]) -> Answers:
+    """Ask Maxima for all that is checked of motions; raises as `holonom.documents.ask_all`."""
     description = source.description(settings)
     programs, series = _programs(description), _series(description)
-    answers = iter(ask_all([*others, *programs.values(), *series.values()], source, settings))
-    return Answers(
-        [next(answers) for _ in others],
-        {each: next(answers) for each in programs},
-        {each: next(answers) for each in series},
-    )
+    answers = iter(ask_all([*programs.values(), *series.values()], source, settings))
+    return Answers({each: next(answers) for each in programs}, {each: next(answers) for each in series})
 
 
 def holds_special_functions(description: Description) -> bool:

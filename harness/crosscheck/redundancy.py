@@ -19,9 +19,8 @@ from .draws import Point
 from .evaluation import Number, Steps
 from .points import random_point
 from .ranks import Elimination, Row, least_solution
-from .report import Verdict
+from .report import Judgement, Verdict
 from .system import MechanicalSystem, gradient
-from .verdict import Judgement
 
 STEP = sp.Rational(1, 1000)
 """Of the random step away from a start, in terms of the random numbers up to two."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from typing import NamedTuple
 
 from ..language import translatable
 from ..record import LeftOut
@@ -29,6 +30,15 @@ class Verdict(StrEnum):
     """The equation states nothing of this system."""
     LEFT_OUT = translatable("left out")
     """The equation was not made, for a reason that the record states."""
+
+
+class Judgement(NamedTuple):
+    """A verdict, the digits and points that support it, and the difference found."""
+
+    verdict: Verdict
+    digits: int | None
+    points: int | None
+    detail: str = ""
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from heapq import heapify, heappop, heappush
 
 from mpmath import mp
 
-from .points import IrregularPoint
+from .irregular_point import IrregularPoint
 
 THRESHOLD = mp.mpf(1) / 1000  # of the largest entry of its row: what may be a pivot
 LOST = 30  # digits that the pivots may lose

@@ -10,8 +10,8 @@ from mpmath import mp
 from ..program.motion_problem import By, MotionProblem
 from ..trees import Tree
 from .described_motion import DescribedMotion
+from .irregular_point import IrregularPoint
 from .law import Law
-from .points import IrregularPoint
 from .program_values import run
 from .taylor import Taylor
 

@@ -15,7 +15,7 @@ from heapq import heapify, heappop, heappush
 from mpmath import mp
 
 from ..trees import Tree, converted, integer, refusal
-from .points import IrregularPoint
+from .irregular_point import IrregularPoint
 from .taylor import COEFFICIENTS, ELLIPTIC, OF_A_NUMBER, Coefficients, Polynomial, Taylor, differentiated
 
 CONSTANTS = {"Pi": lambda: +mp.pi, "ExponentialE": lambda: +mp.e, "EulerGamma": lambda: +mp.euler}

@@ -11,7 +11,7 @@ from itertools import zip_longest
 
 from mpmath import mp
 
-from .points import IrregularPoint
+from .irregular_point import IrregularPoint
 
 Polynomial = tuple[mp.mpf, ...]
 Coefficients = Callable[[mp.mpf, int], Sequence[mp.mpf]]  # of a function at a number, up to an order

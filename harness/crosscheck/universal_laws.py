@@ -15,14 +15,16 @@ from functools import partial
 import sympy as sp
 from mpmath import mp
 
-from .digits import DIGITS, WORKING_DIGITS
+from .digits import DIGITS, POINTS, WORKING_DIGITS
 from .independent import IndependentEquations
+from .irregular_point import IrregularPoint
 from .linear import LinearEquations
 from .manifold import moved_onto, valuation
-from .points import IrregularPoint, Valuation, fresh_seed, random_point
-from .report import Verdict
+from .points import Valuation, random_point
+from .report import Judgement, Verdict
+from .seed import fresh_seed
 from .system import MechanicalSystem, dotted
-from .verdict import POINTS, Judgement, confirmed
+from .verdict import confirmed
 
 DRAWS = 40
 """Draws for each state before the search for a regular one is given up."""

@@ -23,13 +23,13 @@ import sympy as sp
 from mpmath import mp
 
 from .branches import Branches, branches_of
-from .digits import CONFIRMING_DIGITS, DIGITS, WORKING_DIGITS
+from .digits import CONFIRMING_DIGITS, DIGITS, POINTS, WORKING_DIGITS
 from .draws import Draws, Point
 from .evaluation import Number, Steps, Values
 from .independent_functions import with_independent_functions
 from .linear import LinearEquations
 from .normal_form import is_identically_zero
-from .report import Verdict
+from .report import Judgement, Verdict
 
 SHOWN = 12
 """Digits of two values that differ; more if these are equal."""
@@ -39,9 +39,6 @@ SHRUNK = 2 * DIGITS
 
 SAME_DIGITS = 10
 """Digits that a number has in common in both precisions if it is one."""
-
-POINTS = 8
-"""Random points at which two expressions are compared."""
 
 INDEPENDENT_POINTS = 4
 """Points with independent functions at which two expressions are compared."""
@@ -84,15 +81,6 @@ class Comparison:
     rounded: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     # terms of what was described: where one has no real value, as asech(x) at x < 0, its derivatives tell nothing
     domain: tuple[sp.Expr, ...] = ()
-
-
-class Judgement(NamedTuple):
-    """A verdict, the digits and points that support it, and the difference found."""
-
-    verdict: Verdict
-    digits: int | None
-    points: int | None
-    detail: str = ""
 
 
 class Found(Enum):

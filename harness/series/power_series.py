@@ -16,7 +16,7 @@ import mpmath
 
 from ..documents import Document, Publication, ask, published, read
 from ..failures import Failure, HolonomError
-from ..mathjson import number, numbers
+from ..number_texts import number, numbers
 from ..program.motion_program import Program, program_of
 from ..sandbox import Limits
 from ..shown import Show, Shown

@@ -11,8 +11,9 @@ import sympy as sp
 
 from holonom.crosscheck.check import check_record
 from holonom.crosscheck.draws import Draws
-from holonom.crosscheck.points import fresh_seed, random_point
+from holonom.crosscheck.points import random_point
 from holonom.crosscheck.report import EquationVerdict, Verdict
+from holonom.crosscheck.seed import fresh_seed
 from holonom.crosscheck.verdict import Comparison, Pair, judge
 from holonom.description import Description
 from holonom.record import Equation, Record, Relation

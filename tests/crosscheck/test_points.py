@@ -4,7 +4,9 @@ import pytest
 import sympy as sp
 from mpmath import mp
 
-from holonom.crosscheck.points import IrregularPoint, Valuation, fresh_seed, random_point
+from holonom.crosscheck.irregular_point import IrregularPoint
+from holonom.crosscheck.points import Valuation, random_point
+from holonom.crosscheck.seed import fresh_seed
 
 X = sp.Symbol("x", real=True)
 

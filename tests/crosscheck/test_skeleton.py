@@ -7,9 +7,8 @@ import pytest
 
 from holonom.crosscheck import check, lagranges_method
 from holonom.crosscheck.check import check_record
-from holonom.crosscheck.report import Verdict
+from holonom.crosscheck.report import Judgement, Verdict
 from holonom.crosscheck.time_limit import TimeLimit
-from holonom.crosscheck.verdict import Judgement
 from holonom.description import Description
 from holonom.record import Equation, LeftOut, Record, Relation, derived_record
 from holonom.source import Source

@@ -3,7 +3,7 @@
 import pytest
 from mpmath import mp
 
-from holonom.crosscheck.points import IrregularPoint
+from holonom.crosscheck.irregular_point import IrregularPoint
 from holonom.crosscheck.taylor import COEFFICIENTS, Taylor
 
 ORDER = 5

@@ -7,10 +7,10 @@ import pytest
 import sympy as sp
 from systems import symbols
 
-from holonom.crosscheck.digits import DIGITS
+from holonom.crosscheck.digits import DIGITS, POINTS
 from holonom.crosscheck.linear import LinearEquations
 from holonom.crosscheck.report import Verdict
-from holonom.crosscheck.verdict import POINTS, Comparison, Pair, judge
+from holonom.crosscheck.verdict import Comparison, Pair, judge
 
 X, Y, Z = symbols("x y z")
 

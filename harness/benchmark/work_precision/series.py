@@ -17,7 +17,7 @@ import mpmath
 
 from ...documents import Document, ask, read
 from ...language import translatable
-from ...mathjson import number, numbers
+from ...number_texts import number, numbers
 from ...program.motion_problem import MotionProblem
 from ...program.precision import read_precision
 from ...program.request import Request

@@ -63,7 +63,7 @@ def _show_continuation(console: "Console", continuation: "Continuation") -> None
 
 def short_number(text: str) -> str:
     """A number in ``p/q`` or decimal notation: as it is where it is exact and short, else rounded."""
-    from ...mathjson import number
+    from ...number_texts import number
 
     return text if len(text) <= SHOWN_TEXT and "." not in text else _rounded(number(text))
 

@@ -12,7 +12,7 @@ from sympy import Expr, Symbol
 from ...figures.curves import Panel, draw_curves
 from ...figures.style import lettered
 from ...language import gettext
-from ...mathjson import number, numbers
+from ...number_texts import number, numbers
 from ...record import Equation, Scene
 from ...series.power_series import MotionSeries, NumberTexts
 from ..cards import derivation_cards, files_of, named_equations, scene_cards, scene_named

@@ -11,7 +11,7 @@ import sympy
 from sympy import Expr, Symbol
 
 from ...figures.convergence import draw_partial_sums, draw_radius, find_radii
-from ...mathjson import number, numbers
+from ...number_texts import number, numbers
 from ...series.power_series import MotionSeries
 from ...simulation.result import Simulation
 from ..cards import named_equations, scene_named
