@@ -9,6 +9,8 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Callable, Mapping
 from fractions import Fraction
+from functools import lru_cache, partial
+from typing import Any
 
 from mpmath import mp
 from mpmath.libmp import (
@@ -28,16 +30,30 @@ from mpmath.libmp import (
 )
 
 from ..program.motion_problem import MotionProblem
-from ..program.motion_program import Call, Constant, Expression, Name, Operation, Program
+from ..program.motion_program import VARIADIC, Call, Constant, Expression, Name, Operation, Program
 from .irregular_point import IrregularPoint
 from .tape import value_of
 from .taylor import Polynomial, Taylor
 
 Values = dict[str, Polynomial]
+Step = tuple[Callable[..., "Number"], int, int]  # an operation, and the places of what it takes
 Number = tuple  # sign, mantissa, exponent, bits of the mantissa, as mpmath keeps a number
 STATE = Taylor(0)
 ENTIRE = {Operation.SIN: mpf_sin, Operation.COS: mpf_cos, Operation.EXP: mpf_exp}
 LARGEST_POWER = 64  # up to which a power is made of products
+
+
+class Same:
+    """A program, equal to itself alone."""
+
+    def __init__(self, program: Program) -> None:
+        self.program = program
+
+    def __hash__(self) -> int:
+        return id(self.program)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Same) and self.program is other.program
 
 
 def run(program: Program, inputs: Mapping[str, Polynomial]) -> Values:
@@ -48,12 +64,45 @@ def run(program: Program, inputs: Mapping[str, Polynomial]) -> Values:
     IrregularPoint
         One of them has no finite real value.
     """
-    known = {name: inputs[name][0]._mpf_ for name in program.inputs}
-    evaluate = _evaluation(known)
+    steps, places = _steps(Same(program))
+    values = [inputs[name][0]._mpf_ for name in program.inputs]
+    precision, append = mp.prec, values.append
+    for function, i, k in steps:
+        append(function(values[i], values[k], precision, round_nearest))
+    return {name: (mp.make_mpf(values[place]),) for name, place in places.items()}
+
+
+@lru_cache(maxsize=32)
+def _steps(same: Same) -> tuple[list[Step], dict[str, int]]:
+    """A program as operations on two places in a list, which begins with its inputs; and the places of its names."""
+    program = same.program
+    places: dict[str, int] = {name: place for place, name in enumerate(program.inputs)}
+    steps: list[Step] = []
+    numbers: dict[Fraction | Constant, int] = {}
+
+    def added(function: Callable[..., Number], i: int = 0, k: int = 0) -> int:
+        steps.append((function, i, k))
+        return len(program.inputs) + len(steps) - 1
+
+    def place_of(expression: Expression) -> int:
+        match expression:
+            case Name(text):
+                return places[text]
+            case Call(Operation.POWER, (base, exponent)) if _is_whole(exponent):
+                return added(partial(_whole_power, int(exponent)), place_of(base))
+            case Call(operation, arguments):
+                first, *others = map(place_of, arguments)
+                for other in others or [first] * (operation not in VARIADIC):
+                    first = added(BINARY.get(operation) or partial(_function, operation, len(arguments)), first, other)
+                return first
+            case _:
+                if expression not in numbers:
+                    numbers[expression] = added(partial(_constant, expression))
+                return numbers[expression]
+
     for name, expression in program.assignments:
-        known[name] = evaluate(expression)
-    known |= {name: evaluate(atom) for name, atom in program.outputs.items()}
-    return {name: (mp.make_mpf(x),) for name, x in known.items()}
+        places[name] = place_of(expression)
+    return steps, places | {name: place_of(atom) for name, atom in program.outputs.items()}
 
 
 def outputs_of(program: Program, inputs: Mapping[str, Polynomial]) -> Values:
@@ -73,68 +122,58 @@ def run_along(program: Program, inputs: Mapping[str, Polynomial], taylor: Taylor
             case Call(operation, arguments):
                 return value_of(taylor, str(operation), list(map(evaluate, arguments)))
             case _:
-                return (mp.make_mpf(_evaluation({})(expression)),)
+                return (mp.make_mpf(_constant(expression)),)
 
     for name, expression in program.assignments:
         known[name] = evaluate(expression)
     return known | {name: evaluate(atom) for name, atom in program.outputs.items()}
 
 
-def _evaluation(known: Mapping[str, Number]) -> Callable[[Expression], Number]:
-    precision, numbers = mp.prec, {}
-
-    def evaluate(expression: Expression) -> Number:
-        match expression:
-            case Name(text):
-                return known[text]
-            case Call(operation, arguments):
-                return applied(operation, arguments)
-            case Fraction():
-                if expression not in numbers:
-                    numbers[expression] = from_rational(*expression.as_integer_ratio(), precision, round_nearest)
-                return numbers[expression]
-            case Constant.PI:
-                return (+mp.pi)._mpf_
-            case _:
-                return (+mp.e)._mpf_
-
-    def applied(operation: Operation, arguments: tuple[Expression, ...]) -> Number:
-        if operation is Operation.POWER and _is_whole(arguments[1]):
-            return mpf_pow_int(evaluate(arguments[0]), int(arguments[1]), precision, round_nearest)
-        first, *others = map(evaluate, arguments)
-        match operation:
-            case Operation.ADD:
-                for other in others:
-                    first = mpf_add(first, other, precision, round_nearest)
-            case Operation.MULTIPLY:
-                for other in others:
-                    first = mpf_mul(first, other, precision, round_nearest)
-            case Operation.SUBTRACT:
-                first = mpf_sub(first, others[0], precision, round_nearest)
-            case Operation.NEGATE:
-                first = mpf_neg(first)
-            case Operation.DIVIDE:
-                if others[0] == fzero:
-                    raise IrregularPoint
-                first = mpf_div(first, others[0], precision, round_nearest)
-            case _:
-                return _of_function(operation, [first, *others])
-        return first
-
-    return evaluate
-
-
 def _is_whole(exponent: Expression) -> bool:
     return isinstance(exponent, Fraction) and exponent.denominator == 1 and 0 <= exponent <= LARGEST_POWER
 
 
-def _of_function(operation: Operation, x: list[Number]) -> Number:
+def _whole_power(exponent: int, base: Number, _: Number, precision: int, rounding: str) -> Number:
+    return mpf_pow_int(base, exponent, precision, rounding)
+
+
+def _constant(constant: Fraction | Constant, *_: Any) -> Number:
+    match constant:
+        case Fraction():
+            return from_rational(*constant.as_integer_ratio(), mp.prec, round_nearest)
+        case Constant.PI:
+            return (+mp.pi)._mpf_
+        case _:
+            return (+mp.e)._mpf_
+
+
+def _quotient(x: Number, y: Number, precision: int, rounding: str) -> Number:
+    if y == fzero:
+        raise IrregularPoint
+    return mpf_div(x, y, precision, rounding)
+
+
+def _negative(x: Number, *_: Any) -> Number:
+    return mpf_neg(x)
+
+
+def _function(operation: Operation, count: int, x: Number, y: Number, precision: int, rounding: str) -> Number:
     if operation in ENTIRE:
-        return ENTIRE[operation](x[0], mp.prec, round_nearest)
-    (found,) = value_of(STATE, str(operation), [(mp.make_mpf(each),) for each in x])
+        return ENTIRE[operation](x, precision, rounding)
+    arguments = [(mp.make_mpf(each),) for each in (x, y)[:count]]
+    (found,) = value_of(STATE, str(operation), arguments)
     if isinstance(found, mp.mpf) and mp.isfinite(found):
         return found._mpf_
     raise IrregularPoint
+
+
+BINARY: dict[Operation, Callable[..., Number]] = {
+    Operation.ADD: mpf_add,
+    Operation.MULTIPLY: mpf_mul,
+    Operation.SUBTRACT: mpf_sub,
+    Operation.DIVIDE: _quotient,
+    Operation.NEGATE: _negative,
+}
 
 
 def with_signs(problem: MotionProblem, inputs: Values) -> Values:
