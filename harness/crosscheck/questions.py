@@ -17,6 +17,8 @@ from .digits import WORKING_DIGITS
 from .taylor import SPECIAL
 
 ORDER = 7  # of power series
+EXACT_UP_TO = 12  # coordinates: exact coefficients of a ring of 21 take five times as long as rounded ones
+ROUNDED = 30  # digits, as users get them
 MOST_COORDINATES = 100  # of a power series: Maxima takes a minute for that of 512 bodies
 
 Answer = str | HolonomError
@@ -68,9 +70,10 @@ def _program(description: Description, scene: DescribedScene | None, solve: Solv
 
 
 def _series(description: Description) -> dict[str, Question]:
-    if holds_special_functions(description) or len(description.system.coordinates) > MOST_COORDINATES:
+    coordinates = len(description.system.coordinates)
+    if holds_special_functions(description) or coordinates > MOST_COORDINATES:
         return {}
+    digits = "automatic" if coordinates <= EXACT_UP_TO else ROUNDED
     return {
-        scene.name: Question(Document.MOTION_SERIES, (scene.name, ORDER, "automatic", None))
-        for scene in description.scenes
+        scene.name: Question(Document.MOTION_SERIES, (scene.name, ORDER, digits, None)) for scene in description.scenes
     }
