@@ -25,9 +25,10 @@ def test_result_comes_back():
 
 
 def test_errors_are_raised_here():
-    with beside(refused) as child, pytest.raises(HolonomError) as error:
+    with beside(refused) as child:
         child.send(None)
-        result_of(child)
+        with pytest.raises(HolonomError) as error:
+            result_of(child)
     assert (error.value.failure, error.value.place, error.value.refusal) == (
         Failure.REFUSED,
         "scene.mac:3",
@@ -36,9 +37,10 @@ def test_errors_are_raised_here():
 
 
 def test_child_that_is_ended_is_told():
-    with beside(ended) as child, pytest.raises(HolonomError) as error:
+    with beside(ended) as child:
         child.send(None)
-        result_of(child)
+        with pytest.raises(HolonomError) as error:
+            result_of(child)
     assert error.value.failure is Failure.WORKER_ENDED
 
 
