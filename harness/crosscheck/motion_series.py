@@ -19,7 +19,7 @@ from ..number_texts import number, numbers
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Solve
 from ..series.power_series import EXACT, MotionSeries, read_series
-from .described_motion import DescribedMotion, Residual
+from .described_motion import DescribedMotion
 from .digits import DIGITS
 from .irregular_point import IrregularPoint
 from .judged_claims import differing
@@ -125,13 +125,32 @@ def _claims(motion: DescribedMotion, series: MotionSeries, correction: tuple[str
             true = _coefficient(prescribed, k)
             yield Claim(f"coefficient {k} of {name}", _coefficient(multipliers[name], k), true, abs(true))
     yield from claims_of_start(motion, _start(series, instant), correction)
-    reactions = motion.constraint_forces(taylor, motion.values(taylor, curve), list(multipliers.values()))
-    for name, row in series.constraint_forces.items():
-        q = motion.system.coordinates[int(name.removeprefix("Lambda[").removesuffix("]")) - 1]
+    ordered = [multipliers[name] for name in motion.system.multipliers]
+    yield from _claims_of_forces(motion, taylor, curve, ordered, series.constraint_forces)
+    yield from _claims_of_equations(motion, taylor, curve, ordered)
+
+
+def _claims_of_forces(
+    motion: DescribedMotion,
+    taylor: Taylor,
+    curve: Values,
+    multipliers: list[Polynomial],
+    given: Mapping[str, Sequence[str]],
+) -> Iterator[Claim]:
+    """The constraint forces of a series, by Lambda[s]."""
+    if not given:
+        return
+
+    def forces(values: Sequence[Polynomial], multipliers: list[Polynomial]) -> list[Polynomial]:
+        found = motion.constraint_forces(taylor, values, multipliers)
+        return [found.get(q, (mp.zero,)) for q in motion.system.coordinates]
+
+    true = forces(motion.values(taylor, curve), multipliers)
+    changes = _changes(motion, taylor, curve, multipliers, forces)
+    for name, row in given.items():
+        s = int(name.removeprefix("Lambda[").removesuffix("]")) - 1
         for k, x in enumerate(numbers(row[: ORDER - 1])):
-            true = _coefficient(reactions.get(q, (mp.zero,)), k)
-            yield Claim(f"coefficient {k} of {name}", x, true, abs(true))
-    yield from _claims_of_equations(motion, taylor, curve, [multipliers[name] for name in motion.system.multipliers])
+            yield Claim(f"coefficient {k} of {name}", x, _coefficient(true[s], k), changes[s][k])
 
 
 def _start(series: MotionSeries, instant: mp.mpf) -> dict[str, mp.mpf]:
@@ -147,7 +166,9 @@ def _claims_of_equations(
     values = motion.values(taylor, curve)
     sizes = motion.tape.sizes(taylor, values)
     equations = motion.equations(taylor, values, multipliers)
-    changes = _changes(motion, taylor, curve, multipliers, equations)
+    changes = _changes(
+        motion, taylor, curve, multipliers, lambda *at: [each.value for each in motion.equations(taylor, *at)]
+    )
     for q, equation, change in zip(motion.system.coordinates, equations, changes, strict=True):
         for k in range(taylor.order - 1):
             value, size = _coefficient(equation.value, k), max(_coefficient(equation.size, k), change[k])
@@ -164,10 +185,11 @@ def _changes(
     taylor: Taylor,
     curve: Values,
     multipliers: list[Polynomial],
-    equations: Sequence[Residual],
+    made: Callable[[Sequence[Polynomial], list[Polynomial]], list[Polynomial]],
 ) -> list[list[mp.mpf]]:
-    """By how much the powers of each equation change with relative changes of all coefficients, which are rounded."""
-    found = [[mp.zero] * taylor.order for _ in equations]
+    """By how much the powers of what is made change with relative changes of all coefficients, which are rounded."""
+    before = made(motion.values(taylor, curve), multipliers)
+    found = [[mp.zero] * taylor.order for _ in before]
     share = mp.mpf(10) ** (-mp.dps // 3)
     for attempt in range(PERTURBATIONS):
         draw = random.Random(attempt)
@@ -176,13 +198,11 @@ def _changes(
             return tuple(x * (1 + share * draw.choice((-1, 1)) * (1 + draw.random())) for x in row)
 
         changed = curve | {q: moved(curve[q]) for q in motion.system.coordinates}
-        values = motion.values(taylor, changed)
-        for own, before, after in zip(
-            found, equations, motion.equations(taylor, values, list(map(moved, multipliers))), strict=True
-        ):
+        after = made(motion.values(taylor, changed), list(map(moved, multipliers)))
+        for own, *both in zip(found, before, after, strict=True):
             for k in range(taylor.order):
-                change = abs(_coefficient(after.value, k) - _coefficient(before.value, k)) / share
-                own[k] = max(own[k], change)
+                old, new = (_coefficient(each, k) for each in both)
+                own[k] = max(own[k], abs(new - old) / share)
     return found
 
 
