@@ -9,7 +9,7 @@ integral of the power is an error of the motion (Goldstein, Poole & Safko, secti
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache, partial
+from functools import cache, cached_property
 from typing import Any
 
 import mpmath
@@ -90,8 +90,6 @@ class EnergyBalance:
         self._evaluate = evaluation_once(problem, problem.energy, self._precision)
         self._values = OpenValues(problem, self._precision)
         self._rows = {name: row for row, name in enumerate(problem.energy.outputs)}
-        points, weights = _gauss_legendre(self._precision)
-        self._points, self._weights = 1 + points, weights
         self._g, self._multipliers = len(problem.multipliers), multipliers
         self._moving = _constraints_move(problem)
         hidden = bool(problem.tables) or may_hide(computing(problem.energy, {"power"}), problem.parameters)
@@ -101,7 +99,12 @@ class EnergyBalance:
     @property
     def inner_states(self) -> int:
         """How many states `works` needs within an interval."""
-        return 0 if self.conservative else len(self._points)
+        return 0 if self.conservative else round(POINTS_PER_DIGIT * self._precision.digits)
+
+    @cached_property
+    def _quadrature(self) -> tuple[Numbers, Numbers]:
+        """Points in [-1, 1] and weights."""
+        return _gauss_legendre(self.inner_states, self._precision)
 
     def energy(self, instants: Numbers, states: Numbers) -> Numbers:
         """The energy function at states of the motion."""
@@ -120,7 +123,7 @@ class EnergyBalance:
         if self.conservative:
             return zeros(self._precision, 0)
         begins = np.array(starts)
-        return (begins[:, None] + (np.array(ends) - begins)[:, None] / 2 * self._points).ravel()
+        return (begins[:, None] + (np.array(ends) - begins)[:, None] / 2 * (1 + self._quadrature[0])).ravel()
 
     def works(self, starts: Numbers, ends: Numbers, between: Sequence[tuple[Numbers, Numbers]]) -> Numbers:
         """Integrals of the power over k intervals of the motion, by what is between their starts and ends.
@@ -135,7 +138,7 @@ class EnergyBalance:
             return zeros(self._precision, len(starts))
         instants, states = (np.concatenate(each, axis=-1) for each in zip(*between, strict=True))
         power = self.power(instants, states).reshape(len(starts), -1)
-        parts = ((ends - starts) / 2)[:, None] * (power * self._weights)
+        parts = ((ends - starts) / 2)[:, None] * (power * self._quadrature[1])
         self.passing = float(np.max(np.abs(as_floats(np.cumsum(parts, axis=1))), initial=self.passing))
         return parts.sum(axis=1)
 
@@ -156,29 +159,35 @@ class EnergyBalance:
         return not any(self._output("power", instants, states, self._no_multipliers(len(PROBES))))
 
 
-def _gauss_legendre(precision: Precision) -> tuple[Numbers, Numbers]:
+def _gauss_legendre(n: int, precision: Precision) -> tuple[Numbers, Numbers]:
     """Points in [-1, 1] and weights in the numbers of a precision."""
-    n = round(POINTS_PER_DIGIT * precision.digits)
     if precision.name == "double":
         return leggauss(n)
-    points, weights = (
-        np.array([precision.number(text) for text in texts]) for texts in _in_digits(n, precision.digits)
-    )
+    texts = _in_digits(n, precision.digits)
+    points, weights = (np.array(list(map(precision.number, each))) for each in texts)
     return points, weights
 
 
 @cache
 def _in_digits(n: int, digits: int) -> tuple[list[str], list[str]]:
-    """The roots of P_n, near cos(pi (k - 1/4)/(n + 1/2)), and 2/((1 - x^2) P_n'(x)^2) (Abramowitz & Stegun 25.4.29)."""
+    """The roots of P_n by Newton's method from doubles, and 2/((1 - x^2) P_n'(x)^2) (Abramowitz & Stegun 25.4.29)."""
 
-    def slope(x: mpmath.mpf) -> mpmath.mpf:
-        return n * (mpmath.legendre(n - 1, x) - x * mpmath.legendre(n, x)) / (1 - x**2)
+    def with_slope(x: mpmath.mpf) -> tuple[mpmath.mpf, mpmath.mpf]:
+        before, value = mpmath.mpf(1), x
+        for k in range(2, n + 1):
+            before, value = value, ((2 * k - 1) * x * value - (k - 1) * before) / k
+        return value, n * (before - x * value) / (1 - x**2)
 
+    points, weights = [], []
     with mpmath.workdps(digits + MORE_DIGITS):
-        guesses = [mpmath.cos(mpmath.pi * (k - 0.25) / (n + 0.5)) for k in range(n, 0, -1)]
-        points = [mpmath.findroot(partial(mpmath.legendre, n), x, solver="newton", df=slope) for x in guesses]
-        weights = [2 / ((1 - x**2) * slope(x) ** 2) for x in points]
-        points, weights = ([mpmath.nstr(x, digits + MORE_DIGITS) for x in each] for each in (points, weights))
+        for guess in leggauss(n)[0]:
+            x, correction = mpmath.mpf(guess), mpmath.inf
+            while abs(correction) > mpmath.mpf(10) ** (-(digits + MORE_DIGITS) // 2):  # the next is their square
+                value, slope = with_slope(x)
+                correction = value / slope
+                x -= correction
+            points.append(mpmath.nstr(x, digits + MORE_DIGITS))
+            weights.append(mpmath.nstr(2 / ((1 - x**2) * with_slope(x)[1] ** 2), digits + MORE_DIGITS))
     return points, weights
 
 
