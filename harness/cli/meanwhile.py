@@ -1,7 +1,7 @@
 """Work of a thread of its own while a command waits for Maxima."""
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import Thread
 
@@ -17,9 +17,14 @@ def meanwhile(file: Path, limits: Limits, work: Callable[[], None]) -> Iterator[
     from ..maxima import get_ready
 
     get_ready(file, limits)
-    working = Thread(target=work)
+    working = Thread(target=_done_quietly, args=(work,))
     working.start()
     try:
         yield
     finally:
         working.join()
+
+
+def _done_quietly(work: Callable[[], None]) -> None:
+    with suppress(Exception):  # what cannot be imported is told where it is needed
+        work()

@@ -18,6 +18,7 @@ DIGITS = 50
 ULP = mpf(2) ** -53
 LIBRARY = 4  # units in the last place: the worst that NumPy, the C library and LLVM state of their functions
 TRUSTED = mpf("1e-6")  # relative errors beyond it are outside of an analysis to first order
+LARGEST = mpf("1e300")  # beyond are no doubles
 FIRST_ORDER = 2  # what the neglected orders may add
 
 FUNCTIONS = {
@@ -115,7 +116,7 @@ def _power(base: Bounded, exponent: object) -> Bounded:
 
 
 def _trusted(value: mpf, error: mpf) -> Bounded:
-    if not isinstance(value, mpf) or not mp.isfinite(value) or not error <= TRUSTED * max(1, abs(value)):
+    if not isinstance(value, mpf) or not abs(value) < LARGEST or not error <= TRUSTED * max(1, abs(value)):
         raise IllConditioned
     return Bounded(value, error)
 
