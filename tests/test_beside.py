@@ -52,3 +52,9 @@ def test_child_ends_with_the_block():
         os.kill(number, 0)
     with beside(time.sleep) as child:
         child.send(1000)
+
+
+def test_result_that_takes_too_long_is_another():
+    with beside(time.sleep) as child:
+        child.send(1000)
+        assert result_of(child, 0.01, "too long") == "too long"

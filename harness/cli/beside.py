@@ -1,5 +1,6 @@
 """Work of a child process while a command goes on."""
 
+import math
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -29,8 +30,10 @@ def beside(work: Callable[..., Any], *arguments: Any) -> Iterator[Connection]:
         child.join()
 
 
-def result_of(child: Connection) -> Any:
-    """What came of the work; raises what it raised, and where the child has ended."""
+def result_of(child: Connection, seconds: float = math.inf, otherwise: Any = None) -> Any:
+    """What came of the work, or something else if it takes longer; raises what it raised, and where the child ended."""
+    if math.isfinite(seconds) and not child.poll(max(seconds, 0)):
+        return otherwise
     try:
         result = child.recv()
     except EOFError:

@@ -110,6 +110,7 @@ def check(
             records = [derived_record(source, settings, closed_form_size=closed_form_size) for source in sources]
 
         from ..crosscheck.check import check_record
+        from ..crosscheck.motions import verdicts_out_of_time
         from ..crosscheck.report import Verdict
         from .tables.derivation import show_reports
 
@@ -118,7 +119,8 @@ def check(
                 check_record(record, said, seed, closed_form_size, time_to_limit() - TIME_TO_TELL)
                 for record, said in zip(records, described, strict=True)
             ]
-            motions = result_of(child)
+            over = [verdicts_out_of_time(said) for said in described]
+            motions = result_of(child, time_to_limit() - TIME_TO_TELL, over)
     reports = [
         (as_given(source.file), report.with_verdicts(verdicts))
         for source, report, verdicts in zip(sources, checked, motions, strict=True)
@@ -148,7 +150,7 @@ def _judge_motions(sources: Sequence["Source"], settings: dict[str, str], seed: 
 
 def _import_what_checks() -> None:
     """Import SymPy, and what needs it."""
-    from ..crosscheck import check, lagranges_method  # noqa: F401
+    from ..crosscheck import check, lagranges_method, motions  # noqa: F401
     from .tables import derivation  # noqa: F401
 
 

@@ -46,15 +46,27 @@ def motion_verdicts(
     time = TimeLimit(seconds)
 
     def judged(work: Callable[[], list[ProgramVerdict]], scene: str | None) -> list[ProgramVerdict]:
-        over = Judgement(Verdict.UNDECIDED, None, None, "the time limit was reached before")
-        return time.result(work, [ProgramVerdict(scene, "motion", over)])
+        return time.result(work, [_out_of_time(scene)])
 
     for each in motions.programs:
         series = [found for found in motions.series if found.scene == each.scene]
         found = judged(lambda each=each: judge_programs(description, [each], seed), each.scene)
         found += judged(lambda each=each, series=series: judge_series(description, series, [each]), each.scene)
         found += judged(lambda each=each, series=series: judge_servo(description, [each], series), each.scene)
-        for verdict in found:
-            it = verdict.found
-            what = ("motion", "", verdict.part, 0, verdict.scene)
-            yield EquationVerdict(*what, it.verdict, it.digits, it.points, it.detail)
+        yield from map(_told, found)
+
+
+def verdicts_out_of_time(description: Description) -> list[EquationVerdict]:
+    """Verdicts where Maxima has not written the motions before the time is over."""
+    return [_told(_out_of_time(scene and scene.name)) for scene in description.scenes or (None,)]
+
+
+def _out_of_time(scene: str | None) -> ProgramVerdict:
+    over = Judgement(Verdict.UNDECIDED, None, None, "the time limit was reached before")
+    return ProgramVerdict(scene, "motion", over)
+
+
+def _told(verdict: ProgramVerdict) -> EquationVerdict:
+    it = verdict.found
+    what = ("motion", "", verdict.part, 0, verdict.scene)
+    return EquationVerdict(*what, it.verdict, it.digits, it.points, it.detail)
