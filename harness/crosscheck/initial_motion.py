@@ -32,8 +32,10 @@ LIMITED_DIGITS = mp.mpf("2e-9")
 """Largest correction of given values, as a share of the largest of them."""
 
 FEWEST_ROUNDED_DIGITS = 40
-MANY_TOGETHER = 4  # initial values that equations fix together: such closed forms may be too long
 """Digits of the denominator of a number that may be rounded."""
+
+MANY_TOGETHER = 4
+"""Initial values that equations fix together: such closed forms may be too long."""
 
 Relations = Sequence[Relation]
 Definitions = Mapping[sp.Symbol, sp.Expr]
@@ -283,10 +285,13 @@ def _containing(symbols: set[sp.Symbol], residuals: Iterable[sp.Expr]) -> Mappin
 def _without_closed_form(numbers: set[sp.Symbol], containing: Mapping[sp.Symbol, Sequence[sp.Expr]]) -> set[sp.Symbol]:
     """Those of the symbols that share residuals with many, or with one that is not linear in them."""
     found: set[sp.Symbol] = set()
-    for x in numbers:
-        not_linear = any(residual.diff(x).free_symbols & numbers for residual in containing[x])
-        sharing = _sharing(x, numbers, containing)
-        if not_linear or len(sharing) >= MANY_TOGETHER:
+    waiting = set(numbers)
+    while waiting:
+        sharing = _sharing(next(iter(waiting)), numbers, containing)
+        waiting -= sharing
+        if len(sharing) >= MANY_TOGETHER or any(
+            residual.diff(x).free_symbols & numbers for x in sharing for residual in containing[x]
+        ):
             found |= sharing
     return found
 
