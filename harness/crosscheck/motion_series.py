@@ -146,7 +146,7 @@ def _claims_of_forces(
         return [found.get(q, (mp.zero,)) for q in motion.system.coordinates]
 
     true = forces(motion.values(taylor, curve), multipliers)
-    changes = _changes(motion, taylor, curve, multipliers, forces)
+    changes = _changes(motion, taylor, curve, multipliers, true, forces)
     for name, row in given.items():
         s = int(name.removeprefix("Lambda[").removesuffix("]")) - 1
         for k, x in enumerate(numbers(row[: ORDER - 1])):
@@ -166,8 +166,9 @@ def _claims_of_equations(
     values = motion.values(taylor, curve)
     sizes = motion.tape.sizes(taylor, values)
     equations = motion.equations(taylor, values, multipliers)
+    before = [each.value for each in equations]
     changes = _changes(
-        motion, taylor, curve, multipliers, lambda *at: [each.value for each in motion.equations(taylor, *at)]
+        motion, taylor, curve, multipliers, before, lambda *at: [each.value for each in motion.equations(taylor, *at)]
     )
     for q, equation, change in zip(motion.system.coordinates, equations, changes, strict=True):
         for k in range(taylor.order - 1):
@@ -185,10 +186,10 @@ def _changes(
     taylor: Taylor,
     curve: Values,
     multipliers: list[Polynomial],
+    before: Sequence[Polynomial],
     made: Callable[[Sequence[Polynomial], list[Polynomial]], list[Polynomial]],
 ) -> list[list[mp.mpf]]:
-    """By how much the powers of what is made change with relative changes of all coefficients, which are rounded."""
-    before = made(motion.values(taylor, curve), multipliers)
+    """By how much what was made before changes with relative changes of all coefficients, which are rounded."""
     found = [[mp.zero] * taylor.order for _ in before]
     share = mp.mpf(10) ** (-mp.dps // 3)
     for attempt in range(PERTURBATIONS):
