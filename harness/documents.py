@@ -60,11 +60,11 @@ def ask(
     Parameters
     ----------
     document : Document
-        What is asked for.
+        The document.
     file, settings, limits
         As for `ask_all`.
     *arguments : None, int, Fraction, str or sequence of these
-        What the writer in Maxima takes behind the name of the file that it writes; a string is a name.
+        Arguments of the writer in Maxima, behind the name of the file that it writes; a string is a name.
     """
     question = Question(document, arguments)
     if document in NO_SCENE:
@@ -85,14 +85,16 @@ def ask_all(
     Parameters
     ----------
     questions : sequence of Question
-        What is asked for.
+        The documents.
     file : Source or Path
         A path is run; of a source, what it has described before serves, and its limits hold.
     settings : mapping of str to str
         Numbers in Maxima's notation, for what the file leaves open and for parameters.
     limits : Limits
-        What a run of Maxima about a path may take.
+        Limits of a run of Maxima about a path.
     """
+    if not questions:
+        return []
     writers = [each.writer() for each in questions]
     if isinstance(file, Source):
         described, limits = file.description(settings), file.limits
