@@ -22,27 +22,30 @@ HELD = re.compile(r"^(?:VmRSS|VmSwap|VmPTE|HugetlbPages):\s*(\d+) kB$", re.MULTI
 
 
 def die_with_parent(parent: int) -> None:
-    """Have this process killed when its parent ends, by the kernel or else by a thread.
+    """Have this process killed when its parent ends. Parameters as for `signal_without_parent`."""
+    signal_without_parent(parent, signal.SIGKILL)
+
+
+def signal_without_parent(parent: int, number: int) -> None:
+    """Have this process sent a signal when its parent ends, by the kernel or else by a thread.
 
     Parameters
     ----------
     parent : int
-        Process number of the parent; if it has ended already, this process ends at once.
+        Process number of the parent; if it has ended already, the signal is sent at once.
+    number : int
+        The signal.
     """
 
-    def end_without_parent() -> None:
-        if os.getppid() != parent:
-            os._exit(SIGNALLED + signal.SIGKILL)
-
     def watch_parent() -> None:
-        while True:
-            end_without_parent()
+        while os.getppid() == parent:
             time.sleep(TICK)
+        os.kill(os.getpid(), number)
 
-    if _control_process(PR_SET_PDEATHSIG, signal.SIGKILL):
-        end_without_parent()
-    else:
+    if not _control_process(PR_SET_PDEATHSIG, number):
         Thread(target=watch_parent, daemon=True).start()
+    elif os.getppid() != parent:
+        os.kill(os.getpid(), number)
 
 
 def become_subreaper() -> None:

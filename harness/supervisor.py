@@ -1,7 +1,9 @@
 """A command under supervision: everything that it started ends with it, and no temporary file stays.
 
-The command runs in a child process. This one waits for it or for a signal, ends what is left, and removes the directory
-for temporary files. If this process is killed, the kernel ends the child, and the next command removes the directory.
+The command runs in a process below the supervisor, which waits for it or for a signal, ends what is left, and removes
+the directory for temporary files. The supervisor is itself a child of the process that was started, and learns of its
+end: even if that is killed, all is ended and removed. The kernel alone does not see to that: bubblewrap, killed at the
+wrong instant, leaves a child that waits for it for ever. What a killed supervisor leaves, the next command removes.
 """
 
 import math
@@ -11,16 +13,17 @@ import signal
 import tempfile
 import time
 from collections.abc import Callable, Collection, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from .processes import SIGNALLED, become_subreaper, die_with_parent, end_children
+from .processes import SIGNALLED, become_subreaper, die_with_parent, end_children, signal_without_parent
 from .temporary import private_directory, remove_abandoned_directories
 
 OUT_OF_TIME = 2
 CRASHED = 3
 ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
+PARENT_ENDED = signal.SIGUSR1  # sent to the supervisor
 QUIET_ENDS = (*ENDING_SIGNALS, signal.SIGPIPE)
 EXPECTED = 120.0  # seconds: what surely takes longer is to be asked for with a time limit
 BOARD = 512  # bytes of memory in which the command leaves what it is doing
@@ -39,7 +42,7 @@ class Ending:
 
 
 def supervise(command: Callable[[], int]) -> Ending:
-    """Run a command in a child process, which does not come back from here.
+    """Run a command in a child of a child of this process; only the child, the supervisor, comes back from here.
 
     Raises
     ------
@@ -47,23 +50,49 @@ def supervise(command: Callable[[], int]) -> Ending:
         No directory for temporary files can be made.
     """
     global _board
-    remove_abandoned_directories()
     heeded = [each for each in ENDING_SIGNALS if signal.getsignal(each) is not signal.SIG_IGN]
-    signal.signal(signal.SIGCHLD, lambda *_: None)  # what is ignored may be lost while it is blocked
-    signal.pthread_sigmask(signal.SIG_BLOCK, [*heeded, signal.SIGCHLD])  # none comes before the directory is removed
+    for each in (signal.SIGCHLD, PARENT_ENDED):
+        signal.signal(each, lambda *_: None)  # what is ignored may be lost while it is blocked
+    heeded += [signal.SIGCHLD, PARENT_ENDED]
+    signal.pthread_sigmask(signal.SIG_BLOCK, heeded)  # none comes before the directory is removed
+    group = os.getpgrp()
+    _go_on_in_child(heeded)
+    remove_abandoned_directories()
     with private_directory() as directory:
         _board = mmap.mmap(-1, BOARD)
         become_subreaper()
         supervisor = os.getpid()
         child = os.fork()
         if child == 0:
-            signal.signal(signal.SIGCHLD, signal.SIG_DFL)
-            signal.pthread_sigmask(signal.SIG_UNBLOCK, [*heeded, signal.SIGCHLD])
+            for each in (signal.SIGCHLD, PARENT_ENDED):
+                signal.signal(each, signal.SIG_DFL)
+            signal.pthread_sigmask(signal.SIG_UNBLOCK, heeded)
+            with suppress(OSError):  # the group has ended
+                os.setpgid(0, group)
             os._exit(_run(command, directory, supervisor))
         try:
             return _wait(child, heeded)
         finally:
             end_children()
+
+
+def _go_on_in_child(heeded: Collection[int]) -> None:
+    """Come back in a child, in a process group of its own; this process passes signals on, and ends as it does."""
+    parent = os.getpid()
+    child = os.fork()
+    if child == 0:
+        os.setpgid(0, 0)  # out of reach of what kills a whole group
+        signal_without_parent(parent, PARENT_ENDED)
+        return
+    while True:
+        number = signal.sigwait(heeded)
+        if number != signal.SIGCHLD:
+            os.kill(child, number)
+            continue
+        ended, status = os.waitpid(child, os.WNOHANG)
+        if ended:
+            code = os.waitstatus_to_exitcode(status)
+            os._exit(code if code >= 0 else SIGNALLED - code)
 
 
 def limit_time(seconds: float) -> None:
@@ -128,7 +157,7 @@ def _run(command: Callable[[], int], directory: Path, supervisor: int) -> int:
 def _wait(child: int, heeded: Collection[int]) -> Ending:
     """Wait until the command ends, or a signal asks for its end."""
     while True:
-        number = signal.sigwait([*heeded, signal.SIGCHLD])
+        number = signal.sigwait(heeded)
         if number != signal.SIGCHLD:
             return Ending(SIGNALLED + number)
         ended, status = os.waitpid(child, os.WNOHANG)

@@ -80,8 +80,6 @@ def end_in_the_middle(command: list[str], number: int, place: Path, begun: str) 
     assert process.returncode == (-number if number == signal.SIGKILL else 128 + number)
     assert "Traceback" not in said
     assert soon(lambda: not any(each.is_running() and each.status() != psutil.STATUS_ZOMBIE for each in started))
-    if number == signal.SIGKILL:  # nobody is left to tidy up; the next command does
-        subprocess.run([sys.executable, "-m", "holonom", "derive", "no.mac"], env=environment, capture_output=True)
     assert list(temporary.iterdir()) == []
 
 
@@ -93,6 +91,27 @@ def test_the_supervisor_tells_a_crash_of_its_command(tmp_path):
     done = subprocess.run([sys.executable, "-c", crash], capture_output=True, text=True, env=os.environ, check=True)
     assert "status=3" in done.stdout
     assert "ended by SIGSEGV while compiling" in done.stdout
+
+
+@pytest.mark.parametrize("kill", [os.kill, os.killpg])
+def test_what_no_parent_ends_is_ended_when_the_command_is_killed(kill, tmp_path):
+    """As bubblewrap's child, which waits for ever if bubblewrap is killed before that may start."""
+    command = "import subprocess, time\nfrom holonom.supervisor import supervise\ndef command():\n"
+    command += "    subprocess.Popen(['sleep', '1000'], start_new_session=True)\n    print(flush=True)\n"
+    command += "    time.sleep(200)\nsupervise(command)"
+    process = subprocess.Popen(
+        [sys.executable, "-c", command],
+        stdout=subprocess.PIPE,
+        env=os.environ | {"TMPDIR": str(tmp_path)},
+        start_new_session=True,
+    )
+    process.stdout.readline()
+    started = running(process)
+    assert "sleep" in names(started)
+    kill(process.pid, signal.SIGKILL)
+    process.communicate()
+    assert soon(lambda: not any(each.is_running() and each.status() != psutil.STATUS_ZOMBIE for each in started))
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_where_the_kernel_kills_no_child_of_a_killed_parent_the_child_ends_all_the_same():
