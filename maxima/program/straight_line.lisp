@@ -12,7 +12,7 @@
 ;;; ---- signs ---------------------------------------------------------------------------------
 ;;;
 ;;; A program may compute -x for x: a sum is as easily written with all its signs turned. The
-;;; signs of products follow from their factors. Sums are turned where that saves a minus sign
+;;; signs of products follow from their factors. A sum is turned where that saves a minus sign
 ;;; standing alone: an output -x, an argument -x, a sum -x - y that has nothing to start with.
 
 (defstruct signs
@@ -47,23 +47,10 @@
                  1 0)))))
 
 (defun chosen-signs (roots census)
-  "Signs for all live nodes that leave few minus signs alone. Products that are outputs come
-first and by themselves: sums fit themselves to the signs of products, not the other way."
+  "Signs for all live nodes: sums are turned, one after the other, where that leaves fewer minus signs alone."
   (let ((signs (signs-to-choose roots census)))
-    (save-minuses (remove-if-not #'stiff-p roots) #'stiff-p signs)
-    (save-minuses (append roots (remove-if-not #'place-p (census-nodes census))) #'identity signs)
-    signs))
-
-(defun save-minuses (places counted signs)
-  "Turns sums while that leaves fewer minus signs alone in the counted places around them."
-  (do ((turned t)) ((not turned))
-    (setq turned nil)
-    (dolist (place places)
-      (if (and (plusp (lone-minuses place signs)) (turn-to-save place counted signs))
-          (setq turned t)))))
-
-(defun stiff-p (place)
-  (and (term-p place) (eq (node-kind (unheld (term-node place))) 'product)))
+    (dolist (node (census-nodes census) signs)
+      (if (eq (node-kind node) 'sum) (turn-to-save node signs)))))
 
 (defun place-p (node) (member (node-kind node) '(sum call)))
 
@@ -75,40 +62,19 @@ first and by themselves: sums fit themselves to the signs of products, not the o
       (dolist (part (nodes-in node))
         (push node (gethash (node-number part) (signs-users signs)))))))
 
-(defun turn-to-save (place counted signs)
-  "Turns one sum at or below the place if minus signs are saved; true if so."
-  (some #'(lambda (sum) (turned-to-save-p sum counted signs))
-        (if (term-p place) (sums-setting-sign (term-node place)) (sums-around place))))
-
-(defun sums-around (place)
-  (let ((below (mapcan #'sums-setting-sign (nodes-in place))))
-    (if (eq (node-kind place) 'sum) (cons place below) below)))
-
-(defun sums-setting-sign (node)
-  "The sums that a node's sign follows from."
-  (let ((node (unheld node)))
-    (case (node-kind node)
-      (sum (list node))
-      (product (mapcan #'(lambda (factor) (sums-setting-sign (factor-node factor)))
-                       (node-parts node))))))
-
-(defun turned-to-save-p (sum counted signs)
-  (let* ((places (cons sum (remove-if-not counted (places-above sum signs))))
+(defun turn-to-save (sum signs)
+  (let* ((places (remove-duplicates (cons sum (places-above sum signs))))
          (before (minuses-at places signs)))
-    (turn sum signs)
-    (or (< (minuses-at places signs) before)
-        (turn sum signs))))
+    (when (plusp before)
+      (turn sum signs)
+      (unless (< (minuses-at places signs) before) (turn sum signs)))))
 
 (defun turn (sum signs)
-  "Turns a sum's sign; returns nil."
   (let ((number (node-number sum)))
-    (setf (gethash number (signs-turned signs)) (not (gethash number (signs-turned signs))))
-    nil))
+    (setf (gethash number (signs-turned signs)) (not (gethash number (signs-turned signs))))))
 
 (defun minuses-at (places signs)
-  (let ((total 0))
-    (dolist (place (remove-duplicates places) total)
-      (incf total (lone-minuses place signs)))))
+  (reduce #'+ (mapcar #'(lambda (place) (lone-minuses place signs)) places)))
 
 (defun places-above (node signs)
   "The sums, calls and outputs whose terms change sign with the node."
