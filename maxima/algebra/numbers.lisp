@@ -7,7 +7,14 @@
       (list '(rat simp) (numerator number) (denominator number))
       number))
 
-(defun rational-of (e) (if (integerp e) e (/ (second e) (third e))))
+(defun rational-of (e)
+  "The Lisp rational of a Maxima fraction; what is none stays."
+  (if (and (consp e) (eq (caar e) 'rat)) (/ (second e) (third e)) e))
+
+(defun rational-of-bigfloat (e)
+  (times-power-of-two (second e) (- (third e) (car (last (car e))))))
+
+(defun digits-in-bits (digits) (ceiling (* digits (log 10d0 2d0))))
 
 (defun binary-magnitude (x)
   (- (integer-length (numerator x)) (integer-length (denominator x))))
@@ -22,6 +29,17 @@
   (cond ((eql integer 0) 0)
         ((minusp exponent) (/ integer (ash 1 (- exponent))))
         (t (ash integer exponent))))
+
+(defun rounded-to-bits (number bits)
+  (let ((exponent (- (binary-magnitude number) bits)))
+    (times-power-of-two (nearest-integer number exponent) exponent)))
+
+(defun decimal-digits (value digits)
+  "A rational, rounded to so many significant decimal digits or one more: \"-123e-2\"."
+  (if (eql value 0)
+      "0e0"
+      (let ((exponent (- (floor (* (binary-magnitude value) (log 2d0 10d0))) digits)))
+        (format nil "~de~d" (nearest-integer (* value (expt 10 (- exponent))) 0) exponent))))
 
 (defun $exact_text (number)
   "A rational number: \"-1/3\", \"2\"."

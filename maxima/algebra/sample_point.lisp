@@ -144,8 +144,7 @@
          (found (errset ($bfloat (simplifya e nil)))))
     (cond ((integerp (car found)) (car found))
           ((bigfloatp (car found))
-           (times-power-of-two (second (car found))
-                               (- (third (car found)) (car (last (caar found))))))
+           (rational-of-bigfloat (car found)))
           (t (irregular-point)))))
 
 (defun short-number (number)
@@ -155,10 +154,7 @@
   (let ((bits (digits-in-bits *digits-at-point*)))
     (if (< (+ (integer-length (numerator number)) (integer-length (denominator number))) (* 2 bits))
         number
-        (let ((exponent (- (binary-magnitude number) bits)))
-          (times-power-of-two (nearest-integer number exponent) exponent)))))
-
-(defun digits-in-bits (digits) (ceiling (* digits (log 10d0 2d0))))
+        (rounded-to-bits number bits))))
 
 (defun irregular-point () (throw 'irregular-point nil))
 

@@ -12,7 +12,7 @@
 
 (defun $spline_curvatures (rows ends)
   "Second rates at the points; ENDS is false, or the list of the rates at both ends."
-  (let* ((times (mapcar #'(lambda (row) (exact-number (second row))) (cdr rows)))
+  (let* ((times (mapcar #'(lambda (row) (rational-of (second row))) (cdr rows)))
          (h (mapcar #'- (cdr times) times))
          (clamped (if ends 1 0)))
     (funcall (if (<= (length times) *few-points*) #'exact-curvatures #'curvatures-in-units)
@@ -28,12 +28,12 @@
 ;;; LOWER's k-th number stands in row k + 1 of the matrix, UPPER's in row k.
 
 (defun exact-curvatures (rows h lower diagonal upper ends)
-  (let* ((heights (mapcar #'(lambda (row) (exact-number (third row))) (cdr rows)))
+  (let* ((heights (mapcar #'(lambda (row) (rational-of (third row))) (cdr rows)))
          (slopes (mapcar #'(lambda (h low high) (weighted-sum (/ h) high (- (/ h)) low)) h heights (cdr heights)))
-         (right (differences-of-slopes slopes (mapcar #'exact-number ends)
+         (right (differences-of-slopes slopes (mapcar #'rational-of ends)
                                        #'(lambda (before after) (weighted-sum 6 after -6 before)))))
     (cons '(mlist simp)
-          (mapcar #'fraction-or-constant
+          (mapcar #'maxima-number
                   (tridiagonal-solution lower diagonal upper right
                                         #'(lambda (x pivot) (of-short-fractions (weighted-sum (/ pivot) x 0 0)))
                                         #'(lambda (x ratio y) (of-short-fractions (weighted-sum 1 x (- ratio) y))))))))
@@ -47,7 +47,7 @@
                                        #'(lambda (before after) (* 6 (- after before))))))
     (flet ((in-units-of-all (numbers) (mapcar #'(lambda (x) (in-units x bits)) numbers)))
       (cons '(mlist simp)
-            (mapcar #'(lambda (units) (maxima-fraction (/ units (ash 1 bits))))
+            (mapcar #'(lambda (units) (maxima-number (/ units (ash 1 bits))))
                     (tridiagonal-solution (in-units-of-all lower) (in-units-of-all diagonal) (in-units-of-all upper)
                                           right
                                           #'(lambda (x pivot) (floor (ash x bits) pivot))
@@ -77,20 +77,20 @@
 
 (defun $spline_from (rows curvatures instant)
   "[points, second rates] from the last point that is no later, if any is but the last, and of all after it."
-  (let ((rows (cdr rows)) (curvatures (cdr curvatures)) (instant (exact-number instant)))
-    (do () ((or (null (cddr rows)) (> (exact-number (second (second rows))) instant)))
+  (let ((rows (cdr rows)) (curvatures (cdr curvatures)) (instant (rational-of instant)))
+    (do () ((or (null (cddr rows)) (> (rational-of (second (second rows))) instant)))
       (setq rows (cdr rows) curvatures (cdr curvatures)))
     (list '(mlist simp) (cons '(mlist simp) rows) (cons '(mlist simp) curvatures))))
 
 (defun $first_piece (rows curvatures)
   "[t_k, c0, c1, c2, c3]: from t_k to the next point  c0 + c1 tau + c2 tau^2 + c3 tau^3,  tau = t - t_k."
   (let* ((row (second rows)) (next-row (third rows))
-         (begin (exact-number (second row))) (h (- (exact-number (second next-row)) begin))
-         (low (exact-number (third row))) (high (exact-number (third next-row)))
-         (bend (exact-number (second curvatures))) (next-bend (exact-number (third curvatures)))
+         (begin (rational-of (second row))) (h (- (rational-of (second next-row)) begin))
+         (low (rational-of (third row))) (high (rational-of (third next-row)))
+         (bend (rational-of (second curvatures))) (next-bend (rational-of (third curvatures)))
          (slope (weighted-sum (/ h) high (- (/ h)) low)))
     (cons '(mlist simp)
-          (mapcar #'fraction-or-constant
+          (mapcar #'maxima-number
                   (list begin low
                         (weighted-sum 1 slope (- (/ h 6)) (weighted-sum 2 bend 1 next-bend))
                         (weighted-sum 1/2 bend 0 0)
@@ -101,9 +101,9 @@
   (let ((bits (unit-bits rows)))
     (cons '($json_array)
           (mapcar #'(lambda (row next-row bend next-bend)
-                      (let ((h (- (exact-number (second next-row)) (exact-number (second row)))))
+                      (let ((h (- (rational-of (second next-row)) (rational-of (second row)))))
                         (list* '($json_array) ($exact_text (second row))
-                               (mapcar #'(lambda (units) (decimal-of-units units bits digits))
+                               (mapcar #'(lambda (units) (decimal-digits (/ units (ash 1 bits)) digits))
                                        (coefficients-in-units h (in-units (third row) bits)
                                                               (in-units (third next-row) bits)
                                                               (in-units bend bits) (in-units next-bend bits))))))
@@ -117,20 +117,6 @@
           (floor bend 2)
           (floor (over-h (- next-bend bend)) 6))))
 
-(defun decimal-of-units (units bits digits)
-  "UNITS 2^-BITS, rounded to so many decimal digits: \"-123e-2\"."
-  (if (eql units 0)
-      "0"
-      (let ((exponent (- (floor (* (- (integer-length units) bits) (log 2d0 10d0))) digits)))
-        (format nil "~de~d" (if (minusp exponent)
-                                (nearest-quotient (* units (expt 10 (- exponent))) (ash 1 bits))
-                                (nearest-quotient units (* (ash 1 bits) (expt 10 exponent))))
-                exponent))))
-
-(defun nearest-quotient (dividend divisor)
-  "A half is rounded up. GCL's own round takes thirty times as long for long integers."
-  (values (floor (+ dividend dividend divisor) (+ divisor divisor))))
-
 ;;; ---- points ----------------------------------------------------------------------------------------------
 
 (defun $pairs_p (rows)
@@ -138,8 +124,8 @@
 
 (defun $point_without_numbers (rows)
   "The first one whose time is no fraction, or whose height is no constant; false where there is none."
-  (car (member-if-not #'(lambda (row) (and (rationalp (exact-number (second row)))
-                                           (or (rationalp (exact-number (third row))) ($constantp (third row)))))
+  (car (member-if-not #'(lambda (row) (and (rationalp (rational-of (second row)))
+                                           (or (rationalp (rational-of (third row))) ($constantp (third row)))))
                       (cdr rows))))
 
 (defun $point_out_of_order (rows)
@@ -147,30 +133,21 @@
   (let ((place 1) (found nil))
     (do ((left (cdr rows) (cdr left))) ((or found (null (cdr left))) found)
       (incf place)
-      (unless (< (exact-number (second (first left))) (exact-number (second (second left)))) (setq found place)))))
+      (unless (< (rational-of (second (first left))) (rational-of (second (second left)))) (setq found place)))))
 
 ;;; ---- numbers: fractions of Lisp, or constants of Maxima that are none ------------------------------------
-
-(defun exact-number (x)
-  (if (and (consp x) (eq (caar x) 'rat)) (/ (second x) (third x)) x))
-
-(defun fraction-or-constant (x) (if (rationalp x) (maxima-fraction x) x))
 
 (defun weighted-sum (a x b y)
   "a x + b y, with fractions a and b."
   (if (and (rationalp x) (rationalp y))
       (+ (* a x) (* b y))
-      (exact-number ($expand (add (mul (maxima-fraction a) (fraction-or-constant x))
-                                  (mul (maxima-fraction b) (fraction-or-constant y)))))))
+      (rational-of ($expand (add (mul (maxima-number a) (maxima-number x))
+                                  (mul (maxima-number b) (maxima-number y)))))))
 
 (defun of-short-fractions (x)
   (if (and (rationalp x) (> (integer-length (denominator x)) (spline-bits))) (rounded-to-bits x (spline-bits)) x))
 
-(defun spline-bits () (ceiling (* $spline_digits (log 10d0 2d0))))
-
-(defun rounded-to-bits (x bits)
-  (let ((scale (expt 2 (- bits (- (integer-length (numerator x)) (integer-length (denominator x)))))))
-    (/ (round (* x scale)) scale)))
+(defun spline-bits () (digits-in-bits $spline_digits))
 
 (defun in-units (x bits)
   "The multiple of 2^-BITS that is next below."

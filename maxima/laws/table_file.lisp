@@ -17,7 +17,7 @@
         (when (or (and begun cells) (some #'identity numbers))
           (require-row line cells numbers name number)
           (require-later before cells numbers name number)
-          (push (cons '(mlist simp) (mapcar #'maxima-fraction numbers)) rows)
+          (push (cons '(mlist simp) (mapcar #'maxima-number numbers)) rows)
           (setq before (cons (first numbers) (first cells))))
         (if cells (setq begun t))))
     (cons '(mlist simp) (nreverse rows))))
@@ -102,6 +102,3 @@
   (let ((digits (if (and (plusp (length text)) (find (char text 0) "+-")) (subseq text 1) text)))
     (when (and (plusp (length digits)) (< (length digits) 5) (every #'digit-char-p digits))
       (parse-integer text :start (if (char= (char text 0) #\+) 1 0)))))
-
-(defun maxima-fraction (number)
-  (if (integerp number) number (list '(rat simp) (numerator number) (denominator number))))

@@ -291,11 +291,9 @@
 (defun number-at-start (e assignment)
   "The value of a Maxima expression as a Lisp rational."
   (let ((value (if *binary-digits* ($bfloat e) e)))
-    (cond ((integerp value) value)
-          ((and (consp value) (eq (caar value) 'rat)) (/ (second value) (third value)))
-          ((and (consp value) (eq (caar value) 'bigfloat))
-           (let ((power (- (third value) (car (last (car value))))))
-             (if (< power *smallest-power*) 0 (times-power-of-two (second value) power))))
+    (cond ((rationalp (rational-of value)) (rational-of value))
+          ((bigfloatp value)
+           (if (< (- (third value) (car (last (car value)))) *smallest-power*) 0 (rational-of-bigfloat value)))
           (t (obstacle (if *binary-digits* '$not_real '$irrational) e assignment)))))
 
 (defun require-nonzero (value assignment)

@@ -97,7 +97,7 @@
          (system nil))
     (setq $closed_form_size (member-of document "closed_form_size")
           $settings (described-values (member-of document "settings"))
-          $settings_used (listed (mapcar #'second (cdr $settings))))
+          $settings_used (mlist-of (mapcar #'second (cdr $settings))))
     (dolist (fact (member-of document "assumptions")) (mfuncall '$assume (described-expression fact)))
     (dolist (fact (member-of document "declarations"))
       (mapply1 '$declare (mapcar #'described-symbol fact) '$declare nil))
@@ -140,11 +140,11 @@
 
 (defun text-anew (text) text)
 (defun listed (items) (cons '(mlist simp) items))
-(defun described-names (names) (listed (mapcar #'described-symbol names)))
-(defun described-list (trees) (listed (mapcar #'described-expression trees)))
+(defun described-names (names) (mlist-of (mapcar #'described-symbol names)))
+(defun described-list (trees) (mlist-of (mapcar #'described-expression trees)))
 
 (defun described-values (members)
-  (listed (mapcar #'(lambda (each)
+  (mlist-of (mapcar #'(lambda (each)
                       (list '(mequal simp) (described-symbol (car each)) (described-expression (cdr each))))
                   (cdr members))))
 
@@ -152,25 +152,25 @@
 (defun described-forces (effects) (effects-anew effects #'described-list))
 
 (defun effects-anew (effects reader)
-  (listed (mapcar #'(lambda (each)
+  (mlist-of (mapcar #'(lambda (each)
                       (list '(mequal simp)
                             (described-symbol (member-of each "effect"))
                             (funcall reader (member-of each "value"))))
                   effects)))
 
-(defun described-drawing (shapes) (listed (mapcar #'described-shape shapes)))
+(defun described-drawing (shapes) (mlist-of (mapcar #'described-shape shapes)))
 
 (defun described-shape (shape)
   "Places first, two numbers each, then the radius of a circle."
   (let* ((kind (described-symbol (member-of shape "shape")))
          (numbers (mapcar #'described-expression (member-of shape "numbers")))
          (parts nil))
-    (do () ((null (cdr numbers))) (push (listed (list (pop numbers) (pop numbers))) parts))
+    (do () ((null (cdr numbers))) (push (mlist-of (list (pop numbers) (pop numbers))) parts))
     (cons (list kind 'simp) (append (nreverse parts) numbers))))
 
 (defun described-table (document)
   (list '($cubic_spline simp) nil
-        (listed (mapcar #'described-list (member-of document "points")))
+        (mlist-of (mapcar #'described-list (member-of document "points")))
         (let ((ends (member-of document "ends"))) (if (eq ends 'null) nil (described-list ends)))))
 
 (defun described-expression (tree)
@@ -189,7 +189,7 @@
 
 (defun described-number (digits)
   "An integer, or the fraction that decimal digits say."
-  (maxima-fraction
+  (maxima-number
    (if (find-if #'(lambda (c) (find c ".eE")) digits) (decimal-fraction digits) (parse-integer digits))))
 
 (defun described-application (head arguments)

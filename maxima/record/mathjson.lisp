@@ -131,17 +131,8 @@
   (write-string "\"}" out))
 
 (defun write-bigfloat (e out)
-  (let* ((precision (car (last (car e))))
-         (value (* (cadr e) (expt 2 (- (caddr e) precision)))))
-    (write-number (decimal-digits value (+ 2 (ceiling (* precision (log 2d0 10d0))))) out)))
-
-;;; The rational  value, rounded to  n  significant decimal digits: "-123e-2".
-(defun decimal-digits (value n)
-  (if (zerop value)
-      "0e0"
-      (let* ((magnitude (- (integer-length (numerator value)) (integer-length (denominator value))))
-             (exponent (- (floor (* magnitude (log 2d0 10d0))) n)))
-        (format nil "~de~d" (round (* value (expt 10 (- exponent)))) exponent))))
+  (let ((digits (ceiling (* (car (last (car e))) (log 2d0 10d0)))))
+    (write-number (decimal-digits (rational-of-bigfloat e) (+ 2 digits)) out)))
 
 (defun mathjson-symbol (symbol)
   (or (cdr (assoc symbol *mathjson-constants*))
