@@ -40,13 +40,18 @@ def residuals(at: Matrices, state: Vector, accelerations: Vector) -> Mapping[str
     state : ndarray, shape (2n,)
     accelerations : ndarray, shape (n,)
     """
-    n = len(accelerations)
-    left = {
-        "position": (at.residual, state[:n]),
-        "velocity": (at.residual_rate, state[n:]),
-        "acceleration": (at.jacobian @ accelerations + at.curvature, accelerations),
+    left = at.jacobian @ accelerations + at.curvature
+    found = {**constraint_residuals(at, state), "acceleration": scaled_residual(left, at.jacobian, accelerations)}
+    return {name: float(residual) for name, residual in found.items()}
+
+
+def constraint_residuals(at: Matrices, state: Numbers) -> dict[str, Numbers]:
+    """The first two of them, at one state or, with a last axis more, at k of them."""
+    coordinates, velocities = np.split(state, 2)
+    return {
+        "position": scaled_residual(at.residual, at.jacobian, coordinates),
+        "velocity": scaled_residual(at.residual_rate, at.jacobian, velocities),
     }
-    return {name: _scaled(residual, at.jacobian, moved) for name, (residual, moved) in left.items()}
 
 
 def condition(at: Matrices) -> float:
@@ -197,10 +202,6 @@ def _constraints_move(problem: MotionProblem) -> bool:
     program = computing(problem.matrices, residuals_alone)
     parts = (*(expression for _, expression in program.assignments), *program.outputs.values())
     return any("t" in names_in(part) for part in parts)
-
-
-def _scaled(residual: Numbers, jacobian: Numbers, moved: Numbers) -> float:
-    return float(scaled_residual(residual, jacobian, moved))
 
 
 def scaled_residual(residual: Numbers, jacobian: Numbers, moved: Numbers) -> Numbers:

@@ -24,10 +24,12 @@ from .piecewise import PiecewiseMotion
 from .recording import Recording, Stretch, largest
 from .request import FINAL_STATE_ALONE, EngineName, SimulationRequest, Stabilization
 from .result import Report, Sampled, Samples, Simulation, joined
-from .trust import doubts, energy_scale, expected, may_hide
+from .trust import doubts, energy_missed, expected, may_hide
 
 Progress = Callable[[float], None]
 TakeSamples = Callable[[Sampled], None]
+TakePiece = Callable[[Piece], None]
+Watch = Callable[[PiecewiseMotion], TakePiece]
 
 
 def simulate(problem: MotionProblem, request: SimulationRequest, progress: Progress | None = None) -> Simulation:
@@ -41,7 +43,11 @@ def simulate(problem: MotionProblem, request: SimulationRequest, progress: Progr
 
 
 def follow(
-    problem: MotionProblem, request: SimulationRequest, take: TakeSamples, progress: Progress | None = None
+    problem: MotionProblem,
+    request: SimulationRequest,
+    take: TakeSamples,
+    progress: Progress | None = None,
+    watch: Watch | None = None,
 ) -> Report:
     """Follow a motion, and hand on its samples as they come, some thousands together.
 
@@ -51,6 +57,8 @@ def follow(
         Takes a `Sampled`.
     progress : callable or None
         Told the fraction that is done, now and then.
+    watch : callable or None
+        Takes the motion before its first step, and returns what takes each step.
 
     Raises
     ------
@@ -63,7 +71,7 @@ def follow(
         with doing("compiling the motion"):
             prepared = _Simulation(followable(problem, request), request, take, end, ending)
         with doing("following the motion"):
-            return prepared.run(progress)
+            return prepared.run(progress, watch)
 
 
 def _require_steps(problem: MotionProblem, request: SimulationRequest) -> None:
@@ -145,10 +153,10 @@ class _Simulation:
             else None
         )
 
-    def run(self, progress: Progress | None) -> Report:
+    def run(self, progress: Progress | None, watch: Watch | None) -> Report:
         begun, compiled = time.perf_counter(), self.motion.compile_seconds
         self.recording.begin(self.start, self.first)
-        self._follow(self._take(progress))
+        self._follow(self._take(progress, watch))
         self.recording.end(self.end, self.motion.state)
         seconds = time.perf_counter() - begun - (self.motion.compile_seconds - compiled)
         self.recording.hand_on()
@@ -173,7 +181,7 @@ class _Simulation:
             )
         )
 
-    def _follow(self, take: Callable[[Piece], None] | None) -> None:
+    def _follow(self, take: TakePiece | None) -> None:
         if take is None:
             return self.motion.advance(self.end)
         for piece in self.motion.pieces(self.end):
@@ -186,16 +194,20 @@ class _Simulation:
         inner = range(self.samples - 1) if self.samples != FINAL_STATE_ALONE else ()
         return (self.start + (self.end - self.start) * i / (self.samples - 1) for i in inner)
 
-    def _take(self, progress: Progress | None) -> Callable[[Piece], None] | None:
+    def _take(self, progress: Progress | None, watch: Watch | None) -> TakePiece | None:
         """What is done with each piece; None where nothing has to be."""
         nothing_to_integrate = self.motion.conservative and self.steps is None
-        if self.samples == FINAL_STATE_ALONE and nothing_to_integrate and progress is None:
+        if self.samples == FINAL_STATE_ALONE and nothing_to_integrate and progress is watch is None:
             return None
+        takers = [self.recording.take]
+        if self.steps is not None:
+            takers.append(self.steps.take)
+        if watch is not None:
+            takers.append(watch(self.motion))
 
         def take(piece: Piece) -> None:
-            self.recording.take(piece)
-            if self.steps is not None:
-                self.steps.take(piece)
+            for each in takers:
+                each(piece)
             if progress is not None:
                 progress(float((piece.end - self.start) / (self.end - self.start)))
 
@@ -268,24 +280,15 @@ class _Simulation:
 
     def _missed(self, left: Mapping[str, float], at: Matrices) -> Mapping[str, float]:
         """What is missed of each quantity that the tolerance speaks of, relative to its size."""
-        error, scale = self._energy_missed(at)
         within = {} if self.steps is None else {"acceleration": self.steps.missed}
         kept = {name: left[name] for name in ("position", "velocity")}
         if not np.isfinite(self.reactions).all():
             kept["multipliers"] = np.nan
-        return {**kept, "energy": error / scale if 0 < scale < np.inf else error, **within}
-
-    def _energy_missed(self, at: Matrices) -> tuple[float, float]:
-        """The largest energy error on the way, and the size of the energies that it is an error of.
-
-        Velocities no larger than what steps of the tolerance, which is an absolute one too, may add up to make none.
-        """
         first, last = as_floats(self.first), as_floats(self.motion.state)
-        scale = max(energy_scale(self.motion.matrices(float(self.start), first), first), energy_scale(at, last))
-        at_rest = float(np.max(at.mass.diagonal(), initial=0.0)) * expected(self.motion.tol, self.motion.steps) ** 2
-        return max(self.exchange.error - at_rest, 0.0), max(  # NaN stays
-            scale, self.recording.largest_work, self.exchange.exchanged
-        )
+        start, end = (self.motion.matrices(float(self.start), first), first), (at, last)
+        exchanged = max(self.recording.largest_work, self.exchange.exchanged)
+        small = expected(self.motion.tol, self.motion.steps)
+        return {**kept, "energy": float(energy_missed(start, end, self.exchange.error, exchanged, small)), **within}
 
     def _cases(self, state: Numbers) -> tuple[HardCase, ...]:
         """Those that the robust engine was called for, then those that the ends tell; each once."""

@@ -14,11 +14,17 @@ from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..program.motion_program import Call, Operation, Program, calls_in, names_in
 from .matrices import Matrices, Vector
 
 MARGIN = 1e4
+MISSED = {
+    "energy": "the energy",
+    "acceleration": "a force that acts within a step",
+    "multipliers": "a multiplier",
+}
 FINEST = 1e-15  # relative error of a step, however fine its tolerance: residuals are computed in double precision
 
 
@@ -32,29 +38,68 @@ class Doubt(NamedTuple):
     missed: float
     expected: float
 
+    @property
+    def reason(self) -> str:
+        """What is missed, a clause."""
+        what = MISSED.get(self.quantity, f"the {self.quantity} that the constraints allow")
+        if np.isnan(self.missed):
+            return f"{what} has no finite value"
+        amount = f"is missed by {self.missed:.1e} of its size"
+        return f"{what} {amount}, where the tolerance lets expect {self.expected:.1e} at most"
+
 
 def doubts(missed: Mapping[str, float], tol: float, steps: int) -> Iterator[Doubt]:
     """What is out of proportion to the tolerance, of what is missed by quantity, relative to its size."""
-    most = expected(tol, steps)
+    most = float(expected(tol, steps))
     for quantity, value in missed.items():
         if not value <= most:
             yield Doubt(quantity, value, most)
 
 
-def expected(tol: float, steps: int) -> float:
+def trusted(missed: Mapping[str, Vector], tol: float, steps: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Of which of k motions nothing is out of proportion; each quantity has shape (k,)."""
+    return np.logical_and.reduce([values <= expected(tol, steps) for values in missed.values()])
+
+
+def expected(tol: float, steps: int | NDArray[np.int64]) -> float | Vector:
     """The most that a tolerance lets expect of an error after so many steps, relative to the size of the quantity."""
-    return MARGIN * max(tol, FINEST) * max(1, steps)
+    return MARGIN * max(tol, FINEST) * np.maximum(1, steps)
 
 
-def energy_scale(at: Matrices, state: Vector) -> float:
+def energy_missed(
+    start: tuple[Matrices, Vector],
+    end: tuple[Matrices, Vector],
+    error: float | Vector,
+    exchanged: float | Vector,
+    small: float | Vector,
+) -> float | Vector:
+    """An energy error relative to the size of the energies that it is an error of; of one motion or of k.
+
+    Parameters
+    ----------
+    start, end : (Matrices, ndarray of shape (2n,) or (2n, k))
+        Matrices and state there, those of k motions with a last axis more.
+    error, exchanged : float or ndarray, shape (k,)
+        The largest error, and the largest change of the energy or work.
+    small : float or ndarray, shape (k,)
+        Velocities no larger than that make no error: steps of the tolerance, which is an absolute one too, may add up
+        to them.
+    """
+    scale = np.maximum(np.maximum(energy_scale(*start), energy_scale(*end)), exchanged)
+    heaviest = np.max(np.diagonal(end[0].mass), axis=-1, initial=0.0)
+    left = np.maximum(error - heaviest * small**2, 0.0)  # NaN stays
+    return np.where((scale > 0) & (scale < np.inf), left / scale, left)
+
+
+def energy_scale(at: Matrices, state: Vector) -> float | Vector:
     """Size of the energies that are exchanged at a state: v^T A v and |h_s q_s|, which rounding is relative to.
 
     Parameters
     ----------
-    state : ndarray, shape (2n,)
+    state : ndarray, shape (2n,) or (2n, k)
     """
     q, v = np.abs(np.split(state, 2))
-    return float(v @ np.abs(at.mass) @ v + np.abs(at.force) @ q)
+    return np.einsum("i...,ij...,j...->...", v, np.abs(at.mass), v) + np.sum(np.abs(at.force) * q, axis=0)
 
 
 FAINT = frozenset({Operation.EXP, Operation.SINH, Operation.COSH, Operation.TANH, Operation.ERF})

@@ -5,7 +5,9 @@ the rows are cut, because batches are always full: what is missing is filled up 
 that fails would end the steps of the others, so its batch is followed again without it.
 
 Quantities that are looked at along the motion are integrated with it, so small that they decide about no step: the
-polynomial of each step tells their values, and the last state their means.
+polynomial of each step tells their values, and the last state their means. So are the power, whose integral is the work
+that was done, and the square of the energy error: each step adds its length times what it begins with, so that the
+square is no larger anywhere than the integral by the length of the shortest step.
 
 Nothing else that there is follows many motions as fast, as `tests/benchmarks/sweep.py` measures: one by one, the
 Runge-Kutta engine in C takes tens of times as long, and heyoka's single integrator, too; heyoka's ensembles copy an
@@ -24,11 +26,11 @@ from numpy.typing import NDArray
 
 from ..program.heyoka_function import dynamics, import_heyoka, zero_multipliers
 from ..program.motion_problem import MotionProblem, computing
-from ..program.motion_program import Expression
+from ..program.motion_program import Expression, Name
 from ..program.precision import read_precision
 from ..simulation.constraints.program_projection import nearest_state
 from ..simulation.engines.program_engine import SHRUNK
-from ..simulation.evaluation import in_full_vectors
+from ..simulation.evaluation import in_full_vectors, lane_evaluation
 from .extremes import Steps
 from .quantities import along_motion, expressions_of
 
@@ -39,6 +41,7 @@ MOST_BLOCKS = 64
 ROOM = 64  # steps for which there is room at first
 STRAYED = 1e-8  # relative distance from the constraints after a block that projection alone does not cure
 SMALL = 2.0**-200  # in which what is looked at along the motion is integrated: a power of two loses no digit
+JUDGED = ("work", "squared_error")  # integrals behind the state
 COMPACT_FROM = 1600  # operations by lanes; heyoka's other mode compiles in their square, and runs a third faster
 
 Floats = NDArray[np.float64]
@@ -52,6 +55,25 @@ class Followed(NamedTuple):
     states: Floats  # shape (stops, 2n, k): at each instant asked for; the last is the end
     arrived: NDArray[np.bool_]  # shape (k,): where the states mean something, and the polynomials along the motion
     seen: Floats  # shape (numbers, k): what was made of the quantities along the motions
+    # steps, energy_error, exchanged: shape (k,): taken; at most, on the way; the largest change of the energy, or work
+    steps: NDArray[np.int64]
+    energy_error: Floats
+    exchanged: Floats
+
+
+class _Batch(NamedTuple):
+    """A batch of m motions as far as they were followed."""
+
+    reached: Floats  # shape (stops, 2n + 2, m)
+    well: NDArray[np.bool_]  # shape (m,)
+    shortest: Floats  # shape (m,): step
+    taken: NDArray[np.int64]  # shape (m,): steps
+    steps: list[Steps]
+
+    def of(self, lanes: slice) -> "_Batch":
+        """Some of the motions."""
+        steps = [part.of(lanes) for part in self.steps]
+        return _Batch(self.reached[:, :, lanes], self.well[lanes], self.shortest[lanes], self.taken[lanes], steps)
 
 
 class LaneEngine:
@@ -91,10 +113,13 @@ class LaneEngine:
         program = computing(problem.motion, {f"ddot({name})" for name in problem.coordinates})
         parameters = {name: heyoka.par[place] for place, name in enumerate(problem.parameters)}
         equations = dynamics(program, parameters | zero_multipliers(problem.multipliers, 0.0))
-        if along:
-            known = {"t": heyoka.time, **{name: heyoka.expression(name) for name in problem.state}, **parameters}
-            rates = expressions_of(along, along_motion(problem, known))
-            equations += [(heyoka.expression(f"along[{k}]"), SMALL * rate) for k, rate in enumerate(rates)]
+        known = {"t": heyoka.time, **{name: heyoka.expression(name) for name in problem.state}, **parameters}
+        wanted = [Name("energy"), Name("power"), *along]
+        energy, power, *rates = expressions_of(wanted, along_motion(problem, known))
+        work, squared_error = map(heyoka.expression, JUDGED)
+        error = energy - heyoka.par[len(parameters)] - work / SMALL
+        equations += [(work, SMALL * power), (squared_error, SMALL * error * error)]
+        equations += [(heyoka.expression(f"along[{k}]"), SMALL * rate) for k, rate in enumerate(rates)]
         self._integrator = heyoka.taylor_adaptive_batch(
             equations,
             np.zeros((len(equations), lanes)),
@@ -102,9 +127,11 @@ class LaneEngine:
             compact_mode=problem.motion.operations * lanes >= COMPACT_FROM,
         )
         self._state, self._time = self._integrator.state, self._integrator.time
-        self._pars = np.zeros((len(problem.parameters), lanes))
-        self._moving = self._state[: self._size]
-        self._looking = _Along(self._integrator, self._size) if along else None
+        self._pars = np.zeros((len(problem.parameters) + 1, lanes))  # the last one is the energy at the start
+        self._moving, self._behind = self._state[: self._size], self._size + len(JUDGED)
+        self._looking = _Along(self._integrator, self._behind) if along else None
+        self._unused = len(problem.multipliers)
+        self._energy = lane_evaluation(problem, computing(problem.energy, {"energy"}))
         self._nearest = None
         if projects and problem.multipliers:
             self._nearest = in_full_vectors(nearest_state(problem, read_precision("double")))
@@ -121,16 +148,29 @@ class LaneEngine:
             Instants to stop at, in order, for all motions or for each; the last is the end.
         """
         k, lanes = states.shape[1], self._lanes
-        found, arrived, seen = np.empty((len(stops), self._size, k)), np.empty(k, dtype=bool), []
-        starts = np.concatenate([states, np.zeros((self._along, k))])
+        found, arrived, seen = np.empty((len(stops), self._behind, k)), np.empty(k, dtype=bool), []
+        shortest, taken = np.empty(k), np.empty(k, dtype=int)
+        starts = np.concatenate([states, np.zeros((len(JUDGED) + self._along, k))])
+        begun = self._energies(self._start, states, values)
+        pars = np.concatenate([values, begun[None]])
         for first in range(0, k, lanes):
             here = slice(first, min(first + lanes, k))
-            found[:, :, here], arrived[here], steps = self._batch(starts[:, here], values[:, here], _of(stops, here))
+            batch = self._batch(starts[:, here], pars[:, here], _of(stops, here))
+            found[:, :, here], arrived[here], shortest[here], taken[here], steps = batch
             if self._along:
                 seen.append(self._look(steps))
                 arrived[here] &= np.logical_and.reduce([each.resolved() for each in steps])
-        found = self._on_constraints(found, values, stops, arrived)
-        return Followed(found, arrived, np.concatenate(seen, axis=1) if seen else np.empty((0, k)))
+        reached = self._on_constraints(found[:, : self._size], values, stops, arrived)
+        works, squares = np.moveaxis(found[:, self._size :], 1, 0) / SMALL
+        gained = np.array([self._energies(*at, values) for at in zip(stops, reached, strict=True)]) - begun
+        error = np.maximum(np.max(np.abs(gained - works), axis=0), np.sqrt(squares[-1] / shortest))
+        exchanged = np.max(np.maximum(np.abs(gained), np.abs(works)), axis=0)
+        numbers = np.concatenate(seen, axis=1) if seen else np.empty((0, k))
+        return Followed(reached, arrived, numbers, taken, error, exchanged)
+
+    def _energies(self, instants: float | Floats, states: Floats, values: Floats) -> Floats:
+        k = states.shape[1]
+        return self._energy(np.concatenate([np.full((1, k), instants), states, np.zeros((self._unused, k)), values]))[0]
 
     def _on_constraints(self, states: Floats, values: Floats, stops: Stops, arrived: NDArray[np.bool_]) -> Floats:
         """States at the stops, projected; a lane that strayed has not arrived."""
@@ -146,68 +186,68 @@ class LaneEngine:
         found = self._nearest(np.concatenate([instants, states, values]))
         return found[:-1], ~(found[-1] <= STRAYED**2)
 
-    def _batch(self, starts: Floats, pars: Floats, stops: Stops) -> tuple[Floats, NDArray[np.bool_], list[Steps]]:
-        """A batch, and again without lanes that fail: shapes (stops, 2n, m), (m,)."""
+    def _batch(self, starts: Floats, pars: Floats, stops: Stops) -> _Batch:
+        """A batch, and again without lanes that fail."""
         count = starts.shape[1]
         if count == self._lanes:
-            failing, reached, well, steps = self._run(starts, pars, stops)
+            failing, batch = self._run(starts, pars, stops)
             if failing is None:
-                return reached, well, steps
+                return batch
         chosen, followed = np.arange(self._lanes), np.ones(count, dtype=bool)
         chosen[count:] = 0
         while True:
-            failing, reached, well, steps = self._run(starts[:, chosen], pars[:, chosen], _of(stops, chosen))
+            failing, batch = self._run(starts[:, chosen], pars[:, chosen], _of(stops, chosen))
             if failing is None:
-                return reached[:, :, :count], followed & well[:count], [part.of(slice(count)) for part in steps]
+                batch = batch.of(slice(count))
+                return batch._replace(well=followed & batch.well)
             failed = np.unique(chosen[failing])
             followed[failed] = False
             if not followed.any():
-                return np.full((len(stops), self._size, count), np.nan), followed, self._nothing(count)
+                return self._nothing(len(stops), count)
             chosen[np.isin(chosen, failed)] = np.flatnonzero(followed)[0]
 
-    def _run(
-        self, starts: Floats, pars: Floats, stops: Stops
-    ) -> tuple[NDArray[np.bool_] | None, Floats, NDArray[np.bool_], list[Steps]]:
-        """Full lanes through all stops: which fail, if any, their states, which went well, what was looked at."""
+    def _run(self, starts: Floats, pars: Floats, stops: Stops) -> tuple[NDArray[np.bool_] | None, _Batch | None]:
+        """Full lanes through all stops: which fail, if any; what came of them if none does."""
         integrator, along, options = self._integrator, self._looking, {}
         if along is not None:
             along.clear()
             options = {"callback": along, "write_tc": True}
         integrator.set_time(self._start)
         self._state[...], self._pars[...] = starts, pars
-        integrator.pars[...] = pars[: len(integrator.pars)]  # those that the equations contain
-        reached, well = np.empty((len(stops), self._size, self._lanes)), np.ones(self._lanes, dtype=bool)
-        longest = [0.0] * self._lanes
+        integrator.pars[...] = pars
+        reached, well = np.empty((len(stops), self._behind, self._lanes)), np.ones(self._lanes, dtype=bool)
+        shortest, longest = np.full(self._lanes, np.inf), np.zeros(self._lanes)
+        taken = np.zeros(self._lanes, dtype=int)
         for place, stop in enumerate(stops):
             for _ in range(MOST_BLOCKS):
                 integrator.propagate_until(stop, max_steps=BLOCK, **options)
                 ends, ended = integrator.propagate_res, self._time == stop
                 arrived = ended.all()
                 if not arrived and (failing := np.array([end[0] not in self._unharmed for end in ends])).any():
-                    return failing, reached, well, []
-                for lane, (_, shortest, taken, _) in enumerate(ends):
-                    if taken > longest[lane]:
-                        longest[lane] = taken
-                    if not shortest * SHRUNK >= longest[lane]:
-                        well[lane] = False
+                    return failing, None
+                _, least, greatest, count = map(np.array, zip(*ends, strict=True))
+                shortest, longest = np.minimum(shortest, least), np.maximum(longest, greatest)
+                well &= least * SHRUNK >= longest
+                taken += count
                 if arrived:
                     break
                 self._keep(~ended, well)
             else:
-                return ~ended, reached, well, []
-            reached[place] = self._moving
-        return None, reached, well, along.steps() if along is not None else []
+                return ~ended, None
+            reached[place] = self._state[: self._behind]
+        return None, _Batch(reached, well, shortest, taken, along.steps() if along is not None else [])
 
     def _keep(self, lanes: NDArray[np.bool_], well: NDArray[np.bool_]) -> None:
         """Project the lanes whose block has ended before their motion."""
         if self._nearest is not None:
-            projected, strayed = self._projected(self._time[None, :], self._moving, self._pars)
+            projected, strayed = self._projected(self._time[None, :], self._moving, self._pars[:-1])
             self._moving[:, lanes] = projected[:, lanes]
             well &= ~(lanes & strayed)
 
-    def _nothing(self, count: int) -> list[Steps]:
-        empty = np.full((2, 1, count), np.nan)
-        return [Steps(empty, empty[0], empty[0], 0.0) for _ in range(self._along)]
+    def _nothing(self, stops: int, count: int) -> _Batch:
+        empty, none = np.full((2, 1, count), np.nan), np.zeros(count, dtype=int)
+        steps = [Steps(empty, empty[0], empty[0], 0.0) for _ in range(self._along)]
+        return _Batch(np.full((stops, self._behind, count), np.nan), none == 1, empty[0, 0], none, steps)
 
 
 def _of(stops: Stops, lanes: Any) -> Stops:

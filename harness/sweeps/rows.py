@@ -19,13 +19,13 @@ from ..program.motion_problem import MotionProblem, require_analytic
 from ..program.motion_program import Expression, Name, Operation, Program, calls_in
 from ..program.precision import read_precision
 from ..simulation.control_matrix import controls_may_fail
-from ..simulation.diagnostics import scaled_residual
+from ..simulation.diagnostics import constraint_residuals
 from ..simulation.evaluation import in_full_vectors
 from ..simulation.initial_state import initial_states_of, started
 from ..simulation.matrices import LaneMatrices
 from ..simulation.request import SimulationRequest, Stabilization
 from ..simulation.simulate import last_instant
-from ..simulation.trust import FINEST, MARGIN, may_hide
+from ..simulation.trust import MARGIN, energy_missed, expected, may_hide, trusted
 from .axes import Axes
 from .extremes import Steps, first_zero, largest, largest_size
 from .kept import ALONG, Kept, Kind
@@ -39,7 +39,6 @@ if TYPE_CHECKING:
     import pyarrow
 
 TOLERANCE = 1e-12  # of a step
-FEW = 10  # steps
 KINKED = frozenset({Operation.ABS, Operation.SIGN, Operation.ARCTAN2})  # with kinks, or jumps
 GROUP = 10_000  # rows that are held in memory at a time, whatever the chunk
 
@@ -82,7 +81,7 @@ class RowMaker:
 
     def __init__(self, plan: Plan) -> None:
         problem = self._problem = plan.problem
-        self.plan, self._n = plan, len(problem.coordinates)
+        self.plan = plan
         require_known(problem, [kept.quantity for kept in plan.kept if kept.quantity is not None])
         self._starts, self._start = initial_states_of(problem), float(problem.start["t"])
         if any(kept.kind is Kind.RADIUS for kept in plan.kept):
@@ -141,7 +140,9 @@ class RowMaker:
             name = next(kept.text for kept in self.plan.kept if kept.kind is Kind.RADIUS)
             rows.kept[name][there] = lane_radii(self._problem, starts.states[:, there], rows.values[:, there])
         if not self._moves:
-            rows.residual[there] = self._residuals(self._start, starts.states[:, there], rows.values[:, there])
+            states = starts.states[:, there]
+            left = constraint_residuals(self._lane_matrices(self._start, states, rows.values[:, there]), states)
+            rows.residual[there] = np.maximum(left["position"], left["velocity"])
             return
         for row in self._left_alone(rows, there, starts.states):
             self._by_itself(rows, row, starts.states[:, row])
@@ -172,8 +173,13 @@ class RowMaker:
         instants = sorted({*self._asked, *(t for t in stops if t < self._end)})
         stops = [np.minimum(instant, ends) for instant in instants] if self._problem.until else instants
         found = self._engine.follow(states, values, stops)
-        residual = self._residuals(ends, found.states[-1], values)
-        well = ended & found.arrived & (residual <= self._allowed)
+        start, end = (self._start, states), (ends, found.states[-1])
+        at_start, at_end = ((self._lane_matrices(*at, values), at[1]) for at in (start, end))
+        small = expected(self.plan.tol, found.steps)
+        left = constraint_residuals(*at_end)
+        energy = energy_missed(at_start, at_end, found.energy_error, found.exchanged, small)
+        residual = np.maximum(left["position"], left["velocity"])
+        well = ended & found.arrived & trusted({**left, "energy": energy}, self.plan.tol, found.steps)
         done = there[well]
         at = dict(zip(instants, found.states, strict=True))
         points = {stop: self._at(np.minimum(stop, ends), at[stop], values)[:, well] for stop in self._asked}
@@ -200,11 +206,12 @@ class RowMaker:
         except HolonomError as error:
             rows.mark(np.array([row]), Status.BROKEN_OFF, error.said)
             return
-        here, rows.residual[row] = np.array([row]), found.residual
-        if not max(found.residual, found.missed) <= self._allowed:
-            rows.mark(here, Status.DOUBTFUL, "what it misses is out of proportion to the tolerance")
+        here, report = np.array([row]), found.report
+        rows.residual[row] = max(report.residuals["position"], report.residuals["velocity"])
+        if report.doubts:
+            rows.mark(here, Status.DOUBTFUL, "; ".join(doubt.reason for doubt in report.doubts))
         points = {stop: found.points[place][:, None] for place, stop in enumerate(self._asked)}
-        self._keep(rows, here, np.array([found.end]), found.states[-1][:, None], points)
+        self._keep(rows, here, np.array([report.t]), found.state[:, None], points)
         self._keep_along(rows, here, self._seen(found.steps))
 
     # ---- what is kept ----
@@ -277,16 +284,6 @@ class RowMaker:
             return np.empty((0, states.shape[1]))
         return self._evaluate(np.concatenate([instants[None], states, values]))
 
-    def _residuals(self, instants: Floats | float, states: Floats, values: Floats) -> Floats:
-        at = self._lane_matrices(instants, states, values)
-        position = scaled_residual(at.residual, at.jacobian, states[: self._n])
-        return np.maximum(position, scaled_residual(at.residual_rate, at.jacobian, states[self._n :]))
-
-    @property
-    def _allowed(self) -> float:
-        """What a motion may miss, as `holonom.simulation.trust` expects of one that takes few steps."""
-        return MARGIN * max(self.plan.tol, FINEST) * FEW
-
     # ---- compiled when first needed ----
 
     @cached_property
@@ -316,7 +313,7 @@ class RowMaker:
     @cached_property
     def _singles(self) -> SingleMotions:
         request = SimulationRequest(tol=self.plan.tol, drift=self.plan.drift, until=self.plan.until)
-        return SingleMotions(self._problem, request, self._along, self._points, self._hides)
+        return SingleMotions(self._problem, request, self._along, self._points)
 
     @cached_property
     def _watch(self) -> TimeWatch:

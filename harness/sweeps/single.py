@@ -4,7 +4,8 @@ Through singular configurations, switchings and redundant constraints, past narr
 which a motion ends that cannot be followed to the end.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -14,14 +15,12 @@ from numpy.typing import NDArray
 from ..program.heyoka_function import import_heyoka
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Expression
-from ..program.precision import read_precision
-from ..simulation.diagnostics import scaled_residual
 from ..simulation.engines.engine import Piece
 from ..simulation.evaluation import in_full_vectors
-from ..simulation.passed_over import StepsHeldAgainstTheEquations
 from ..simulation.piecewise import PiecewiseMotion
 from ..simulation.request import SimulationRequest
-from ..simulation.simulate import end_of, followable
+from ..simulation.result import Report
+from ..simulation.simulate import TakePiece, follow
 from .extremes import Steps
 from .quantities import expressions_of, solved_names
 
@@ -39,8 +38,6 @@ class SingleMotions:
     ----------
     along, points : sequence of Expression
         Quantities to look at along the motion, and at the instants asked for.
-    may_hide : bool
-        Whether steps may pass over narrow places.
     """
 
     def __init__(
@@ -49,10 +46,8 @@ class SingleMotions:
         request: SimulationRequest,
         along: Sequence[Expression],
         points: Sequence[Expression],
-        may_hide: bool,
     ) -> None:
-        self._problem, self._request, self._may_hide = problem, request, may_hide
-        self._along, self._precision = len(along), read_precision("double")
+        self._request, self._along = request, len(along)
         heyoka = import_heyoka()
         n, g = len(problem.coordinates), len(problem.multipliers)
         self._solved = len(solved_names(problem))
@@ -74,40 +69,17 @@ class SingleMotions:
         HolonomError
             The motion cannot be followed to the end.
         """
-        end = float(end_of(problem, self._request)[0])
-        motion = PiecewiseMotion(followable(problem, self._request), self._request, self._precision, end)
-        held = StepsHeldAgainstTheEquations(motion, end - motion.time, self._precision)
-        states, points, taken = [], [], []
-        for stop in (min(stop, end) for stop in stops):
-            for piece in motion.pieces(stop):
-                if self._may_hide:
-                    held.take(piece)
-                if self._along:
-                    taken += self._polynomials(motion, problem, piece)
-            states.append(motion.state.copy())
-            values = self._values(motion, problem, np.array([stop]), motion.state.copy()[:, None])
-            points.append(values[self._along :, 0])
-        missed = held.missed if self._may_hide else 0.0
-        return SingleMotion(end, np.array(states), np.array(points), _steps(taken), _residual(motion), missed)
+        looks: list[_Look] = []
 
-    def _polynomials(self, motion: PiecewiseMotion, problem: MotionProblem, piece: Piece) -> list[tuple]:
-        """The quantities on parts of a step so short that coefficients fall off: middle, half length, coefficients."""
-        count, found = PARTS, self._in_parts(motion, problem, piece, PARTS)
-        while count < MOST_PARTS and not all(each.resolved().all() for each in _steps(found)):
-            count *= FINER
-            found = self._in_parts(motion, problem, piece, count)
-        return found
+        def watch(motion: PiecewiseMotion) -> TakePiece:
+            looks.append(_Look(motion, partial(self._values, motion, problem), self._along, stops))
+            return looks[-1].take
 
-    def _in_parts(self, motion: PiecewiseMotion, problem: MotionProblem, piece: Piece, count: int) -> list[tuple]:
-        edges = np.linspace(float(piece.start), float(piece.end), count + 1)
-        middles, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2
-        instants = (middles[:, None] + half[:, None] * NODES).ravel()
-        values = self._values(motion, problem, instants, piece.states(instants))[: self._along]
-        parts = values.reshape(self._along, count, len(NODES)) @ TO_POWERS.T
-        return list(zip(middles, half, np.moveaxis(parts, 1, 0), strict=True))
+        report = follow(problem, self._request, lambda samples: None, watch=watch)
+        return looks[-1].motion(report)
 
     def _values(self, motion: PiecewiseMotion, problem: MotionProblem, instants: Floats, states: Floats) -> Floats:
-        """All quantities at states of the motion, shape (quantities, k)."""
+        """All quantities at states of a motion, shape (quantities, k)."""
         if self._quantities is None:
             return np.empty((0, len(instants)))
         solved = np.concatenate(motion.solutions(instants, states))[: self._solved]
@@ -122,19 +94,56 @@ class SingleMotions:
 class SingleMotion(NamedTuple):
     """What came of one motion."""
 
-    end: float  # the last instant
-    states: Floats  # shape (stops, 2n): at the instants asked for; after the end, as they are there
-    points: Floats  # shape (stops, quantities)
+    report: Report
+    state: Floats  # shape (2n,): the last one
+    points: Floats  # shape (stops, quantities): at the instants asked for; after the end, as they are there
     steps: list[Steps]  # each quantity along the motion, with one lane
-    residual: float  # how far the end is from the constraints
-    missed: float  # what steps passed over, as `holonom.simulation.passed_over` says; zero where they cannot
 
 
-def _residual(motion: PiecewiseMotion) -> float:
-    state = motion.state.copy()
-    at, n = motion.matrices(float(motion.time), state), len(state) // 2
-    position = scaled_residual(at.residual, at.jacobian, state[:n])
-    return float(np.maximum(position, scaled_residual(at.residual_rate, at.jacobian, state[n:])))
+class _Look:
+    """Looks at quantities along a motion, step by step, and keeps states at stops."""
+
+    def __init__(
+        self,
+        motion: PiecewiseMotion,
+        values: Callable[[Floats, Floats], Floats],
+        along: int,
+        stops: Sequence[float],
+    ) -> None:
+        self._motion, self._values, self._along, self._stops = motion, values, along, stops
+        self._taken: list[tuple] = []
+        self._states = {motion.time: motion.state.copy()}
+
+    def take(self, piece: Piece) -> None:
+        """Look at a step."""
+        if self._along:
+            self._taken += self._polynomials(piece)
+        here = [stop for stop in self._stops if piece.start < stop <= piece.end]
+        if here:
+            self._states |= zip(here, piece.states(np.array(here)).T, strict=True)
+
+    def motion(self, report: Report) -> SingleMotion:
+        """What came of it."""
+        end, state = float(report.t), self._motion.state.copy()
+        states = [self._states[stop] if stop < end else state for stop in self._stops]
+        points = self._values(np.minimum(self._stops, end), np.array(states).T)[self._along :].T
+        return SingleMotion(report, state, points, _steps(self._taken))
+
+    def _polynomials(self, piece: Piece) -> list[tuple]:
+        """The quantities on parts of a step so short that coefficients fall off: middle, half length, coefficients."""
+        count, found = PARTS, self._in_parts(piece, PARTS)
+        while count < MOST_PARTS and not all(each.resolved().all() for each in _steps(found)):
+            count *= FINER
+            found = self._in_parts(piece, count)
+        return found
+
+    def _in_parts(self, piece: Piece, count: int) -> list[tuple]:
+        edges = np.linspace(float(piece.start), float(piece.end), count + 1)
+        middles, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2
+        instants = (middles[:, None] + half[:, None] * NODES).ravel()
+        values = self._values(instants, piece.states(instants))[: self._along]
+        parts = values.reshape(self._along, count, len(NODES)) @ TO_POWERS.T
+        return list(zip(middles, half, np.moveaxis(parts, 1, 0), strict=True))
 
 
 def _steps(taken: list[tuple]) -> list[Steps]:

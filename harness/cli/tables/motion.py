@@ -164,17 +164,10 @@ def _passed(passage: str) -> str:
 
 def distrust(doubt: "Doubt") -> str:
     """The sentence that says why a motion is no result."""
-    whats = {
-        "energy": "the energy",
-        "acceleration": "a force that acts within a step",
-        "multipliers": "a multiplier",
-    }
-    what = whats.get(doubt.quantity, f"the {doubt.quantity} that the constraints allow")
     if isnan(doubt.missed):
-        return f"holonom: this is no result: {what} has no finite value; end the run before that."
+        return f"holonom: this is no result: {doubt.reason}; end the run before that."
     return (
-        f"holonom: this is no result: {what} is missed by {doubt.missed:.1e} of its size, where the tolerance lets "
-        f"expect {doubt.expected:.1e} at most; take a smaller --max-step, another --engine or more --precision."
+        f"holonom: this is no result: {doubt.reason}; take a smaller --max-step, another --engine or more --precision."
     )
 
 

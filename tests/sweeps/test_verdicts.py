@@ -1,0 +1,96 @@
+"""A row of a sweep gets the verdict that `simulate` gives on the same motion, whoever integrates it."""
+
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from holonom.failures import HolonomError
+from holonom.simulation.initial_state import at_values
+from holonom.simulation.request import SimulationRequest
+from holonom.simulation.simulate import simulate
+from holonom.sweeps.rows import TOLERANCE, RowMaker, Status
+
+
+def scene(coordinates: str, kinetic: str, potential: str, start: str, end: str, more: str = "constraints = []") -> str:
+    return f"""load("holonom.mac")$
+system : holonomic_system(coordinates = [{coordinates}], parameters = [k],
+  kinetic_energy = {kinetic}, potential_energy = {potential}, {more})$
+motion : holonomic_scene(system, parameter_values = [k = 1], initial_state = [{start}], time_span = [0, {end}])$"""
+
+
+PLANE = "(dot(x)^2 + dot(y)^2)/2"
+LEDGE = "k*atan(10^13*(x - 1/2))"  # too steep for the Taylor coefficients of a step that begins before it
+OK, DOUBTFUL, BROKEN_OFF = Status.OK, Status.DOUBTFUL, Status.BROKEN_OFF
+SCENES = {
+    "a ledge": (
+        scene("x", "dot(x)^2/2", LEDGE, "x = 0, dot(x) = 1", "1"),
+        ("0:1/10:3", [OK, DOUBTFUL, DOUBTFUL]),
+    ),
+    "a ledge, and back": (
+        scene("x", "dot(x)^2/2", f"x^2/2 + {LEDGE}", "x = 0, dot(x) = 1", "44/7"),
+        ("0:1/20:2", [OK, DOUBTFUL]),
+    ),
+    "nearly a collision": (
+        scene("x, y", PLANE, "-1/sqrt(x^2 + y^2)", "x = 1, y = 0, dot(x) = 0, dot(y) = k", "4"),
+        ("1e-7:1:3", [BROKEN_OFF, OK, OK]),
+    ),
+}
+LONG = {
+    "an oscillator": (scene("x", "dot(x)^2/2", "k*x^2/2", "x = 1, dot(x) = 0", "30"), ("1:25:3", [OK] * 3)),
+    "a saddle": (scene("x", "dot(x)^2/2", "-k*x^2/2", "x = 1, dot(x) = -1", "20"), ("1:9:3", [OK] * 3)),
+    "a fall to rest": (
+        scene("x", "dot(x)^2/2", "0", "x = 0, dot(x) = 1", "60", "forces = [-k*dot(x)]"),
+        ("0:3:3", [OK] * 3),
+    ),
+    "a narrow well": (
+        scene("x, y", PLANE, "-k*exp(-(1000*(x - 1/2))^2)", "x = 0, dot(x) = 1", "1", "constraints = [y - x^2]"),
+        ("0:1/10:2", [OK, DOUBTFUL]),
+    ),
+    "dry friction": (
+        scene("x", "dot(x)^2/2", "0", "x = 0, dot(x) = 1", "3", "forces = [-k*signum(dot(x))]"),
+        ("1/2:2:3", [OK] * 3),
+    ),
+    "a pendulum": (
+        scene("x, y", PLANE, "10*k*y", "x = 3/5, y = -4/5, dot(x) = 0", "10", "constraints = [x^2 + y^2 - 1]"),
+        ("1:3:3", [OK] * 3),
+    ),
+    "a lengthening pendulum": (
+        scene("x, y", PLANE, "k*y", "x = 0, y = -1, dot(x) = 1", "10", "constraints = [x^2 + y^2 - 1 - t^2]"),
+        ("1:3:3", [OK] * 3),
+    ),
+}
+
+
+class OneByOne(RowMaker):
+    """Integrates no row beside others."""
+
+    _batched = False
+
+
+def verdict(problem, k: Fraction) -> str:
+    try:
+        motion = simulate(at_values(problem, {"k": k}), SimulationRequest(tol=TOLERANCE))
+    except HolonomError:
+        return Status.BROKEN_OFF
+    return Status.OK if motion.report.trusted else Status.DOUBTFUL
+
+
+@pytest.fixture(scope="module")
+def verdicts(rows_of, tmp_path_factory):
+    def of(text: str, grid: str) -> list[list[str]]:
+        file: Path = tmp_path_factory.mktemp("scene") / "scene.mac"
+        file.write_text(text)
+        batch = rows_of(file, "final", f"k={grid}")
+        rows = batch.plan.axes.rows
+        tables = [maker.table(0, rows) for maker in (batch, OneByOne(batch.plan))]
+        single = [verdict(batch.plan.problem, Fraction(k)) for k in tables[0]["k"].to_pylist()]
+        return [*(table["status"].to_pylist() for table in tables), single]
+
+    return of
+
+
+@pytest.mark.parametrize("name", [*SCENES, *(pytest.param(name, marks=pytest.mark.long) for name in LONG)])
+def test_rows_in_batches_single_rows_and_simulate_agree(verdicts, name):
+    text, (grid, expected) = {**SCENES, **LONG}[name]
+    assert verdicts(text, grid) == [expected] * 3
