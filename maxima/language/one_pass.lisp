@@ -147,4 +147,10 @@
   (let ((items (coerce (cdr items) 'vector)))
     (mlist-of (mapcar #'(lambda (place) (aref items (1- place))) (cdr places)))))
 
+(defun $altered (structure &rest changes)
+  "The structure with other values of some of its fields,  'field = value."
+  (let ((altered (copy-list structure)) (fields (get (caar structure) 'defstruct-template)))
+    (dolist (change changes altered)
+      (setf (nth (position (plain-name (second change)) fields) altered) (third change)))))
+
 (defun mlist-of (items) (cons '(mlist simp) items))
