@@ -1,8 +1,7 @@
 """What can go wrong, each way with its sentence and its remedy."""
 
 import re
-from collections.abc import Collection, Iterator
-from contextlib import contextmanager
+from collections.abc import Collection
 from enum import Enum
 from pathlib import Path
 from typing import Any
@@ -323,54 +322,5 @@ class HolonomError(Exception):
         return visible(located.rstrip(".") + (f"; {remedy}." if remedy else "."))
 
 
-NO_ROOM = ("failed to map segment", "annot allocate memory")  # what the loader of libraries says
-
-
 def _argument(option: re.Match[str]) -> str:
     return "limits" if option[0] in LIMITS else option[0].removeprefix("--").replace("-", "_")
-
-
-def missing_package(package: str) -> HolonomError:
-    """The refusal to go on without a package, with the command that installs the extra that it belongs to."""
-    from .installation import extra_of
-
-    extra = extra_of(package)
-    named = f"holonom[{extra}]" if extra else package
-    return HolonomError(Failure.EXTRA_MISSING, detail=f"{package}, which is not installed; run `pip install '{named}'`")
-
-
-def require_room(error: ImportError) -> None:
-    """Tell a package that memory was too short to load from one that is not there.
-
-    Raises
-    ------
-    MemoryError
-        It was.
-    """
-    if any(sign in str(error) for sign in NO_ROOM):
-        raise MemoryError(str(error)) from error
-
-
-@contextmanager
-def naming_the_extra() -> Iterator[None]:
-    """Around what needs the packages of an extra, also as a decorator: where one is missing, say which and the remedy.
-
-    Raises
-    ------
-    HolonomError
-        A package of an extra is not installed.
-    MemoryError
-        There is no room to load it.
-    """
-    try:
-        yield
-    except ModuleNotFoundError as error:
-        from .installation import extra_of
-
-        package = str(error.name).partition(".")[0]
-        if extra_of(package) is None:
-            raise
-        raise missing_package(package) from None
-    except ImportError as error:
-        require_room(error)
-        raise

@@ -18,7 +18,7 @@ from .documents import Document, ask, read
 from .free_verdicts import FreeMotionTrial
 from .mathjson import to_sympy
 from .sandbox import Limits
-from .shown import Show, Shown
+from .shown import Shown
 from .source import Source
 from .trees import Tree
 
@@ -145,11 +145,6 @@ class FreeMotion(Shown):
     def condition(self) -> tuple[Expr, ...] | None:
         """What vanishes where a motion is free, for each constraint; None where it is not written out."""
         return None if self.condition_trees is None else _expressions(self.condition_trees)
-
-    def _table(self) -> Show:
-        from .cli.tables.free_motion import show_free_motion
-
-        return show_free_motion
 
 
 def free_motion(

@@ -1,7 +1,6 @@
 """What is installed: what is missing and the command that installs it; the library where Maxima finds it."""
 
 import os
-import re
 import shutil
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -9,13 +8,13 @@ from importlib import metadata
 from pathlib import Path
 
 from .documents import Document, ask, read
+from .extras import REQUIREMENT
 from .failures import Failure, HolonomError
 from .files import shared, write_files, write_whole, written_before
 from .maxima import LIBRARY
 from .reference.maxima_help import help_files
 from .sandbox import has_sandbox
 
-REQUIREMENT = re.compile(r"(?P<package>[\w.-]+)[^;]*(?:;.*extra\s*==\s*['\"](?P<extra>\w+)['\"])?")
 USERS_EXTRAS = ("motion", "sweep", "companion")  # the others are for those who develop Holonom
 # Names of the system's packages, by the command that installs them.
 INSTALLERS = {
@@ -70,12 +69,6 @@ def _hindrance_of_sandbox() -> str:
         return "" if has_sandbox() else ALLOW
     except HolonomError as error:
         return str(error)
-
-
-def extra_of(package: str) -> str | None:
-    """The extra that installs a package; None where none does."""
-    found = (REQUIREMENT.match(requirement) for requirement in metadata.requires("holonom") or ())
-    return next((each["extra"] for each in found if each["package"].lower() == package.lower()), None)
 
 
 def maxima_version() -> str | None:

@@ -13,8 +13,10 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
+from . import display  # noqa: F401  # results show their tables
 from .equations import Equations
-from .failures import Failure, HolonomError, naming_the_extra
+from .extras import naming_the_extra
+from .failures import Failure, HolonomError
 from .files import near_file, scene_file
 from .program.forms import MotionProgram
 from .program.motion_program import Solve
@@ -303,7 +305,8 @@ class Scene:
         HolonomError
             The control law is not analytic at t0, G is singular there, or the digits cannot be had.
         """
-        from .series.power_series import SeriesRequest, compute_series
+        from .series.compute import compute_series
+        from .series.power_series import SeriesRequest
 
         last = _instant(until)
         request = SeriesRequest(order, self._name, digits, last, self.settings, precision)

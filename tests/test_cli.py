@@ -15,9 +15,9 @@ from particle import PARTICLE
 
 from holonom.cli import holonom as cli
 from holonom.cli import run
-from holonom.cli.tables.condition import condition_lines
-from holonom.cli.tables.derivation import why_left_out
 from holonom.crosscheck.report import Judgement, Verdict
+from holonom.display.condition import condition_lines
+from holonom.display.derivation import why_left_out
 from holonom.failures import Failure, HolonomError
 from holonom.record import LARGEST_SIZE, LeftOut, read_record
 

@@ -11,7 +11,7 @@ import sympy
 from refusing import refused
 from sympy import Function, Symbol, cos, exp, symbols
 
-from holonom.cli.tables.free_motion import formula, power_series
+from holonom.display.free_motion import formula, power_series
 from holonom.free_motion import FirstCoefficient, Free, free_motion
 from holonom.number_texts import number
 from holonom.program.forms import MotionProgram
@@ -19,7 +19,8 @@ from holonom.program.numpy_function import NumpyFunction
 from holonom.program.request import Request
 from holonom.record import derived_record
 from holonom.sandbox import Limits
-from holonom.series.power_series import SeriesRequest, compute_series
+from holonom.series.compute import compute_series
+from holonom.series.power_series import SeriesRequest
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 t = Symbol("t", real=True)

@@ -17,8 +17,8 @@ from particle import PARTICLE
 from rich.table import Table
 from rich.text import Text
 
-from holonom.cli.tables.progress import motion_progress
-from holonom.cli.tables.text import PlainConsole, html_of, text_of
+from holonom.display.progress import motion_progress
+from holonom.display.text import PlainConsole, html_of, text_of
 from holonom.failures import Failure, HolonomError
 from holonom.figures.style import Picture, figure_style, new_figure, svg_text
 from holonom.hidden import visible, visible_line

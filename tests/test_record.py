@@ -77,7 +77,7 @@ def test_the_record_of_a_chain_grew_with_the_square_of_its_length():
 def test_reading_and_printing_a_record_imported_sympy(particle_record):
     program = (
         "import sys; from rich.console import Console; from holonom.record import read_record; "
-        "from holonom.cli.tables.derivation import show_record; "
+        "from holonom.display.derivation import show_record; "
         "show_record(Console(), read_record(sys.stdin.read())); assert 'sympy' not in sys.modules"
     )
     done = subprocess.run([sys.executable, "-c", program], input=particle_record, text=True, capture_output=True)

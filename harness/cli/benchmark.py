@@ -34,8 +34,8 @@ def accuracy(
 ) -> int:
     """Measure what accuracy costs in time for the motion of a SCENE, and give plain advice."""
     from ..benchmark.work_precision.study import Plan, study, study_document
-    from .tables.measurements import show_study
-    from .tables.progress import progress
+    from ..display.measurements import show_study
+    from ..display.progress import progress
 
     plan = Plan(until=until)
     with progress("methods", plan.steps) as advance:
@@ -59,9 +59,9 @@ def stability(short: bool, plot_file: Path | None, json_file: Path | None) -> in
     """Run the register of hard cases: the digits that each method keeps, and what to do."""
     from ..benchmark.hard_cases.case import Extent
     from ..benchmark.hard_cases.register import REGISTER, examine_all
+    from ..display.measurements import show_stability
+    from ..display.progress import progress
     from ..documents import Publication, published
-    from .tables.measurements import show_stability
-    from .tables.progress import progress
 
     extent = Extent.SHORT if short else Extent.FULL
     with progress("Hard cases", len(REGISTER)) as done:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from ..failures import missing_package
+from ..extras import missing_package
 from ..language import ENGLISH, LANGUAGES
 from ..sandbox import Limits
 from .group import holonom
@@ -50,8 +50,8 @@ def companion(
     from ..companion.book import make_book
     from ..companion.own_scenes import book_of_scenes
     from ..companion.paper import book_of_the_paper
-    from .tables.progress import progress
-    from .tables.text import make_console
+    from ..display.progress import progress
+    from .console import make_console
 
     given = tuple(settings.items())
     if given and not scenes:

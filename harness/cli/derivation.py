@@ -41,8 +41,8 @@ def describe(scene: Path, settings: dict[str, str], json_file: Path | None, limi
 
     The document that --json writes is taken wherever a SCENE is.
     """
+    from ..display.description import show_description
     from ..source import describe as describe_file
-    from .tables.description import show_description
 
     description = describe_file(scene, settings, limits)
     present(description.content, json_file, show_description, description)
@@ -65,10 +65,10 @@ def derive(
     limits: Limits,
 ) -> int:
     """Derive the equations of a SCENE, under the paper's numbers."""
+    from ..display.derivation import show_record
     from ..documents import Document, ask
     from ..record import read_record
-    from .tables.derivation import show_record
-    from .tables.text import make_console
+    from .console import make_console
 
     text = ask(Document.RECORD, scene, closed_form_size, settings=settings, limits=limits)
     record = read_record(text)
@@ -112,7 +112,7 @@ def check(
         from ..crosscheck.check import check_record
         from ..crosscheck.motions import verdicts_out_of_time
         from ..crosscheck.report import Verdict
-        from .tables.derivation import show_reports
+        from ..display.derivation import show_reports
 
         with doing("checking with SymPy"):
             checked = [
@@ -151,7 +151,7 @@ def _judge_motions(sources: Sequence["Source"], settings: dict[str, str], seed: 
 def _import_what_checks() -> None:
     """Import SymPy, and what needs it."""
     from ..crosscheck import check, lagranges_method, motions  # noqa: F401
-    from .tables import derivation  # noqa: F401
+    from ..display import derivation  # noqa: F401
 
 
 def _import_what_judges_motions() -> None:
@@ -172,9 +172,9 @@ def _import_what_judges_motions() -> None:
 )
 def errata(json_file: Path | None, svg_file: Path | None, language: str) -> int:
     """Compare every equation that the paper prints with the derived one."""
+    from ..display.derivation import draw_errata, show_errata
     from ..documents import Document, published
     from ..errata import errata as compare
-    from .tables.derivation import draw_errata, show_errata
 
     equations = compare()
     content = {"equations": [asdict(equation) for equation in equations]}
@@ -194,8 +194,8 @@ def _publish_document(record: "Record", tex_file: Path | None) -> None:
 
 def _report_document(scene: str, report: "CheckReport") -> dict[str, Any]:
     from ..crosscheck.report import Verdict
+    from ..display.derivation import why_left_out
     from ..documents import Publication, published
-    from .tables.derivation import why_left_out
 
     content = {
         "scene": scene,

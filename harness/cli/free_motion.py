@@ -44,8 +44,8 @@ def free(
         text = ask(Document.FREE_MOTION, scene_file, request.scene, order, settings=request.settings, limits=limits)
 
     from ..crosscheck.report import Verdict
+    from ..display.free_motion import show_free_motion
     from ..free_motion import read_free_motion
-    from .tables.free_motion import show_free_motion
 
     found = read_free_motion(text)
     present(_free_motion_document(found), json_file, show_free_motion, found)
@@ -55,13 +55,13 @@ def free(
 
 def _import_what_follows() -> None:
     """Import SymPy, and what needs it."""
+    from ..display.free_motion import show_free_motion  # noqa: F401
     from ..free_motion import read_free_motion  # noqa: F401
-    from .tables.free_motion import show_free_motion  # noqa: F401
 
 
 def _free_motion_document(found: "FreeMotion") -> dict[str, Any]:
+    from ..display.free_motion import formula, power_series
     from ..documents import Publication, published
-    from .tables.free_motion import formula, power_series
 
     def law_text(law: Mapping[str, Any]) -> dict[str, str]:
         return {control: formula(value) for control, value in law.items()}

@@ -1,4 +1,8 @@
-"""The group of commands, and the sentences and statuses that they leave with."""
+"""The group of commands, and the sentences and statuses that they leave with.
+
+Exit status: 0 when all is well, 1 when a check fails, 2 for bad input, 3 where the machine lacks something, 70 after an
+internal error, 130 when interrupted, 141 where nobody reads what is written.
+"""
 
 import io
 import os
@@ -10,7 +14,8 @@ from typing import Any
 
 import click
 
-from ..failures import HolonomError, HolonomWarning, naming_the_extra
+from ..extras import naming_the_extra
+from ..failures import HolonomError, HolonomWarning
 from ..hidden import visible
 from ..supervisor import supervise
 from .outputs import STANDARD_INPUT, Command

@@ -60,7 +60,7 @@ def maxima_path() -> int:
     the one that MAXIMA_USERDIR names, or .maxima in the home directory; no file of yours there is replaced.
     """
     from ..installation import put_into_maxima, user_directory
-    from .tables.text import make_console
+    from .console import make_console
 
     stub = put_into_maxima(user_directory())
     make_console().print(f"load(holonom) in Maxima loads {stub}", soft_wrap=True)

@@ -49,15 +49,9 @@ def series(
     limits: Limits,
 ) -> int:
     """Expand the initial motion of a SCENE in power series, and say how far they hold."""
-    from ..series.power_series import (
-        AUTOMATIC,
-        EXACT,
-        SeriesRequest,
-        compute_series,
-        series_document,
-        values_at,
-    )
-    from .tables.motion import show_series
+    from ..display.motion import show_series
+    from ..series.compute import compute_series
+    from ..series.power_series import AUTOMATIC, EXACT, SeriesRequest, series_document, values_at
 
     if sum([exact, digits is not None, precision is not None]) > 1:
         raise click.UsageError("--exact, --digits and --precision exclude one another")
@@ -147,6 +141,8 @@ def simulate(
     problem = read_problem(document)
     if not stands(problem):
         problem = motion_problem(source, request, limits, digits)
+    from ..display.motion import distrust, show_report
+    from ..display.progress import motion_progress
     from ..simulation.output import (
         report_document,
         require_disk,
@@ -160,8 +156,6 @@ def simulate(
     from ..simulation.request import FINAL_STATE_ALONE, EngineName, SimulationRequest, Stabilization
     from ..simulation.simulate import follow
     from ..simulation.simulate import simulate as follow_and_keep
-    from .tables.motion import distrust, show_report
-    from .tables.progress import motion_progress
 
     require_formats(output, plot_file)
     if final and output is None and plot_file is None:
@@ -184,7 +178,7 @@ def simulate(
     if json_file is not None:
         publish(json_text(report_document(report) if final else simulation_document(simulation)), json_file)
     if json_file != STANDARD_OUTPUT:
-        from .tables.text import make_console
+        from .console import make_console
 
         show_report(make_console(), problem.scene, problem.title, report)
     for doubt in report.doubts:
@@ -211,11 +205,11 @@ def _import_what_follows(own_process: bool) -> None:
         if own_process:
             _import_heyoka_alone()
 
+        from ..display import motion, progress  # noqa: F401
         from ..simulation import output, simulate  # noqa: F401
         from ..simulation.engines import runge_kutta, taylor  # noqa: F401
         from ..simulation.evaluation import wake_compiler
         from ..simulation.parts_of_scipy import lapack, superlu
-        from .tables import motion, progress  # noqa: F401
 
         wake_compiler()
         lapack()

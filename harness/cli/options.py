@@ -173,7 +173,7 @@ def present(document: Any, json_file: Path | None, show: Callable[..., None], *s
     """Put a document where --json asks for it, and show a result on the console unless the document is there."""
     publish(json_text(document), json_file)
     if json_file != STANDARD_OUTPUT:
-        from .tables.text import make_console
+        from .console import make_console
 
         show(make_console(), *shown)
 

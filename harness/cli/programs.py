@@ -93,9 +93,9 @@ def effects(
     limits: Limits,
 ) -> int:
     """Show which terms and effects a SCENE has and what each costs, in operations and in measured time."""
+    from ..display.measurements import show_costs
     from ..documents import Publication, published
     from ..program.effects import scene_costs
-    from .tables.measurements import show_costs
 
     costs = scene_costs(scene_file, request, limits)
     present(published(Publication.COSTS, asdict(costs)), json_file, show_costs, costs)

@@ -94,13 +94,13 @@ def sweep(
     The rows go into a folder of Parquet files, each with its parameters, what is kept, its residual and its status.
     The same command again computes only what is missing there. The exit status is 1 where no row came about.
     """
+    from ..display.motion import show_sweep
+    from ..display.progress import sweep_progress
     from ..simulation.output import require_formats
     from ..simulation.request import Stabilization
     from ..sweeps.axes import read_axes
     from ..sweeps.kept import read_kept
     from ..sweeps.run import SweepRequest, run_sweep
-    from .tables.motion import show_sweep
-    from .tables.progress import sweep_progress
 
     axes, kept = read_axes(grids, lists, samples, size, seed), read_kept(keep)
     if plot_file is not None:

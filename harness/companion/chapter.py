@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from ..reference.topics import Topic
+from ..reference.topic import Topic
 
 
 @dataclass(frozen=True)

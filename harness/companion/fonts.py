@@ -9,7 +9,7 @@ from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 
-from ..failures import missing_package
+from ..extras import missing_package
 
 PACKAGE, FILE = "ziamath", "fonts/STIXTwoMath-Regular.ttf"
 NAMES = (0, 1, 2, 3, 4, 5, 6, 7, 13, 14)  # of the name table: whose it is, and under which licence

@@ -16,7 +16,7 @@ from ..free_motion import UniversalLaw
 from ..language import ENGLISH, LANGUAGES, gettext, ngettext, spoken, translated
 from ..number_texts import number
 from ..record import Scene
-from ..reference.topics import Topic
+from ..reference.topic import Topic
 from . import TEMPLATES, mathematics
 from .chapter import Chapter
 from .excerpts import Excerpt

@@ -15,7 +15,8 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from ..failures import Failure, HolonomError, missing_package
+from ..extras import missing_package
+from ..failures import Failure, HolonomError
 from .pages import Contents, printed_page
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")

@@ -23,7 +23,8 @@ from ..program.motion_problem import motion_problem
 from ..program.request import Request
 from ..record import Record, derived_record
 from ..sandbox import Limits
-from ..series.power_series import MotionSeries, SeriesRequest, compute_series
+from ..series.compute import compute_series
+from ..series.power_series import MotionSeries, SeriesRequest
 from ..simulation.request import SimulationRequest
 from ..simulation.result import Simulation
 from ..source import Source, describe

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from ..language import translatable
 from ..record import LeftOut
-from ..shown import Show, Shown
+from ..shown import Shown
 
 
 class Verdict(StrEnum):
@@ -87,8 +87,3 @@ class CheckReport(Shown):
     def count(self, *verdicts: Verdict) -> int:
         """Number of equations with one of these verdicts."""
         return sum(found.verdict in verdicts for found in self.verdicts)
-
-    def _table(self) -> Show:
-        from ..cli.tables.derivation import show_verdicts
-
-        return show_verdicts

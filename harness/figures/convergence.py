@@ -22,7 +22,8 @@ from numpy.typing import NDArray
 from ..files import shared
 from ..language import gettext
 from ..sandbox import Limits
-from ..series.power_series import MotionSeries, SeriesRequest, compute_series
+from ..series.compute import compute_series
+from ..series.power_series import MotionSeries, SeriesRequest
 from ..series.radius import ENTIRE, Radius
 from .style import (
     BLUE,

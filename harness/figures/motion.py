@@ -8,12 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..language import gettext, translated
-from ..simulation.result import Simulation
 from .style import BLUE, LINES, PALETTE, VERMILION, figure_style, lettered, new_figure, svg_text, write_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from ..simulation.result import Simulation
 
 
 WIDTH, HEIGHT_OF_PANEL = 9.0, 3.2  # inches
@@ -22,7 +23,7 @@ NOTHING = 1e-9  # size of a curve that is rounding alone
 LEGIBLE = 12  # curves that a legend can still tell apart
 
 
-def draw_motion(simulation: Simulation, file: Path) -> None:
+def draw_motion(simulation: "Simulation", file: Path) -> None:
     """Draw a motion into a file, SVG or PNG.
 
     Raises
@@ -34,7 +35,7 @@ def draw_motion(simulation: Simulation, file: Path) -> None:
         write_figure(motion_figure(simulation), file)
 
 
-def motion_figure(simulation: Simulation) -> "Figure":
+def motion_figure(simulation: "Simulation") -> "Figure":
     """The figure of a motion, a panel for each kind of quantity that it holds.
 
     Raises
@@ -89,7 +90,7 @@ def _draw(axes: "Axes", instants: NDArray[np.float64], curves: Mapping[str, NDAr
 HEIGHT_OF_WAYS = 4.8  # inches
 
 
-def draw_with_and_without(present: Simulation, absent: Simulation, across: str, along: str) -> str:
+def draw_with_and_without(present: "Simulation", absent: "Simulation", across: str, along: str) -> str:
     """Draw the way of a body in the plane of two coordinates, with an effect and without it, as SVG."""
     reach = 1.05 * max(abs(motion.coordinates[name]).max() for motion in (present, absent) for name in (across, along))
     with figure_style():
@@ -103,7 +104,7 @@ def draw_with_and_without(present: Simulation, absent: Simulation, across: str, 
         return svg_text(figure)
 
 
-def _draw_way(axes: "Axes", motion: Simulation, across: str, along: str, colour: str) -> None:
+def _draw_way(axes: "Axes", motion: "Simulation", across: str, along: str, colour: str) -> None:
     x, y = motion.coordinates[across], motion.coordinates[along]
     axes.plot(x, y, color=colour, linewidth=1)
     axes.plot(x[:1], y[:1], "o", color=colour, label=gettext("start"))

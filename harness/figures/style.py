@@ -25,7 +25,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
 
-from ..failures import Failure, HolonomError, missing_package
+from ..extras import missing_package
+from ..failures import Failure, HolonomError
 from ..files import write_whole
 from ..hidden import visible
 from ..language import spoken

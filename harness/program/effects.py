@@ -18,7 +18,7 @@ from ..documents import Document, ask, read
 from ..failures import Failure, HolonomError
 from ..language import translatable
 from ..sandbox import Limits
-from ..shown import Show, Shown
+from ..shown import Shown
 from ..source import Source
 from .c_function import compile_c
 from .motion_program import Program, program_of
@@ -104,11 +104,6 @@ class MeasuredCosts(Shown):
     measured_in: Measure
     terms: tuple[TermCost, ...]
     effects: tuple[EffectCost, ...]
-
-    def _table(self) -> Show:
-        from ..cli.tables.measurements import show_costs
-
-        return show_costs
 
 
 def scene_costs(file: Source | Path, request: Request, limits: Limits) -> MeasuredCosts:

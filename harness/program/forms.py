@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..documents import Document, ask
-from ..failures import naming_the_extra
+from ..extras import naming_the_extra
 from ..files import write_files, write_whole
 from ..sandbox import Limits
 from ..source import Source, source_of

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..failures import Failure, HolonomError, missing_package, require_room
+from ..extras import missing_package, require_room
+from ..failures import Failure, HolonomError
 from .arithmetic import ELEMENTARY, Arithmetic, run_program
 from .motion_program import Constant, Operation, Program
 

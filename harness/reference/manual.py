@@ -6,7 +6,8 @@ from importlib import metadata
 from pathlib import Path
 
 from ..files import write_whole
-from .topics import Code, Table, command_topics
+from .topic import Code, Table
+from .topics import command_topics
 
 
 def manual_page() -> str:

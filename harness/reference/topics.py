@@ -6,13 +6,14 @@ Entries come from `entries.toml`, commands from their options, documents from th
 import inspect
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import click
 
+from ..cli import group
 from ..documents import SCHEMAS
 from .entries import EntryText, PartText, Refusal, function_texts, part_texts, step_texts
+from .topic import Code, Table, Topic
 
 DESCRIPTION, BODIES, STEPS, COMMANDS, DOCUMENTS, PYTHON = (
     "Describing a system",
@@ -27,35 +28,6 @@ COMPLETION = """\
 eval "$(_HOLONOM_COMPLETE=bash_source holonom)"     # in ~/.bashrc
 eval "$(_HOLONOM_COMPLETE=zsh_source holonom)"      # in ~/.zshrc
 _HOLONOM_COMPLETE=fish_source holonom | source      # in ~/.config/fish/config.fish"""
-
-
-@dataclass(frozen=True)
-class Table:
-    """Rows of plain text under headings; the first column names the row."""
-
-    caption: str
-    heading: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-
-
-@dataclass(frozen=True)
-class Code:
-    """Lines to be shown as they are."""
-
-    caption: str
-    text: str
-
-
-@dataclass(frozen=True)
-class Topic:
-    """A page of the reference."""
-
-    # group, slug, title, summary: the slug is unique in the whole reference
-    group: str
-    slug: str
-    title: str
-    summary: str
-    parts: tuple[Table | Code, ...]
 
 
 def topics() -> list[Topic]:
@@ -130,20 +102,17 @@ def _part_topic(group: str, kind: str, part: PartText) -> Topic:
 
 def command_topics() -> Iterator[Topic]:
     """A page for the command line, and one for each command."""
-    from .. import cli
-
-    root = cli.holonom
-    commands = tuple((name, _first_line(command)) for name, command in sorted(root.commands.items()))
+    commands = tuple((name, _first_line(command)) for name, command in sorted(group.holonom.commands.items()))
     overview = (
-        *_usage(root, "holonom", ("COMMAND",)),
+        *_usage(group.holonom, "holonom", ("COMMAND",)),
         Table("Commands", ("command", "what it does"), commands),
         Code("Completion in a shell", COMPLETION),
         Code("The manual page", "man ./build/holonom.1    # made by make"),
     )
-    status = _sentence((cli.__doc__ or "").split("\n\n")[1])
-    summary = f"{_help(root)} {status}"
+    status = _sentence((group.__doc__ or "").split("\n\n")[1])
+    summary = f"{_help(group.holonom)} {status}"
     yield Topic(COMMANDS, "holonom", "holonom", summary, overview)
-    for name, command in sorted(root.commands.items()):
+    for name, command in sorted(group.holonom.commands.items()):
         yield Topic(COMMANDS, f"holonom-{name}", f"holonom {name}", _help(command), _usage(command, f"holonom {name}"))
 
 

@@ -9,18 +9,15 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
-from pathlib import Path
 from typing import Any
 
 import mpmath
 
-from ..documents import Document, Publication, ask, published, read
+from ..documents import Document, Publication, published, read
 from ..failures import Failure, HolonomError
 from ..number_texts import number, numbers
 from ..program.motion_program import Program, program_of
-from ..sandbox import Limits
-from ..shown import Show, Shown
-from ..source import Source
+from ..shown import Shown
 from .radius import POLYNOMIAL, UNPROVED, Radius, described, estimate_radius, truncation_error
 
 EXACT = "exact"
@@ -107,11 +104,6 @@ class MotionSeries(Shown):
         kept = {group: {name: row[: order + 1] for name, row in getattr(self, group).items()} for group in groups}
         return replace(self, order=order, **kept)
 
-    def _table(self) -> Show:
-        from ..cli.tables.motion import show_series
-
-        return show_series
-
     def all_series(self) -> Iterator[tuple[str, NumberTexts]]:
         """Name and coefficients of each series."""
         for group in (self.coordinates, self.multipliers, self.constraint_forces):
@@ -125,23 +117,6 @@ class Values:
     time: Fraction
     values: Mapping[str, mpmath.mpf]
     truncation_error: float
-
-
-def compute_series(file: Source | Path, request: SeriesRequest, limits: Limits) -> MotionSeries:
-    """Expand a scene's motion, in Maxima or, where a precision is asked for, with heyoka.
-
-    Raises
-    ------
-    HolonomError
-        As `holonom.maxima.ask_scene`: among others, the control law is not analytic at t0, or G is singular there. As
-        `holonom.series.heyoka_series.expand_by_heyoka`.
-    """
-    if request.precision is not None:
-        from .heyoka_series import expand_by_heyoka
-
-        return expand_by_heyoka(file, request, limits)
-    asked = (request.scene, request.order, request.digits, request.until)
-    return read_series(ask(Document.MOTION_SERIES, file, *asked, settings=request.settings, limits=limits))
 
 
 def read_series(text: str) -> MotionSeries:

@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 
 from ..documents import Publication, published
 from ..explanations import engine_text, remarks
-from ..failures import Failure, HolonomError, missing_package
+from ..extras import missing_package
+from ..failures import Failure, HolonomError
 from ..files import whole_file
 from ..hidden import visible_line
 from ..program.motion_problem import MotionProblem

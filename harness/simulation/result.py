@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..failures import missing_package
-from ..shown import Show, Shown
+from ..extras import missing_package
+from ..shown import Shown
 from .diagnosis import HardCase
 from .engines.choice import Choice
 from .engines.switching import Leg
@@ -145,11 +145,6 @@ class Simulation(Sampled, Shown):
         if name not in columns:
             raise KeyError(f"no samples of {name!r}; the scene observes {', '.join(columns)}")
         return columns[name]
-
-    def _table(self) -> Show:
-        from ..cli.tables.motion import show_simulation
-
-        return show_simulation
 
     def to_pandas(self) -> "DataFrame":
         """All samples as a pandas DataFrame, a row an instant.

@@ -8,7 +8,7 @@ from itertools import pairwise
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
-from ..failures import missing_package
+from ..extras import missing_package
 
 NAMESPACE = "http://www.w3.org/1998/Math/MathML"
 COLOURS = ("misprint", "correction")

@@ -12,7 +12,8 @@ from holonom.cli import holonom as command_line
 from holonom.documents import SCHEMAS
 from holonom.reference.entries import function_texts, part_texts, step_texts
 from holonom.reference.manual import manual_page
-from holonom.reference.topics import Table, Topic, command_options, topics
+from holonom.reference.topic import Table, Topic
+from holonom.reference.topics import command_options, topics
 
 TOPICS = {topic.slug: topic for topic in topics()}
 

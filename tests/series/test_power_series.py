@@ -13,15 +13,8 @@ from paper_series import START, paper_by_hand
 
 from holonom.failures import HolonomError
 from holonom.sandbox import Limits
-from holonom.series.power_series import (
-    MotionSeries,
-    SeriesRequest,
-    compute_series,
-    number,
-    numbers,
-    read_series,
-    values_at,
-)
+from holonom.series.compute import compute_series
+from holonom.series.power_series import MotionSeries, SeriesRequest, number, numbers, read_series, values_at
 from holonom.series.radius import truncation_error
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -7,7 +7,7 @@ import pytest
 from rich.console import Console
 
 import holonom
-from holonom.cli.tables.motion import show_simulation
+from holonom.display.motion import show_simulation
 from holonom.failures import Failure, HolonomError
 from holonom.simulation.events import Ending
 from holonom.simulation.output import report_document

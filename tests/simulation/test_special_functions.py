@@ -19,8 +19,9 @@ from holonom.program.numpy_function import NumpyFunction
 from holonom.program.precision import read_precision
 from holonom.program.request import Request
 from holonom.sandbox import Limits
+from holonom.series.compute import compute_series
 from holonom.series.heyoka_series import expand
-from holonom.series.power_series import SeriesRequest, compute_series
+from holonom.series.power_series import SeriesRequest
 from holonom.simulation.request import EngineName, SimulationRequest
 from holonom.simulation.simulate import simulate
 

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ...failures import Failure, HolonomError, missing_package
+from ...extras import missing_package
+from ...failures import Failure, HolonomError
 from ...program.c_function import compile_c
 from .measurement import Candidate, Group, Prepared, doubles
 from .operations import acceleration_program

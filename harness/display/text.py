@@ -1,18 +1,16 @@
-"""The console, and how words, numbers and formulas are written on it."""
+"""How words, numbers and formulas are written on a console."""
 
 import io
 from collections.abc import Callable, Iterable
 from typing import Any
 
-import click
 from rich.console import Console, ConsoleOptions, RenderableType
 from rich.segment import Segment
 from rich.text import Text
 
-from ...hidden import visible
-from ...language import translated
+from ..hidden import visible
+from ..language import translated
 
-PIPE_WIDTH = 100_000  # columns where there is no terminal: no table is cut
 CELL_WIDTH = 110  # columns that fit a notebook's cell
 HTML = '<pre style="white-space: pre; overflow-x: auto; line-height: normal">{code}</pre>'
 STYLES = {
@@ -43,15 +41,6 @@ class PlainConsole(Console):
         """Render as any console does, unseen characters by their codes."""
         for segment in super().render(renderable, options):
             yield segment if segment.control else segment._replace(text=visible(segment.text))
-
-
-def make_console() -> Console:
-    """Console on standard output, silent where the command line says --quiet."""
-    ctx = click.get_current_context(silent=True)
-    console = PlainConsole(quiet=ctx is not None and bool(ctx.find_root().params.get("quiet")))
-    if not console.is_terminal:
-        console.width = PIPE_WIDTH
-    return console
 
 
 def html_of(show: Callable[[Console], None]) -> str:

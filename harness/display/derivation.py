@@ -11,17 +11,17 @@ from rich.table import Table
 from rich.terminal_theme import DIMMED_MONOKAI
 from rich.text import Text
 
-from ...hidden import visible_line
-from ...language import gettext, ngettext, translatable, translated
-from ...notation import scene_text
-from ...record import LARGEST_SIZE
+from ..hidden import visible_line
+from ..language import gettext, ngettext, translatable, translated
+from ..notation import scene_text
+from ..record import LARGEST_SIZE
 from .condition import condition_lines
 from .text import PlainConsole, counted, styled
 
 if TYPE_CHECKING:
-    from ...crosscheck.report import CheckReport
-    from ...errata import PrintedEquation
-    from ...record import Equation, LeftOut, Record, Relation
+    from ..crosscheck.report import CheckReport
+    from ..errata import PrintedEquation
+    from ..record import Equation, LeftOut, Record, Relation
 
 HELD_IN_MEMORY = 10**12  # terms of closed forms: some bytes each, and no machine has so many
 
@@ -69,7 +69,7 @@ def show_verdicts(console: Console, report: "CheckReport") -> None:
 
 
 def _sum(report: "CheckReport") -> str:
-    from ...crosscheck.report import Verdict
+    from ..crosscheck.report import Verdict
 
     expected = len(report.verdicts) - report.count(Verdict.LEFT_OUT)
     counts = {

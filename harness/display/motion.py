@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 import mpmath
 
-from ...hidden import visible_line
+from ..hidden import visible_line
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ...series.power_series import Continuation, MotionSeries, Values
-    from ...simulation.engines.choice import Choice
-    from ...sweeps.run import Sweep
+    from ..series.power_series import Continuation, MotionSeries, Values
+    from ..simulation.engines.choice import Choice
+    from ..sweeps.run import Sweep
 
 
 SHOWN_DIGITS = 12  # of numbers that would be longer than the next
@@ -24,7 +24,7 @@ def show_series(console: "Console", motion: "MotionSeries", values: "Values | No
     """Print the power series of a motion, how far they hold, and values asked for."""
     from rich.table import Table
 
-    from ...series.radius import described
+    from ..series.radius import described
 
     table = Table(
         "order", title=f"{visible_line(f'{motion.scene}: {motion.title}')}, about t = {motion.t0}", title_justify="left"
@@ -63,7 +63,7 @@ def _show_continuation(console: "Console", continuation: "Continuation") -> None
 
 def short_number(text: str) -> str:
     """A number in ``p/q`` or decimal notation: as it is where it is exact and short, else rounded."""
-    from ...number_texts import number
+    from ..number_texts import number
 
     return text if len(text) <= SHOWN_TEXT and "." not in text else _rounded(number(text))
 
@@ -77,9 +77,9 @@ LISTED = 3  # instants that are told one by one
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ...simulation.piecewise import Switching
-    from ...simulation.result import Report, Simulation
-    from ...simulation.trust import Doubt
+    from ..simulation.piecewise import Switching
+    from ..simulation.result import Report, Simulation
+    from ..simulation.trust import Doubt
 
 
 def show_simulation(console: "Console", simulation: "Simulation") -> None:
@@ -91,7 +91,7 @@ def show_report(console: "Console", scene: str, title: str, report: "Report") ->
     """Print the end of a scene's motion, and the report."""
     from rich.table import Table
 
-    from ...simulation.output import report_document
+    from ..simulation.output import report_document
 
     document = report_document(report)
     console.print(f"{visible_line(f'{scene}: {title}')}, at t = {document['t']}", soft_wrap=True)
@@ -106,7 +106,7 @@ def show_report(console: "Console", scene: str, title: str, report: "Report") ->
 
 
 def _quality(report: "Report") -> Iterator[str]:
-    from ...explanations import engine_text, remarks
+    from ..explanations import engine_text, remarks
 
     if report.correction is not None:
         name, size = report.correction

@@ -5,12 +5,12 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from ...notation import scene_text
-from ...trees import Tree
+from ..notation import scene_text
+from ..trees import Tree
 
 if TYPE_CHECKING:
-    from ...described import System
-    from ...description import DescribedScene, Description
+    from ..described import System
+    from ..description import DescribedScene, Description
 
 
 def show_description(console: Console, description: "Description") -> None:

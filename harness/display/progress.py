@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from ...hidden import visible_line
+from ..hidden import visible_line
 
 if TYPE_CHECKING:
     from rich.progress import Progress

@@ -8,13 +8,13 @@ from rich.text import Text
 from sympy import Expr, Function
 from sympy.printing.str import StrPrinter
 
-from ... import notation
-from ...mathjson import CONSTANT_NAMES, HEADS
+from .. import notation
+from ..mathjson import CONSTANT_NAMES, HEADS
 from .condition import condition_lines
 from .motion import short_number
 
 if TYPE_CHECKING:
-    from ...free_motion import FreeMotion, Law, MotionVerdict, OpenAccelerations, UniversalControls, UniversalLaw
+    from ..free_motion import FreeMotion, Law, MotionVerdict, OpenAccelerations, UniversalControls, UniversalLaw
 
 
 def show_free_motion(console: Console, found: "FreeMotion") -> None:

@@ -4,8 +4,8 @@ import re
 from collections.abc import Callable, Iterator
 from functools import partial
 
-from ...notation import scene_text
-from ...trees import Tree, converted
+from ..notation import scene_text
+from ..trees import Tree, converted
 
 LARGEST_CONDITION = 60
 """Names, numbers and operations of a condition that is printed as one formula; Maxima has its largest_condition."""

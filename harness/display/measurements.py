@@ -7,15 +7,15 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from ...benchmark.work_precision.measurement import Group
-from ...hidden import visible_line
+from ..benchmark.work_precision.measurement import Group
+from ..hidden import visible_line
 from .text import counted, styled
 
 if TYPE_CHECKING:
-    from ...benchmark.hard_cases.case import CaseReport
-    from ...benchmark.work_precision.advice import Advice, Price
-    from ...benchmark.work_precision.study import Study
-    from ...program.effects import MeasuredCosts
+    from ..benchmark.hard_cases.case import CaseReport
+    from ..benchmark.work_precision.advice import Advice, Price
+    from ..benchmark.work_precision.study import Study
+    from ..program.effects import MeasuredCosts
 
 
 NANOSECONDS = 1e9  # in a second
@@ -114,7 +114,7 @@ def _price(price: "Price") -> str:
 
 def show_stability(console: Console, reports: Sequence["CaseReport"]) -> None:
     """Print what each method keeps of each hard case, with the advice."""
-    from ...explanations import advice
+    from ..explanations import advice
 
     table = Table("case", "method", "quantity", "digits", "outcome")
     table.title, table.title_justify = "Digits kept in hard cases", "left"

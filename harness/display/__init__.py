@@ -1,0 +1,39 @@
+"""Tables: of results on the console, in notebooks and at the Python prompt."""
+
+from typing import TYPE_CHECKING
+
+from ..shown import Shown
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+
+def show(console: "Console", result: Shown) -> None:
+    """Print the table of a result."""
+    match type(result).__name__:
+        case "CheckReport":
+            from .derivation import show_verdicts as table
+        case "FreeMotion":
+            from .free_motion import show_free_motion as table
+        case "MeasuredCosts":
+            from .measurements import show_costs as table
+        case "MotionSeries":
+            from .motion import show_series as table
+        case "Simulation":
+            from .motion import show_simulation as table
+    table(console, result)
+
+
+def _as_text(result: Shown) -> str:
+    from .text import text_of
+
+    return text_of(lambda console: show(console, result))
+
+
+def _as_html(result: Shown) -> str:
+    from .text import html_of
+
+    return html_of(lambda console: show(console, result))
+
+
+Shown.as_text, Shown.as_html = _as_text, _as_html
