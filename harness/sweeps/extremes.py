@@ -2,24 +2,27 @@
 
 A Taylor step ends well inside the circle of convergence of the state, so the polynomial of a step falls off like a
 geometric series, if what is made of the state does not change much faster: its coefficients bound it and its slope, few
-steps can hold the largest value, and a few samples tell the shape of it in one. Polynomials are evaluated by functions
-that heyoka compiles, many at a time.
+steps can hold the largest value, and a few samples tell the shape of it in one. Steps that can hold a zero are halved
+until the bounds tell. Polynomials are evaluated by functions that heyoka compiles, many at a time.
 
 Every operation is done element by element: what comes out for a motion does not hang on the others beside it.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .polynomials import peak_of, root_of, sizes_of, values_at
+from ..simulation.events import ZERO
+from .polynomials import half_of, peak_of, root_of, sizes_of, values_at
 
 SAMPLES = 17  # of a step
 LAST, RESOLVED = 2, 1e-6  # coefficients of a step, and what they are of the largest where the polynomial is near
 MARGIN = 1e-9  # of the sizes of the coefficients: rounding of the bound, generously
+ROUNDING = 1e-13  # of the largest value that may be: no sign
+HALVINGS = 60  # of a step; below that numbers are too coarse to tell its parts apart
 
 Floats = NDArray[np.float64]
 
@@ -70,25 +73,75 @@ def largest_size(steps: Steps) -> Floats:
 def first_zero(steps: Steps) -> Floats:
     """The first instant at which the quantity changes its sign, for each lane; nan where it does not.
 
+    Zeros that are close together count, but for rounding. What begins at zero, but for rounding, has no sign there.
+
     Returns
     -------
     ndarray, shape (lanes,)
     """
-    polynomials, places = steps.coefficients, _places(steps.least)
-    reach, _ = _bounds(polynomials)
-    first, last = np.sign(polynomials[0]), np.sign(polynomials[0])
-    change = np.full(first.shape, -1)
-    step, lane = np.nonzero(np.abs(polynomials[0]) <= reach)
-    signs = np.sign(_values(polynomials[:, step, lane], places))
-    first[step, lane], last[step, lane], change[step, lane] = _changes(signs)
-    between = _sign_before(first, last) * first < 0
-    crossed = between | (change >= 0)
-    lanes, found = np.flatnonzero(crossed.any(axis=0)), np.full(first.shape[1], np.nan)
-    where = np.argmax(crossed, axis=0)[lanes], lanes
-    ends = np.array(places)[[change[where], change[where] + 1]]
-    (root,) = root_of(len(polynomials))(np.concatenate([polynomials[:, *where], ends]))
-    found[lanes] = steps.middle[where] + np.where(between[where], steps.least, root) * steps.length[where]
+    sizes = np.abs(steps.coefficients[0]) + _bounds(steps.coefficients)[0]
+    rounding = ROUNDING * np.max(sizes, axis=0)
+    parts = _without_turns(steps, rounding)
+    begun = np.searchsorted(parts.lane, np.arange(len(rounding)))  # the first part of each lane
+    small = np.repeat(rounding[parts.lane, None], 2, axis=1)
+    small[begun, 0] = np.maximum(small[begun, 0], ZERO * sizes[0])
+    values = _values(parts.coefficients, (-1.0, 1.0)).T
+    signs = np.where(np.abs(values) > small, np.sign(values), 0.0).ravel()
+    latest = np.maximum.accumulate(np.where(signs != 0, np.arange(len(signs)), -1))
+    before = np.concatenate([[-1], latest[:-1]])
+    crossed = np.flatnonzero((before >= 2 * begun[parts.lane].repeat(2)) & (signs * signs[before] < 0))
+    lanes, first = np.unique(parts.lane[crossed // 2], return_index=True)
+    crossing, inside = parts.of(crossed[first] // 2), signs[crossed[first] - 1] * (crossed[first] % 2) != 0
+    ends = np.repeat([[-1.0], [1.0]], len(lanes), axis=1)
+    (root,) = root_of(len(steps.coefficients))(np.concatenate([crossing.coefficients, ends]))
+    found, at = np.full(len(rounding), np.nan), (crossing.step, lanes)
+    place = crossing.middle + np.where(inside, root, -1.0) * crossing.half
+    found[lanes] = steps.middle[at] + place * steps.length[at]
     return found
+
+
+class _Parts(NamedTuple):
+    """Parts of steps, each with a polynomial of its own in x from -1 to 1."""
+
+    coefficients: Floats  # shape (powers, m)
+    # of which step and lane, and where in it, shape (m,)
+    step: NDArray[np.int64]
+    lane: NDArray[np.int64]
+    middle: Floats
+    half: Floats
+
+    def of(self, places: Any) -> "_Parts":
+        """Some of the parts."""
+        return _Parts(*(each[..., places] for each in self))
+
+    def half_of(self, side: float) -> "_Parts":
+        """The lower half of each part, or the upper one: side -1 or 1."""
+        halved = half_of(len(self.coefficients), side)(self.coefficients)
+        return self._replace(coefficients=halved, middle=self.middle + side / 2 * self.half, half=self.half / 2)
+
+
+def _without_turns(steps: Steps, rounding: Floats) -> _Parts:
+    """Parts in which a quantity has one sign, rises or falls all over, or is no more than rounding, lane by lane."""
+    powers, *shape = steps.coefficients.shape
+    step, lane = np.indices(shape).reshape(2, -1)
+    waiting = _Parts(steps.coefficients.reshape(powers, -1), step, lane, np.zeros(step.shape), np.ones(step.shape))
+    if steps.least == 0:
+        waiting = waiting.half_of(1.0)
+    found = []
+    for _ in range(HALVINGS):
+        reach, turns = _bounds(waiting.coefficients)
+        size = np.abs(waiting.coefficients[0])
+        open_ = turns & (size <= reach) & (size + reach > rounding[waiting.lane])
+        found.append(waiting.of(~open_))
+        if not open_.any():
+            break
+        waiting = _joined([waiting.of(open_).half_of(side) for side in (-1.0, 1.0)])
+    parts = _joined(found)
+    return parts.of(np.lexsort((parts.middle, parts.step, parts.lane)))
+
+
+def _joined(parts: Sequence[_Parts]) -> _Parts:
+    return _Parts(*(np.concatenate(each, axis=-1) for each in zip(*parts, strict=True)))
 
 
 def _largest(steps: Steps, size: Callable[[Floats], Floats]) -> Floats:
@@ -125,19 +178,3 @@ def _bounds(polynomials: Floats) -> tuple[Floats, NDArray[np.bool_]]:
     reach, bend = sizes_of(powers)(polynomials.reshape(powers, -1)).reshape(2, *shape)
     sizes = np.abs(polynomials[:2])
     return reach + MARGIN * (reach + sizes[0]), sizes[1] <= bend + MARGIN * (bend + sizes[1])
-
-
-def _changes(signs: Floats) -> tuple[Floats, Floats, NDArray[np.int64]]:
-    """First and last sign that is not zero, and the sample before the first change; -1 where there is none."""
-    first, last, change = signs[0].copy(), signs[0].copy(), np.full(signs.shape[1], -1)
-    for place, sign in enumerate(signs[1:]):
-        change = np.where((change < 0) & (last * sign < 0), place, change)
-        first, last = np.where(first == 0, sign, first), np.where(sign != 0, sign, last)
-    return first, last, change
-
-
-def _sign_before(first: Floats, last: Floats) -> Floats:
-    """The last sign before each step that is not zero; in the first step its own, shape (steps, lanes)."""
-    latest = np.maximum.accumulate(np.where(last != 0, np.arange(len(last))[:, None], -1), axis=0)
-    after = np.where(latest >= 0, np.take_along_axis(last, np.maximum(latest, 0), axis=0), first[0])
-    return np.concatenate([first[:1], after[:-1]])

@@ -30,6 +30,17 @@ def sizes_of(powers: int) -> Evaluation:
     return _compiled([import_heyoka().sum([_number(0.0), *map(_size, part)]) for part in parts], polynomial)
 
 
+@lru_cache(2 * DIFFERENT)
+def half_of(powers: int, side: float) -> Evaluation:
+    """Compile the coefficients of p((x + side)/2), those of the lower or the upper half of |x| <= 1: side -1 or 1."""
+    polynomial = _coefficients(powers)
+    halved = [_number(0.5**power) * coefficient for power, coefficient in enumerate(polynomial)]
+    for done in range(powers - 1):
+        for power in reversed(range(done, powers - 1)):
+            halved[power] = halved[power] + _number(side) * halved[power + 1]
+    return _compiled(halved, polynomial)
+
+
 @lru_cache(DIFFERENT)
 def peak_of(powers: int) -> Evaluation:
     """Compile the largest value that Newton's method sees from a place on, between two others: the last three rows."""

@@ -61,3 +61,21 @@ def test_what_comes_out_for_a_lane_does_not_hang_on_the_others(steps):
         whole = function(steps)
         for lanes in (slice(3, 4), slice(10, 27)):
             assert np.array_equal(function(steps.of(lanes)), whole[lanes], equal_nan=True)
+
+
+@pytest.mark.parametrize("least", [0.0, -1.0])
+@pytest.mark.parametrize("apart", [1e-1, 1e-3, 1e-5])
+def test_two_zeros_between_two_samples_are_crossings_however_close(least, apart):
+    """Truth: (x - a)^2 - (apart/2)^2, by its roots, beside one that only touches zero and one that stays above."""
+    places = least + (1 - least) * (np.arange(40) + 0.37) / 40
+    squares = np.array([places**2, -2 * places, np.ones(40)])[:, None, :]
+    first = np.where(places - apart / 2 < least, places + apart / 2, places - apart / 2)
+    for gap, truth in ((-((apart / 2) ** 2), first), (0.0, np.full(40, np.nan)), (1e-9, np.full(40, np.nan))):
+        steps = Steps(squares + np.array([gap, 0, 0])[:, None, None], np.zeros((1, 40)), np.ones((1, 40)), least)
+        assert first_zero(steps) == pytest.approx(truth, abs=1e-9, nan_ok=True)
+
+
+def test_rounding_at_the_start_is_no_sign():
+    ball = np.array([[[1e-17, 0.0, -1e-17]], [[-100.0] * 3], [[1e4] * 3]])  # down, and up again after 1/100 of the step
+    steps = Steps(ball, np.zeros((1, 3)), np.ones((1, 3)), 0.0)
+    assert first_zero(steps) == pytest.approx([0.01] * 3, rel=1e-12)

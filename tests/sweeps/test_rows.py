@@ -90,6 +90,18 @@ def test_what_turns_within_one_step_ended_rows_late_and_had_another_largest_valu
         assert found == pytest.approx(np.max(np.cos(100 * t + 1 / 3) + (5 * t - g * t**2 / 2) / 100), abs=1e-8)
 
 
+@pytest.mark.parametrize("start", ["0", "1/10 + 1/5 - 3/10 + 1/10^17"])
+def test_what_was_thrown_lands_long_before_the_end_of_its_step(rows_of, scenes, start):
+    """The batch saw 17 samples of a step, which is all of the motion, and a sign in the rounding of the start."""
+    file = scenes / "landing.mac"
+    file.write_text(
+        THROWN.replace("z = 0, x = 5/2", "z = 0").replace("[0, 3]", "[0, 1000]").replace("z = 0, d", f"z = {start}, d")
+    )
+    found = columns(rows_of(file, "t", "g=5:10:2").table(0, 2))
+    assert found["t"] == pytest.approx(10 / found["g"], rel=1e-12)
+    assert (found["status"] == Status.OK).all()
+
+
 def test_an_end_beyond_a_kink_was_never_met(rows_of, scenes):
     """abs(x - 1) + x is 1 up to x = 1, and 3/2 at x = 5/4."""
     found = columns(rows_of(scenes / "beyond_a_kink.mac", "final", "g=9:10:2").table(0, 2))
