@@ -4,10 +4,11 @@ import json
 import math
 from fractions import Fraction
 
+import numpy as np
 import pytest
 
 from holonom.program.motion_program import Call, Name, Operation, Program, Solve
-from holonom.simulation.trust import doubts, may_hide
+from holonom.simulation.trust import doubts, expected, may_hide, trusted
 
 KEPT = {"position": 1e-16, "velocity": 1e-15, "energy": 1e-13}
 
@@ -24,9 +25,11 @@ def test_a_position_residual_of_0_04_and_an_energy_error_of_13_were_passed_over(
 
 @pytest.mark.parametrize(("tol", "steps"), [(1e-15, 1), (1e-30, 1), (1e-30, 0), (1e-14, 10), (1e-12, 1000)])
 def test_errors_may_grow_with_tolerance_and_steps_and_rounding_is_no_error(tol, steps):
-    allowed = 1e4 * max(tol, 1e-15) * max(1, steps)
-    assert not list(doubts({"energy": 0.9 * allowed}, tol, steps))
-    assert list(doubts({"energy": 1.1 * allowed}, tol, steps)) == [("energy", 1.1 * allowed, pytest.approx(allowed))]
+    allowed = float(expected(tol, steps))
+    assert allowed == pytest.approx(1e4 * max(tol, 1e-15) * max(1, steps))
+    for value, doubted in ((0.0, False), (allowed, False), (np.nextafter(allowed, 1), True), (math.inf, True)):
+        assert list(doubts({"energy": value}, tol, steps)) == [("energy", value, allowed)] * doubted
+        assert trusted({"energy": np.array([value])}, tol, np.array([steps])).tolist() == [not doubted]
 
 
 def test_what_is_no_number_is_no_result():

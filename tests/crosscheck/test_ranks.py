@@ -1,0 +1,42 @@
+"""Elimination of sparse rows, against matrices whose ranks and solutions are known."""
+
+import random
+
+import pytest
+from mpmath import mp
+
+from holonom.crosscheck.ranks import Elimination, least_solution
+
+
+@pytest.fixture(autouse=True)
+def fifty_digits():
+    with mp.workdps(50):
+        yield
+
+
+def as_rows(matrix):
+    return [{k: mp.mpf(value) for k, value in enumerate(row) if value} for row in matrix]
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_rank_of_a_product_of_random_factors(seed):
+    draw = random.Random(seed)
+    left, right = ([[draw.randint(-9, 9) for _ in range(n)] for _ in range(m)] for m, n in ((7, 3), (3, 8)))
+    product = [[sum(a * right[k][j] for k, a in enumerate(row)) for j in range(8)] for row in left]
+    assert Elimination(as_rows(product)).rank == 3
+
+
+def test_a_small_entry_is_no_pivot_however_sparse_its_column():
+    """As a pivot 1e-25 would cost 25 of 50 digits."""
+    matrix, right = [["1e-25", 1, 1], [0, 1, 2], [1, 0, 3]], (1, 2, 5)
+    solution = Elimination(as_rows(matrix), [mp.mpf(each) for each in right]).solution()
+    for row, side in zip(matrix, right, strict=True):
+        assert abs(mp.fsum(mp.mpf(a) * solution[k] for k, a in enumerate(row)) - side) < mp.mpf(10) ** -45
+
+
+def test_least_solution_is_the_projection_of_any_other():
+    rows = as_rows([[1, 2, 0, 1], [0, 1, 1, -1]])
+    least = least_solution(rows, [mp.mpf(3), mp.mpf(1)])
+    assert [mp.fsum(a * least[k] for k, a in row.items()) for row in rows] == pytest.approx([3, 1], abs=1e-45)
+    for null in ([-2, 1, -1, 0], [3, -1, 0, -1]):  # perpendicular to what the equations leave open
+        assert abs(mp.fsum(a * least[k] for k, a in enumerate(null))) < mp.mpf(10) ** -45
