@@ -1,19 +1,24 @@
 """What can go wrong, each way with its sentence and its remedy."""
 
-import re
-from collections.abc import Collection
+from collections.abc import Callable, Collection, Iterable, Iterator
 from enum import Enum
 from pathlib import Path
+from string import Formatter
 from typing import Any
 
 from .hidden import visible
 
-OPTION = re.compile(r"--[a-z-]+")
 LIMITS = frozenset({"--time-limit", "--memory-limit", "--sandbox"})  # options that are one argument in Python
 
 
 class Failure(Enum):
-    """A way to fail: the sentence that names it, in which {detail} and other facts stand for the case; the remedy."""
+    """A way to fail: the sentence that names it, and its remedies. {detail} and other names stand for the case's own.
+
+    A remedy that takes an option of the command line has its name in braces, such as {--until}.
+    """
+
+    def __init__(self, said: str, *remedies: str) -> None:
+        self.said, self.remedies = said, remedies
 
     FILE_MISSING = ("there is no such file{detail}", "give the path of a scene, for instance examples/paper/paper.mac")
     FILE_UNREADABLE = ("the file cannot be read: {detail}", "give the path of a readable Maxima file")
@@ -24,43 +29,49 @@ class Failure(Enum):
     NOT_UTF8 = ("the file is not UTF-8 text: byte {detail}", "save it as UTF-8")
     NOT_MAXIMA = (
         "this does not run as Maxima: {detail}",
-        "put a Maxima that works first in PATH, free space for temporary files, or lift a limit on memory",
+        "put a Maxima that works first in PATH, free space for temporary files",
+        "lift a limit on memory",
     )
     TORN = ("what Maxima left behind is not whole: its {detail}", "free space for temporary files, and run it again")
     KILLED = ("Maxima was ended by {detail}", "see what ends it, perhaps a lack of memory, and run it again")
     NO_PRIVATE_DIRECTORY = (
         "no directory for temporary files can be made: {detail}",
-        "name one that can be written in the variable TMPDIR, or free space",
+        "name one that can be written in the variable TMPDIR",
+        "free space",
     )
     NO_SANDBOX = (
         "bubblewrap is missing or forbidden here",
-        "install the package `bubblewrap`, or allow it to make user namespaces, or run the scene without --sandbox",
+        "install the package `bubblewrap`",
+        "allow it to make user namespaces",
+        "run the scene without {--sandbox}",
     )
     SANDBOX_FAILED = (
         "the sandbox failed: {detail}",
-        "run it again when the machine is less busy or has more processes and descriptors, or run it with --trust",
+        "run it again when the machine is less busy or has more processes and descriptors",
+        "run it with {--trust}",
     )
     MAXIMA_MISSING = (
         "Maxima is not installed",
-        "run `make`, or install the package `maxima` of your distribution",
+        "run `make`",
+        "install the package `maxima` of your distribution",
     )
-    REFUSED = ("{detail}", "")
+    REFUSED = "{detail}"
     QUESTION = (
         "Maxima asks what nobody is there to answer: {detail}",
         "answer it in the file, for instance by assume(...)",
     )
-    SYNTAX = ("Maxima cannot read this: {detail}", "")
-    LISP_ERROR = ("Maxima broke off with a Lisp error: {detail}", "")
+    SYNTAX = "Maxima cannot read this: {detail}"
+    LISP_ERROR = "Maxima broke off with a Lisp error: {detail}"
     ENDED_EARLY = ("Maxima ended before the file did", "remove what ends it, for instance quit()")
     NOTHING_WRITTEN = (
         "the file describes no system",
         "load holonom.mac and assign a holonomic_system(...)",
     )
-    TOO_LONG = ("Maxima took longer than {detail}", "ask for less, or raise --time-limit")
-    TOO_LARGE = ("Maxima took more memory than {detail}", "ask for less, or raise --memory-limit")
+    TOO_LONG = ("Maxima took longer than {detail}", "ask for less", "raise {--time-limit}")
+    TOO_LARGE = ("Maxima took more memory than {detail}", "ask for less", "raise {--memory-limit}")
     TOO_MANY_PROCESSES = ("the scene started more than {detail} processes", "start fewer")
     TOO_MUCH_TEXT = ("Maxima printed more than {detail}", "print less")
-    FILE_TOO_LARGE = ("the file is larger than {detail}", "describe less, or read data from tables")
+    FILE_TOO_LARGE = ("the file is larger than {detail}", "describe less", "read data from tables")
     NAME_TOO_LONG = ("the name {detail}... has more than 200 letters", "give it a shorter one")
     TOO_MANY_SCENES = ("the file describes {detail} scenes, and 1000 are the most", "put them into several files")
     DESCRIPTION_TOO_LARGE = ("the description is longer than {detail}", "describe less")
@@ -70,45 +81,49 @@ class Failure(Enum):
     )
     NOT_SETTABLE = (
         "{detail} is no parameter of this description",
-        "set what else the scene file leaves open where the file is described: holonom describe --set",
+        "set what else the scene file leaves open where it is described, with `holonom describe`",
     )
     NOT_A_DOCUMENT = ("this is no document {detail}", "write it anew with this version of holonom")
     NOT_A_RECORD = ("this is not a derivation record: {detail}", "derive it anew with `holonom derive`")
-    NOT_AN_EXPRESSION = ("{detail} is not an expression that a derivation record can hold", "")
+    NOT_AN_EXPRESSION = "{detail} is not an expression that a derivation record can hold"
     UNWRITABLE = ("the output cannot be written: {detail}", "give a file in a directory that can be written")
     DISK_FULL = ("the output cannot be written: {detail}", "free space, and run it again")
     COMPILER_UNUSABLE = ("the C compiler cannot be run: {detail}", "name one that works in the variable CC")
     OUTPUT_TAKEN = ("this output would take the place of {detail}", "give it a name of its own")
     FOREIGN_FILE = (
         "there is a file of that name, which is not replaced unasked",
-        "give another name, or say --force to replace it",
+        "give another name",
+        "replace it with {--force}",
     )
     FOREIGN_IN_MAXIMA = (
         "Maxima's user directory has a file that Holonom did not put there: {detail}",
-        "move it away, or name another directory in the variable MAXIMA_USERDIR",
+        "move it away",
+        "name another directory in the variable MAXIMA_USERDIR",
     )
     NOT_A_COMPANION = (
         "the directory holds other things than a companion",
-        "give the name of a new directory, or of one that `holonom companion` made",
+        "give the name of a new directory",
+        "name one that `holonom companion` made",
     )
     DEFINITION_MISSING = ("the file does not define {detail}", "the companion shows how each step is derived there")
     NOT_A_SETTING = ("{detail} sets nothing", "write NAME=VALUE with a number, for instance N=64 or u0=3/10")
     NOT_A_PARAMETER = ("{detail} cannot be the name of a parameter", "give names with commas between them, such as m,g")
     NOT_A_FILE = ("this form is no text for the terminal", "say where it goes: -o DIR for C, -o FILE.fmu for FMI")
-    NOT_A_CHOICE = ("there is no {detail}", "")
+    NOT_A_CHOICE = "there is no {detail}"
     NOT_AN_INSTANT = ("{detail} is no instant", "write a number such as 0.75 or 3/4")
-    TOO_FEW_SAMPLES = ("a motion has two samples or more, not {detail}", "")
-    NO_SUCH_SCENE = ("there is no scene {detail}", "")
-    TOO_MANY_SAMPLES = ("{detail}", "ask for fewer, for a file in CSV or Parquet alone, or raise --memory-limit")
-    DISK_TOO_SMALL = ("{detail}", "ask for fewer, or write to another disk")
+    TOO_FEW_SAMPLES = "a motion has two samples or more, not {detail}"
+    NO_SUCH_SCENE = "there is no scene {detail}"
+    TOO_MANY_SAMPLES = ("{detail}", "ask for fewer, for a file in CSV or Parquet alone", "raise {--memory-limit}")
+    DISK_TOO_SMALL = ("{detail}", "ask for fewer", "write to another disk")
     TIME_TOO_SHORT = (
         "{detail}",
-        "ask for fewer digits, a lower order or an earlier end, or allow it the time with --time-limit",
+        "ask for fewer digits, a lower order or an earlier end",
+        "allow it the time with {--time-limit}",
     )
-    TOO_MANY_STEPS = ("{detail}", "ask for an earlier end with --until, or for longer steps")
-    NOT_A_STEP = ("{detail} is no length of a step", "give a number greater than 0 with --max-step")
+    TOO_MANY_STEPS = ("{detail}", "ask for an earlier end with {--until}", "take longer steps")
+    NOT_A_STEP = ("{detail} is no length of a step", "give a number greater than 0 with {--max-step}")
     MEMORY_TOO_SMALL = ("{detail}", "ask for fewer digits or a lower order")
-    SETTING_TOO_LARGE = ("{detail} is beyond what a double holds", "set a smaller number, or one less close to zero")
+    SETTING_TOO_LARGE = ("{detail} is beyond what a double holds", "set a smaller number", "set one less close to zero")
     NUMBER_TOO_LARGE = (
         "a number of the motion is larger than a double can be",
         "describe the system in units in which its numbers are smaller",
@@ -119,50 +134,48 @@ class Failure(Enum):
     INPUT_MISSING = ("nothing is given for {detail}", "give the controls a law and the parameters their values")
     COMPILER_MISSING = (
         "no C compiler is installed",
-        "install one, for instance the package `gcc` of your distribution, or name one in the variable CC",
+        "install one, for instance the package `gcc` of your distribution",
+        "name one in the variable CC",
     )
     BROWSER_MISSING = (
         "no browser is installed that prints",
         "install one, for instance the package `chromium` of your distribution",
     )
-    NOT_PRINTED = ("the browser did not print the book: {detail}", "")
-    COMPILER_REFUSED = ("the C compiler refused the motion program: {detail}", "")
-    EXTRA_MISSING = ("this needs {detail}", "")
-    BEYOND_RADIUS = ("{detail}", "ask for an earlier time, or continue the motion with --until")
-    ORDER_TOO_HIGH = ("{detail}", "ask for a lower order, or for digits")
-    NOT_A_PRECISION = ("{detail}", "take another one, or ask for --digits, which Maxima computes with")
+    NOT_PRINTED = "the browser did not print the book: {detail}"
+    COMPILER_REFUSED = "the C compiler refused the motion program: {detail}"
+    EXTRA_MISSING = "this needs {detail}"
+    BEYOND_RADIUS = ("{detail}", "ask for an earlier time", "continue the motion with {--until}")
+    ORDER_TOO_HIGH = ("{detail}", "ask for a lower order", "ask for digits")
+    NOT_A_PRECISION = ("{detail}", "take another one", "ask for {--digits}, which Maxima computes with")
     NO_CONTINUATION = ("{detail}", "ask for an earlier instant")
     NO_SUCH_FORMAT = ("no such file can be written", "give a name that ends in one of {detail}")
-    START_UNFOLLOWED = (
-        "the start does not follow these parameters: {detail}",
-        "",
-    )
-    NOTHING_VARIES = ("no parameter varies", "name one with --grid, --list or --sample")
+    START_UNFOLLOWED = "the start does not follow these parameters: {detail}"
+    NOTHING_VARIES = ("no parameter varies", "name one with {--grid}, {--list} or {--sample}")
     NOT_AN_AXIS = (
         "{detail}",
-        "write for instance --grid m=50:500:1000, --list m=1,2,5 or --sample 'm=normal(100,5)' --size 1000",
+        "write for instance {--grid} m=50:500:1000, {--list} m=1,2,5 or {--sample} 'm=normal(100,5)' {--size} 1000",
     )
     NOT_KEPT = ("{detail}", "keep for instance final, x, at(x,2), max(abs(lambda1)), zero(y), radius, free")
-    NOT_PLOTTED = ("this cannot be drawn: {detail}", "")
+    NOT_PLOTTED = "this cannot be drawn: {detail}"
     OTHER_SWEEP = ("the folder holds another sweep: {detail}", "give another folder")
     FOREIGN_FOLDER = ("the folder holds other things than a sweep", "give the name of a new folder")
     FOLDER_TAKEN = ("another command is at work in this folder", "wait until it ends")
-    NOTHING_TO_RESUME = ("there is no sweep to resume", "leave --resume out to begin one")
+    NOTHING_TO_RESUME = ("there is no sweep to resume", "leave {--resume} out to begin one")
     WORKERS_LOST = ("the workers are gone: {detail}", "run the same command again; what is finished stays")
     NOT_A_SCHEDULER = (
         "{detail} is no address of a Dask scheduler",
-        "write for instance --dask tcp://127.0.0.1:8786",
+        "write for instance {--dask} tcp://127.0.0.1:8786",
     )
     WORKER_ENDED = (
         "a process that computes was ended",
         "see what ends it, perhaps a lack of memory, and run the same command again",
     )
-    NO_END = ("the scene has no time span", "give it one, or the last instant with --until")
+    NO_END = ("the scene has no time span", "give it one", "the last instant with {--until}")
     NO_COMMON_END = (
         "the scene ends where an expression of its until vanishes, and methods are compared at one instant",
-        "say which with --until",
+        "say which with {--until}",
     )
-    NOT_AFTER_START = ("the last instant is not after the start: {detail}", "give a later one with --until")
+    NOT_AFTER_START = ("the last instant is not after the start: {detail}", "give a later one with {--until}")
     NO_EVENT_VALUE = (
         "an expression in 'until' has no real, finite value: {detail}",
         "give one that has values along the whole motion",
@@ -173,35 +186,42 @@ class Failure(Enum):
     )
     LAW_ENDS = (
         "the drives end at t = {detail}, with a table or, of special functions, with the scene's time span",
-        "let the motion end there or before, with --until, or give a longer table or time span",
+        "let the motion end there or before, with {--until}",
+        "give a longer table or time span",
     )
     SPECIAL_EXPANDED = (
         "{detail} is a special function, which programs hold as a polynomial with other derivatives of high order",
-        "take `holonom series` without --precision: Maxima expands it to any digits",
+        "take `holonom series` without {--precision}: Maxima expands it to any digits",
     )
     GSL_MISSING = (
         "the Runge-Kutta engine needs the GNU Scientific Library with its headers",
         "install it, for instance the package `libgsl-dev` of your distribution",
     )
-    NO_PIVOTS = ("the motion program cannot be solved: {detail}", "take --engine auto or robust")
+    NO_PIVOTS = ("the motion program cannot be solved: {detail}", "take {--engine} auto or robust")
     RUNGE_KUTTA_IS_DOUBLE = (
         "the Runge-Kutta engine computes in double precision, not {detail}",
-        "take --engine auto or taylor for more digits",
+        "take {--engine} auto or taylor for more digits",
     )
     ROBUST_IS_DOUBLE = (
         "this takes the robust engine, which computes in double precision: {detail}",
-        "leave --precision out, or make the constraints independent",
+        "leave {--precision} out",
+        "make the constraints independent",
     )
-    TOLERANCE_UNHELD = ("{detail}", "ask for another tolerance, or the Taylor engine for more digits with --precision")
+    TOLERANCE_UNHELD = (
+        "{detail}",
+        "ask for another tolerance",
+        "take the Taylor engine for more digits with {--precision}",
+    )
     NO_MOTION_PROGRAM = ("there is no motion program to measure: {detail}", "take constraints that are independent")
     NOT_ANALYTIC = (
         "the motion is not analytic where {detail} changes its sign",
         "follow it with `holonom simulate`, which steps to such instants",
     )
-    METHOD_GAVE_UP = ("{detail}", "ask for a larger tolerance, or for another method")
+    METHOD_GAVE_UP = ("{detail}", "ask for a larger tolerance", "take another method")
     MASS_INDEFINITE = (
         "the kinetic energy is negative for some velocities, and it measures how far a state is from the constraints",
-        "look for a mass of the wrong sign, or take the power series, which measures nothing",
+        "look for a mass of the wrong sign",
+        "take the power series, which measures nothing",
     )
     MASS_SINGULAR = (
         "the mass matrix is singular along a direction that the constraints leave free",
@@ -209,16 +229,18 @@ class Failure(Enum):
     )
     INCONSISTENT = (
         "the constraints cannot all be satisfied at t = {detail}",
-        "end the run before, or remove the constraint that contradicts the others",
+        "end the run before",
+        "remove the constraint that contradicts the others",
     )
     NO_GRADIENT = (
         "the motion cannot be followed beyond t = {instant:.10g}, where the gradient of the constraint of {multiplier} "
         "vanishes and no reaction can act",
-        "end the run before it, or choose a law that keeps the length away from zero",
+        "end the run before it",
+        "choose a law that keeps the length away from zero",
     )
     NO_WAY_ON = ("the motion cannot be followed beyond t = {detail}", "end the run before it")
-    RTEST_UNPAIRED = ("an input has no expected result", "")
-    RTEST_FAILED = ("not all of the {detail} tests passed", "")
+    RTEST_UNPAIRED = "an input has no expected result"
+    RTEST_FAILED = "not all of the {detail} tests passed"
 
     @property
     def status(self) -> int:
@@ -293,7 +315,7 @@ class HolonomError(Exception):
 
     def __str__(self) -> str:
         """As Python says it: what are options on the command line are arguments here."""
-        return self._told(OPTION.sub(_argument, self._remedy))
+        return self._told(self._remedies(_argument))
 
     def sentence(self, options: Collection[str] | None = None) -> str:
         """What went wrong, where, and what to do, as the command line says it.
@@ -303,24 +325,26 @@ class HolonomError(Exception):
         options : collection of str or None
             Options of the command that is told, such as ``--until``: advice to use others is left out.
         """
-        if options is None:
-            return self._told(self._remedy)
-        clauses = self._remedy.split(", or ")
-        return self._told(", or ".join(each for each in clauses if set(OPTION.findall(each)) <= set(options)))
+        return self._told(self._remedies(str, options))
 
     @property
     def said(self) -> str:
         """What went wrong, without where and what to do."""
-        return self.failure.value[0].format(detail=self.detail, **self.facts)
+        return self.failure.said.format(detail=self.detail, **self.facts)
 
-    @property
-    def _remedy(self) -> str:
-        return self.failure.value[1].format(detail=self.detail, **self.facts)
+    def _remedies(self, spelt: Callable[[str], str], options: Collection[str] | None = None) -> Iterator[str]:
+        """Yield the remedies that take no other options, each option as it is spelt."""
+        facts = {"detail": self.detail, **self.facts}
+        for remedy in self.failure.remedies:
+            named = {name for _, name, *_ in Formatter().parse(remedy) if name and name not in facts}
+            if options is None or named <= set(options):
+                yield remedy.format(**facts, **{name: spelt(name) for name in named})
 
-    def _told(self, remedy: str) -> str:
+    def _told(self, remedies: Iterable[str]) -> str:
         located = f"{self.place}: {self.said}" if self.place else self.said
-        return visible(located.rstrip(".") + (f"; {remedy}." if remedy else "."))
+        return visible("; ".join(filter(None, [located.rstrip("."), ", or ".join(remedies)])) + ".")
 
 
-def _argument(option: re.Match[str]) -> str:
-    return "limits" if option[0] in LIMITS else option[0].removeprefix("--").replace("-", "_")
+def _argument(option: str) -> str:
+    """Return the argument in Python that is an option on the command line."""
+    return "limits" if option in LIMITS else option.removeprefix("--").replace("-", "_")

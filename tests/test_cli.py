@@ -224,8 +224,10 @@ def test_doctor_finds_this_installation_whole(holonom_here):
 
 @pytest.mark.parametrize("failure", list(Failure))
 def test_advice_names_no_option_that_the_command_lacks(failure):
-    named = {name for part in failure.value for _, name, _, _ in Formatter().parse(part) if name}
+    parts = (failure.said, *failure.remedies)
+    named = {name for part in parts for _, name, _, _ in Formatter().parse(part) if name and name[:2] != "--"}
     error = HolonomError(failure, "scene.mac", "detail", **dict.fromkeys(named - {"detail"}, 1))
+    assert "--" not in str(error)
     assert "--" not in error.sentence(())
     assert error.sentence({"--until", "--time-limit", "--engine", "--drift", "--precision"}).endswith(".")
 

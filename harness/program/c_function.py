@@ -94,7 +94,7 @@ def load_c(source: str, *options: str) -> ctypes.CDLL:
         try:
             compile_shared([source_file], library, NATIVE, *OPTIONS, *options)
         except HolonomError as refused:
-            if "-march" not in refused.detail:
+            if refused.failure is not Failure.COMPILER_REFUSED:
                 raise
             compile_shared([source_file], library, *OPTIONS, *options)
         try:
