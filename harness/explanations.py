@@ -1,6 +1,6 @@
 """What is said of motions: who followed one, what happened on the way, and what to do about each kind of hard case."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from .language import gettext, translatable, translated
@@ -9,6 +9,7 @@ from .simulation.request import EngineName
 
 if TYPE_CHECKING:
     from .simulation.engines.switching import Leg
+    from .simulation.result import Report
 
 LISTED = 3  # legs of the robust engine that are told one by one
 ADVICE = {
@@ -73,9 +74,9 @@ def engine_text(legs: "Sequence[Leg]") -> str:
     return ", ".join(f"{translated(leg.engine)}{spans.get(leg, '')}" for leg in legs)
 
 
-def remarks(legs: "Sequence[Leg]", cases: Iterable[HardCase]) -> Iterator[str]:
+def remarks(report: "Report") -> Iterator[str]:
     """What happened on the way, and what to do about the hard cases that the motion is: one sentence each."""
-    called = [leg for leg in legs if leg.engine is EngineName.ROBUST and leg.case is not None]
+    called = [leg for leg in report.legs if leg.engine is EngineName.ROBUST and leg.case is not None]
     for leg in called[:LISTED]:
         yield gettext(
             "From t = %(start).6g to %(end).6g the robust engine takes over, because %(reason)s.",
@@ -85,4 +86,14 @@ def remarks(legs: "Sequence[Leg]", cases: Iterable[HardCase]) -> Iterator[str]:
         )
     if len(called) > LISTED:
         yield gettext("The robust engine takes over %(count)s times in all.", count=len(called))
-    yield from (translated(advice(kind)) for kind in cases)
+    if report.unresolved is not None:
+        yield unresolved(report.unresolved)
+    yield from (translated(advice(kind)) for kind in report.cases)
+
+
+def unresolved(start: float) -> str:
+    """The sentence that says from when on jumps in time may be passed over."""
+    return gettext(
+        "From t = %(start).6g a function of the time changes too often to be looked at ahead: a jump is not found.",
+        start=start,
+    )

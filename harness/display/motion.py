@@ -123,7 +123,7 @@ def _quality(report: "Report") -> Iterator[str]:
         yield _choice(report.choice)
     code = f" {report.code} code" if report.code else ""
     yield f"{report.compile_seconds:.3f} s to compile{code}, {report.run_seconds:.3g} s to run"
-    yield from remarks(report.legs, report.cases)
+    yield from remarks(report)
     yield from _switchings(report.switchings)
     if report.relative_degrees:
         degrees = ", ".join(map(str, report.relative_degrees))

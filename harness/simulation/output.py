@@ -225,7 +225,7 @@ def report_document(report: Report) -> dict[str, Any]:
 
     With ``trusted``, and beside legs and cases the sentences that people read, ``engine`` and ``remarks``.
     """
-    said = {"engine": engine_text(report.legs), "remarks": tuple(remarks(report.legs, report.cases))}
+    said = {"engine": engine_text(report.legs), "remarks": tuple(remarks(report))}
     lists = {name: tuple(each._asdict() for each in getattr(report, name)) for name in ("legs", "switchings", "doubts")}
     correction, moved = (
         change and dict(zip(("name", "size"), change, strict=True)) for change in (report.correction, report.moved)

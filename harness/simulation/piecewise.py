@@ -269,6 +269,12 @@ class PiecewiseMotion:
         return sum(part.engine.compile_seconds for part in self._parts.values())
 
     @property
+    def unresolved(self) -> float | None:
+        """The first instant from which an expression of the time changes too fast to be looked at ahead."""
+        found = (phase.part.by_time.unresolved for phase in self.phases)
+        return min((t for t in found if t is not None), default=None)
+
+    @property
     def conservative(self) -> bool:
         """Whether there is no work to integrate."""
         return not self._problem.signs and self.part.balance.conservative
@@ -371,7 +377,8 @@ class PiecewiseMotion:
     def _next_stop(self, until: Any) -> Any:
         stops, step = self.part.stops, self._request.max_step
         ticking = [self._precision.ratio(t) for t in islice(self._to_come, 1)] + [t for t, _ in self._knots[-1:]]
-        ahead = stops[bisect_right(stops, float(self.time)) :][:1]
+        next_stop = bisect_right(stops, float(self.time))
+        ahead = stops[next_stop : next_stop + 1]
         limits = [self.time + self._precision.number(repr(step))] if step is not None else []
         return min([until, *limits, *ticking, *(self._precision.number(repr(t)) for t in ahead)])
 

@@ -65,6 +65,8 @@ class Report:
         Why the engine that began was taken; None where one was asked for, or is the only one.
     relative_degrees : tuple of int
         Of each output that servo-constraints prescribe: which of its rates the controls are in.
+    unresolved : float or None
+        The first instant from which an expression of the time changes too fast to be looked at ahead.
     """
 
     t: Any
@@ -91,6 +93,7 @@ class Report:
     controls: Mapping[str, Any] = field(default_factory=dict)
     relative_degrees: tuple[int, ...] = ()
     moved: tuple[str, str] | None = None
+    unresolved: float | None = None
 
     @property
     def trusted(self) -> bool:

@@ -275,6 +275,7 @@ class _Simulation:
                 name: values[-1] for name, values in self.motion.controls(np.array([self.end]), state[:, None]).items()
             },
             relative_degrees=self.problem.relative_degrees,
+            unresolved=self.motion.unresolved,
             doubts=tuple(doubts(self._missed(left, at), self.motion.tol, self.motion.steps)),
         )
 

@@ -3,8 +3,10 @@
 An integrator chooses its steps by what it meets at their beginnings and stages. A pulse that is over before the next
 step begins does not exist for it. So the expressions of t alone in the equations of motion are looked at before: the
 time span is halved until a polynomial of degree 32 represents each of them on every part, to `RESOLVED` of its largest
-value, and none lies still in the first half of a part to move in the second. Where parts are much shorter than others,
-or differ from their neighbours, steps are to end at their boundaries.
+value, and none lies still in the first half of a part to move in the second. Where parts are much shorter than the time
+span, or differ from their neighbours, steps are to end at their boundaries: what changes as fast everywhere may be too
+faint for the steps to follow, and a pulse is not told from it. What takes more than 32768 parts is not resolved, which
+is said: a jump in it is not found.
 
 What is guaranteed: no feature of such an expression is passed over that lasts longer than 1/32768 of the time span and
 is larger than `RESOLVED` of the expression's largest value. Shorter ones show if they come near one of the samples.
@@ -30,9 +32,9 @@ FAINT = 1e-14  # of the largest value: what need not be announced
 FRESH = 64  # samples of a part, at least
 RESOLVED = 1e-11
 FINEST = 40  # halvings; what is not resolved then is no smooth function
-MOST = 2**13  # parts of the same length that are looked at
+MOST = SAMPLES  # parts of the same length that are looked at
 BLOCK = 2**13  # parts that are looked at together
-MUCH = 8  # times shorter than the longest part
+MUCH = 8  # times shorter than the time span: a part that no step is to pass
 EPSILON = 1e-14  # relative rounding of a time, with a margin
 NEARLY_ALL = 0.99  # of the samples tell the rounding of an expression
 ROUNDED, BESIDE_ROUNDING = 32.0, 1e5  # times this rounding: an error that is none; the least size of an expression
@@ -53,6 +55,7 @@ class TimeDependence(NamedTuple):
     # the first instant at which an expression of the time has no value, no bound, or jumps; None where there is none
     end: float | None = None
     reason: str = ""  # a clause about that instant
+    unresolved: float | None = None  # the first instant from which an expression changes too fast to be looked at
 
 
 def time_dependence(program: Program, start: float, end: float, tables: Sequence[Table] = ()) -> TimeDependence:
@@ -106,6 +109,7 @@ class _Scan:
     def __init__(self, function: OfTime, start: float, end: float, knots: Vector) -> None:
         self._function, self._start, self._last, self._knots = function, start, end, knots
         self._ending: tuple[float, str] | None = None
+        self._unresolved: float | None = None
         cells = (np.arange(SAMPLES) + 0.5) / SAMPLES
         values = function(start + (end - start) * cells)
         finite = np.isfinite(values).all(axis=0)
@@ -123,14 +127,16 @@ class _Scan:
     def result(self) -> TimeDependence:
         parts = sorted(self._parts())
         self._look_between(parts)
-        longest, knots = max((length for _, length in parts), default=0.0), set(self._knots.tolist())
+        knots, short = set(self._knots.tolist()), (self._last - self._start) / MUCH
+        halved = float(np.max(self._spans))
         stops = [
             start
             for (_, before), (start, length) in pairwise(parts)
-            if (before != length or min(before, length) * MUCH <= longest) and start not in knots
+            if (before != length or (length <= short and length < halved)) and start not in knots
         ]
         end, reason = self._ending or (None, "")
-        return TimeDependence(tuple(float(t) for t in stops if end is None or t < end), end and float(end), reason)
+        stops = tuple(float(t) for t in stops if end is None or t < end)
+        return TimeDependence(stops, end and float(end), reason, self._unresolved)
 
     def _rounding_of(self, instants: Vector, values: np.ndarray) -> Vector:
         """What rounding makes of each expression, shape (expressions,): its changes over the least steps of time."""
@@ -160,7 +166,9 @@ class _Scan:
             error, open_ = self._errors(owners, places, level)
             if level == FINEST:
                 self._look_at(starts[open_], error[:, open_])
-            if level == FINEST or 2 * open_.sum() > most:
+            elif 2 * open_.sum() > most:
+                self._unresolved = float(starts[open_].min())
+            if level == FINEST or self._unresolved is not None:
                 open_[:] = False
             yield from zip(starts[~open_], lengths[~open_], strict=True)
             owners = np.tile(owners[open_], 2)

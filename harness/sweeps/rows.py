@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ..explanations import unresolved
 from ..failures import Failure, HolonomError
 from ..program.heyoka_function import import_heyoka
 from ..program.motion_problem import MotionProblem, require_analytic
@@ -208,6 +209,8 @@ class RowMaker:
             return
         here, report = np.array([row]), found.report
         rows.residual[row] = max(report.residuals["position"], report.residuals["velocity"])
+        if report.unresolved is not None:
+            rows.mark(here, Status.OK, unresolved(report.unresolved))
         if report.doubts:
             rows.mark(here, Status.DOUBTFUL, "; ".join(doubt.reason for doubt in report.doubts))
         points = {stop: found.points[place][:, None] for place, stop in enumerate(self._asked)}

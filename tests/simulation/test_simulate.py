@@ -149,7 +149,7 @@ def test_a_hand_over_is_told_in_one_line_each():
     text = engine_text(report.legs)
     assert text.startswith("taylor, robust 0.6")
     assert text.endswith(", taylor")
-    said = [line for line in remarks(report.legs, report.cases) if "the robust engine takes over" in line]
+    said = [line for line in remarks(report) if "the robust engine takes over" in line]
     assert len(said) == 1
     assert "because the configuration nears a singular one" in said[0]
 
@@ -200,7 +200,7 @@ def test_a_motion_was_called_free_for_a_multiplier_that_is_zero_at_its_end(write
     pulse = motion_problem(write_scene(PULSE), Request(), Limits())
     assert HardCase.FREE_CANCELLATION not in simulate(pulse, SimulationRequest(samples=101)).report.cases
     report = final(pulse)  # which keeps the ends alone
-    assert not any("motion is free:" in line for line in remarks(report.legs, report.cases))
+    assert not any("motion is free:" in line for line in remarks(report))
 
 
 DAMPED = """load("holonom.mac")$
@@ -241,7 +241,7 @@ def test_redundant_constraints_are_told_and_followed():
     reports = [final(problem("hard/repeated_constraint.mac"), engine=each) for each in engines]
     for report, engine in zip(reports, engines, strict=True):
         assert [leg.engine for leg in report.legs] == [engine]
-        assert any("The constraints are redundant" in line for line in remarks(report.legs, report.cases))
+        assert any("The constraints are redundant" in line for line in remarks(report))
         assert report.multipliers["lambda2"] == 0
         assert report.condition < 2
     assert reports[0].multipliers["lambda1"] == pytest.approx(reports[1].multipliers["lambda1"], rel=1e-7)

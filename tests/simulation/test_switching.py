@@ -155,6 +155,12 @@ def test_a_pulse_in_a_part_that_would_grow_later_was_skipped(engine):
     assert report.velocities["dot(x)"] == pytest.approx(1 / 41 + math.sqrt(math.pi) / 5000, rel=DIGITS[engine])
 
 
+def test_a_pulse_beside_faint_oscillations_was_skipped():
+    """Steps at a tolerance of 1e-9 do not follow the oscillations."""
+    report = end_of(mass("exp(-((t - 1/3)*20000)^2) + sin(400000*t)/10^9", end="1"), EngineName.RUNGE_KUTTA, tol=1e-9)
+    assert report.velocities["dot(x)"] == pytest.approx(math.sqrt(math.pi) / 20000, rel=1e-5)
+
+
 def test_an_impulse_where_a_coordinate_has_no_mass():
     """z = x + u obeys z'' = -2 z: its rate does not jump where that of u does, and that of x does."""
     report = end_of(asked(HOOK))

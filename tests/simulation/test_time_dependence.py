@@ -61,3 +61,18 @@ def test_only_the_largest_expressions_of_the_time_alone_are_looked_at():
         ("of_time[0]", of(Operation.SIN, of(Operation.COS, T))),
     )
     assert time_expressions(program(of(Operation.SIN, X))).outputs == {}
+
+
+@pytest.mark.parametrize(("faint", "often"), [(1, 10**6), (10**9, 10**6), (10**9, 10**4), (10**9, 3 * 10**7)])
+def test_a_pulse_among_faint_oscillations_as_narrow_was_passed_over(faint, often):
+    """A step is to begin where the pulse is felt, whatever an engine makes of the oscillations."""
+    width = max(Fraction(1, often), Fraction(1, 20000))
+    noise = of(Operation.DIVIDE, of(Operation.SIN, of(Operation.MULTIPLY, Fraction(often), T)), Fraction(faint))
+    found = time_dependence(program(of(Operation.ADD, noise, pulse(Fraction(1, 3), width))), 0.0, 1.0)
+    assert min(abs(t - 1 / 3) for t in found.stops) < 2 * width
+
+
+def test_what_changes_too_often_to_be_resolved_was_given_up_in_silence():
+    for often, start in ((10**4, None), (10**6, 0.0)):
+        fast = of(Operation.SIN, of(Operation.MULTIPLY, Fraction(often), T))
+        assert time_dependence(program(fast), 0.0, 1.0).unresolved == start

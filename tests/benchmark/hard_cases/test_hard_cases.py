@@ -63,7 +63,7 @@ SOMEBODYS = {
 def remarks_on(file) -> set[str]:
     asked = SimulationRequest(samples=FINAL_STATE_ALONE)
     report = simulate(motion_problem(file, Request(), Limits()), asked).report
-    return set(remarks(report.legs, report.cases))
+    return set(remarks(report))
 
 
 @pytest.mark.parametrize("kind", SOMEBODYS)
