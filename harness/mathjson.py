@@ -6,7 +6,8 @@ from operator import neg, sub, truediv
 import sympy
 from sympy import Expr, Float, Indexed, IndexedBase, Integer, Rational, S, Symbol
 
-from .elliptic import JacobiCn, JacobiDn, JacobiSn
+from . import elliptic
+from .functions import FUNCTIONS
 from .trees import FLOAT, INTEGER, JSON_INTEGERS, Tree, converted, integer, quantity, refusal
 
 DOUBLE_DIGITS = 17  # decimal digits that tell any two doubles apart
@@ -16,65 +17,27 @@ CONSTANTS = {"Pi": S.Pi, "ExponentialE": S.Exp1, "ImaginaryUnit": S.ImaginaryUni
 CONSTANT_NAMES = {constant: name for name, constant in CONSTANTS.items()}
 NOT_NUMBERS = (S.ComplexInfinity, S.Infinity, S.NegativeInfinity, S.NaN)
 
-FUNCTIONS = {
-    "Exp": sympy.exp,
-    "Ln": sympy.log,
-    "Abs": sympy.Abs,
-    "Sign": sympy.sign,
-    "Sin": sympy.sin,
-    "Cos": sympy.cos,
-    "Tan": sympy.tan,
-    "Sinh": sympy.sinh,
-    "Cosh": sympy.cosh,
-    "Tanh": sympy.tanh,
-    "Arcsin": sympy.asin,
-    "Arccos": sympy.acos,
-    "Arctan": sympy.atan,
-    "Arsinh": sympy.asinh,
-    "Arcosh": sympy.acosh,
-    "Artanh": sympy.atanh,
-    "Sec": sympy.sec,
-    "Csc": sympy.csc,
-    "Cot": sympy.cot,
-    "Sech": sympy.sech,
-    "Csch": sympy.csch,
-    "Coth": sympy.coth,
-    "Arcsec": sympy.asec,
-    "Arccsc": sympy.acsc,
-    "Arccot": sympy.acot,
-    "Arsech": sympy.asech,
-    "Arcsch": sympy.acsch,
-    "Arcoth": sympy.acoth,
-    "Erf": sympy.erf,
-    "Erfc": sympy.erfc,
-    "Gamma": sympy.gamma,
-    "AiryAi": sympy.airyai,
-    "AiryBi": sympy.airybi,
-    "AiryAiPrime": sympy.airyaiprime,
-    "AiryBiPrime": sympy.airybiprime,
-}
-OF_TWO = {
-    "Arctan2": sympy.atan2,
-    "BesselJ": sympy.besselj,
-    "BesselY": sympy.bessely,
-    "BesselI": sympy.besseli,
-    "BesselK": sympy.besselk,
-    "PolyGamma": sympy.polygamma,
-    "JacobiSn": JacobiSn,
-    "JacobiCn": JacobiCn,
-    "JacobiDn": JacobiDn,
-}
-HEADS = {function: head for head, function in (FUNCTIONS | OF_TWO).items()} | {
+CLASSES = {each: getattr(elliptic if hasattr(elliptic, each.in_sympy) else sympy, each.in_sympy) for each in FUNCTIONS}
+POLYGAMMA = "PolyGamma"
+HEADS = {function: each.head for each, function in CLASSES.items() if each.head != "Sqrt"} | {
+    sympy.polygamma: POLYGAMMA,
     sympy.Add: "Add",
     sympy.Mul: "Multiply",
     sympy.Pow: "Power",
 }
-UNARY: dict[str, Callable[..., Expr]] = {**FUNCTIONS, "Sqrt": sympy.sqrt, "Negate": neg}
+
+
+def _of_arity(arity: int) -> dict[str, Callable[..., Expr]]:
+    return {each.head: function for each, function in CLASSES.items() if each.arity == arity}
+
+
+UNARY: dict[str, Callable[..., Expr]] = {**_of_arity(1), "Negate": neg}
 BINARY: dict[str, Callable[..., Expr]] = {
     "Power": sympy.Pow,
     "Divide": truediv,
     "Subtract": sub,
-    **OF_TWO,
+    **_of_arity(2),
+    POLYGAMMA: sympy.polygamma,
 }
 VARIADIC: dict[str, Callable[..., Expr]] = {"Add": sympy.Add, "Multiply": sympy.Mul}
 

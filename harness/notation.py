@@ -7,49 +7,12 @@ stand once below a stroke.
 from collections.abc import Callable, Sequence
 from decimal import Decimal
 
+from .functions import FUNCTIONS
 from .program.infix import Formula, Rank, atom, call
 from .trees import FLOAT, INTEGER, Tree, converted, integer, quantity, refusal
 
 CONSTANTS = {"Pi": "%pi", "ExponentialE": "%e", "ImaginaryUnit": "%i", "EulerGamma": "%gamma"}
 CONSTANTS |= {"True": "true", "False": "false"}
-FUNCTIONS = {
-    "Sqrt": "sqrt",
-    "Exp": "exp",
-    "Ln": "log",
-    "Abs": "abs",
-    "Sign": "signum",
-    "Sin": "sin",
-    "Cos": "cos",
-    "Tan": "tan",
-    "Sec": "sec",
-    "Csc": "csc",
-    "Cot": "cot",
-    "Sinh": "sinh",
-    "Cosh": "cosh",
-    "Tanh": "tanh",
-    "Sech": "sech",
-    "Csch": "csch",
-    "Coth": "coth",
-    "Arcsin": "asin",
-    "Arccos": "acos",
-    "Arctan": "atan",
-    "Arcsec": "asec",
-    "Arccsc": "acsc",
-    "Arccot": "acot",
-    "Arsinh": "asinh",
-    "Arcosh": "acosh",
-    "Artanh": "atanh",
-    "Arsech": "asech",
-    "Arcsch": "acsch",
-    "Arcoth": "acoth",
-    "Erf": "erf",
-    "Erfc": "erfc",
-    "Gamma": "gamma",
-    "AiryAi": "airy_ai",
-    "AiryBi": "airy_bi",
-    "AiryAiPrime": "airy_dai",
-    "AiryBiPrime": "airy_dbi",
-}
 BETWEEN = {
     "Greater": ">",
     "GreaterEqual": ">=",
@@ -69,16 +32,7 @@ OF_ANY = {
     "UnitStep": "unit_step",
     "HalfStep": "hstep",
 }
-OF_TWO = {
-    "Arctan2": "atan2",
-    "BesselJ": "bessel_j",
-    "BesselY": "bessel_y",
-    "BesselI": "bessel_i",
-    "BesselK": "bessel_k",
-    "JacobiSn": "jacobi_sn",
-    "JacobiCn": "jacobi_cn",
-    "JacobiDn": "jacobi_dn",
-}
+CALLS = {(each.head, each.arity): each.scene for each in FUNCTIONS}
 Expanded = tuple[Callable[..., Formula], list[Tree]]
 
 
@@ -116,8 +70,6 @@ def _expanded(tree: Tree) -> Expanded:
             return _product(tree)
         case ["Power", base, exponent]:
             return _power, [base, exponent]
-        case [str(head), first, second] if head in OF_TWO:
-            return (lambda *arguments: call(OF_TWO[head], *arguments)), [first, second]
         case ["PolyGamma", int(order), argument]:
             return (lambda formula: call(f"psi[{order}]", formula)), [argument]
         case ["Which", *clauses]:
@@ -128,8 +80,8 @@ def _expanded(tree: Tree) -> Expanded:
             return (lambda *formulas: _between(BETWEEN[head], formulas)), arguments
         case [str(head), *arguments] if head in OF_ANY:
             return (lambda *formulas: call(OF_ANY[head], *formulas)), arguments
-        case [str(head), argument] if head in FUNCTIONS:
-            return (lambda formula: call(FUNCTIONS[head], formula)), [argument]
+        case [str(head), *arguments] if (head, len(arguments)) in CALLS:
+            return (lambda *formulas: call(CALLS[head, len(formulas)], *formulas)), arguments
         case _:
             raise refusal(tree)
     return (lambda: atom(text)), []

@@ -9,50 +9,24 @@ import sympy as sp
 from mpmath import mp
 
 from ..elliptic import JacobiCn, JacobiDn, JacobiSn
+from ..mathjson import CLASSES
 from .irregular_point import IrregularPoint
 
 PARTS = 1_000_003
 """Coordinates of a random point are multiples of its inverse, up to two: small, rarely special, too many to foresee."""
 
-FUNCTIONS = {
-    sp.sin: mp.sin,
-    sp.cos: mp.cos,
-    sp.tan: mp.tan,
-    sp.asin: mp.asin,
-    sp.acos: mp.acos,
-    sp.atan: mp.atan,
-    sp.atan2: mp.atan2,
-    sp.sinh: mp.sinh,
-    sp.cosh: mp.cosh,
-    sp.tanh: mp.tanh,
-    sp.asinh: mp.asinh,
-    sp.acosh: mp.acosh,
-    sp.atanh: mp.atanh,
-    **{
-        getattr(sp, name): getattr(mp, name)
-        for name in ("sec", "csc", "cot", "sech", "csch", "coth", "asec", "acsc", "acot", "asech", "acsch", "acoth")
-    },
-    sp.erf: mp.erf,
-    sp.erfc: mp.erfc,
-    sp.gamma: mp.gamma,
-    sp.polygamma: mp.polygamma,
-    sp.besselj: mp.besselj,
-    sp.bessely: mp.bessely,
-    sp.besseli: mp.besseli,
-    sp.besselk: mp.besselk,
-    sp.airyai: mp.airyai,
-    sp.airybi: mp.airybi,
+OTHERWISE = {
+    sp.Abs: abs,
     sp.airyaiprime: lambda x: mp.airyai(x, derivative=1),
     sp.airybiprime: lambda x: mp.airybi(x, derivative=1),
     JacobiSn: lambda u, m: mp.ellipfun("sn", u, m=m),
     JacobiCn: lambda u, m: mp.ellipfun("cn", u, m=m),
     JacobiDn: lambda u, m: mp.ellipfun("dn", u, m=m),
-    sp.exp: mp.exp,
-    sp.log: mp.log,
-    sp.Abs: abs,
-    sp.sign: mp.sign,
+    sp.polygamma: mp.polygamma,
     sp.DiracDelta: lambda x, order=0: mp.zero if x else mp.inf,
 }
+FUNCTIONS = {function: getattr(mp, each.in_sympy, None) for each, function in CLASSES.items()} | OTHERWISE
+"""Values of SymPy's functions, by mpmath's of the same names but for some."""
 
 
 def random_point(names: Iterable[str], attempt: int, seed: str) -> dict[sp.Symbol, sp.Rational]:

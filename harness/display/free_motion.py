@@ -9,6 +9,7 @@ from sympy import Expr, Function
 from sympy.printing.str import StrPrinter
 
 from .. import notation
+from ..functions import FUNCTIONS
 from ..mathjson import CONSTANT_NAMES, HEADS
 from .condition import condition_lines
 from .motion import short_number
@@ -134,7 +135,7 @@ class SceneNotation(StrPrinter):
     _print_Pi = _print_Exp1 = _print_ImaginaryUnit = _print_EulerGamma = _print_constant
 
 
-FUNCTION_NAMES = notation.FUNCTIONS | notation.OF_TWO
+FUNCTION_NAMES = {each.head: each.scene for each in FUNCTIONS}
 
 
 def power_series(value: Expr) -> str:

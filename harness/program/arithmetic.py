@@ -8,29 +8,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Generic, TypeVar
 
+from ..functions import FUNCTIONS
 from .motion_program import Atom, Call, Constant, Expression, Name, Operation, Program
 
 Value = TypeVar("Value")
 
-ELEMENTARY = {
-    Operation.SQRT: "sqrt",
-    Operation.EXP: "exp",
-    Operation.LN: "log",
-    Operation.SIN: "sin",
-    Operation.COS: "cos",
-    Operation.TAN: "tan",
-    Operation.SINH: "sinh",
-    Operation.COSH: "cosh",
-    Operation.TANH: "tanh",
-    Operation.ARCSIN: "asin",
-    Operation.ARCCOS: "acos",
-    Operation.ARCTAN: "atan",
-    Operation.ARCTAN2: "atan2",
-    Operation.ARSINH: "asinh",
-    Operation.ARCOSH: "acosh",
-    Operation.ARTANH: "atanh",
-    Operation.ERF: "erf",
-}
+ELEMENTARY = {Operation(each.head): each.program for each in FUNCTIONS if each.program}
 """Functions that C, Python, NumPy, JavaScript and heyoka call by the same names."""
 
 

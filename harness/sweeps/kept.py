@@ -23,6 +23,7 @@ from fractions import Fraction
 from math import isfinite
 
 from ..failures import Failure, HolonomError
+from ..functions import FUNCTIONS
 from ..program.motion_program import Call, Constant, Expression, Name, Operation
 from ..program.request import within_reach
 
@@ -34,9 +35,8 @@ OPERATORS = {
     ast.Div: Operation.DIVIDE,
     ast.Pow: Operation.POWER,
 }
-FUNCTIONS = {
-    name: Operation(name.capitalize()) for name in ("abs", "sqrt", "exp", "sin", "cos", "tan", "sinh", "cosh", "tanh")
-} | {"log": Operation.LN, "asin": Operation.ARCSIN, "acos": Operation.ARCCOS, "atan": Operation.ARCTAN}
+CALLS = {each.scene: Operation(each.head) for each in FUNCTIONS if each.program and each.arity == 1}
+CALLS |= {"abs": Operation.ABS}
 DERIVATIVES = ("dot", "ddot")
 
 
@@ -131,8 +131,8 @@ def _expression(tree: ast.expr, text: str) -> Expression:
             return Call(Operation.NEGATE, (_expression(operand, text),))
         case ast.Call(ast.Name(mark), [ast.Name(name)], []) if mark in DERIVATIVES:
             return Name(f"{mark}({name})")
-        case ast.Call(ast.Name(function), [argument], []) if function in FUNCTIONS:
-            return Call(FUNCTIONS[function], (_expression(argument, text),))
+        case ast.Call(ast.Name(function), [argument], []) if function in CALLS:
+            return Call(CALLS[function], (_expression(argument, text),))
         case ast.Subscript(ast.Name(name), ast.Constant(int(place))):
             return Name(f"{name}[{place}]")
         case ast.Name("pi"):

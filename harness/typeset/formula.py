@@ -19,6 +19,7 @@ from itertools import groupby
 from math import inf
 
 from ..failures import Failure, HolonomError
+from ..functions import FUNCTIONS
 from ..mathjson import Tree
 from .boxes import (
     CLOSING,
@@ -54,51 +55,13 @@ from .quantities import indexed_box, name_box
 NARROWEST = 14  # digits below which nothing is pressed
 TALLEST = 10  # lines that brackets reach over at most
 CONSTANTS = {"Pi": r"\pi", "ExponentialE": "e", "ImaginaryUnit": "i", "EulerGamma": r"\gamma"}
-FUNCTIONS = {
-    "Ln": r"\ln",
-    "Sin": r"\sin",
-    "Cos": r"\cos",
-    "Tan": r"\tan",
-    "Sinh": r"\sinh",
-    "Cosh": r"\cosh",
-    "Tanh": r"\tanh",
-    "Arcsin": r"\arcsin",
-    "Arccos": r"\arccos",
-    "Arctan": r"\arctan",
-    "Arctan2": r"\operatorname{arctan2}",
-    "Arsinh": r"\operatorname{arsinh}",
-    "Arcosh": r"\operatorname{arcosh}",
-    "Artanh": r"\operatorname{artanh}",
-    "Sec": r"\sec",
-    "Csc": r"\csc",
-    "Cot": r"\cot",
-    "Sech": r"\operatorname{sech}",
-    "Csch": r"\operatorname{csch}",
-    "Coth": r"\coth",
-    "Arcsec": r"\operatorname{arcsec}",
-    "Arccsc": r"\operatorname{arccsc}",
-    "Arccot": r"\operatorname{arccot}",
-    "Arsech": r"\operatorname{arsech}",
-    "Arcsch": r"\operatorname{arcsch}",
-    "Arcoth": r"\operatorname{arcoth}",
-    "Erf": r"\operatorname{erf}",
-    "Erfc": r"\operatorname{erfc}",
-    "Gamma": r"\Gamma",
-    "AiryAi": r"\operatorname{Ai}",
-    "AiryBi": r"\operatorname{Bi}",
-    "AiryAiPrime": r"\operatorname{Ai'}",
-    "AiryBiPrime": r"\operatorname{Bi'}",
-    "JacobiSn": r"\operatorname{sn}",
-    "JacobiCn": r"\operatorname{cn}",
-    "JacobiDn": r"\operatorname{dn}",
-    "Sign": r"\operatorname{sign}",
-    "Determinant": r"\det",
-}
-OF_AN_ORDER = {"BesselJ": "J", "BesselY": "Y", "BesselI": "I", "BesselK": "K", "PolyGamma": r"\psi"}
+NAMES = {each.head: each.operator for each in FUNCTIONS if each.latex and not each.of_an_order}
+NAMES |= {"Determinant": r"\det"}
+OF_AN_ORDER = {each.head: each.latex for each in FUNCTIONS if each.of_an_order} | {"PolyGamma": r"\psi"}
 FRACTIONS = {"Divide", "Rational", "Partial", "Rate"}
 SUMS = {"Add", "Negate", "Subtract"}
 LOOSE = (  # in brackets under an exponent
-    SUMS | FRACTIONS | FUNCTIONS.keys() | OF_AN_ORDER.keys() | {"Multiply", "Power", "Exp", "Factorial"}
+    SUMS | FRACTIONS | NAMES.keys() | OF_AN_ORDER.keys() | {"Multiply", "Power", "Exp", "Factorial"}
 )
 PARTIAL, TOTAL, TIME = word(r"\partial", 1), word("d", 1), word("t", 1)
 
@@ -290,8 +253,8 @@ def _set(tree: Tree, room: float) -> Box:
             return _decimal(number)
         case [str(head), *parts] if head in SETTERS:
             return SETTERS[head](room, *parts)
-        case [str(head), *arguments] if head in FUNCTIONS:
-            return _function(word(FUNCTIONS[head], 3), arguments, room)
+        case [str(head), *arguments] if head in NAMES:
+            return _function(word(NAMES[head], 3), arguments, room)
         case [str(head), order, argument] if head in OF_AN_ORDER:
             return _of_an_order(OF_AN_ORDER[head], order, argument, room)
         case _:
@@ -363,7 +326,7 @@ def _begins_with_digit(tree: Tree) -> bool:
 
 
 def _stands_apart(tree: Tree, box: Box) -> bool:
-    return box.height > 1 or _head(_content(tree)) in FUNCTIONS or r"\text{" in box.latex
+    return box.height > 1 or _head(_content(tree)) in NAMES or r"\text{" in box.latex
 
 
 def _fraction(room: float, numerator: Tree, denominator: Tree) -> Box:
@@ -377,8 +340,8 @@ def _root(room: float, radicand: Tree) -> Box:
 def _power(room: float, base: Tree, exponent: Tree) -> Box:
     raised = formula_box(exponent)
     match base:
-        case [str(head), argument] if head in FUNCTIONS:
-            return _function(above(word(FUNCTIONS[head], 3), raised), [argument], room)
+        case [str(head), argument] if head in NAMES:
+            return _function(above(word(NAMES[head], 3), raised), [argument], room)
         case _ if _is_loose(base):
             return above(bracketed(formula_box(base, room - 2 - raised.width)), raised)
         case _:
