@@ -30,6 +30,15 @@ class Precision:
     text: Callable[[Any], str]  # from a number to decimal digits
     options: Mapping[str, Any]  # what heyoka's integrators are told about the numbers
 
+    @property
+    def rounding(self) -> Any:
+        """The distance of one to the next larger number."""
+        one, two = self.number("1"), self.number("2")
+        distance = one
+        while one + distance / two != one:
+            distance = distance / two
+        return distance
+
     def ratio(self, value: Fraction) -> Any:
         """The number nearest to a rational one."""
         return self.number(str(value.numerator)) / self.number(str(value.denominator))

@@ -100,7 +100,7 @@ def at_start(problem: MotionProblem) -> MotionProblem:
 
 def _begun(motion: MotionProblem, problem: MotionProblem) -> MotionProblem:
     """A motion that starts as another one does."""
-    kept = ("start", "values", "correction", "moved")
+    kept = ("start", "values", "correction", "moved", "nominal")
     return replace(motion, **{name: getattr(problem, name) for name in kept})
 
 
@@ -140,7 +140,7 @@ def sharing_programs(problem: MotionProblem, known: dict[Hashable, MotionProblem
     shared = _with_programs(_with_programs(problem, opened), taking)
     shared = replace(shared, parameters=(*problem.parameters, *numbers), values={**problem.values, **numbers})
     template = known.setdefault(_text(shared), shared)
-    return replace(template, values=shared.values, start=shared.start)
+    return replace(template, values=shared.values, start=shared.start, nominal=shared.nominal)
 
 
 def _with_names_for_numbers(expression: Expression, start: str, numbers: dict[str, Fraction]) -> Expression:

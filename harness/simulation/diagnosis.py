@@ -15,6 +15,7 @@ from .constraints.directions import Matrix, rank_of, weighted_constraints
 from .constraints.factorization import factored_constraints
 from .diagnostics import condition
 from .matrices import Matrices, MotionMatrices, Vector
+from .nominal import Nominal
 
 ILL_CONDITIONED, DEPENDENT = 1e8, 1e20  # condition of G: half of a double's digits lost, and none left
 UNEQUAL_MASSES = 1e8  # ratio of the entries on A's diagonal: half of a double's digits
@@ -25,7 +26,7 @@ MANY_STEPS = 10_000
 FREE = 1e-13  # constraint forces, in terms of the others
 STIFF = 1e5  # squares of frequencies, one in terms of another
 AT_REST = 1e-8  # squares of frequencies, in terms of the largest, that differences do not tell from zero
-DIFFERENCE = 1e-5  # in coordinates and velocities: the cube root of a double's rounding error
+DIFFERENCE = 1e-5  # of nominal coordinates and velocities: the cube root of a double's rounding error
 DECAYED = 4.0  # times the length of a step, a rate of decay: what follows such a decay may take longer steps
 AT_ONCE = 32  # states whose matrices are held together
 
@@ -53,6 +54,7 @@ class Instant(NamedTuple):
 
 def hard_cases(
     matrices: Callable[[float, Vector], Matrices],
+    nominal: Nominal,
     independent: Sequence[int],
     start: Instant,
     end: Instant,
@@ -65,6 +67,8 @@ def hard_cases(
     ----------
     matrices : callable
         As `MotionMatrices`.
+    nominal : Nominal
+        Sizes of the motion's quantities.
     independent : sequence of int
         Constraints, from 0, that are not known to follow from the others.
     multipliers : ndarray, shape (g,)
@@ -91,7 +95,7 @@ def hard_cases(
         yield HardCase.FREE_CANCELLATION
     if steps > MANY_STEPS:
         yield HardCase.LONG_RUN
-    if stiffness(matrices, start) > STIFF or _held_back(matrices, start, end, steps):
+    if stiffness(matrices, nominal, start) > STIFF or _held_back(matrices, nominal, start, end, steps):
         yield HardCase.STIFF
 
 
@@ -108,7 +112,7 @@ def dependence(matrices: MotionMatrices, at: Instant) -> str | None:
     return translatable("of %(g)s constraints only %(rank)s are independent at t = %(t)g", g=g, rank=rank, t=at.t)
 
 
-def stiffness(matrices: MotionMatrices, at: Instant) -> float:
+def stiffness(matrices: MotionMatrices, nominal: Nominal, at: Instant) -> float:
     """Ratio of the largest to the smallest square of a frequency that small deviations from a motion have.
 
     Returns
@@ -122,7 +126,7 @@ def stiffness(matrices: MotionMatrices, at: Instant) -> float:
     if not free.size:
         return 1.0
     moves = np.concatenate([free, np.zeros_like(free)])
-    change = free.T @ here.mass @ _change_of_accelerations(matrices, at, moves)
+    change = free.T @ here.mass @ _change_of_accelerations(matrices, nominal, at, moves)
     if not np.isfinite(change).all():
         return 1.0
     squares = np.abs(np.linalg.eigvals(change))
@@ -130,7 +134,7 @@ def stiffness(matrices: MotionMatrices, at: Instant) -> float:
     return float(moving.max() / moving.min()) if moving.size else 1.0
 
 
-def fastest_decay(matrices: MotionMatrices, at: Instant) -> float:
+def fastest_decay(matrices: MotionMatrices, nominal: Nominal, at: Instant) -> float:
     """Largest rate at which small deviations from a motion decay more than they oscillate; zero where none does.
 
     Returns
@@ -144,16 +148,16 @@ def fastest_decay(matrices: MotionMatrices, at: Instant) -> float:
         return 0.0
     nothing, one = np.zeros_like(free), np.eye(free.shape[1])
     moves = np.block([[free, nothing], [nothing, free]])
-    change = free.T @ here.mass @ _change_of_accelerations(matrices, at, moves)
+    change = free.T @ here.mass @ _change_of_accelerations(matrices, nominal, at, moves)
     if not np.isfinite(change).all():
         return 0.0
     exponents = np.linalg.eigvals(np.block([[0 * one, one], [change]]))
     return float(-exponents.real[-exponents.real >= np.abs(exponents.imag)].min(initial=0.0))
 
 
-def _held_back(matrices: MotionMatrices, start: Instant, end: Instant, steps: int) -> bool:
+def _held_back(matrices: MotionMatrices, nominal: Nominal, start: Instant, end: Instant, steps: int) -> bool:
     """Whether many steps were as short as a decay demands that is over long ago."""
-    return steps > MANY_STEPS and fastest_decay(matrices, end) * (end.t - start.t) > DECAYED * steps
+    return steps > MANY_STEPS and fastest_decay(matrices, nominal, end) * (end.t - start.t) > DECAYED * steps
 
 
 def _free_directions(at: Matrices) -> Matrix:
@@ -163,7 +167,7 @@ def _free_directions(at: Matrices) -> Matrix:
     return np.linalg.solve(weighted.factor.T, left[:, rank_of(values) :])
 
 
-def _change_of_accelerations(matrices: MotionMatrices, at: Instant, moves: Matrix) -> Matrix:
+def _change_of_accelerations(matrices: MotionMatrices, nominal: Nominal, at: Instant, moves: Matrix) -> Matrix:
     """Derivatives, shape (n, k), of the accelerations along moves of the state, shape (2n, k).
 
     A a - J^T lambda = h, J a = -c, differentiated: one factorization solves for all of them.
@@ -174,7 +178,8 @@ def _change_of_accelerations(matrices: MotionMatrices, at: Instant, moves: Matri
         solve(here.force, here.curvature) for solve in (factored.accelerations, factored.multipliers)
     )
     changes = []
-    steps = DIFFERENCE * moves.T
+    lengths = DIFFERENCE / np.max(np.abs(moves) / nominal.state[:, None], axis=0)
+    steps = (lengths * moves).T
     for some in np.array_split(steps, -(-len(steps) // AT_ONCE)):
         ahead, behind = (
             (
@@ -184,7 +189,7 @@ def _change_of_accelerations(matrices: MotionMatrices, at: Instant, moves: Matri
             for moved in (matrices(at.t, at.state + some), matrices(at.t, at.state - some))
         )
         changes += map(factored.accelerations, ahead[0] - behind[0], ahead[1] - behind[1])
-    return np.array(changes).T / (2 * DIFFERENCE)
+    return np.array(changes).T / (2 * lengths)
 
 
 def _mass_ratio(at: Matrices) -> float:

@@ -2,7 +2,7 @@
 
 A residual is measured along its constraint's gradient: |f_beta| / |df_beta/dq| is, to first order, how far the
 coordinates are from the constraint. The largest of them is taken relative to the largest coordinate where that is more
-than one; likewise for the velocities with df/dt, and for the accelerations with J a + c.
+than its nominal size; likewise for the velocities with df/dt, and for the accelerations with J a + c.
 
 The energy function changes at the rate that `MotionProblem.energy` calls power. Energy that was gained beyond the
 integral of the power is an error of the motion (Goldstein, Poole & Safko, section 2.7).
@@ -22,6 +22,7 @@ from ..program.precision import Precision, read_precision
 from .constraints.directions import weighted_constraints
 from .evaluation import Numbers, as_floats, evaluation_once, zeros
 from .matrices import Matrices, Vector
+from .nominal import Nominal
 from .open_values import OpenValues
 from .trust import may_hide
 
@@ -30,7 +31,7 @@ MORE_DIGITS = 10  # in which they are found
 PROBES = (0.3127, -0.7411, 1.2713)  # seeds of states at which power that vanishes identically is told from other power
 
 
-def residuals(at: Matrices, state: Vector, accelerations: Vector) -> Mapping[str, float]:
+def residuals(at: Matrices, state: Vector, accelerations: Vector, nominal: Nominal) -> Mapping[str, float]:
     """What is left of the constraints at a state: ``position``, ``velocity``, ``acceleration``.
 
     Parameters
@@ -39,18 +40,21 @@ def residuals(at: Matrices, state: Vector, accelerations: Vector) -> Mapping[str
         At the state.
     state : ndarray, shape (2n,)
     accelerations : ndarray, shape (n,)
+    nominal : Nominal
+        Sizes of the motion's quantities.
     """
     left = at.jacobian @ accelerations + at.curvature
-    found = {**constraint_residuals(at, state), "acceleration": scaled_residual(left, at.jacobian, accelerations)}
+    acceleration = scaled_residual(left, at.jacobian, accelerations, nominal.accelerations)
+    found = {**constraint_residuals(at, state, nominal), "acceleration": acceleration}
     return {name: float(residual) for name, residual in found.items()}
 
 
-def constraint_residuals(at: Matrices, state: Numbers) -> dict[str, Numbers]:
+def constraint_residuals(at: Matrices, state: Numbers, nominal: Nominal) -> dict[str, Numbers]:
     """The first two of them, at one state or, with a last axis more, at k of them."""
     coordinates, velocities = np.split(state, 2)
     return {
-        "position": scaled_residual(at.residual, at.jacobian, coordinates),
-        "velocity": scaled_residual(at.residual_rate, at.jacobian, velocities),
+        "position": scaled_residual(at.residual, at.jacobian, coordinates, nominal.coordinates),
+        "velocity": scaled_residual(at.residual_rate, at.jacobian, velocities, nominal.velocities),
     }
 
 
@@ -204,8 +208,10 @@ def _constraints_move(problem: MotionProblem) -> bool:
     return any("t" in names_in(part) for part in parts)
 
 
-def scaled_residual(residual: Numbers, jacobian: Numbers, moved: Numbers) -> Numbers:
+def scaled_residual(residual: Numbers, jacobian: Numbers, moved: Numbers, sizes: Numbers) -> Numbers:
     """How far the coordinates, or their rates, are from the constraints, relative to the largest of them.
+
+    All of them are taken in terms of their nominal sizes, and none counts as smaller than that.
 
     Parameters
     ----------
@@ -213,11 +219,15 @@ def scaled_residual(residual: Numbers, jacobian: Numbers, moved: Numbers) -> Num
     jacobian : ndarray, shape (g, n, ...)
     moved : ndarray, shape (n, ...)
         What the residual is one of: coordinates, velocities or accelerations.
+    sizes : ndarray, shape (n,) or (n, ...)
+        Nominal ones of these.
 
     Returns
     -------
     ndarray, shape (...)
     """
+    sizes = sizes if np.ndim(sizes) == moved.ndim else sizes[:, None]
+    jacobian, moved = jacobian * sizes, moved / sizes
     gradients = np.max(np.abs(jacobian), axis=1, initial=0.0)
     peaks = np.where(gradients > 0, gradients, 1.0)
     lengths = np.maximum(1.0, np.linalg.norm(jacobian / peaks[:, None], axis=1))

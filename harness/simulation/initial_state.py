@@ -17,13 +17,14 @@ from numpy.typing import NDArray
 from ..failures import Failure, HolonomError
 from ..program.motion_problem import By, MotionProblem, Origin, computing
 from ..program.sign_pattern import at_start, problem_in
-from .diagnostics import scaled_residual
+from .diagnostics import constraint_residuals, scaled_residual
 from .evaluation import Numbers, lane_evaluation
 from .matrices import LaneMatrices
-from .nearest_root import ITERATIONS, ROUNDING, SETTLED, Linearized, NearestRoots
+from .nearest_root import ITERATIONS, ROUNDING, SETTLED, Linearized, NearestRoots, share_of
+from .nominal import nominal_of
 
 LIMITED_DIGITS = 1e-9  # share of the largest datum by which data may be corrected, and of coordinates a residual
-SOON = 1e-9  # of the first instant, or of a unit: after it, for functions that vanish there
+SOON = 1e-9  # of the first instant, or of the nominal time: after it, for functions that vanish there
 
 
 class Starts(NamedTuple):
@@ -54,6 +55,7 @@ class InitialStates:
         self._instant, self._n = float(problem.start["t"]), len(problem.coordinates)
         self._evaluate = lane_evaluation(problem, start.program)
         self._matrices, self._redundant = LaneMatrices(problem), problem.dependent
+        self._nominal = nominal_of(problem)
         n = self._n
         present = {name for name in problem.matrices.outputs if name.startswith("J[")}
         touches = np.array(
@@ -88,14 +90,15 @@ class InitialStates:
                 elif len(group.solved):
                     found &= self._solved_nearby(states, values, group)
             at = self._matrices(self._instant, states, values)
-            for residual, moved in ((at.residual, states[: self._n]), (at.residual_rate, states[self._n :])):
-                found &= scaled_residual(residual, at.jacobian, moved) <= LIMITED_DIGITS
+            for residual in constraint_residuals(at, states, self._nominal).values():
+                found &= residual <= LIMITED_DIGITS
         return Starts(states, found & np.isfinite(states).all(axis=0))
 
     def correction(self, values: Numbers, states: Numbers) -> tuple[str, str] | None:
         """The datum that was corrected most to make the state of one motion, and by how much; None if none was."""
         name, size, now = self._largest_change(Origin.GIVEN, values, states)
-        return (name, f"{size:.2g}") if size > ROUNDING * max(1.0, abs(now)) else None
+        nominal = self._nominal.state[list(self._origins).index(name)] if name else 1.0
+        return (name, f"{size:.2g}") if size > ROUNDING * max(nominal, abs(now)) else None
 
     def moved(self, values: Numbers, states: Numbers) -> tuple[str, str] | None:
         """The value that differs most from the guess in the state of one motion, and by how much; None without one."""
@@ -119,7 +122,8 @@ class InitialStates:
         rows, n = group.given + group.half * self._n, self._n
         at, data = self._matrices(self._instant, states, values), states[rows]
         residual, moved = (at.residual_rate, states[n:]) if group.half else (at.residual, states[:n])
-        missed = scaled_residual(residual[group.bound], at.jacobian[group.bound], moved) > ROUNDING
+        sizes = np.split(self._nominal.state, 2)[group.half]
+        missed = scaled_residual(residual[group.bound], at.jacobian[group.bound], moved, sizes) > ROUNDING
         self._solved(states, values, group, group.given, group.bound, False, np.flatnonzero(missed))
         size = np.max(np.abs(data), axis=0)
         return np.max(np.abs(states[rows] - data), axis=0) <= LIMITED_DIGITS * np.where(size > 0, size, 1.0)
@@ -138,7 +142,7 @@ class InitialStates:
         def correct(at: Linearized) -> Numbers:
             return _step(at.mass, at.jacobian, at.residual, self._redundant)
 
-        states[places], found = NearestRoots(linearize, correct)(states[places])
+        states[places], found = NearestRoots(linearize, correct, self._nominal.state[places])(states[places])
         return found
 
     def _solved(
@@ -164,7 +168,7 @@ class InitialStates:
             change = _step(mass, jacobian, residual, self._redundant)
             here = states[np.ix_(places, active)]
             states[np.ix_(places, active)] = here + change
-            share = np.max(np.abs(change), axis=0) / np.maximum(1.0, np.max(np.abs(here), axis=0))
+            share = share_of(change, here, self._nominal.state[places])
             arrived[active] = share <= SETTLED
             active = active[np.isfinite(share) & (share > ROUNDING)]
         return arrived
@@ -188,6 +192,7 @@ class InitialStatesBySign:
 
     def __init__(self, problem: MotionProblem) -> None:
         self._problem, self._start = problem, float(problem.start["t"])
+        self._time = nominal_of(problem).time
         self._of: dict[tuple[float, ...], InitialStates] = {}
         self._in_pattern([1.0] * len(problem.signs))
         self._clocks = {
@@ -224,7 +229,7 @@ class InitialStatesBySign:
         """Signs at the start, shape (signs, k), each function after those that it may contain."""
         k, problem = values.shape[1], self._problem
         signs, unused = np.ones((len(problem.signs), k)), np.zeros((len(problem.state) + len(problem.multipliers), k))
-        scale = max(1.0, abs(self._start))
+        scale = max(self._time, abs(self._start))
         for index, clock in self._clocks.items():
             now, soon = (
                 clock(np.concatenate([np.full((1, k), instant), unused, signs, values]))[0]

@@ -6,6 +6,7 @@ A a - J^T lambda = h,  J a = -c, beside the constraints f and their rate df/dt.
 import math
 import re
 from collections.abc import Sequence
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 from ..program.motion_problem import MotionProblem, require_signs_known
 from ..program.precision import read_precision
 from .evaluation import Numbers, evaluation_once, lane_evaluation
+from .nominal import Nominal, nominal_of
 from .open_values import OpenValues
 
 Vector = NDArray[np.float64]
@@ -46,16 +48,24 @@ class MotionMatrices:
     ----------
     coordinates : int
         How many there are: n.
+    nominal : Nominal
+        Sizes of the motion's quantities.
     """
 
     def __init__(self, problem: MotionProblem) -> None:
         require_signs_known(problem)
         self.coordinates, self._kept = len(problem.coordinates), problem.independent
-        self._layout = _Layout(problem)
+        self._problem = problem
+        self._layout = Layout(problem)
         self._evaluate = evaluation_once(problem, problem.matrices, read_precision("double"))
         self._others = np.array([0.0] * len(problem.multipliers) + list(problem.numbers))
         self._values, self._lasting = OpenValues(problem, read_precision("double")), len(problem.parameters)
         self._tables = bool(problem.tables)
+
+    @cached_property
+    def nominal(self) -> Nominal:
+        """Found when they are first asked for."""
+        return nominal_of(self._problem)
 
     def __call__(self, t: float | Vector, state: Vector) -> Matrices:
         """Evaluate the matrices.
@@ -89,7 +99,7 @@ class LaneMatrices:
 
     def __init__(self, problem: MotionProblem) -> None:
         require_signs_known(problem)
-        self._layout, self._g = _Layout(problem), len(problem.multipliers)
+        self._layout, self._g = Layout(problem), len(problem.multipliers)
         self._evaluate = lane_evaluation(problem, problem.matrices)
 
     def __call__(self, t: float | Numbers, states: Numbers, values: Numbers) -> Matrices:
@@ -111,7 +121,7 @@ class LaneMatrices:
         return self._layout.matrices(self._evaluate(np.concatenate([instants, states, unused, values])))
 
 
-class _Layout:
+class Layout:
     """Where the outputs of the program of the matrices go."""
 
     def __init__(self, problem: MotionProblem) -> None:

@@ -48,10 +48,12 @@ class NearestRoots:
     ----------
     linearize, correct : callable
         What comes out for one point does not depend on the others.
+    sizes : ndarray, shape (u,)
+        Nominal ones of the unknowns.
     """
 
-    def __init__(self, linearize: Linearize, correct: Correct) -> None:
-        self._linearize, self._correct = linearize, correct
+    def __init__(self, linearize: Linearize, correct: Correct, sizes: Numbers) -> None:
+        self._linearize, self._correct, self._sizes = linearize, correct, sizes
 
     def __call__(self, guess: Numbers) -> tuple[Numbers, NDArray[np.bool_]]:
         """The roots, shape (u, k), and whether there are any."""
@@ -71,7 +73,7 @@ class NearestRoots:
             here = points[:, active]
             at = self._linearize(here, lanes[active])
             change = self._correct(at)
-            share = np.max(np.abs(change), axis=0) / np.maximum(1.0, np.max(np.abs(here), axis=0))
+            share = share_of(change, here, self._sizes)
             points[:, active] = self._stepped(here, change, at, lanes[active], share <= SETTLED)
             found[active] = share <= SETTLED
             active = active[np.isfinite(share) & (share > ROUNDING)]
@@ -135,6 +137,12 @@ class NearestRoots:
                 known[active[improved]] = True
                 active = active[improved] if reach is None else active[:0]
         return best, known
+
+
+def share_of(change: Numbers, here: Numbers, sizes: Numbers) -> Numbers:
+    """The largest change of k points, shape (u, k), beside their largest number, all in terms of nominal sizes."""
+    largest = np.max(np.abs(here) / sizes[:, None], axis=0, initial=1.0)
+    return np.max(np.abs(change) / sizes[:, None], axis=0) / largest
 
 
 def _starts(mass: Numbers, far: Numbers) -> Iterator[Numbers]:

@@ -39,7 +39,7 @@ class StepsHeldAgainstTheEquations:
     Attributes
     ----------
     missed : float
-        Relative to the largest velocity where that is more than one.
+        Relative to the largest velocity where that is more than its nominal size.
     """
 
     def __init__(self, motion: PiecewiseMotion, span: Any, precision: Precision) -> None:
@@ -65,8 +65,9 @@ class StepsHeldAgainstTheEquations:
         n = len(accelerations)
         gained = half * (accelerations.reshape(n, len(half), -1) * self._weights).sum(axis=2)
         velocities = piece.states(edges)[n:]
-        missed = as_floats((np.diff(velocities, axis=1) - gained).ravel())
-        largest = np.max(np.abs(as_floats(velocities.ravel())), initial=1.0)
+        sizes = self._motion.nominal.velocities[:, None]
+        missed = as_floats(np.diff(velocities, axis=1) - gained) / sizes
+        largest = np.max(np.abs(as_floats(velocities) / sizes), initial=1.0)
         return float(np.max(np.abs(missed), initial=0.0) / largest)
 
 

@@ -52,13 +52,15 @@ from .engines.engine import Piece, Solutions
 from .engines.switching import Leg, SwitchingEngine
 from .evaluation import Evaluation, Numbers, as_floats, evaluation, evaluation_once
 from .matrices import Matrices, Matrix, MotionMatrices, Vector, start_of
+from .nominal import nominal_of, with_nominal
 from .open_values import BesideState
 from .request import SimulationRequest
 from .surfaces import Crossing, Surfaces
 from .time_dependence import time_dependence
 
-ZERO = 1e-12  # of a switching function or its rate, in terms of the state: no sign
+ZERO = 1e-12  # of what a switching function or its rate is at nominal sizes: no sign
 CONTINUOUS = 1e-9  # relative change at an instant that is rounding
+LATER = (1 / 7, 3 / 7, 6 / 7)  # of the nominal time: instants at which a function of the time is looked at
 CROWD, CROWDED = 64, 1e-7  # so many switchings in such a part of the time span have no end
 SOON = 1e-9  # of the time span: how far ahead the sign of a function of the time is looked for where it vanishes
 
@@ -207,7 +209,10 @@ class PiecewiseMotion:
     """
 
     def __init__(self, problem: MotionProblem, request: SimulationRequest, precision: Precision, end: Any) -> None:
+        self._span = float(end) - float(problem.start["t"])
+        problem = with_nominal(problem, self._span)
         self._problem, self._request, self._precision, self._end = problem, request, precision, end
+        self.nominal = nominal_of(problem)
         self._signs = {sign.name: sign for sign in problem.signs}
         self._clock = ticks(problem)
         self._to_come = deque(sorted({tick.t for tick in self._clock.values()}))
@@ -218,7 +223,6 @@ class PiecewiseMotion:
             ("switching", precision.name), problem.matrices, dict
         )
         self._others = BesideState(problem, precision)
-        self._span = float(end) - float(problem.start["t"])
         self._left: tuple[str, ...] = ()
         self._jump = precision.number("0")
         self.switchings: list[Switching] = []
@@ -450,7 +454,8 @@ class PiecewiseMotion:
         after.engine.restart(t, moved)
         self._add_phase(t, after)
         self._jump = self._jump + (self._energy(after, t, moved) - self._energy(before, t, state))
-        return Passage.CROSSED if _close(moved, state) else Passage.IMPULSE
+        change = self.nominal.share(as_floats(moved - state), as_floats(state))
+        return Passage.CROSSED if change <= CONTINUOUS else Passage.IMPULSE
 
     def _add_phase(self, start: Any, part: Part) -> None:
         self.phases.append(Phase(start, part))
@@ -458,9 +463,7 @@ class PiecewiseMotion:
 
     def _behind(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers, to: int) -> int | str:
         """The sign with which a motion goes on from a surface of the state."""
-        if sign.by is By.CONFIGURATION and abs(self._output("switch_rate", sign, pattern, t, state)) > ZERO * _size(
-            state
-        ):
+        if sign.by is By.CONFIGURATION and not self._vanishes("switch_rate", sign, pattern, t, state):
             return to
         if not holdable(self._problem, sign.name):
             return to
@@ -483,11 +486,13 @@ class PiecewiseMotion:
         """The state behind an instant of switching."""
         floats, n = as_floats(state), len(state) // 2
         old, new = before.matrices(float(t), floats), after.matrices(float(t), floats)
-        if residuals(new, floats, np.zeros(n))["position"] > CONTINUOUS or not _close(new.mass, old.mass):
+        left = residuals(new, floats, np.zeros(n), self.nominal)["position"]
+        energies = np.outer(self.nominal.velocities, self.nominal.velocities)
+        if left > CONTINUOUS or not _close(new.mass * energies, old.mass * energies):
             self._refuse(t, f"the constraints or the masses jump as {sign.of} changes its sign")
         kick = as_floats(self._momenta(before, t, state)) - as_floats(self._momenta(after, t, state))
         moved = state.copy()
-        if np.max(np.abs(kick), initial=0.0) > CONTINUOUS * _size(state):
+        if np.max(np.abs(kick) * self.nominal.velocities, initial=0.0) > CONTINUOUS * self.nominal.energy(new.mass):
             if self._precision.name != "double":
                 self._refuse(t, f"momenta jump as {sign.of} changes its sign, which takes double precision")
             moved[n:] += factored_constraints(new.mass, new.jacobian).accelerations(kick, new.residual_rate)
@@ -495,13 +500,14 @@ class PiecewiseMotion:
             moved = project(after.matrices, float(t), as_floats(moved))
         else:
             after.projection.project(t, moved)
-        if self._problem.servo and not _close(moved, state):
+        continuous = self.nominal.share(as_floats(moved - state), floats) <= CONTINUOUS
+        if self._problem.servo and not continuous:
             self._require_reactions(new, as_floats(moved - state)[n:], kick, sign, t)
         if sign.by is not By.TIME:
             jump = abs(float(self._energy(after, t, state) - self._energy(before, t, state)))
-            if not _close(moved, state):
+            if not continuous:
                 self._refuse(t, f"an impact decides how the motion goes on as {sign.of} changes its sign")
-            if jump > CONTINUOUS * max(1.0, abs(float(self._energy(before, t, state)))):
+            if jump > CONTINUOUS * max(self.nominal.energy(old.mass), abs(float(self._energy(before, t, state)))):
                 self._refuse(t, f"the energy jumps as {sign.of} changes its sign")
         return moved
 
@@ -523,12 +529,11 @@ class PiecewiseMotion:
         for sign in self._problem.signs:
             if sign.name in self._clock:
                 continue
-            found = self._output("switch", sign, pattern, t, state)
-            if abs(found) <= ZERO * _size(state):
+            if self._vanishes("switch", sign, pattern, t, state):
                 pattern[sign.name] = self._leaving(sign, pattern, t, state)
                 self._left = (*self._left, sign.name)
             else:
-                pattern[sign.name] = 1 if found > 0 else -1
+                pattern[sign.name] = 1 if self._output("switch", sign, pattern, t, state) > 0 else -1
         return pattern
 
     def _leaving(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> int | str:
@@ -536,10 +541,8 @@ class PiecewiseMotion:
         if sign.by is By.TIME:
             soon = t + self._precision.number(repr(SOON * self._span))
             return 1 if self._output("switch", sign, pattern, soon, state) >= 0 else -1
-        if sign.by is By.CONFIGURATION:
-            rate = self._output("switch_rate", sign, pattern, t, state)
-            if abs(rate) > ZERO * _size(state):
-                return 1 if rate > 0 else -1
+        if sign.by is By.CONFIGURATION and not self._vanishes("switch_rate", sign, pattern, t, state):
+            return 1 if self._output("switch_rate", sign, pattern, t, state) > 0 else -1
         if not holdable(self._problem, sign.name):
             self._refuse(t, f"{sign.of} is zero, and not in forces alone, which leaves open how the motion goes on")
         return self._decided(sign, pattern, t, state)
@@ -554,11 +557,29 @@ class PiecewiseMotion:
 
     def _output(self, name: str, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> float:
         """Value of a `switching_function`, which is compiled when it is first asked for."""
+        return float(self._function(name, sign, pattern)(self._inputs(t, state))[0])
+
+    def _vanishes(self, name: str, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> bool:
+        """Whether a `switching_function` is rounding, beside what it changes by as the state and the time do."""
+        function = self._function(name, sign, pattern)
+        sizes = np.maximum(np.abs(as_floats(state)), self.nominal.state)
+        moves = [*np.diag(sizes), *np.zeros((len(LATER), len(state)))]
+        later = [0.0] * len(state) + [share * self.nominal.time for share in LATER]
+        numbers = [
+            [self._precision.number(repr(float(each))) for each in (*move, dt)]
+            for move, dt in zip(moves, later, strict=True)
+        ]
+        here = float(function(self._inputs(t, state))[0])
+        there = [float(function(self._inputs(t + dt, state + np.array(move)))[0]) for *move, dt in numbers]
+        changes = np.abs(np.array(there) - here)
+        return abs(here) <= ZERO * float(np.sum(changes, where=np.isfinite(changes)))
+
+    def _function(self, name: str, sign: Sign, pattern: Pattern) -> Evaluation:
         what = name, sign.name, frozenset(pattern.items())
         if what not in self._functions:
             program = switching_function(self._problem, name, sign.name, pattern)
             self._functions[what] = evaluation(program, self._precision)
-        return float(self._functions[what](self._inputs(t, state))[0])
+        return self._functions[what]
 
     def _momenta(self, part: Part, t: Any, state: Numbers) -> Numbers:
         return part.momenta(self._inputs(t, state))
@@ -597,11 +618,6 @@ def _side_by_side(parts: Sequence[Numbers]) -> Numbers:
     return np.concatenate([rows[:shared] for rows in parts], axis=1)
 
 
-def _size(state: Numbers) -> float:
-    return max(1.0, float(np.max(np.abs(as_floats(state)))))
-
-
-def _close(numbers: Numbers, others: Numbers) -> bool:
+def _close(numbers: Vector, others: Vector) -> bool:
     """Whether two arrays of numbers differ by rounding alone."""
-    a, b = (np.asarray(each, dtype=float).ravel() for each in (numbers, others))
-    return bool(np.max(np.abs(a - b), initial=0.0) <= CONTINUOUS * max(1.0, float(np.max(np.abs(b), initial=0.0))))
+    return bool(np.max(np.abs(numbers - others), initial=0.0) <= CONTINUOUS * np.max(np.abs(others), initial=0.0))

@@ -241,14 +241,14 @@ class _Simulation:
 
     def _residuals(self, instant: Any, state: Numbers, accelerations: Numbers) -> Mapping[str, float]:
         at = self.motion.matrices(float(instant), as_floats(state))
-        return residuals(at, as_floats(state), as_floats(accelerations))
+        return residuals(at, as_floats(state), as_floats(accelerations), self.motion.nominal)
 
     def _report(self, seconds: float) -> Report:
         state, n = self.motion.state.copy(), len(self.problem.coordinates)
         observed = self.problem.reactions if "multipliers" in self.problem.observe else ()
         at = self.motion.matrices(float(self.end), as_floats(state))
         multipliers = self.solutions.multipliers[:, -1]
-        left = residuals(at, as_floats(state), as_floats(self.solutions.accelerations[:, -1]))
+        left = residuals(at, as_floats(state), as_floats(self.solutions.accelerations[:, -1]), self.motion.nominal)
         return Report(
             t=self.end,
             coordinates=dict(zip(self.problem.coordinates, state[:n], strict=True)),
@@ -288,7 +288,7 @@ class _Simulation:
         first, last = as_floats(self.first), as_floats(self.motion.state)
         start, end = (self.motion.matrices(float(self.start), first), first), (at, last)
         exchanged = max(self.recording.largest_work, self.exchange.exchanged)
-        small = expected(self.motion.tol, self.motion.steps)
+        small = expected(self.motion.tol, self.motion.steps) * self.motion.nominal.velocities
         return {**kept, "energy": float(energy_missed(start, end, self.exchange.error, exchanged, small)), **within}
 
     def _cases(self, state: Numbers) -> tuple[HardCase, ...]:
@@ -296,7 +296,13 @@ class _Simulation:
         start, end = Instant(float(self.start), as_floats(self.first)), Instant(float(self.end), as_floats(state))
         called_for = [leg.case for leg in self.motion.legs if leg.case is not None]
         found = hard_cases(
-            self.motion.matrices, self.problem.independent, start, end, self.reactions, self.motion.steps
+            self.motion.matrices,
+            self.motion.nominal,
+            self.problem.independent,
+            start,
+            end,
+            self.reactions,
+            self.motion.steps,
         )
         answering = self.problem.reactions or not self.problem.servo  # servo-constraints have no reaction by themselves
         found = (case for case in found if answering or case is not HardCase.FREE_CANCELLATION)

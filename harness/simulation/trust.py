@@ -71,7 +71,7 @@ def energy_missed(
     end: tuple[Matrices, Vector],
     error: float | Vector,
     exchanged: float | Vector,
-    small: float | Vector,
+    small: Vector,
 ) -> float | Vector:
     """An energy error relative to the size of the energies that it is an error of; of one motion or of k.
 
@@ -81,13 +81,13 @@ def energy_missed(
         Matrices and state there, those of k motions with a last axis more.
     error, exchanged : float or ndarray, shape (k,)
         The largest error, and the largest change of the energy or work.
-    small : float or ndarray, shape (k,)
-        Velocities no larger than that make no error: steps of the tolerance, which is an absolute one too, may add up
-        to them.
+    small : ndarray, shape (n,) or (n, k)
+        Velocities no larger than that make no error: steps of the tolerance, which is one of their nominal sizes too,
+        may add up to them.
     """
     scale = np.maximum(np.maximum(energy_scale(*start), energy_scale(*end)), exchanged)
-    heaviest = np.max(np.diagonal(end[0].mass), axis=-1, initial=0.0)
-    left = np.maximum(error - heaviest * small**2, 0.0)  # NaN stays
+    at_rest = np.max(np.diagonal(end[0].mass) * np.transpose(small) ** 2, axis=-1, initial=0.0)
+    left = np.maximum(error - at_rest, 0.0)  # NaN stays
     return np.where((scale > 0) & (scale < np.inf), left / scale, left)
 
 

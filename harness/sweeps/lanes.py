@@ -28,9 +28,10 @@ from ..program.heyoka_function import dynamics, import_heyoka, zero_multipliers
 from ..program.motion_problem import MotionProblem, computing
 from ..program.motion_program import Expression, Name
 from ..program.precision import read_precision
-from ..simulation.constraints.program_projection import nearest_state
+from ..simulation.constraints.program_projection import distance, nearest_state
 from ..simulation.engines.program_engine import SHRUNK
 from ..simulation.evaluation import in_full_vectors, lane_evaluation
+from ..simulation.nominal import nominal_of
 from .extremes import Steps
 from .quantities import along_motion, expressions_of
 
@@ -105,7 +106,7 @@ class LaneEngine:
         lanes: int | None = None,
     ) -> None:
         heyoka = import_heyoka()
-        self._start = float(problem.start["t"])
+        self._start, self._nominal = float(problem.start["t"]), nominal_of(problem)
         lanes = self._lanes = lanes or (LANES_LOOKED_AT if along else LANES)
         self._along, self._look, self._size = len(along), look, len(problem.state)
         outcome = heyoka.taylor_outcome
@@ -123,7 +124,7 @@ class LaneEngine:
         self._integrator = heyoka.taylor_adaptive_batch(
             equations,
             np.zeros((len(equations), lanes)),
-            tol=tol,
+            tol=tol * self._nominal.absolute(),
             compact_mode=problem.motion.operations * lanes >= COMPACT_FROM,
         )
         self._state, self._time = self._integrator.state, self._integrator.time
@@ -184,7 +185,7 @@ class LaneEngine:
 
     def _projected(self, instants: Floats, states: Floats, values: Floats) -> tuple[Floats, NDArray[np.bool_]]:
         found = self._nearest(np.concatenate([instants, states, values]))
-        return found[:-1], ~(found[-1] <= STRAYED**2)
+        return found, ~(distance(states, found, self._nominal.state) <= STRAYED)
 
     def _batch(self, starts: Floats, pars: Floats, stops: Stops) -> _Batch:
         """A batch, and again without lanes that fail."""

@@ -24,6 +24,7 @@ from ..simulation.diagnostics import constraint_residuals
 from ..simulation.evaluation import in_full_vectors
 from ..simulation.initial_state import initial_states_of, started
 from ..simulation.matrices import LaneMatrices
+from ..simulation.nominal import nominal_at_each
 from ..simulation.request import SimulationRequest, Stabilization
 from ..simulation.simulate import last_instant
 from ..simulation.trust import MARGIN, energy_missed, expected, may_hide, trusted
@@ -142,7 +143,8 @@ class RowMaker:
             rows.kept[name][there] = lane_radii(self._problem, starts.states[:, there], rows.values[:, there])
         if not self._moves:
             states = starts.states[:, there]
-            left = constraint_residuals(self._lane_matrices(self._start, states, rows.values[:, there]), states)
+            at = self._lane_matrices(self._start, states, rows.values[:, there])
+            left = constraint_residuals(at, states, nominal_at_each(self._problem, at.mass, states, 0.0))
             rows.residual[there] = np.maximum(left["position"], left["velocity"])
             return
         for row in self._left_alone(rows, there, starts.states):
@@ -176,8 +178,9 @@ class RowMaker:
         found = self._engine.follow(states, values, stops)
         start, end = (self._start, states), (ends, found.states[-1])
         at_start, at_end = ((self._lane_matrices(*at, values), at[1]) for at in (start, end))
-        small = expected(self.plan.tol, found.steps)
-        left = constraint_residuals(*at_end)
+        nominal = nominal_at_each(self._problem, at_start[0].mass, states, self._end - self._start)
+        small = expected(self.plan.tol, found.steps) * nominal.velocities
+        left = constraint_residuals(*at_end, nominal)
         energy = energy_missed(at_start, at_end, found.energy_error, found.exchanged, small)
         residual = np.maximum(left["position"], left["velocity"])
         well = ended & found.arrived & trusted({**left, "energy": energy}, self.plan.tol, found.steps)

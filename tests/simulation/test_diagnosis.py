@@ -30,5 +30,6 @@ def test_stiffness_is_the_ratio_of_two_pendulums_lengths(write_scene, monkeypatc
     )
     problem = motion_problem(write_scene(PENDULUMS), Request(), Limits())
     at = diagnosis.Instant(*start_of(problem))
-    assert diagnosis.stiffness(MotionMatrices(problem), at) == pytest.approx(100, rel=1e-6)
+    matrices = MotionMatrices(problem)
+    assert diagnosis.stiffness(matrices, matrices.nominal, at) == pytest.approx(100, rel=1e-6)
     assert len(factored) == 1

@@ -11,6 +11,7 @@ from holonom.sandbox import Limits
 from holonom.simulation.diagnostics import EnergyBalance, condition, residuals
 from holonom.simulation.engines.robust import RobustEngine
 from holonom.simulation.matrices import Matrices, MotionMatrices
+from holonom.simulation.nominal import Nominal
 
 
 def balance_of(motion: RobustEngine, asked) -> EnergyBalance:
@@ -95,7 +96,7 @@ def test_a_residual_is_the_distance_from_the_constraint():
     outwards = state[:n] / np.linalg.norm(state[:n])
     state[:n] += 1e-7 * outwards
     state[n:] += 1e-5 * outwards
-    left = residuals(matrices(0.0, state), state, np.zeros(n))
+    left = residuals(matrices(0.0, state), state, np.zeros(n), Nominal(1.0, np.ones(2 * n)))
     assert left["position"] == pytest.approx(1e-7, rel=1e-6)
     assert left["velocity"] == pytest.approx(1e-5, rel=1e-6)
 
@@ -105,7 +106,8 @@ def test_a_steep_constraint_weighs_no_more_than_a_flat_one():
         row, left = np.array([[3.0, 4.0]]), np.array([1e-6])
         return Matrices(np.eye(2), np.zeros(2), factor * row, factor * left, factor * left, factor * left, True)
 
-    found = [residuals(at(factor), np.ones(4), np.ones(2)) for factor in (1.0, 1e200, 1e-200)]
+    sizes = Nominal(1.0, np.ones(4))
+    found = [residuals(at(factor), np.ones(4), np.ones(2), sizes) for factor in (1.0, 1e200, 1e-200)]
     assert found[0]["position"] == pytest.approx(2e-7)
     assert all(other[name] == pytest.approx(found[0][name]) for other in found for name in found[0])
 

@@ -14,8 +14,8 @@ from ...program.heyoka_function import COMPACT_FROM, heyoka_expressions, import_
 from ...program.motion_problem import MotionProblem, computing
 from ...program.numpy_function import NumpyFunction
 from ...program.precision import Precision
-from ..evaluation import OPERATION, CompiledIfItPays, Evaluation, Numbers, may_wait, zeros
-from ..matrices import MotionMatrices
+from ..evaluation import OPERATION, CompiledIfItPays, Evaluation, Numbers, as_floats, may_wait, zeros
+from ..matrices import MotionMatrices, Vector
 from ..open_values import OpenValues
 from ..parts_of_scipy import lapack
 
@@ -45,6 +45,7 @@ class ProgramProjection:
         self._inputs = zeros(precision, 1 + len(problem.state) + len(problem.open_inputs))
         self._moving, self._open = slice(1, 1 + len(problem.state)), slice(1 + len(problem.state), None)
         self._values, self._lasting = OpenValues(problem, precision), not problem.tables
+        self._sizes = matrices.nominal.state
         self._inputs[self._open] = self._values.after(precision.number(problem.start["t"]))
 
     def project(self, instant: Any, state: Numbers) -> float:
@@ -57,15 +58,16 @@ class ProgramProjection:
         Returns
         -------
         float
-            How far: the length of the change, relative to (1 + x^2)^(1/2) of each number x.
+            How far, by `distance`.
         """
         self._inputs[0] = instant
         self._inputs[self._moving] = state
         if not self._lasting:
             self._inputs[self._open] = self._values.at(instant)
         found = self._nearest(self._inputs)
-        state[:] = found[:-1]
-        return float(found[-1]) ** 0.5
+        changed = distance(state, found, self._sizes)
+        state[:] = found
+        return float(changed)
 
 
 def _compiled_if_it_pays(problem: MotionProblem, precision: Precision, matrices: MotionMatrices) -> Evaluation:
@@ -91,15 +93,14 @@ def _nearest_by_lapack(matrices: MotionMatrices) -> Evaluation:
     n = matrices.coordinates
 
     def nearest(inputs: Numbers) -> Numbers:
-        before = inputs[1 : 1 + 2 * n]
-        state = before.copy()
+        state = inputs[1 : 1 + 2 * n].copy()
         for moved, residual in ((slice(n), "residual"), (slice(n, 2 * n), "residual_rate")):
             at = matrices.independent(inputs[0], state)
             g = len(at.jacobian)
             bordered = np.block([[at.mass, at.jacobian.T], [at.jacobian, np.zeros((g, g))]])
             solution, singular = lapack().dgesv(bordered, np.append(np.zeros(n), -getattr(at, residual)))[2:]
             state[moved] += np.nan if singular else solution[:n]
-        return _with_distance(state, before)
+        return state
 
     return nearest
 
@@ -117,14 +118,21 @@ def _nearest_by_numpy(problem: MotionProblem) -> Evaluation:
         moved = given.copy()
         moved[1 : 1 + n] += function.at_points(given)[position]
         moved[1 + n : 1 + 2 * n] += function.at_points(moved)[velocity]
-        state, before = moved[1 : 1 + 2 * n, 0], given[1 : 1 + 2 * n, 0]
-        return _with_distance(state, before)
+        return moved[1 : 1 + 2 * n, 0]
 
     return nearest
 
 
-def _with_distance(state: Numbers, before: Numbers) -> Numbers:
-    return np.append(state, np.sum((state - before) ** 2 / (1 + before**2)))
+def distance(before: Numbers, after: Numbers, sizes: Vector) -> Vector:
+    """Length of a change of a state, or of k of them, relative to (s^2 + x^2)^(1/2) of each number x of nominal size s.
+
+    Parameters
+    ----------
+    before, after : ndarray, shape (2n,) or (2n, k)
+    sizes : ndarray, shape (2n,)
+    """
+    change, numbers = as_floats(after - before), as_floats(before)
+    return np.linalg.norm(change.T / np.hypot(sizes, numbers.T), axis=-1)
 
 
 def nearest_state(problem: MotionProblem, precision: Precision, **options: Any) -> Any:
@@ -133,19 +141,16 @@ def nearest_state(problem: MotionProblem, precision: Precision, **options: Any) 
     Returns
     -------
     heyoka.cfunc
-        From t, the state and what is open to the nearest state that keeps the constraints, and the square of
-        its distance, relative to (1 + x^2)^(1/2) of each number x.
+        From t, the state and what is open to the nearest state that keeps the constraints.
     """
     heyoka = import_heyoka()
     variables = {name: heyoka.expression(name) for name in ("t", *problem.state, *problem.open_inputs)}
     inputs = {**variables, **dict.fromkeys(problem.multipliers, heyoka.expression(precision.number("0")))}
     velocities = problem.state[len(problem.coordinates) :]
-    one = heyoka.expression(precision.number("1"))
     position = {**inputs, **_corrected(problem, "position_correction", problem.coordinates, inputs, precision)}
     both = {**position, **_corrected(problem, "velocity_correction", velocities, position, precision)}
-    squares = [(both[x] - inputs[x]) * (both[x] - inputs[x]) / (one + inputs[x] * inputs[x]) for x in problem.state]
     return heyoka.cfunc(
-        [*(both[name] for name in problem.state), heyoka.sum(squares)],
+        [both[name] for name in problem.state],
         vars=list(variables.values()),
         compact_mode=problem.projection.operations >= COMPACT_FROM,
         **precision.options,

@@ -70,7 +70,7 @@ def settle(
     HolonomError
         The equations of motion are not finite there.
     """
-    n, last, settled = state.shape[-1] // 2, np.inf, np.False_
+    n, last, settled, nominal = state.shape[-1] // 2, np.inf, np.False_, matrices.nominal
     for _ in range(ITERATIONS):
         at = matrices(t, state)
         if not np.all(at.finite):
@@ -78,7 +78,7 @@ def settle(
             raise HolonomError(Failure.NO_WAY_ON, detail=f"{first:.10g}, where numbers overflow")
         factored = factored_constraints(at.mass, at.jacobian, rank)
         change = factored.correction(at.residual)
-        size, extent = factored.length(change), _extent(factored, state[..., :n])
+        size, extent = factored.length(change), _extent(factored, state[..., :n], nominal.coordinates)
         settled |= (size <= ROUNDING * extent) | ((CONTRACTION * last < size) & (size <= CONSISTENT * extent))
         if np.all(settled) or not np.all(np.isfinite(size)):
             break
@@ -87,13 +87,13 @@ def settle(
     _require_small(t, at.residual, factored, extent)
     change = factored.correction(at.residual_rate)
     left = at.residual_rate + np.matvec(at.jacobian, change)
-    _require_small(t, left, factored, _extent(factored, state[..., n:]))
+    _require_small(t, left, factored, _extent(factored, state[..., n:], nominal.velocities))
     return np.concatenate([state[..., :n], state[..., n:] + change], axis=-1), factored
 
 
-def _extent(factored: FactoredConstraints, numbers: Vector) -> Vector:
-    """Length, in the mass metric, of coordinates or velocities, each at least one."""
-    return factored.length(np.maximum(np.abs(numbers), 1.0))
+def _extent(factored: FactoredConstraints, numbers: Vector, sizes: Vector) -> Vector:
+    """Length, in the mass metric, of coordinates or velocities, each of its nominal size at least."""
+    return factored.length(np.maximum(np.abs(numbers), sizes))
 
 
 def _require_small(t: float | Vector, residual: Vector, factored: FactoredConstraints, extent: Vector) -> None:

@@ -26,9 +26,9 @@ from ..matrices import Matrices, MotionMatrices, Vector, start_of
 from .directions import DEPENDENT, WeightedConstraints, rank_of, weighted_constraints
 from .projection import InconsistentConstraints, settle
 
-PROBE = 1e-4  # of a unit, the way that the coordinates go to see which constraints stay dependent
-NEXT_TO = 3e-4  # of a unit, the way to a singular configuration that is no way
-AT_REST = 1e-8  # speed below which the time, not the way, tells how near a singular configuration is
+PROBE = 1e-4  # of their nominal sizes, the way that the coordinates go to see which constraints stay dependent
+NEXT_TO = 3e-4  # of nominal sizes, the way to a singular configuration that is no way
+AT_REST = 1e-8  # nominal speed below which the time, not the way, tells how near a singular configuration is
 GROWN = 3.0  # times, on this way, that a singular value grows from next to a singular configuration
 REACH = 2.0  # steps ahead within which a singular configuration counts as near
 SMALL = 0.5  # least singular value above which none is near, however fast it falls
@@ -37,7 +37,7 @@ HALVINGS = 60  # of an interval between two of them: down to rounding
 ITERATIONS = 5
 SHORTLY = 1e-6  # of the way to such an instant
 VANISHED = 1e-3  # of its size at the start: what is left of a gradient that runs to zero
-DIFFERENCE = 1e-6  # of coordinates
+DIFFERENCE = 1e-6  # of the nominal sizes of coordinates
 NEGLIGIBLE = 1e-6  # of a gradient, or of a residual beside what the gradient makes of the way to the point
 
 
@@ -61,8 +61,9 @@ def probed(matrices: MotionMatrices, t: float, state: Vector) -> tuple[int, floa
         Time until the least singular value that counts vanishes, if it goes on so; infinite where it grows, zero so
         near a singular configuration that the state stands for one.
     """
-    n, speed = len(state) // 2, float(np.max(np.abs(state[len(state) // 2 :]), initial=0.0))
-    later, way = t + PROBE / max(1.0, speed), PROBE * min(1.0, speed)
+    n, nominal = len(state) // 2, matrices.nominal
+    speed = nominal.time * float(np.max(np.abs(state[n:]) / nominal.coordinates, initial=0.0))
+    later, way = t + nominal.time * PROBE / max(1.0, speed), PROBE * min(1.0, speed)
     here = singular_values_at(matrices, t, state)
     moved = np.concatenate([state[:n] + (later - t) * state[n:], state[n:]])
     kept_rank = rank_of(singular_values_at(matrices, later, moved), max(way**1.5, DEPENDENT))
@@ -73,7 +74,7 @@ def probed(matrices: MotionMatrices, t: float, state: Vector) -> tuple[int, floa
     rank = max(rank_of(here), rank_of(there, max(way**1.5, DEPENDENT)))
     until = extrapolated_zero(t, least_of(here, rank), later, least_of(there, rank)) - t
     grown = least_of(there, rank) > GROWN * least_of(here, rank)
-    next_to = until * (speed if speed > AT_REST else 1.0) < NEXT_TO
+    next_to = until / nominal.time * (speed if speed > AT_REST else 1.0) < NEXT_TO
     return rank, 0.0 if grown or next_to else until
 
 
@@ -192,26 +193,26 @@ def zeros_of_controls(problem: MotionProblem, start: float, end: float) -> list[
 
 def _without_gradient(matrices: MotionMatrices, instants: list[float], state: Vector, beta: int) -> Iterator[float]:
     """Those of the instants at which a constraint is kept by a point where it has no gradient."""
-    first = matrices(instants[0], state)
-    size, n = np.linalg.norm(first.jacobian[beta]), len(state) // 2
+    first, sizes = matrices(instants[0], state), matrices.nominal.coordinates
+    size, n = np.linalg.norm(first.jacobian[beta] * sizes), len(state) // 2
     point = state
     for t in instants:
         point = _critical_point(matrices, t, point, beta, NEGLIGIBLE * size)
         if point is None:
             return
-        way = np.linalg.norm((point - state)[:n])
+        way = np.linalg.norm((point - state)[:n] / sizes)
         if abs(matrices(t, point).residual[beta]) <= NEGLIGIBLE * size * way:
             yield t
 
 
 def _critical_point(matrices: MotionMatrices, t: float, state: Vector, beta: int, negligible: float) -> Vector | None:
     """A state where a constraint has no gradient, by Newton's method; None where it finds none."""
-    n, point = len(state) // 2, state.copy()
-    moves = DIFFERENCE * np.eye(n, 2 * n)
+    n, point, sizes = len(state) // 2, state.copy(), matrices.nominal.coordinates
+    moves = DIFFERENCE * np.diag(matrices.nominal.state)[:n]
     for _ in range(ITERATIONS):
-        gradient = matrices(t, point).jacobian[beta]
+        gradient = matrices(t, point).jacobian[beta] * sizes
         if np.linalg.norm(gradient) <= negligible:
             return point
-        hessian = [(matrices(t, point + d).jacobian - matrices(t, point - d).jacobian)[beta] for d in moves]
-        point[:n] -= np.linalg.lstsq(np.array(hessian) / (2 * DIFFERENCE), gradient, rcond=NEGLIGIBLE)[0]
+        hessian = [(matrices(t, point + d).jacobian - matrices(t, point - d).jacobian)[beta] * sizes for d in moves]
+        point[:n] -= sizes * np.linalg.lstsq(np.array(hessian) / (2 * DIFFERENCE), gradient, rcond=NEGLIGIBLE)[0]
     return None

@@ -38,6 +38,7 @@ struct follower {
 
 long evaluations;
 static double tolerance;
+static double nominal_time, nominal[STATE];       /* sizes that the tolerance is relative to, too                   */
 static double estimated;                          /* error of the last step, one where it is all that is allowed  */
 static double reached = NAN, left[STATE], step;   /* where the last steps led, and how long the next would be */
 static gsl_odeiv2_step *method;
@@ -93,7 +94,7 @@ static double size_of(const double *x, const double *state)
 {
     double sum = 0;
     for (int i = 0; i < STATE; i++) {
-        const double scaled = x[i]/(tolerance*(1 + fabs(state[i])));
+        const double scaled = x[i]/(tolerance*(nominal[i] + fabs(state[i])));
         sum += scaled*scaled;
     }
     return sqrt(sum/STATE);
@@ -110,7 +111,7 @@ static int take_step(void *unused, size_t size, double t, double h, double *y, d
     STAGES
     for (int i = 0; i < STATE; i++) {
         w[i] = y[i] + h*(SOLUTION(i));
-        const double scale = tolerance*(1 + fmax(fabs(y[i]), fabs(w[i])));
+        const double scale = tolerance*(nominal[i] + fmax(fabs(y[i]), fabs(w[i])));
         const double error5 = (ERROR5(i))/scale, error3 = (ERROR3(i))/scale;
         five += error5*error5;
         three += error3*error3;
@@ -145,10 +146,12 @@ static void *what_it_knows(void) { return &tolerance; }
 static const gsl_odeiv2_control_type every_step = { "every step", what_it_knows, NULL, adjust_step, NULL, NULL, NULL };
 
 /* Returns 0, or GSL's number for what went wrong. */
-int begin(double relative_and_absolute_tolerance)
+int begin(double relative_tolerance, double time, const double *sizes)
 {
     gsl_set_error_handler_off();
-    tolerance = relative_and_absolute_tolerance;
+    tolerance = relative_tolerance;
+    nominal_time = time;
+    memcpy(nominal, sizes, sizeof nominal);
     method = gsl_odeiv2_step_alloc(&dormand_prince, STATE);
     control = gsl_odeiv2_control_alloc(&every_step);
     evolution = gsl_odeiv2_evolve_alloc(STATE);
@@ -168,12 +171,12 @@ static double first_step(double t, const double *state)
     double slope[STATE], later[STATE], other[STATE];
     if (rates(t, state, slope, NULL)) return DBL_EPSILON;
     const double value = size_of(state, state), speed = size_of(slope, state);
-    const double h = value < 1e-5 || speed < 1e-5 ? 1e-6 : 0.01*value/speed;
+    const double h = value < 1e-5 || speed*nominal_time < 1e-5 ? 1e-6*nominal_time : 0.01*value/speed;
     for (int i = 0; i < STATE; i++) later[i] = state[i] + h*slope[i];
     if (rates(t + h, later, other, NULL)) return h;
     for (int i = 0; i < STATE; i++) other[i] -= slope[i];
-    const double steepest = fmax(speed, size_of(other, state)/h);
-    return fmin(100*h, steepest <= 1e-15 ? fmax(1e-6, 1e-3*h) : pow(0.01/steepest, 1.0/9));
+    const double steep = nominal_time*fmax(speed, nominal_time*size_of(other, state)/h);
+    return fmin(100*h, steep <= 1e-15 ? fmax(1e-6*nominal_time, 1e-3*h) : nominal_time*pow(0.01/steep, 1.0/9));
 }
 
 /* One step of Newton's method for the position, then one for the velocity at the new position. */

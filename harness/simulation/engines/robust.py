@@ -36,11 +36,13 @@ OFF_BRANCH = 1e-7  # relative distance from the constraints at the end of an arc
 LONGER = (1.0, 1.5, 2.25)  # lengths of an arc that are tried, in terms of one that reaches as far behind as before
 CLEAR = 0.5  # least singular value at the end of an arc, in terms of the one at its start
 SHORTER = 0.7  # after an arc was refused, the way to the singular configuration at which the next one is tried
-CLOSEST = 1e-7  # such a way, relative to the time or to one, at which the search for an arc is given up
+CLOSEST = 1e-7  # such a way, relative to the time or to its nominal size, at which the search for an arc is given up
 PLACE = 1e-6  # share of an arc to which the place of the singular configuration is found
 UNTRUSTED = 1e-6  # relative singular values in which no digits are left
+FIRST, LEAST_FIRST, UNFELT = 0.01, 1e-6, 1e-5  # of the estimate of a first step
+RADAU_ORDER = 4  # of its error estimate in terms of the step
 NEARLY_SINGULAR = 1e-3  # relative singular values that are left out where a motion starts from such a configuration
-FIRST_ARCS = 1.0 / 2.0 ** np.arange(12)  # lengths of arcs away from a singular configuration, as ways of coordinates
+FIRST_ARCS = 1.0 / 2.0 ** np.arange(12)  # lengths of arcs away from a singular configuration, as nominal ways
 
 
 class RobustEngine:
@@ -49,7 +51,7 @@ class RobustEngine:
     Parameters
     ----------
     tol : float or None
-        Tolerance of a step, relative and absolute.
+        Tolerance of a step, relative, and absolute in terms of nominal sizes.
     matrices : MotionMatrices or None
         Of the same motion; None to make them.
 
@@ -84,7 +86,7 @@ class RobustEngine:
             self.time, self.state = instant, state
             self._arc = self._arc_away()
         else:
-            self._begin(instant, state, None)
+            self._begin(instant, state)
             self._vanishing = instant + until_singular
 
     def advance(self, until: float) -> None:
@@ -171,7 +173,7 @@ class RobustEngine:
         self.stiff = self.stiff or self._stiffness.stiff(solver)
         self._move(solver.t, solver.y)
         if self.stiff and isinstance(solver, DOP853):
-            self._begin(self.time, self.state, None)
+            self._begin(self.time, self.state)
         return Piece(start, self.time, lambda instants: self._projected(instants, solver.dense_output()(instants)))
 
     def _projected(self, instants: Vector, states: Matrix) -> Matrix:
@@ -188,15 +190,34 @@ class RobustEngine:
             self._met = t
         return np.concatenate([state[self.n :], accelerations])
 
-    def _begin(self, t: float, state: Vector, length: float | None) -> None:
+    def _begin(self, t: float, state: Vector) -> None:
         kept = self._kept(t, state)[0]
         self._least = self._least_at(t, kept)
-        integrator = Radau if self.stiff else DOP853
+        integrator, nominal = Radau if self.stiff else DOP853, self.matrices.nominal
         self._solver: OdeSolver = integrator(
-            self._rates, t, kept, np.inf, rtol=self.tol, atol=self.tol, first_step=length
+            self._rates,
+            t,
+            kept,
+            np.inf,
+            rtol=self.tol,
+            atol=self.tol * nominal.state,
+            first_step=self._first_step(t, kept),
         )
         self.time, self.state, self._vanishing, self._refused, self._met = t, kept, np.inf, np.inf, np.inf
         self._longest = self._solver.h_abs
+
+    def _first_step(self, t: float, state: Vector) -> float:
+        """As SciPy estimates it (Hairer, Norsett & Wanner I, section II.4), with times in terms of the nominal one."""
+        nominal, order = self.matrices.nominal, RADAU_ORDER if self.stiff else DOP853.order
+        scale = self.tol * (nominal.state + np.abs(state))
+        slope = self._rates(t, state) * nominal.time
+        value, speed = (float(np.sqrt(np.mean((each / scale) ** 2))) for each in (state, slope))
+        length = LEAST_FIRST if value < UNFELT or speed < UNFELT else FIRST * value / speed
+        later = self._rates(t + length * nominal.time, state + length * slope) * nominal.time
+        steepest = max(speed, float(np.sqrt(np.mean(((later - slope) / scale) ** 2))) / length)
+        if steepest > 0 and np.isfinite(steepest):
+            length = min(100 * length, (FIRST / steepest) ** (1 / order))
+        return length * nominal.time
 
     def _move(self, t: float, state: Vector) -> None:
         """Project what a step gave, and go on from there."""
@@ -240,7 +261,7 @@ class RobustEngine:
         if ahead > min(REACH * self._solver.h_abs, SHORTER * self._refused):
             return False
         self._arc, self._refused = self._arc_over(ahead), ahead
-        if self._arc is None and ahead < CLOSEST * max(1.0, abs(self.time)):
+        if self._arc is None and ahead < CLOSEST * max(self.matrices.nominal.time, abs(self.time)):
             raise HolonomError(Failure.NO_WAY_ON, detail=f"{self.time + ahead:.10g}, a singular configuration")
         return self._arc is not None
 
@@ -248,7 +269,14 @@ class RobustEngine:
         """An arc whose end is clear of the singular configuration; None where there is none of that length."""
         guess = np.tile(self._solver.f[self.n :], (NODES, 1))
         for longer in LONGER:
-            arc = arc_over(self._accelerations, self.time, self.time + 2 * longer * ahead, self.state, guess)
+            arc = arc_over(
+                self._accelerations,
+                self.time,
+                self.time + 2 * longer * ahead,
+                self.state,
+                guess,
+                self.matrices.nominal.coordinates,
+            )
             if arc is None or not self._trusted(arc):
                 return None
             if self._least_at(arc.end, self._kept(arc.end, arc.last)[0]) > CLEAR * self._least:
@@ -261,9 +289,10 @@ class RobustEngine:
         state, factored = settle(self.matrices, self.time, self.state, rank)
         at = self.matrices(self.time, state)
         guess = np.tile(factored.accelerations(at.force, at.curvature), (NODES, 1))
-        speed = np.max(np.abs(state[self.n :]))
+        sizes = self.matrices.nominal.coordinates
+        speed = np.max(np.abs(state[self.n :]) / sizes)
         for length in FIRST_ARCS / speed if speed else ():
-            arc = arc_over(self._accelerations, self.time, self.time + length, state, guess)
+            arc = arc_over(self._accelerations, self.time, self.time + length, state, guess, sizes)
             if arc is not None and self._trusted(arc):
                 return self._taken(arc)
         raise HolonomError(Failure.NO_WAY_ON, detail=f"{self.time:.10g}, a singular configuration that it starts from")
@@ -285,13 +314,13 @@ class RobustEngine:
 
     def _trusted(self, arc: Arc) -> bool:
         """Whether the arc is as smooth as the tolerance asks, and ends on the constraints."""
-        if arc.error > max(self.tol, ARC_ERROR):
+        if arc.error(self.matrices.nominal.coordinates) > max(self.tol, ARC_ERROR):
             return False
         try:
             kept = self._kept(arc.end, arc.last)[0]
         except InconsistentConstraints:
             return False
-        return bool(np.max(np.abs(kept - arc.last)) <= OFF_BRANCH * max(1.0, np.max(np.abs(kept))))
+        return self.matrices.nominal.share(kept - arc.last, kept) <= OFF_BRANCH
 
     def _accelerations(self, instants: Vector, states: Matrix) -> Matrix:
         return self._kept(instants, states)[1]
@@ -303,5 +332,5 @@ class RobustEngine:
             self.time, self.state = until, arc(np.array([until]))[:, 0]
         else:
             self._arc = None
-            self._begin(arc.end, arc.last, None)
+            self._begin(arc.end, arc.last)
         return Piece(start, self.time, arc)

@@ -28,6 +28,7 @@ from ...program.motion_problem import MotionProblem, computing
 from ...program.motion_program import Program
 from ...program.precision import read_precision
 from ..matrices import MotionMatrices
+from ..nominal import Nominal
 from ..parts_of_scipy import dormand_prince
 from ..request import EngineName, Stabilization
 from .engine import Piece
@@ -61,7 +62,7 @@ class RungeKuttaEngine(ProgramEngine):
     Parameters
     ----------
     tol : float or None
-        Tolerance of a step, relative and absolute; None for `USUAL`.
+        Tolerance of a step, relative, and absolute in terms of nominal sizes; None for `USUAL`.
     drift : Stabilization
     decay : float or None
         gamma of Baumgarte's cure and Gear's, as for `TaylorEngine`.
@@ -91,7 +92,8 @@ class RungeKuttaEngine(ProgramEngine):
         self.tol = USUAL if tol is None else tol
         begun = time.perf_counter()
         cure = drift if problem.multipliers else Stabilization.NONE
-        self._integrator = DormandPrince(problem, self.tol, cure, decay_in(problem, decay))
+        nominal = self._matrices.nominal
+        self._integrator = DormandPrince(problem, self.tol, cure, decay_in(problem, decay), nominal)
         self.state = self._integrator.state
         self.compile_seconds = time.perf_counter() - begun
 
@@ -136,10 +138,12 @@ class DormandPrince(ctypes.Structure):
     Parameters
     ----------
     tol : float
-        Relative and absolute.
+        Relative, and absolute in terms of nominal sizes.
     drift : Stabilization
     decay : float
         gamma.
+    nominal : Nominal
+        Sizes of the motion's quantities.
 
     Attributes
     ----------
@@ -171,7 +175,9 @@ class DormandPrince(ctypes.Structure):
         *((name, ctypes.c_void_p) for name in ("_instants", "_states")),
     )
 
-    def __init__(self, problem: MotionProblem, tol: float, drift: Stabilization, decay: float) -> None:
+    def __init__(
+        self, problem: MotionProblem, tol: float, drift: Stabilization, decay: float, nominal: Nominal
+    ) -> None:
         self.state, self.tol = np.array([float(problem.start[name]) for name in problem.state]), tol
         super().__init__(float(problem.start["t"]), self.state.ctypes.data)
         narrow = NO_VECTORS if len(problem.state) < WIDE else ()
@@ -186,8 +192,8 @@ class DormandPrince(ctypes.Structure):
         self.quiet_steps = partial(library.advance_quietly, self._address)
         self._evaluations = ctypes.c_long.in_dll(library, "evaluations")
         self.open_values = (ctypes.c_double * len(problem.open_inputs)).in_dll(library, "open_values")
-        library.begin.argtypes = (ctypes.c_double,)
-        if library.begin(tol) != 0:
+        library.begin.argtypes = (ctypes.c_double, ctypes.c_double, ctypes.c_void_p)
+        if library.begin(tol, nominal.time, np.ascontiguousarray(nominal.state).ctypes.data) != 0:
             raise MemoryError
 
     @property

@@ -54,10 +54,12 @@ class Arc:
         place = (instant - self.start) / half - 1
         return legendre.legval(place, legendre.legder(self.velocities, scl=1 / half))
 
-    @property
-    def error(self) -> float:
-        """What the coefficients left out make of the coordinates, relative to them, told by the last ones."""
-        return _size(self.coordinates[-TAIL:], self)
+    def error(self, sizes: Vector) -> float:
+        """What the coefficients left out make of the coordinates, relative to them, told by the last ones.
+
+        `sizes` are the nominal ones of the coordinates, shape (n,).
+        """
+        return _size(self.coordinates[-TAIL:], self, sizes)
 
     @property
     def last(self) -> Vector:
@@ -65,7 +67,9 @@ class Arc:
         return self(np.array([self.end]))[:, 0]
 
 
-def arc_over(compute: Accelerations, start: float, end: float, state: Vector, guess: Matrix) -> Arc | None:
+def arc_over(
+    compute: Accelerations, start: float, end: float, state: Vector, guess: Matrix, sizes: Vector
+) -> Arc | None:
     """The motion from a state over a singular configuration, to an instant behind it.
 
     None where the iteration finds no motion.
@@ -81,6 +85,8 @@ def arc_over(compute: Accelerations, start: float, end: float, state: Vector, gu
         At the start.
     guess : ndarray, shape (NODES, n)
         Accelerations at Gauss's nodes to begin with.
+    sizes : ndarray, shape (n,)
+        Nominal ones of the coordinates.
     """
     instants, last = (start + end) / 2 + (end - start) / 2 * POINTS, np.inf
     arc = _integrated(start, end, state, guess)
@@ -90,7 +96,7 @@ def arc_over(compute: Accelerations, start: float, end: float, state: Vector, gu
         except InconsistentConstraints:
             return None
         before, arc = arc, _integrated(start, end, state, found)
-        change = _size(arc.coordinates - before.coordinates, arc)
+        change = _size(arc.coordinates - before.coordinates, arc, sizes)
         if change <= ROUNDING or CONTRACTION * last < change <= SMALL:
             return arc
         if not np.isfinite(change) or (iteration > WARMING_UP and change > CONTRACTION * last):
@@ -108,7 +114,7 @@ def _integrated(start: float, end: float, state: Vector, accelerations: Matrix) 
     return Arc(start, end, coordinates, velocities)
 
 
-def _size(coefficients: Matrix, arc: Arc) -> float:
-    """Bound on a sum of Legendre's polynomials, relative to the arc's coordinates."""
-    extent = max(1.0, float(np.max(np.abs(arc.coordinates[0]), initial=0.0)))
-    return float(np.max(np.sum(np.abs(coefficients), axis=0), initial=0.0)) / extent
+def _size(coefficients: Matrix, arc: Arc, sizes: Vector) -> float:
+    """Bound on a sum of Legendre's polynomials, relative to the arc's coordinates, in terms of their nominal sizes."""
+    extent = max(1.0, float(np.max(np.abs(arc.coordinates[0]) / sizes, initial=0.0)))
+    return float(np.max(np.sum(np.abs(coefficients), axis=0) / sizes, initial=0.0)) / extent

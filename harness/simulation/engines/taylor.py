@@ -71,6 +71,10 @@ class TaylorEngine(ProgramEngine):
         numbers = read_precision(precision) if isinstance(precision, str) else precision
         super().__init__(problem, numbers, import_heyoka().taylor_outcome.err_nf_state, matrices)
         self._tolerance = {} if tol is None else {"tol": self.precision.number(repr(held(tol, self.precision)))}
+        self._finer = self._matrices.nominal.absolute()
+        if self._finer < 1:
+            whole = self._tolerance.get("tol", self.precision.rounding)
+            self._tolerance["tol"] = whole * self.precision.number(repr(self._finer))
         self._chosen = compact is not None
         self._program = computing(problem.motion, {f"ddot({name})" for name in problem.coordinates})
         code = Code.QUICK if compact is None else Code.COMPACT if compact else Code.UNROLLED
@@ -81,7 +85,7 @@ class TaylorEngine(ProgramEngine):
         kept = drift is Stabilization.PROJECTION and problem.multipliers
         self._keeper = ProgramProjection(problem, self.precision, self._matrices, not self._chosen) if kept else None
         self.compile_seconds = time.perf_counter() - begun
-        self.tol = float(self._integrator.tol)
+        self.tol = float(self._integrator.tol) / self._finer
         longest = FINE_BLOCK if self.tol <= FINE else FIRST_BLOCK
         self._first_block = min(longest, max(SHORT, OPERATIONS // max(1, self._program.operations)))
         self._longest_block = LONGEST_BLOCK

@@ -10,6 +10,7 @@ from holonom.program.request import Request
 from holonom.sandbox import Limits
 from holonom.simulation.constraints.projection import InconsistentConstraints, project
 from holonom.simulation.matrices import Matrices, MotionMatrices
+from holonom.simulation.nominal import Nominal
 
 CIRCLE = """
 load("holonom.mac")$
@@ -35,7 +36,7 @@ class Counted:
     """Matrices that count how often they are asked for."""
 
     def __init__(self, matrices: MotionMatrices) -> None:
-        self.matrices, self.calls = matrices, 0
+        self.matrices, self.nominal, self.calls = matrices, matrices.nominal, 0
 
     def __call__(self, t: float, state: np.ndarray):
         self.calls += 1
@@ -98,6 +99,7 @@ def test_contradicting_constraints_are_refused_with_what_remains():
         residuals = jacobian @ state[:2] - missed, jacobian @ state[2:] - missed_rate
         return Matrices(3 * np.eye(2), np.zeros(2), jacobian, np.array([0.0, -2.0]), *residuals, True)
 
+    matrices.nominal = Nominal(1.0, np.ones(4))
     with pytest.raises(InconsistentConstraints) as refused:
         project(matrices, 1.0, np.zeros(4), 1)
     assert refused.value.failure is Failure.INCONSISTENT

@@ -1,0 +1,205 @@
+"""Nominal sizes: what a coordinate, a velocity and the time are large or small beside.
+
+Tolerances, projections, events, switchings and residuals are relative to these sizes, so that a motion is the same in
+all units. A scene may give them, ``nominal = [x = 1e-6]``; the others are found. A coordinate is as large as at the
+start or, where it starts near zero, as the others are in the mass metric: A_ii q_i^2 is the same for all. Where all
+start at zero, the distance counts that velocities, forces or moving constraints make in the time span. The time is as
+long as the span, or what the first velocities take for the size of the coordinates; both give the size of velocities.
+"""
+
+from dataclasses import replace
+from math import log
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..program.motion_problem import MotionProblem
+from ..program.numpy_function import NumpyFunction
+from ..program.precision import read_precision
+from ..program.sign_pattern import program_in
+from .open_values import BesideState
+
+INSTANTS = 65  # of the time span at which forces and constraints are looked at where a motion starts at zero
+COARSE = 1e3  # power in which tolerances change: what is compiled with one serves many motions
+NEAR_ZERO = 1e-3  # of the size that other coordinates have in the mass metric
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+
+
+class Nominal(NamedTuple):
+    """The sizes of a motion's quantities; of k motions, with a last axis more."""
+
+    time: float | Vector
+    state: Vector  # shape (2n,): of coordinates, then of velocities
+
+    @property
+    def coordinates(self) -> Vector:
+        """Shape (n,)."""
+        return self.state[: len(self.state) // 2]
+
+    @property
+    def velocities(self) -> Vector:
+        """Shape (n,)."""
+        return self.state[len(self.state) // 2 :]
+
+    @property
+    def accelerations(self) -> Vector:
+        """Shape (n,)."""
+        return self.velocities / self.time
+
+    def absolute(self) -> float:
+        """What a tolerance is to be multiplied by for a method that takes it as relative to the largest of all numbers.
+
+        Such a method takes it as absolute where all of them are below one. A velocity is a coordinate's in terms of the
+        time, and errors go with that: a share of a power of `COARSE` will do.
+        """
+        largest = np.max(self.state, initial=1.0)
+        coordinates = np.min(self.coordinates, initial=np.inf) / min(1.0, self.time)
+        velocities = np.min(self.velocities, initial=np.inf) / min(1.0, 1 / self.time)
+        share = min(1.0, float(min(coordinates, velocities) / largest))
+        return COARSE ** round(log(share) / log(COARSE))
+
+    def energy(self, mass: Matrix) -> float:
+        """Of the nominal velocities: the largest A_ii v_i^2."""
+        return float(np.max(mass.diagonal() * self.velocities**2, initial=0.0))
+
+    def share(self, change: Vector, state: Vector) -> float:
+        """The largest change of a state, beside its largest number, all in terms of nominal sizes."""
+        largest = np.max(np.abs(state) / self.state, initial=1.0)
+        return float(np.max(np.abs(change) / self.state, initial=0.0) / largest)
+
+
+def with_nominal(problem: MotionProblem, span: float) -> MotionProblem:
+    """The motion with nominal sizes for all of its quantities, by the length of its time span."""
+    sizes = _completed(problem, span)
+    named = zip(("t", *problem.state), (sizes.time, *map(float, sizes.state)), strict=True)
+    return replace(problem, nominal=dict(named))
+
+
+def nominal_of(problem: MotionProblem) -> Nominal:
+    """The nominal sizes of a motion: those of `with_nominal`, or those found by the scene's own time span."""
+    known = problem.nominal
+    if known.keys() >= {"t", *problem.state}:
+        return Nominal(known["t"], np.array([known[name] for name in problem.state]))
+    first, last = map(float, problem.time_span or (0, 0))
+    return _completed(problem, last - first)
+
+
+def nominal_at_each(problem: MotionProblem, mass: Matrix, states: Matrix, span: float) -> Nominal:
+    """The nominal sizes of k motions of one problem: shapes (k,) and (2n, k).
+
+    One whose coordinates all start at zero has those of the problem's own motion.
+
+    Parameters
+    ----------
+    mass : ndarray, shape (n, n, k)
+    states : ndarray, shape (2n, k)
+        At the start.
+    span : float
+        Length of the time span.
+    """
+    own = nominal_of(problem)
+    roots = _roots(np.moveaxis(np.diagonal(mass), -1, 0))
+    with np.errstate(all="ignore"):
+        found, time = _sizes(roots, states, span, 0.0)
+    zero = ~states.any(axis=0)
+    found[:, zero], time[zero] = own.coordinates[:, None], own.time
+    return _with_given(problem, found, time)
+
+
+def _completed(problem: MotionProblem, span: float) -> Nominal:
+    """The sizes that the scene gives, and those found."""
+    if not problem.start.keys() >= {*problem.state}:  # a parameter without a value decides about the start
+        return Nominal(1.0, np.ones(len(problem.state)))
+    with np.errstate(all="ignore"):
+        start = _Start(problem, span)
+        found, time = _sizes(start.roots, start.state, span, start.reach())
+    sizes = _with_given(problem, found, time)
+    return Nominal(float(sizes.time[0]), sizes.state[:, 0])
+
+
+def _with_given(problem: MotionProblem, coordinates: Matrix, time: Vector) -> Nominal:
+    """Sizes found of coordinates, shape (n, k), and times, shape (k,), but for those that the scene gives."""
+
+    def chosen(name: str, found: Vector) -> Vector:
+        return np.full_like(found, problem.nominal[name]) if name in problem.nominal else found
+
+    time = chosen("t", time)
+    coordinates = np.array(list(map(chosen, problem.coordinates, coordinates))).reshape(coordinates.shape)
+    velocities = np.array(list(map(chosen, problem.state[len(coordinates) :], coordinates / time)))
+    return Nominal(time, np.concatenate([coordinates, velocities.reshape(coordinates.shape)]))
+
+
+def _sizes(roots: Matrix, states: Matrix, span: float, reach: float) -> tuple[Matrix, Vector]:
+    """Sizes of the coordinates, shape (n, k), and of the time, shape (k,), of k motions.
+
+    Parameters
+    ----------
+    roots : ndarray, shape (n, k)
+        Of the masses on the diagonal.
+    states : ndarray, shape (2n, k)
+        At the start.
+    span : float
+        Length of the time span; zero where there is none.
+    reach : float
+        How far, in the mass metric, a motion goes whose coordinates all start at zero, at rest.
+    """
+    q, v = np.abs(np.split(states, 2))
+    size, speed = (np.max(roots * part, axis=0, initial=0.0) for part in (q, v))
+    time = np.where((size > 0) & (speed > 0), size / speed, np.inf)
+    time = np.minimum(time, span or np.inf)
+    time = np.where(time < np.inf, time, 1.0)
+    size = np.where(size > 0, size, np.maximum(speed * time, reach))
+    own = np.maximum(q, v * time)
+    found = np.where(roots * own >= NEAR_ZERO * size, own, size / roots)
+    return np.where((size > 0) & (size < np.inf), found, 1.0), time
+
+
+def _roots(masses: Matrix) -> Matrix:
+    """Roots of the masses, shape (n, k); of what has none, of the mean of the others."""
+    there = masses > 0
+    mean = np.where(there, masses, 0.0).sum(axis=0) / np.maximum(1, there.sum(axis=0))
+    return np.sqrt(np.where(there, masses, np.where(mean > 0, mean, 1.0)))
+
+
+class _Start:
+    """The first state, and the matrices there and then, and at later instants of the time span.
+
+    Signs are taken to be positive, for sizes hang on them little.
+
+    Attributes
+    ----------
+    state : ndarray, shape (2n, 1)
+    roots : ndarray, shape (n, 1)
+        Of the masses on the diagonal.
+    """
+
+    def __init__(self, problem: MotionProblem, span: float) -> None:
+        self._span, self._g = span, len(problem.multipliers)
+        self.state = np.array([[float(problem.start[name])] for name in problem.state])
+        instants = float(problem.start["t"]) + span * np.linspace(0, 1, INSTANTS)
+        pattern = {sign.name: 1 for sign in problem.signs}
+        program = program_in(problem, problem.matrices, pattern) if pattern else problem.matrices
+        inputs = [instants, *np.repeat(self.state, INSTANTS, axis=1)]
+        inputs += [*BesideState(problem, read_precision("double"))(instants)]
+        self._values = dict(zip(program.outputs, NumpyFunction(program).at_points(inputs), strict=True))
+        self._places = range(1, len(problem.coordinates) + 1)
+        self.roots = _roots(np.array([self._at(f"A[{s},{s}]")[:1] for s in self._places]).reshape(-1, 1))
+
+    def reach(self) -> float:
+        """How far the mean force, or moving constraints, lead in the time span from rest, in the mass metric."""
+        forces = np.array([np.abs(self._at(f"h[{s}]")) for s in self._places]) / self.roots
+        largest = np.max(forces, axis=0, initial=0.0)
+        known = largest[np.isfinite(largest)]
+        farthest = float(known.mean()) * self._span**2 if known.size else 0.0
+        for beta in range(1, self._g + 1):
+            gradient = np.array([self._at(f"J[{beta},{s}]") for s in self._places]) / self.roots
+            distance = np.abs(self._at(f"residual[{beta}]")) / np.linalg.norm(gradient, axis=0)
+            farthest = np.max(distance, initial=farthest, where=np.isfinite(distance))
+        return float(farthest)
+
+    def _at(self, output: str) -> Vector:
+        """An output of the program at the instants; zero where it is so by structure."""
+        return self._values.get(output, np.zeros(INSTANTS))
