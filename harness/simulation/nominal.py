@@ -113,9 +113,13 @@ def _completed(problem: MotionProblem, span: float) -> Nominal:
     """The sizes that the scene gives, and those found."""
     if not problem.start.keys() >= {*problem.state}:  # a parameter without a value decides about the start
         return Nominal(1.0, np.ones(len(problem.state)))
+    state = np.array([[float(problem.start[name])] for name in problem.state])
+    roots, reach = np.ones((len(problem.coordinates), 1)), 0.0
     with np.errstate(all="ignore"):
-        start = _Start(problem, span)
-        found, time = _sizes(start.roots, start.state, span, start.reach())
+        if problem.values.keys() >= {*problem.parameters}:
+            start = _Start(problem, state, span)
+            roots, reach = start.roots, start.reach()
+        found, time = _sizes(roots, state, span, reach)
     sizes = _with_given(problem, found, time)
     return Nominal(float(sizes.time[0]), sizes.state[:, 0])
 
@@ -171,18 +175,16 @@ class _Start:
 
     Attributes
     ----------
-    state : ndarray, shape (2n, 1)
     roots : ndarray, shape (n, 1)
         Of the masses on the diagonal.
     """
 
-    def __init__(self, problem: MotionProblem, span: float) -> None:
+    def __init__(self, problem: MotionProblem, state: Matrix, span: float) -> None:
         self._span, self._g = span, len(problem.multipliers)
-        self.state = np.array([[float(problem.start[name])] for name in problem.state])
         instants = float(problem.start["t"]) + span * np.linspace(0, 1, INSTANTS)
         pattern = {sign.name: 1 for sign in problem.signs}
         program = program_in(problem, problem.matrices, pattern) if pattern else problem.matrices
-        inputs = [instants, *np.repeat(self.state, INSTANTS, axis=1)]
+        inputs = [instants, *np.repeat(state, INSTANTS, axis=1)]
         inputs += [*BesideState(problem, read_precision("double"))(instants)]
         self._values = dict(zip(program.outputs, NumpyFunction(program).at_points(inputs), strict=True))
         self._places = range(1, len(problem.coordinates) + 1)
