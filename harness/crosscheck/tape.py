@@ -19,7 +19,6 @@ from .irregular_point import IrregularPoint
 from .taylor import COEFFICIENTS, ELLIPTIC, OF_A_NUMBER, Coefficients, Polynomial, Taylor, differentiated
 
 CONSTANTS = {"Pi": lambda: +mp.pi, "ExponentialE": lambda: +mp.e, "EulerGamma": lambda: +mp.euler}
-DECIDED = {"Sign", "UnitStep", "HalfStep", "Which", "Max", "Min"}  # by signs at the instant, where none may vanish
 RELATIONS = {"Greater": 1, "GreaterEqual": 1, "Less": -1, "LessEqual": -1}
 
 Operation = tuple[str, tuple[int, ...]]
@@ -253,7 +252,7 @@ def _decided(taylor: Taylor, head: str, x: Sequence[Polynomial]) -> Polynomial:
                 best = other if side * _sign(taylor.add(other, taylor.scale(-1, best))) > 0 else best
             return best
         case "Which":
-            return next(value for condition, value in zip(x[::2], x[1::2], strict=True) if condition[0] > 0)
+            return x[_chosen(x)]
         case "And" | "Or":
             return (min if head == "And" else max)(x)
         case "Not":
@@ -265,6 +264,11 @@ def _decided(taylor: Taylor, head: str, x: Sequence[Polynomial]) -> Polynomial:
             return (mp.mpf(RELATIONS[head] * _sign(taylor.add(x[0], taylor.scale(-1, x[1])))),)
         case _:
             raise refusal([head])
+
+
+def _chosen(x: Sequence[Polynomial]) -> int:
+    """Return the place of the value whose condition holds, of conditions and values by turns."""
+    return next(k + 1 for k in range(0, len(x), 2) if x[k][0] > 0)
 
 
 def _shares(
@@ -296,8 +300,12 @@ def _shares(
         case "Arctan2":
             share = taylor.divide(adjoint, _squares(taylor, *x))
             return [taylor.multiply(share, x[1]), taylor.scale(-1, taylor.multiply(share, x[0]))]
-        case "Sign":
+        case "Sign" | "UnitStep" | "HalfStep":
             return [None]
+        case "Max" | "Min":
+            return [adjoint if each is values[place] else None for each in x]
+        case "Which":
+            return [adjoint if k == _chosen(x) else None for k in range(len(x))]
     coefficients = coefficients_of(head, x)
     if coefficients is None:
         raise refusal([head])
@@ -325,7 +333,7 @@ def _shares_of_power(
     taylor: Taylor, x: Sequence[Polynomial], value: Polynomial, adjoint: Polynomial
 ) -> list[Polynomial | None]:
     base, exponent = x
-    if len(exponent) == 1:
+    if len(exponent) == 1 and base[0] <= 0:  # the power is real for this exponent, and for none beside it
         slope = taylor.scale(exponent[0], taylor.power(base, exponent[0] - 1)) if exponent[0] else (mp.zero,)
         return [taylor.multiply(adjoint, slope), None]
     share = taylor.multiply(adjoint, value)
