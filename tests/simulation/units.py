@@ -1,0 +1,133 @@
+"""A motion in other units: each of its programs takes and gives numbers in them, and computes as before between.
+
+Every coordinate is measured in the unit of length, angles and Euler parameters, too: that is only a change of
+variables, so that no dimensions have to be known. Constraints and controls keep their values.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from holonom.program.motion_problem import MotionProblem
+from holonom.program.motion_program import Call, Expression, Name, Operation, Program, count_operations, names_in
+from holonom.simulation.matrices import INDEXED
+
+PROGRAMS = "motion", "projection", "matrices", "energy", "controls", "servo_matrix", "events", "switching"
+
+
+@dataclass(frozen=True)
+class Units:
+    """What a mass, a length and a time of one are in these units."""
+
+    mass: Fraction
+    length: Fraction
+    time: Fraction
+
+    @property
+    def energy(self) -> Fraction:
+        return self.mass * self.length**2 / self.time**2
+
+
+SI = Units(Fraction(1), Fraction(1), Fraction(1))
+SYSTEMS = {
+    "micrometres": Units(Fraction(1), Fraction(1, 10**6), Fraction(1)),
+    "atoms": Units(Fraction(1, 10**27), Fraction(1, 10**10), Fraction(1, 10**13)),
+    "slow atoms": Units(Fraction(1, 10**27), Fraction(1, 10**10), Fraction(1)),
+    "planets": Units(Fraction(10**24), Fraction(10**9), Fraction(10**7)),
+    "light and fast": Units(Fraction(1, 10**3), Fraction(10**6), Fraction(1, 10**5)),
+}
+
+
+def in_units(problem: MotionProblem, units: Units) -> MotionProblem:
+    """The same motion, its time, coordinates and rates multiplied by these units."""
+    of_inputs = _of_inputs(problem, units)
+
+    def changed(program: Program | None) -> Program | None:
+        return program and _changed(program, of_inputs, lambda output: _of_output(output, problem, units))
+
+    def text(number: str, unit: Fraction) -> str:
+        return str(float(Fraction(number) * unit))
+
+    span, start = problem.time_span, problem.parametric_start
+    tables = tuple(
+        replace(table, pieces=tuple((str(Fraction(first) * units.time), *rest) for first, *rest in table.pieces))
+        for table in problem.tables
+    )
+    return replace(
+        problem,
+        time_span=span and tuple(text(number, units.time) for number in span),
+        law_end=problem.law_end and text(problem.law_end, units.time),
+        start={name: text(number, of_inputs[name]) for name, number in problem.start.items()},
+        tables=tables,
+        parametric_start=start and replace(start, program=changed(start.program)),
+        **{
+            name: changed(getattr(problem, name))
+            for name in (
+                "motion",
+                "projection",
+                "matrices",
+                "energy",
+                "controls",
+                "servo_matrix",
+                "events",
+                "switching",
+            )
+        },
+        drawing=None,
+        _compiled={},
+    )
+
+
+def _of_inputs(problem: MotionProblem, units: Units) -> dict[str, Fraction]:
+    """Units of the inputs that have some; multipliers and constraints keep theirs but for the energy's."""
+    units_of = {"t": units.time, **{table.inputs[0]: units.time for table in problem.tables}}
+    units_of |= dict.fromkeys(problem.coordinates, units.length)
+    units_of |= dict.fromkeys(problem.state[len(problem.coordinates) :], units.length / units.time)
+    return units_of | dict.fromkeys(problem.multipliers, units.energy)
+
+
+def _of_output(output: str, problem: MotionProblem, units: Units) -> Fraction:
+    """The unit of an output of any of the programs."""
+    length, time, energy = units.length, units.time, units.energy
+    indexed = INDEXED.fullmatch(output)
+    if output in problem.state or output in problem.multipliers:
+        return _of_inputs(problem, units)[output]
+    if output.startswith("ddot("):
+        return length / time**2
+    if indexed is None:
+        return {"energy": energy, "power": energy / time}.get(output, Fraction(1))
+    return {
+        "A": energy * time**2 / length**2,
+        "J": 1 / length,
+        "h": energy / length,
+        "Lambda": energy / length,
+        "c": 1 / time**2,
+        "residual_rate": 1 / time,
+        "position_correction": length,
+        "velocity_correction": length / time,
+        "momentum": energy * time / length,
+        "switch_rate": 1 / time,
+    }.get(indexed[1], Fraction(1))
+
+
+def _changed(program: Program, of_inputs: dict[str, Fraction], of_output: Callable[[str], Fraction]) -> Program:
+    """A program that divides what it takes by units, and multiplies what it gives."""
+    used = set().union(*(names_in(value) for _, value in program.assignments), *map(names_in, program.outputs.values()))
+    named = {name: f"{name} by its unit" for name in program.inputs if name in of_inputs and name in used}
+    before = [(own, Call(Operation.MULTIPLY, (1 / of_inputs[name], Name(name)))) for name, own in named.items()]
+    inner = [(name, _renamed(value, named)) for name, value in program.assignments]
+    outputs, after = {}, []
+    for name, value in program.outputs.items():
+        after.append((f"{name} in its unit", Call(Operation.MULTIPLY, (of_output(name), _renamed(value, named)))))
+        outputs[name] = Name(after[-1][0])
+    part = replace(program, assignments=(*before, *inner, *after), outputs=outputs)
+    return replace(part, operations=count_operations(part))
+
+
+def _renamed(expression: Expression, names: dict[str, str]) -> Expression:
+    match expression:
+        case Name(text):
+            return Name(names.get(text, text))
+        case Call(operation, arguments):
+            return Call(operation, tuple(_renamed(argument, names) for argument in arguments))
+    return expression
