@@ -9,18 +9,15 @@ Measured on the five motions of `tests/benchmarks/simulation.py`, 18 to 431 oper
 """
 
 from dataclasses import dataclass
-from math import log
 from shutil import which
 from typing import NamedTuple
 
 from ..request import EngineName
-from .code import LEFT, Code, compilation
+from .code import REFERENCE, Code, compilation, running
 
 TRIAL = 64  # steps of the Taylor engine
-REFERENCE = 1e-9  # the tolerance of the costs below
-OPERATION = 7.5e-8  # seconds a step of the Taylor engine takes for an operation, in quick code
-ORDERS = 1.6  # power of the order that this grows with
-STAGES, STEP = 7.5e-9, 2e-7  # seconds a step of the other takes for an operation, in all its stages, and beside them
+# seconds a step of the other takes for an operation, in all its stages, and beside them
+STAGES, STEP = 7.5e-9, 2e-7
 STRIDE = 0.89  # steps of the other for one of the Taylor engine
 ORDER = 8  # of the other: what its steps shrink with
 COMPILER = 0.15, 5e-4  # seconds that the C compiler takes, and for an operation
@@ -74,18 +71,12 @@ def quicker_engine(steps: int, operations: int, tol: float, between: Between) ->
 
 
 def _taylor(steps: int, operations: int, tol: float) -> float:
-    quick = steps * OPERATION * operations * (_order(tol) / _order(REFERENCE)) ** ORDERS
-    compact = compilation(Code.COMPACT, operations) + LEFT[Code.COMPACT] * quick
-    last = compact + compilation(Code.UNROLLED, operations) - (1 - LEFT[Code.UNROLLED]) * LEFT[Code.COMPACT] * quick
-    return min(quick, compact, last)
+    run = {code: running(code, operations, steps, tol) for code in Code}
+    compact, unrolled = (compilation(code, operations) for code in (Code.COMPACT, Code.UNROLLED))
+    return min(run[Code.QUICK], compact + run[Code.COMPACT], compact + unrolled + run[Code.UNROLLED])
 
 
 def _runge_kutta(steps: int, operations: int, tol: float, between: Between) -> float:
     taken = STRIDE * steps * (REFERENCE / tol) ** (1 / ORDER) * (1 + between.in_each) + between.altogether
     begun, each = COMPILER
     return begun + each * operations + taken * (STEP + STAGES * operations)
-
-
-def _order(tol: float) -> float:
-    """The order that heyoka takes for a tolerance."""
-    return 1 - log(tol) / 2

@@ -8,10 +8,12 @@ to the end of their time spans; 16, 212 and 438 operations:
     compact    0.050  0.26   0.7       0.24  0.61  2.4
     unrolled   0.080  2.4    11        0.17  0.46  1.9
 
-In quadruple precision and beyond, functions do the arithmetic, and all three run alike.
+In quadruple precision and beyond, functions do the arithmetic, and all three run alike. What a run takes is counted by
+these times, by steps and operations, never measured: which code computes must not depend on the machine or its load.
 """
 
 from enum import StrEnum
+from math import log
 
 from ...program.precision import Precision
 
@@ -29,7 +31,9 @@ class Code(StrEnum):
         return {"compact_mode": self is not Code.UNROLLED} | ({"opt_level": 0} if self is Code.QUICK else {})
 
 
-LEFT = {Code.COMPACT: 0.4, Code.UNROLLED: 0.75}  # share of the running time of the code before it
+SHARE = {Code.QUICK: 1.0, Code.COMPACT: 0.4, Code.UNROLLED: 0.3}  # of the running time of quick code
+REFERENCE, OPERATION = 1e-9, 7.5e-8  # tolerance of a step, and the seconds that it takes for an operation in quick code
+ORDERS = 1.6  # power of the order that this grows with
 HARDWARE = ("double", "extended")
 
 
@@ -40,11 +44,22 @@ def better_code(code: Code, precision: Precision) -> Code | None:
     return Code.COMPACT if code is Code.QUICK else Code.UNROLLED
 
 
-def pays(code: Code, operations: int, seconds: float) -> bool:
-    """Whether what is left of a run, in seconds of the code that it has, earns back the compilation of better code."""
-    return (1 - LEFT[code]) * seconds > compilation(code, operations)
+def pays(code: Code, better: Code, operations: int, steps: float, tol: float) -> bool:
+    """Whether the steps that are left of a run earn back the compilation of better code."""
+    gained = running(code, operations, steps, tol) - running(better, operations, steps, tol)
+    return gained > compilation(better, operations)
+
+
+def running(code: Code, operations: int, steps: float, tol: float) -> float:
+    """Seconds that steps of a motion program of so many operations take."""
+    return SHARE[code] * steps * OPERATION * operations * (_order(tol) / _order(REFERENCE)) ** ORDERS
 
 
 def compilation(code: Code, operations: int) -> float:
     """Seconds that the compilation of a motion program of so many operations takes, in one of the better codes."""
     return 0.05 + (1.6e-3 * operations if code is Code.COMPACT else 5.5e-5 * operations**2)
+
+
+def _order(tol: float) -> float:
+    """The order that heyoka takes for a tolerance."""
+    return 1 - log(tol) / 2

@@ -270,7 +270,7 @@ def _taylor(
     digits = precision.digits + GUARD_DIGITS if request.tol is None else -log10(held(request.tol, precision))
     require_means(at_start(problem), precision, order_for(digits), end)
     decay = decay_until(end, problem, precision)
-    return TaylorEngine(problem, request.tol, precision, request.drift, request.compact, decay, matrices)
+    return TaylorEngine(problem, request.tol, precision, request.drift, request.compact, decay, matrices, end)
 
 
 def _runge_kutta(

@@ -49,6 +49,8 @@ class TaylorEngine(ProgramEngine):
         gamma of Baumgarte's cure and Gear's; None for `DECAYS_IN_A_RUN` by the length of the scene's time span.
     matrices : MotionMatrices or None
         Of the same motion; None to make them.
+    end : number or None
+        The last instant of the motion; None for the next one to which it is followed.
 
     Raises
     ------
@@ -67,6 +69,7 @@ class TaylorEngine(ProgramEngine):
         compact: bool | None = None,
         decay: float | None = None,
         matrices: MotionMatrices | None = None,
+        end: Any = None,
     ) -> None:
         numbers = read_precision(precision) if isinstance(precision, str) else precision
         super().__init__(problem, numbers, import_heyoka().taylor_outcome.err_nf_state, matrices)
@@ -75,13 +78,14 @@ class TaylorEngine(ProgramEngine):
         if self._finer < 1:
             whole = self._tolerance.get("tol", self.precision.rounding)
             self._tolerance["tol"] = whole * self.precision.number(repr(self._finer))
-        self._chosen = compact is not None
+        self._chosen, self._end = compact is not None, end
         self._program = computing(problem.motion, {f"ddot({name})" for name in problem.coordinates})
         code = Code.QUICK if compact is None else Code.COMPACT if compact else Code.UNROLLED
         self._drift, self._decay = drift, decay
         begun, number = time.perf_counter(), self.precision.number
         start = np.array([number(problem.start[name]) for name in problem.state])
-        self._set_up(code, number(problem.start["t"]), start)
+        self._counted = number(problem.start["t"]), 0  # since this instant, and the steps until then
+        self._set_up(code, self._counted[0], start)
         kept = drift is Stabilization.PROJECTION and problem.multipliers
         self._keeper = ProgramProjection(problem, self.precision, self._matrices, not self._chosen) if kept else None
         self.compile_seconds = time.perf_counter() - begun
@@ -134,6 +138,12 @@ class TaylorEngine(ProgramEngine):
                 break
         return (outcome, shortest, longest, len(pieces)), pieces
 
+    def restart(self, instant: Any, state: Numbers) -> None:
+        """Go on from another instant and state, shape (2n,)."""
+        super().restart(instant, state)
+        if instant <= self._counted[0]:
+            self._counted = instant, self.steps
+
     def _set_values(self) -> None:
         """Give the equations the values of what is open from this instant on, as far as they contain it."""
         contained = len(self._integrator.pars)
@@ -144,17 +154,18 @@ class TaylorEngine(ProgramEngine):
         self._length = self._first_block
         if self._problem.tables:
             self._set_values()
-        if not self._chosen:
-            self._clock = time.perf_counter(), self.time
+
+    def _block(self, until: Any, dense: bool) -> tuple[bool, list[Piece]]:
+        self._compile_if_it_pays(until)
+        return super()._block(until, dense)
 
     def _prepare_next(self, until: Any) -> None:
-        """Project, choose the next block's length, and compile better code where that pays."""
+        """Project, and choose the next block's length."""
         if self._keeper is None:
             self._length = self._longest_block
         else:
             drift = self._keeper.project(self.time, self.state)
             self._length = min(block_within(self._allowed, self._length, drift), self._longest_block)
-        self._compile_if_it_pays(until)
 
     @property
     def _in_numbers(self) -> bool:
@@ -165,16 +176,17 @@ class TaylorEngine(ProgramEngine):
             self._keeper.project(self._integrator.time, self.state)
 
     def _compile_if_it_pays(self, until: Any) -> None:
-        """Compile better code, if what is left of the run earns that back, by how long it has taken so far."""
+        """Compile better code, if as many steps as are left, by those so far, earn that back."""
         better = None if self._chosen else better_code(self.code, self.precision)
-        if better is None:
+        begun, before = self._counted
+        if better is None or self.steps == before:
             return
-        now, (begun, instant) = time.perf_counter(), self._clock
-        left = (now - begun) * float((until - self.time) / (self.time - instant))
-        if pays(better, self._program.operations, left):
+        end = until if self._end is None else self._end
+        left = (self.steps - before) * float((end - self.time) / (self.time - begun))
+        if pays(self.code, better, self._program.operations, left, float(self._integrator.tol)):
+            begun = time.perf_counter()
             self._set_up(better, self.time, self.state)
-            self._clock = time.perf_counter(), self.time
-            self.compile_seconds += self._clock[0] - now
+            self.compile_seconds += time.perf_counter() - begun
 
     def _set_up(self, code: Code, instant: Any, state: Numbers) -> None:
         self.code = code

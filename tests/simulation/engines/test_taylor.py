@@ -1,15 +1,21 @@
 """What is particular to the Taylor engine: blocks, rolling back, the choice of code."""
 
+import time
+from fractions import Fraction
+from itertools import count
+
 import numpy as np
 import pytest
 from problems import problem
 
 from holonom.program.precision import read_precision
 from holonom.simulation.constraints.program_projection import ProgramProjection
-from holonom.simulation.engines.code import Code, better_code, pays
+from holonom.simulation.engines import code
+from holonom.simulation.engines.code import Code, better_code, pays, running
 from holonom.simulation.engines.taylor import TaylorEngine
 from holonom.simulation.matrices import MotionMatrices
-from holonom.simulation.request import Stabilization
+from holonom.simulation.request import SimulationRequest, Stabilization
+from holonom.simulation.simulate import simulate
 
 
 def test_code_is_better_where_a_run_earns_it():
@@ -20,10 +26,31 @@ def test_code_is_better_where_a_run_earns_it():
     long = TaylorEngine(problem("pendulum.mac", "swing_scene"))
     long.advance(20000.0)
     assert long.code is not Code.QUICK
-    assert not pays(Code.COMPACT, 20, 1e-3)
-    assert pays(Code.COMPACT, 20, 10.0)
-    assert not pays(Code.UNROLLED, 500, 10.0)
+    second = 1 / running(Code.QUICK, 20, 1, 1e-9)  # steps
+    assert not pays(Code.QUICK, Code.COMPACT, 20, 1e-3 * second, 1e-9)
+    assert pays(Code.QUICK, Code.COMPACT, 20, 10 * second, 1e-9)
+    assert not pays(Code.COMPACT, Code.UNROLLED, 500, 10 / running(Code.COMPACT, 500, 1, 1e-9), 1e-9)
     assert better_code(Code.QUICK, read_precision("quadruple")) is None
+
+
+@pytest.mark.parametrize("seconds", [0.0, 1e3])
+def test_the_clock_decided_which_code_computes(monkeypatch, seconds):
+    """Truth: the same code and the same bits on a machine that is so busy, or so idle, that a clock goes mad."""
+    monkeypatch.setattr(code, "compilation", lambda better, operations: 1e-3)
+    swing, wanted = problem("pendulum.mac", "swing_scene"), SimulationRequest(until=Fraction(200), samples=0)
+    truth = simulate(swing, wanted).report
+    clock = count()
+    monkeypatch.setattr(time, "perf_counter", lambda: seconds * next(clock))
+    found = simulate(swing, wanted).report
+    assert found.code == truth.code == Code.COMPACT
+    assert (found.coordinates, found.steps) == (truth.coordinates, truth.steps)
+
+
+def test_a_run_with_many_stops_kept_the_code_that_is_quickly_compiled(monkeypatch):
+    """Each stop began a clock of its own."""
+    monkeypatch.setattr(code, "compilation", lambda better, operations: 1e-3)
+    wanted = SimulationRequest(until=Fraction(200), samples=0, max_step=0.25)
+    assert simulate(problem("pendulum.mac", "swing_scene"), wanted).report.code == Code.COMPACT
 
 
 @pytest.mark.parametrize("compact", [None, True, False])
