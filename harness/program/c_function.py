@@ -103,6 +103,13 @@ def load_c(source: str, *options: str) -> ctypes.CDLL:
             raise HolonomError(Failure.COMPILER_UNUSABLE, detail=f"it made no library; {error}") from None
 
 
+def unload(library: ctypes.CDLL) -> None:
+    """Close a library whose functions and numbers nobody uses any more."""
+    close = ctypes.CDLL(None).dlclose
+    close.argtypes = (ctypes.c_void_p,)
+    close(library._handle)
+
+
 def compile_shared(sources: Sequence[Path], library: Path, *options: str) -> None:
     """Compile C sources into a shared object. Raises as `compile_c`."""
     command = [*_compiler(), *map(str, sources), "-o", str(library), *options, "-lm"]

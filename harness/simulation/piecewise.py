@@ -297,6 +297,11 @@ class PiecewiseMotion:
                     found.append(cut)
         return found
 
+    def close(self) -> None:
+        """Give back what the engines hold outside of Python; the motion is not followed any more."""
+        for part in self._parts.values():
+            part.engine.close()
+
     def advance(self, until: Any) -> None:
         """Follow the motion to an instant.
 

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import closing
 from fractions import Fraction
 from math import inf
 from typing import Any
@@ -70,7 +71,7 @@ def follow(
         end, ending = end_of(problem, request)
         with doing("compiling the motion"):
             prepared = _Simulation(followable(problem, request), request, take, end, ending)
-        with doing("following the motion"):
+        with doing("following the motion"), closing(prepared.motion):
             return prepared.run(progress, watch)
 
 
@@ -91,9 +92,11 @@ def end_of(problem: MotionProblem, request: SimulationRequest) -> tuple[Any, End
     end = last_instant(problem, request.until, precision)
     if not problem.until:
         return end, None
-    with doing("looking for the end of the motion"):
-        open_ = followable(problem, request)
-        event = first_event(PiecewiseMotion(open_, request, precision, end), precision, end)
+    with (
+        doing("looking for the end of the motion"),
+        closing(PiecewiseMotion(followable(problem, request), request, precision, end)) as motion,
+    ):
+        event = first_event(motion, precision, end)
     if event is None:
         return end, Ending(problem.until, None)
     return event.t, Ending(problem.until, event.name)

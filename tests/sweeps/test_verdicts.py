@@ -1,13 +1,17 @@
 """A row of a sweep gets the verdict that `simulate` gives on the same motion, whoever integrates it."""
 
+import re
 from fractions import Fraction
 from pathlib import Path
 
 import pytest
 
 from holonom.failures import HolonomError
+from holonom.program.c_function import load_c
+from holonom.simulation.engines import runge_kutta, switching
+from holonom.simulation.engines.choice import Choice
 from holonom.simulation.initial_state import at_values
-from holonom.simulation.request import SimulationRequest
+from holonom.simulation.request import EngineName, SimulationRequest
 from holonom.simulation.simulate import simulate
 from holonom.sweeps.rows import TOLERANCE, RowMaker, Status
 
@@ -94,3 +98,21 @@ def verdicts(rows_of, tmp_path_factory):
 def test_rows_in_batches_single_rows_and_simulate_agree(verdicts, name):
     text, (grid, expected) = {**SCENES, **LONG}[name]
     assert verdicts(text, grid) == [expected] * 3
+
+
+@pytest.mark.usefixtures("gsl")
+def test_rows_that_are_integrated_alone_left_their_libraries_open(rows_of, tmp_path, monkeypatch):
+    """Truth: as many open libraries and functions after six rows, one of them broken off, as after one."""
+    loaded = []
+    monkeypatch.setattr(runge_kutta, "load_c", lambda *asked: loaded.append(asked) or load_c(*asked))
+    monkeypatch.setattr(switching, "quicker_engine", lambda *asked: Choice(EngineName.RUNGE_KUTTA, 0, 0, 1.0, 0.0))
+    monkeypatch.setattr(switching, "TRIAL", 1)
+    file = tmp_path / "scene.mac"
+    file.write_text(scene("x", "dot(x)^2/2", "exp(-x^2)/k", "x = 0, dot(x) = 1", "1"))
+    maker, found = rows_of(file, "final", "k=-1:2:4"), []
+    for first, last in ((3, 4), (0, 4), (1, 3)):
+        maker.table(first, last)
+        libraries = re.findall(r"\S*/motion\.so", Path("/proc/self/maps").read_text(encoding="utf-8"))
+        found.append((len(set(libraries)), len(maker.plan.problem._compiled)))
+    assert len(loaded) >= 5
+    assert found[1:] == found[:-1]

@@ -143,7 +143,8 @@ static int adjust_step(void *unused, size_t size, unsigned order, const double *
 
 static void *what_it_knows(void) { return &tolerance; }
 
-static const gsl_odeiv2_control_type every_step = { "every step", what_it_knows, NULL, adjust_step, NULL, NULL, NULL };
+static const gsl_odeiv2_control_type every_step = {
+    "every step", what_it_knows, NULL, adjust_step, NULL, NULL, nothing_to_free};
 
 /* Returns 0, or GSL's number for what went wrong. */
 int begin(double relative_tolerance, double time, const double *sizes)
@@ -156,6 +157,13 @@ int begin(double relative_tolerance, double time, const double *sizes)
     control = gsl_odeiv2_control_alloc(&every_step);
     evolution = gsl_odeiv2_evolve_alloc(STATE);
     return method && control && evolution ? GSL_SUCCESS : GSL_ENOMEM;
+}
+
+void end(void)
+{
+    gsl_odeiv2_evolve_free(evolution);
+    gsl_odeiv2_control_free(control);
+    gsl_odeiv2_step_free(method);
 }
 
 /* Forget the rates at the last state, which is another one now. */

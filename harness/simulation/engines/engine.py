@@ -99,3 +99,6 @@ class Engine(Protocol):
 
     def solutions(self, instants: Numbers, states: Numbers) -> Solutions:
         """What the equations of motion determine at instants, shape (k,), and states, shape (2n, k)."""
+
+    def close(self) -> None:
+        """Give back what is held outside of Python; the motion is not followed any more."""

@@ -153,6 +153,9 @@ class ProgramEngine:
         found = self._evaluate(np.ascontiguousarray(inputs))
         return Solutions(found[:n], found[n : n + g], found[n + g :])
 
+    def close(self) -> None:
+        """Nothing is held outside of Python."""
+
     def _begin(self) -> None:
         self._length = self._first_block
 

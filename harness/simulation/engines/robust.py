@@ -111,6 +111,9 @@ class RobustEngine:
             self.steps += 1
             require_reach(self.steps - steps, self.time - begun, until - self.time)
 
+    def close(self) -> None:
+        """Nothing is held outside of Python."""
+
     @property
     def amid_passage(self) -> bool:
         """Whether a singular configuration is in reach of the next steps, or being passed."""

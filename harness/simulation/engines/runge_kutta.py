@@ -11,6 +11,7 @@ import shlex
 import shutil
 import subprocess
 import time
+import weakref
 from collections.abc import Iterator
 from functools import partial
 from itertools import pairwise
@@ -22,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...failures import Failure, HolonomError
-from ...program.c_function import load_c
+from ...program.c_function import load_c, unload
 from ...program.c_source import HELPERS, scalar_statements
 from ...program.motion_problem import MotionProblem, computing
 from ...program.motion_program import Program
@@ -123,6 +124,10 @@ class RungeKuttaEngine(ProgramEngine):
     def _with_states(self, until: Any, most: int) -> tuple[Taken, list[Piece]]:
         return self._integrator.with_states(until, most)
 
+    def close(self) -> None:
+        """Close what was compiled for the motion, which cannot be followed any more."""
+        self._integrator.close()
+
     @property
     def evaluations(self) -> int:
         """How often the motion program has been evaluated so far."""
@@ -195,6 +200,13 @@ class DormandPrince(ctypes.Structure):
         library.begin.argtypes = (ctypes.c_double, ctypes.c_double, ctypes.c_void_p)
         if library.begin(tol, nominal.time, np.ascontiguousarray(nominal.state).ctypes.data) != 0:
             raise MemoryError
+        self._closing = weakref.finalize(self, _closed, library)
+        self._closing.atexit = False
+
+    def close(self) -> None:
+        """Give the memory of the library back, and close it."""
+        self._closing()
+        del self._advance, self._go_between, self.quiet_steps
 
     @property
     def evaluations(self) -> int:
@@ -232,6 +244,11 @@ class DormandPrince(ctypes.Structure):
             if self._go_between(begin, instant, reached.ctypes.data) != 0:
                 raise HolonomError(Failure.NO_WAY_ON, detail=f"{begin:.10g}, where a step between two others fails")
         return found.T.copy()
+
+
+def _closed(library: ctypes.CDLL) -> None:
+    library.end()
+    unload(library)
 
 
 def _source(problem: MotionProblem, drift: Stabilization, decay: float) -> Iterator[str]:

@@ -148,6 +148,11 @@ class SwitchingEngine:
                 rows[:, there] = better[: len(rows)]
         return found
 
+    def close(self) -> None:
+        """Give back what the engines hold outside of Python."""
+        for engine in self._set_up:
+            engine.close()
+
     # ---- engines ----
 
     def _first_engine(self, end: Any, between: Between | None) -> Engine:

@@ -1,8 +1,12 @@
 """What is particular to the Runge-Kutta engine: compiled steps, states between them, the constraints kept in C."""
 
+import ctypes
 import os
+import re
+from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 
 import mpmath
 import numpy as np
@@ -11,6 +15,7 @@ import scipy.integrate
 from problems import problem
 
 from holonom.failures import Failure, HolonomError
+from holonom.program.c_function import load_c
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
 from holonom.sandbox import Limits
@@ -164,3 +169,35 @@ def test_a_library_that_does_not_tell_where_it_is_ended_in_an_internal_error(scr
     monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
     with pytest.raises(HolonomError, match="needs the GNU Scientific Library"):
         RungeKuttaEngine(pendulum)
+
+
+def test_motions_left_their_libraries_open():
+    """Each row of a sweep that is integrated alone may have one of its own."""
+
+    def open_libraries() -> int:
+        return len(set(re.findall(r"\S*/motion\.so", Path("/proc/self/maps").read_text(encoding="utf-8"))))
+
+    swing, before = problem("pendulum.mac", "swing_scene"), open_libraries()
+    engine = RungeKuttaEngine(swing)
+    assert open_libraries() == before + 1
+    engine.close()
+    for until in (Fraction(1), Fraction(10**12)):  # the second takes too many steps
+        with suppress(HolonomError):
+            simulate(swing, SimulationRequest(engine=EngineName.RUNGE_KUTTA, until=until))
+    assert open_libraries() == before
+
+
+def test_what_gsl_holds_is_given_back(monkeypatch):
+    class Memory(ctypes.Structure):
+        _fields_ = tuple((name, ctypes.c_size_t) for name in (*"abcdefg", "used", "free", "top"))
+
+    used, libraries = ctypes.CDLL(None).mallinfo2, []
+    used.restype = Memory
+    monkeypatch.setattr(runge_kutta, "load_c", lambda *asked: libraries.append(load_c(*asked)) or libraries[-1])
+    engine, sizes = RungeKuttaEngine(problem("pendulum.mac", "swing_scene")), np.ones(4)
+    before = used().used
+    for _ in range(1000):
+        libraries[0].end()
+        libraries[0].begin(1e-9, 1.0, sizes.ctypes.data)
+    assert used().used < before + 10_000
+    engine.advance(0.1)
