@@ -147,10 +147,15 @@
   (let ((items (coerce (cdr items) 'vector)))
     (mlist-of (mapcar #'(lambda (place) (aref items (1- place))) (cdr places)))))
 
+(defun $field (structure name) (nth (place-of-field structure name) structure))
+
+(defun place-of-field (structure name)
+  (position (plain-name name) (get (caar structure) 'defstruct-template)))
+
 (defun $altered (structure &rest changes)
   "The structure with other values of some of its fields,  'field = value."
-  (let ((altered (copy-list structure)) (fields (get (caar structure) 'defstruct-template)))
+  (let ((altered (copy-list structure)))
     (dolist (change changes altered)
-      (setf (nth (position (plain-name (second change)) fields) altered) (third change)))))
+      (setf (nth (place-of-field structure (second change)) altered) (third change)))))
 
 (defun mlist-of (items) (cons '(mlist simp) items))
