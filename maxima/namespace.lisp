@@ -1,18 +1,11 @@
 ;;; A namespace for the library
 ;;;
-;;; Maxima has one space of names, and scopes them dynamically: a scene that defines gradient(V), or
-;;; gives a value to n, would change what the library computes, and a library that defines
-;;; eliminate() takes Maxima's own away. So the files of the library are read here. They are written in
-;;; plain names, like the paper; each of their own names is exchanged for a private twin, gradient',
-;;; before a statement is evaluated. A twin is displayed and exported as its name without the prime.
+;;; Maxima has one space of names, and scopes them dynamically. The files of the library are read here: each of their
+;;; own names, gradient, is exchanged for a private twin, gradient', which is displayed and exported without the prime.
 ;;;
-;;; Kept as they are:
-;;;   Maxima's own functions and variables;
-;;;   the public names, that a user writes: those declared by public_names(...), the options (names
-;;;   given to define_variable), the entries of descriptions (named where read_entries is called), and
-;;;   the writers of documents (write_...);
-;;;   names that the library neither binds nor calls: tags, quoted data;
-;;;   the fields of structures, that are only ever read behind an @.
+;;; Kept as they are: Maxima's own functions and variables; names that the library neither binds nor calls; the fields
+;;; of structures; and the public names: those of public_names(...), the options (names given to define_variable), the
+;;; entries of descriptions (named where read_entries is called), the writers of documents (write_...).
 ;;;
 ;;;   public_names(name, ...)$              declares names of the vocabulary
 ;;;   public_steps(name(a, b, [c]), ...)$   declares functions that a user calls as well. The library calls their twins;
@@ -33,7 +26,6 @@
 (defvar *bound-names* (make-hash-table :test 'eq) "Names that the library binds to values.")
 (defvar *read-names* (make-hash-table :test 'eq) "What each name of the library is read as.")
 (defvar *steps* nil "The calls of public steps, each as its definition begins: ((name) a b ((mlist) c)).")
-
 (defvar *namespace-open* nil "Whether everything is read as the library's files are.")
 (defvar *loaded-from* nil "The lists of files that are loaded, the latest first: (files . directory).")
 (defvar *asked-for* nil "Whether a file has loaded the library: it may be there before, in an image.")

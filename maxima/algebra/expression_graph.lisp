@@ -1,25 +1,21 @@
 ;;; Expression graph: every value of the motion program, formed once
 ;;;
-;;; A motion program computes many values from few symbols, and most of them again and again.
-;;; Here a value is a node of a graph; the same value is the same node, however it was come by:
+;;; A value is a node of a graph; the same value is the same node, however it was come by:
 ;;;
 ;;;     symbol   q1, dot(u), %pi                 call   sin(x), atan2(y, x), a^b
 ;;;     sum      c1*n1 + c2*n2 + ...             held   a node that is not to be opened again
 ;;;     product  n1^e1 * n2^e2 * ...
 ;;;
-;;; with numbers c, whole numbers e and nodes n. A number never has a node of its own: it is a coefficient
-;;; of the node `one', the empty product. What the functions take and return is a term, a
-;;; coefficient times a node, so that x - y and 2*y - 2*x share their node x - y.
+;;; with numbers c, whole numbers e and nodes n. A number is a coefficient of the node `one', the empty product.
+;;; Functions take and return terms, a coefficient times a node: x - y and 2*y - 2*x share their node x - y.
 ;;;
-;;; Kept true by the constructors: like terms and like factors are collected, zeros and ones
-;;; are gone, a sum has no common factor among its coefficients and starts with a plus sign.
-;;; Sums inside sums and products are left as they are: nothing is ever multiplied out.
+;;; The constructors collect like terms and like factors; zeros and ones are gone, a sum has no common factor among
+;;; its coefficients and starts with a plus sign. Nothing is ever multiplied out.
 ;;;
-;;; Maxima sees terms as opaque values. The graph in use is the value of `expression_graph',
-;;; bound by whoever builds one: block([expression_graph : new_expression_graph(variables)], ...).
+;;; Maxima sees terms as opaque values. The graph in use is the value of `expression_graph':
+;;; block([expression_graph : new_expression_graph(variables)], ...).
 ;;;
-;;; This file is loaded as source, interpreted; `do', `dolist' and structures are fast there,
-;;; `loop' is not.
+;;; The file is loaded as source, interpreted; `do', `dolist' and structures are fast there, `loop' is not.
 
 (in-package :maxima)
 
@@ -35,11 +31,8 @@
   (gradient 'unknown))                     ; list of (position . term), once asked for
 
 (defstruct term coefficient node)
-
 (defstruct factor node exponent)
-
 (defvar *hash-mask* (1- (expt 2 40)))
-
 (defmvar $expression_graph nil)
 
 (defun $new_expression_graph (variables)

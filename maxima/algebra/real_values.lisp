@@ -5,7 +5,6 @@
 (in-package :maxima)
 
 (defvar *unreal-symbols* '($%i $inf $minf $infinity $und $ind $unknown t nil))
-
 (defvar *unreal-operators* '(mlist $matrix $set mequal mnotequal mlessp mleqp mgreaterp mgeqp mand mor mnot lambda))
 
 (defvar *partial-functions* '(mexpt %log %asin %acos %acosh %atanh %asec %acsc %asech %acoth)

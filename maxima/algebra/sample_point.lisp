@@ -1,45 +1,28 @@
 ;;; Terms of the expression graph in numbers, at a point; and ranks of sparse matrices of them
 ;;;
-;;; Values are rationals, rounded to 80 digits once they are longer. A sum is zero where its terms
-;;; cancel to a share of 10^-20: sin(x)^2 + cos(x)^2 - 1 is, x + 10^-15 is not, in whatever units. A cosine is zero
-;;; where its argument would have to change by such a share.
-;;; No number is compared with a fixed size, so that scaling a row or a column changes no rank.
+;;; Values are rationals, rounded to 80 digits once they are longer. A sum is zero where its terms cancel to a share of
+;;; 10^-20, a cosine where its argument would have to change by such a share. No number is compared with a fixed size,
+;;; so that scaling a row or a column changes no rank.
 ;;;
-;;; The rank is found by elimination, a row at a time, with the pivot in the column that fewest
-;;; rows share; a point on the manifold f = 0 by Newton's method, each correction the shortest.
-;;; What f leaves of a zero is 10^-55 then, much less than what counts as zero; where f has no
-;;; simple zero, as (x - u)^2, Newton's method gets there as well, only slowly.
+;;; The rank is found by elimination, a row at a time, with the pivot in the column that fewest rows share; a point on
+;;; the manifold f = 0 by Newton's method, each correction the shortest. What f leaves of a zero is 10^-55 then.
 
 (in-package :maxima)
 
 (defvar *digits-at-point* 80)
-
 (defvar *zero-share* (expt 10 -20) "Sums that cancel to less of their largest term are zero.")
-
 (defvar *zero-share-of-constraints* (expt 10 -55))
-
 (defvar *zero-share-of-floats* 1d-12)
-
 (defvar *small-coordinate* (expt 10 -20))
-
 (defvar *pivot-ratio* 10000 "The largest entry of a row is at most so many times its pivot.")
-
 (defvar *floating* nil "Whether numbers are floating-point ones, for a start.")
-
 (defvar *most-corrections* 400)
-
 (defvar *impatience* 40 "Corrections after which each must be smaller than the one before.")
-
 (defvar *smallest-coordinate* (expt 10 -70))
-
 (defvar *functions-with-zeros* '(%sin %cos %tan %cot %log) "With slope 1 or -1 at their zeros, but for signs and 1/x.")
-
 (defvar *least-gain* 1000 "By how much a correction in floating point must lessen the residuals.")
-
 (defvar *most-refinements* 20)
-
 (defvar *most-halvings* 40 "Of a correction, in a line search.")
-
 (defvar *small-correction* (expt 10 -12) "Of the largest coordinate: a correction that needs no line search.")
 
 (defvar *contraction* 1/16
@@ -50,13 +33,9 @@
   "Shares of the distance of a root at which the search for nearer ones begins, with one unknown.")
 
 (defvar *starts-around* '(1/4 -1/4 1/2 -1/2 3/4 -3/4 1 -1) "The same along each of several unknowns.")
-
 (defvar *most-unknowns-searched* 12 "Unknowns up to which nearer roots are looked for.")
-
 (defvar *most-corrections-of-search* 20 "From each of these starts.")
-
 (defvar *most-halvings-of-search* 6 "Of each of these corrections.")
-
 (defvar *nearer* 9/10 "Of the distance of a point on a manifold: another one that is on a nearer branch.")
 
 (defstruct sample-point

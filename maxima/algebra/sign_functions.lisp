@@ -4,19 +4,13 @@
 ;;;     signum(g) = s         min(a, b) = (a + b - s (a - b))/2        if a < b then X else Y
 ;;;                                                                     = (1 + s)/2 X + (1 - s)/2 Y
 ;;;
-;;; where s is the sign of g, of a - b, of b - a. Each such g is a switching function, and a symbol
-;;; stands for its sign. Those met so far are kept in the order of their symbols, in which a
-;;; function may contain the symbols before it.
-;;;
-;;; Written openly, max, min, steps and if are left with |g| and signum(g) instead, which have a place in
-;;; equations and documents.
+;;; where s is the sign of g, of a - b, of b - a, a symbol for each such switching function. They are kept in the order
+;;; of their symbols, in which a function may contain the symbols before it. Written openly, |g| and signum(g) stay.
 
 (in-package :maxima)
 
 (defvar *sign-prefix* '$sign)
-
 (defvar *signs-met* nil "List of (symbol . switching function), last first.")
-
 (defvar *written-openly* nil "Whether signs stay signum(g).")
 
 (defun $written_openly (expression)

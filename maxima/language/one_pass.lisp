@@ -1,15 +1,10 @@
 ;;; Long expressions in one pass
 ;;;
-;;; What a system of many bodies says is long: its kinetic energy is a sum over them all. Asked for one
-;;; name after the other, it takes a time that grows like the square of their number; here it is gone
-;;; through once.
+;;; The kinetic energy of many bodies is a long sum: it is gone through once for all names. Maxima's sum compares each
+;;; new term with those it has, from the greatest on; terms that come in descending order find their place at once.
 ;;;
-;;; Maxima's sum compares each new term with those it has, from the greatest on. Terms that come in
-;;; descending order find their place at once.
-;;;
-;;; GCL's some, every, find-if, position, count-if and reduce look each item of a list up from its
-;;; beginning: for ten thousand items they take fifty million steps. What goes through lists of any
-;;; length asks member-if.
+;;; GCL's some, every, find-if, position, count-if and reduce look each item of a list up from its beginning: what goes
+;;; through lists of any length asks member-if.
 
 (in-package :maxima)
 

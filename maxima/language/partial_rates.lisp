@@ -1,18 +1,14 @@
 ;;; diff(x, t) in a scene's text: what Maxima takes for a partial derivative
 ;;;
-;;; Maxima takes every symbol for a constant that  depends  does not say otherwise of, so that
-;;; -c*diff(x, t) is 0 before a system can be described with it, and the damping is gone.
-;;; Here  diff  notes what scene text differentiates by t, so that holonomic_system can refuse
-;;; it where it holds a coordinate or a control; the result is Maxima's own then.
-;;; Scene text is what runs outside the functions that the library defines.
+;;; Maxima takes every symbol for a constant that  depends  does not say otherwise of: -c*diff(x, t) is 0, and the
+;;; damping is gone. Here  diff  notes what scene text, all that runs outside of the library's functions, differentiates
+;;; by t, so that holonomic_system can refuse it; the result is Maxima's own.
 ;;;
-;;; The library's own  diff  takes signum for constant, as it is between its jumps, which are looked at
-;;; where a motion meets them (program/switching.mac). Maxima leaves that derivative open.
+;;; The library's own  diff  takes signum for constant, as it is between its jumps (program/switching.mac).
 
 (in-package :maxima)
 
 (defvar *partial-rates* nil "What scene text has differentiated by t as if it were constant, last first.")
-
 (defvar *plain-diff* (symbol-function '$diff))
 
 (defun $diff (&rest arguments)

@@ -1,12 +1,10 @@
 ;;; Special functions in expressions, and the sums of Chebyshev polynomials that programs hold for them
 ;;;
-;;; Coefficients come from values at t_j = cos(pi j/n), j = 0 ... n: with the first and the last of
-;;; each sum halved,
+;;; Coefficients come from values at t_j = cos(pi j/n), j = 0 ... n, the first and the last of each sum halved,
 ;;;
 ;;;     c_k = 2/n sum over j of f(t_j) cos(pi j k/n),
 ;;;
-;;; c_n halved too (Trefethen, Approximation Theory and Approximation Practice, chapter 3). The cosines
-;;; are those of 2 n angles, looked up; all numbers are integers, units of one share.
+;;; c_n halved too (Trefethen, Approximation Theory and Approximation Practice, chapter 3). All numbers are integers.
 
 (in-package :maxima)
 

@@ -1,10 +1,9 @@
 ;;; The cubic polynomials of a spline, from the points that it runs through       (table.mac)
 ;;;
-;;; The tridiagonal system for the second rates is eliminated from the first row down, then back. Its matrix is made
-;;; of times, which are fractions; heights may be other constants, as sqrt(2). With few points the solution is
-;;; exact, but for fractions of more than spline_digits digits, which are rounded: exact ones gain some with every
-;;; point. With many points it is computed in integers, multiples of a unit so small that as many digits are right:
-;;; that is forty times as quick.
+;;; The tridiagonal system for the second rates is eliminated from the first row down, then back. Times are fractions,
+;;; heights may be other constants. With few points the solution is exact, but for fractions of more than spline_digits
+;;; digits, which are rounded; with many it is computed in integers, multiples of a small unit, which is forty times as
+;;; quick.
 
 (in-package :maxima)
 

@@ -1,8 +1,7 @@
 ;;; A table in a CSV file: two numbers a line, t and u
 ;;;
-;;; The file is looked for beside the one that names it; lines may end in any way. Empty ones and those
-;;; that begin with # are passed over, and so is a first line without any number, which names the
-;;; columns. A number, which may stand in quotes, is read as the fraction that its decimal digits say.
+;;; Empty lines and those that begin with # are passed over, and so is a first line without any number. A number, which
+;;; may stand in quotes, is read as the fraction that its decimal digits say.
 
 (in-package :maxima)
 

@@ -1,9 +1,8 @@
 ;;; Minimum degree                                            (Tinney & Walker 1967, scheme 2)
 ;;;
-;;; Of the unknowns that wait for nothing the one with fewest neighbours is eliminated, of several
-;;; the first; its neighbours become neighbours of each other. Which one that is, a heap tells: an unknown is
-;;; put into it whenever its number of neighbours changes, and what is true of it no more is passed
-;;; over when it comes up.
+;;; Of the unknowns that wait for nothing the one with fewest neighbours is eliminated, of several the first; its
+;;; neighbours become neighbours of each other. An unknown is put into a heap whenever its number of neighbours changes,
+;;; and what is true of it no more is passed over when it comes up.
 
 (in-package :maxima)
 

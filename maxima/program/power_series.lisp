@@ -1,7 +1,7 @@
 ;;; Power series on a straight-line program
 ;;;
-;;; Along a motion every value x of the program has derivatives x_0, x_1, x_2, ... at t0. They
-;;; come order by order, each value's from those of the values before it (Leibniz):
+;;; Along a motion every value x of the program has derivatives x_0, x_1, x_2, ... at t0. They come order by order, each
+;;; value's from those of the values before it (Leibniz):
 ;;;
 ;;;     sum        h = c x + d y       h_n = c x_n + d y_n
 ;;;     product    h = x y             h_n = sum over k = 0 ... n of (n k) x_k y_(n-k)
@@ -9,15 +9,11 @@
 ;;;     function   h = f(x)            h_n = sum over k < n of (n-1 k) g_k x_(n-k)
 ;;;     integral   dh/dt = x           h_n = x_(n-1)
 ;;;
-;;; with (n k) = n!/(k! (n-k)!), and g = f'(x), itself a value of the expression graph: exp is
-;;; its own g, sin has cos, a root has a quotient. So a function needs nothing here but its
-;;; value at t0; and coordinates are integrals of velocities, those of accelerations.
+;;; with (n k) = n!/(k! (n-k)!), and g = f'(x), itself a value of the expression graph.
 ;;;
-;;; Numbers are Lisp rationals. With a suitable unit of time the derivatives of a motion with
-;;; rational data are all but whole numbers, which takes less work than fractions: t - t0 is
-;;; measured in units of 1/scale. Where numbers are rounded, a series also keeps mantissas
-;;; and exponents of two. Either way the sums are a few passes of `mapcar', which is compiled;
-;;; this file is loaded as source.
+;;; Numbers are Lisp rationals; t - t0 is measured in units of 1/scale, so that the derivatives are all but whole
+;;; numbers. Where numbers are rounded, a series also keeps mantissas and exponents of two. The sums are a few passes of
+;;; `mapcar', which is compiled; this file is loaded as source.
 
 (in-package :maxima)
 
@@ -75,7 +71,6 @@
 ;;; ---- sums of products ------------------------------------------------------------------
 
 (defvar *binomials* nil "(n 0), (n 1), ..., (n n) for the order n that is being formed.")
-
 (defvar *binomials-before* nil "The same for n-1.")
 
 (defun next-binomials ()
@@ -133,9 +128,7 @@
   (outputs nil))                           ; list of (name . series)
 
 (defvar *machine* nil)
-
 (defvar *start* nil "Values at t0: symbol -> rational.")
-
 (defvar *defining* nil "Name of the assignment whose steps are being made.")
 
 (defun $series_machine (definitions rates outputs)

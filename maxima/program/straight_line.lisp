@@ -1,11 +1,9 @@
 ;;; From the expression graph to a straight-line program
 ;;;
-;;; A node that is used more than once, or that would make an expression too long to read,
-;;; becomes an assignment; the others are written where they are used. Parts come before wholes.
+;;; A node that is used more than once, or would make an expression too long, becomes an assignment.
 ;;;
-;;; Operations are counted on what is written: a sum of k terms takes k-1, a product of k
-;;; factors k-1, every quotient, power, root and function call 1. A minus sign that makes a
-;;; difference of a sum is free, and so is that of a number; any other takes 1.
+;;; Operations are counted on what is written: a sum of k terms takes k-1, a product of k factors k-1, every quotient,
+;;; power, root and function call 1. A minus sign of a difference or a number is free; any other takes 1.
 
 (in-package :maxima)
 

@@ -1,7 +1,6 @@
 ;;; The description, written as JSON and read again
 ;;;
-;;; Expressions are MathJSON trees as in every document (mathjson.lisp). A description holds more functions than a
-;;; record: conditions, steps, extrema and tables, as the scene file states them,
+;;; It holds more functions than other documents (mathjson.lisp): conditions, steps, extrema and tables,
 ;;;
 ;;;     ["Which", condition, value, ..., "True", value]     ["Max", a, b]     ["Table", k, "t"]: of "tables", from 0 on
 ;;;

@@ -1,10 +1,8 @@
-;;; Maxima expressions and plain data as JSON text.
+;;; Maxima expressions and plain data as JSON text
 ;;;
-;;; An expression becomes a tree in MathJSON's shape: ["Add", "q1", ["Multiply", 2, "dot(q1)"]].
-;;; Data are built in Maxima from json_object([name, value], ...), json_array(value, ...),
-;;; json_expression(expression), strings, booleans, integers and json_null. In Lisp because a
-;;; program of thousands of assignments is written sixteen times faster than in Maxima's language.
-;;; Numbers are exact: an integer beyond 2^53 and every float are strings of decimal digits.
+;;; An expression becomes a tree in MathJSON's shape: ["Add", "q1", ["Multiply", 2, "dot(q1)"]]. Data are
+;;; json_object([name, value], ...), json_array(value, ...), json_expression(expression), strings, booleans, integers
+;;; and json_null. Numbers are exact: an integer beyond 2^53 and every float are strings of decimal digits.
 
 (in-package :maxima)
 
