@@ -176,7 +176,6 @@
 ;;; ---- files -------------------------------------------------------------------------------
 
 (defstruct library-file path forms)
-
 (defun lisp-file-p (path) (string= (pathname-type path) "lisp"))
 
 (defun read-library-file (path)
@@ -247,9 +246,7 @@
     (if (and (symbolp made) (some #'private-twin-p parts)) (read-name made) made)))
 
 (define-library-version $parse_string (text) (in-namespace (parsed text)))
-
 (define-library-version $eval_string (text) (meval (in-namespace (parsed text))))
-
 (defun parsed (text) (mfuncall '$parse_string text)) ; which Maxima loads when it is first called
 
 ;;; ---- for Maxima --------------------------------------------------------------------------

@@ -62,13 +62,9 @@
 ;;; ---- numbers and symbols ---------------------------------------------------------------
 
 (defun one () (node-of 'product nil '(product)))
-
 (defun number-term (number) (make-term :coefficient number :node (one)))
-
 (defun zero-term-p (term) (zerop (term-coefficient term)))
-
 (defun number-term-p (term) (one-p (term-node term)))
-
 (defun one-p (node) (and (eq (node-kind node) 'product) (null (node-parts node))))
 
 (defun symbol-term (symbol)
@@ -165,7 +161,6 @@
               (t (push m seen)))))))
 
 (defun magnitude (term) (abs (term-coefficient term)))
-
 (defun unit-coefficient-p (term) (eql (magnitude term) 1))
 
 ;;; ---- products and powers ---------------------------------------------------------------
@@ -446,9 +441,7 @@
 ;;; ---- what the Maxima side calls ----------------------------------------------------------
 
 (defun $graph_variables () (hash-table-count (expression-graph-variables $expression_graph)))
-
 (defun $graph_term (e) (expression-term e))
-
 (defun $graph_sum (terms) (sum-of (mapcar #'expression-term (cdr terms))))
 
 (defun $graph_terms (term)
@@ -460,11 +453,8 @@
               (list term)))))
 
 (defun $graph_product (&rest factors) (product-of (mapcar #'expression-term factors)))
-
 (defun $graph_quotient (a b) (quotient-of (expression-term a) (expression-term b)))
-
 (defun $graph_root (a) (power-of (expression-term a) 1/2))
-
 (defun $graph_sign (a) (call-of '%signum (expression-term a)))
 
 (defun $graph_hold (term)
@@ -477,7 +467,6 @@
         (and (minusp (factor-exponent factor)) (not (eq kind 'symbol))))))
 
 (defun $graph_zerop (term) (zero-term-p (expression-term term)))
-
 (defun $graph_numberp (term) (number-term-p (expression-term term)))
 
 ;; A sum's own coefficients have no common factor, so that those of the terms tell.

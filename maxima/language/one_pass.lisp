@@ -9,7 +9,6 @@
 (in-package :maxima)
 
 (defun any-of-p (test items) (if (member-if test items) t nil))
-
 (defun all-of-p (test items) (not (member-if-not test items)))
 
 (defun same-items-p (items others)

@@ -69,7 +69,6 @@
   (subseq line (or (position-if-not #'(lambda (c) (member (char-code c) '(239 187 191 65279))) line) (length line))))
 
 (defun trimmed (text) (string-trim '(#\Space #\Tab #\Return #\Newline) text))
-
 (defun unquoted (cell) (string-trim '(#\") (trimmed cell)))
 
 (defun split-at (mark text)

@@ -58,7 +58,6 @@
   (eql 1 (incf (gethash (node-number node) (census-uses census) 0))))
 
 (defun uses-of (node census) (gethash (node-number (unheld node)) (census-uses census) 0))
-
 (defun shared-p (node census) (> (uses-of node census) 1))
 
 ;;; ---- rewriting a graph -------------------------------------------------------------------
