@@ -272,6 +272,9 @@
                                          (list (term-coefficient term) (term-order term)))
                                      terms)))))
 
+(defun maxima-call (operator arguments)
+  (if (eq operator '%exp) (list '(mexpt) '$%e (car arguments)) (cons (list operator) arguments)))
+
 (defun held-term (term)
   "The same value, but not opened any more: a factor of products as it is."
   (let ((node (term-node term)))

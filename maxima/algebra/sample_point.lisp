@@ -100,38 +100,23 @@
   (expt number exponent))
 
 (defun value-of-call (operator numbers)
-  (let* ((arguments (mapcar #'maxima-number numbers))
-         (value (number-from-maxima
-                 (if (eq operator '%exp)
-                     (list '(mexpt) '$%e (car arguments))
-                     (cons (list operator) arguments)))))
+  (let ((value (number-from-maxima (maxima-call operator (mapcar #'maxima-number numbers)))))
     (if (and (member operator *functions-with-zeros*)
              (< (abs value) (* *zero-share* (abs (car numbers)))))
         0
         value)))
 
 (defun number-from-maxima (e)
-  (if *floating* (float-from-maxima e) (exact-from-maxima e)))
-
-(defun float-from-maxima (e)
-  (let* (($errormsg nil) (found (errset ($float (simplifya e nil)))))
-    (if (numberp (car found)) (car found) (irregular-point))))
-
-(defun exact-from-maxima (e)
   (let* (($errormsg nil)
          (fpprec (digits-in-bits (+ *digits-at-point* 10)))
-         (found (errset ($bfloat (simplifya e nil)))))
-    (cond ((integerp (car found)) (car found))
-          ((bigfloatp (car found))
-           (rational-of-bigfloat (car found)))
+         (found (car (errset (funcall (if *floating* #'$float #'$bfloat) (simplifya e nil))))))
+    (cond ((if *floating* (numberp found) (integerp found)) found)
+          ((and (not *floating*) (bigfloatp found)) (rational-of-bigfloat found))
           (t (irregular-point)))))
 
 (defun short-number (number)
-  (if (floatp number) number (short-rational number)))
-
-(defun short-rational (number)
-  (let ((bits (digits-in-bits *digits-at-point*)))
-    (if (< (+ (integer-length (numerator number)) (integer-length (denominator number))) (* 2 bits))
+  (let ((bits (if (floatp number) nil (digits-in-bits *digits-at-point*))))
+    (if (or (null bits) (< (+ (integer-length (numerator number)) (integer-length (denominator number))) (* 2 bits)))
         number
         (rounded-to-bits number bits))))
 
@@ -220,10 +205,7 @@
 (defun $independent_rows (rows)
   "Numbers of the rows that do not depend on those before them."
   (let ((dependent (echelon-dependent (echelon-of (mapcar #'row-from-maxima (cdr rows))))))
-    (cons '(mlist)
-          (remove-if #'(lambda (i) (member i dependent))
-                     (let ((numbers nil))
-                       (dotimes (i (length (cdr rows)) (nreverse numbers)) (push (1+ i) numbers)))))))
+    (mlist-of (loop for i from 1 to (length (cdr rows)) unless (member i dependent) collect i))))
 
 (defun $null_vector (rows size)
   "A list x of so many numbers, not all of them zero, with  rows . x = 0; false where there is none."
@@ -292,9 +274,7 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
                               (newton-corrections (mapcar #'(lambda (r) (float-of (/ r size))) residuals)
                                                   jacobian (converted-point point #'float-of)))))))
     (if (car found)
-        (let ((corrections (make-hash-table)))
-          (maphash #'(lambda (column value) (setf (gethash column corrections) (* size (rational value)))) (car found))
-          corrections))))
+        (mapped-corrections #'(lambda (column value) (* size (rational value))) (car found)))))
 
 (defun float-of (number) (float number 1d0))
 
@@ -332,9 +312,11 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
                        (* (- 1 (/ share 4)) size))))
           (return trial)))))
 
-(defun shortened (corrections share)
+(defun shortened (corrections share) (mapped-corrections #'(lambda (column value) (* share value)) corrections))
+
+(defun mapped-corrections (function corrections)
   (let ((result (make-hash-table)))
-    (maphash #'(lambda (column value) (setf (gethash column result) (* share value))) corrections)
+    (maphash #'(lambda (column value) (setf (gethash column result) (funcall function column value))) corrections)
     result))
 
 (defun newton-corrections (residuals jacobian point)
@@ -484,10 +466,7 @@ vanish; false where Newton's method does not get there."
            '(1/3 5/7 1))))
 
 (defun largest-difference (corrections others)
-  (let ((differences (make-hash-table)))
-    (maphash #'(lambda (column value) (setf (gethash column differences) (- value (gethash column others 0))))
-             corrections)
-    (largest-correction differences)))
+  (largest-correction (mapped-corrections #'(lambda (column value) (- value (gethash column others 0))) corrections)))
 
 (defun nearest-within (distance found point constraints jacobian metric names)
   "The nearest root from starts within this distance of the point, or that of the one found; nil where none is nearer."

@@ -264,10 +264,7 @@
   (or (gethash symbol *start*) (number-at-start symbol symbol)))
 
 (defun function-at-start (operator arguments assignment)
-  (let* ((values (mapcar #'(lambda (x) (maxima-value (derivative x 0))) arguments))
-         (call (if (eq operator '%exp)
-                   (list '(mexpt) '$%e (car values))
-                   (cons (list operator) values)))
+  (let* ((call (maxima-call operator (mapcar #'(lambda (x) (maxima-value (derivative x 0))) arguments)))
          ($errormsg nil)
          (value (errset (simplifya call nil))))
     (if (or (null value)
