@@ -56,18 +56,17 @@
         (t ($refuse '$dot_of_expression (letters-of-name dots) x))))
 
 (defun $contains_floats (e)
-  (cond ((atom e) (floatp e))
-        ((eq (caar e) 'bigfloat) t)
-        ((member 'array (car e)) nil)
-        ((specrepp e) ($contains_floats (specdisrep e)))
-        (t (any-of-p #'$contains_floats (cdr e)))))
+  (some-part-p #'(lambda (part) (or (floatp part) (bigfloatp part))) e))
 
 (defun $contains_root (e)
   "Whether a power in it has a fraction for its exponent."
-  (cond ((atom e) nil)
-        ((specrepp e) ($contains_root (specdisrep e)))
-        (t (or (and (eq (caar e) 'mexpt) (ratnump (third e)))
-               (any-of-p #'$contains_root (cdr e))))))
+  (some-part-p #'(lambda (part) (and (consp part) (eq (caar part) 'mexpt) (ratnump (third part)))) e))
+
+(defun some-part-p (test e)
+  (cond ((funcall test e) t)
+        ((or (atom e) (member 'array (car e))) nil)
+        ((specrepp e) (some-part-p test (specdisrep e)))
+        (t (any-of-p #'(lambda (part) (some-part-p test part)) (cdr e)))))
 
 (defun $expression_size (e)
   "Number of symbols, numbers and operations, as they are displayed."

@@ -82,21 +82,12 @@
   "-12.5e-3 as the fraction that it is; nil for what is no number."
   (let* ((e (position-if #'(lambda (c) (find c "eE")) text))
          (mantissa (signed-parts (subseq text 0 e)))
-         (exponent (if e (whole-number (subseq text (1+ e))) 0)))
+         (exponent (if e (ignore-errors (parse-integer text :start (1+ e))) 0)))
     (when (and mantissa exponent (<= (abs exponent) *largest-exponent*))
       (* mantissa (expt 10 exponent)))))
 
 (defun signed-parts (text)
-  (let* ((signed (and (plusp (length text)) (find (char text 0) "+-")))
-         (digits (if signed (subseq text 1) text))
-         (point (position #\. digits))
-         (whole (subseq digits 0 point))
-         (part (if point (subseq digits (1+ point)) "")))
-    (when (and (plusp (+ (length whole) (length part))) (every #'digit-char-p whole) (every #'digit-char-p part))
-      (* (if (and signed (char= (char text 0) #\-)) -1 1)
-         (/ (parse-integer (concatenate 'string "0" whole part)) (expt 10 (length part)))))))
-
-(defun whole-number (text)
-  (let ((digits (if (and (plusp (length text)) (find (char text 0) "+-")) (subseq text 1) text)))
-    (when (and (plusp (length digits)) (< (length digits) 5) (every #'digit-char-p digits))
-      (parse-integer text :start (if (char= (char text 0) #\+) 1 0)))))
+  "The fraction that digits with a sign and a point say; nil where they do not."
+  (let ((point (position #\. text)) (number (ignore-errors (parse-integer (remove #\. text :count 1)))))
+    (if (and number (not (find-if #'(lambda (c) (find c "+-")) text :start 1)))
+        (/ number (expt 10 (if point (- (length text) point 1) 0))))))

@@ -165,14 +165,12 @@
     (dolist (term terms)
       (dolist (factor (factors-of (term-node term)))
         (let* ((letter (letter-of-factor factor))
-               (count (assoc letter counts :test #'equal-letter-p)))
+               (count (assoc letter counts :test #'equal)))
           (if count (incf (cdr count)) (push (cons letter 1) counts)))))
     (dolist (count counts)
       (if (and (> (cdr count) 1) (or (null best) (> (cdr count) (cdr best))))
           (setq best count)))
     (car best)))
-
-(defun equal-letter-p (a b) (and (eq (car a) (car b)) (eql (cdr a) (cdr b))))
 
 ;;; ---- shared pairs ------------------------------------------------------------------------
 ;;;
