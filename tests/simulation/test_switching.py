@@ -5,6 +5,8 @@ a kink of u the impulse is radial, so that dot(phi) does not jump.
 """
 
 import math
+import sys
+from fractions import Fraction
 from functools import cache
 from itertools import count
 from pathlib import Path
@@ -217,6 +219,32 @@ def test_a_law_that_decays_like_one_over_cosh_overflowed():
 def test_switchings_keep_the_digits_of_a_longer_precision():
     x = end_of(pendulum(potential=" + 20*abs(x)"), precision="quadruple").coordinates["x"]
     assert str(x).startswith("0.59610104426624135462")
+
+
+def test_each_of_many_switchings_took_as_long_as_all_before_it():
+    """Operations that join its parts are counted, not seconds: as many for a late switching as for an early one."""
+    problem, taken = mass(potential="abs(x)", x="1/2"), 0
+
+    def count_operations(frame, event, argument):
+        nonlocal taken
+        if not frame.f_code.co_filename.endswith("piecewise.py"):
+            return None
+        frame.f_trace_opcodes, frame.f_trace_lines = True, False
+        taken += event == "opcode"
+        return count_operations
+
+    counts = []
+    for until in (80, 160, 320):
+        before, tracing, wanted = taken, sys.gettrace(), SimulationRequest(until=Fraction(until), samples=until)
+        sys.settrace(count_operations)
+        try:
+            report = simulate(problem, wanted).report
+        finally:
+            sys.settrace(tracing)
+        assert len(report.switchings) == until // 2
+        counts.append(taken - before)
+    first, second = np.diff(counts)
+    assert second < 2.2 * first
 
 
 @pytest.mark.parametrize("engine", ENGINES)

@@ -16,6 +16,11 @@ from confinement import without_notice
 
 import holonom
 import holonom.cli
+from holonom.program.request import Request
+from holonom.sandbox import Limits
+from holonom.sweeps import run
+from holonom.sweeps.axes import read_axes
+from holonom.sweeps.kept import read_kept
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 CRANE = EXAMPLES / "crane.mac"
@@ -220,3 +225,13 @@ def test_python_gets_a_lazy_dataset_and_leaves_nothing(tmp_path):
     folder = swept.path
     del swept
     assert not os.path.exists(folder)
+
+
+def test_a_sweep_started_a_worker_for_each_core_of_the_machine(monkeypatch, tmp_path):
+    """Truth: one for each that the process may use."""
+    started = []
+    monkeypatch.setattr(os, "sched_getaffinity", lambda process: {0, 3, 5}, raising=False)
+    monkeypatch.setattr(run, "compute", lambda plan, chunks, take, workers, scheduler: started.append(workers))
+    wanted = run.SweepRequest(read_axes(["m=50:500:2"], [], [], None, None), read_kept(["x"]))
+    run.run_sweep(CRANE, Request(None), wanted, tmp_path / "runs", Limits())
+    assert started == [3]

@@ -85,7 +85,7 @@ class Measurement:
     method: str
     setting: str
     instant: Fraction
-    error: float  # as `holonom.benchmark.work_precision.errors.relative_error` defines it
+    error: float  # as `relative_error` defines it
     seconds: float  # of the shortest run
     preparation_seconds: float | None  # compiling and the like; None where nothing is prepared apart
     operations: int

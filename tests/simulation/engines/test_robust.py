@@ -11,6 +11,7 @@ from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request
 from holonom.sandbox import Limits
 from holonom.simulation.diagnostics import condition
+from holonom.simulation.engines import robust
 from holonom.simulation.engines.robust import RobustEngine
 
 FOUR_BAR_AT_10 = [0.47838505776097055901, 0.87815017879120930116]  # by its elliptic functions, to twenty digits
@@ -118,6 +119,13 @@ def test_at_rest_in_a_singular_configuration_nothing_tells_the_branch(in_line):
     with pytest.raises(HolonomError, match="singular configuration") as refused:
         RobustEngine(in_line("0", "0"), 1e-10).advance(1.0)
     assert refused.value.failure is Failure.NO_WAY_ON
+
+
+def test_the_first_arc_was_as_long_as_a_division_by_no_speed_makes_it(in_line, monkeypatch):
+    motion = RobustEngine(in_line("-3", "-3"), 1e-10)
+    monkeypatch.setattr(robust, "probed", lambda *asked: (2, 0.0))  # whose velocities point nowhere
+    with np.errstate(divide="raise"), pytest.raises(HolonomError, match="that it starts from"):
+        motion.restart(0.0, np.array([1.0, 0, 2, 0, 0, 0, 0, 0]))
 
 
 def test_a_redundant_spatial_mechanism_moves_through_its_singular_configurations():
