@@ -57,6 +57,8 @@ class DescribedScene:
         The parameters that have values; settings are among them.
     initial_state, initial_guess : mapping of str to Expr
         Coordinates and velocities that the scene gives, and those near which it wants the others.
+    nominal : mapping of str to Expr
+        Sizes of coordinates, velocities and the time ``t``.
     span_trees : pair of trees or None
         First and last instant.
     until_trees : tuple of trees
@@ -74,6 +76,7 @@ class DescribedScene:
     parameter_values: Values
     initial_state: Values
     initial_guess: Values
+    nominal: Values
     span_trees: tuple[Tree, Tree] | None
     until_trees: tuple[Tree, ...]
     observe: tuple[str, ...]
@@ -238,6 +241,7 @@ def _scene(scene: dict[str, Any]) -> DescribedScene:
         parameter_values=Values(scene["parameter_values"]),
         initial_state=Values(scene["initial_state"]),
         initial_guess=Values(scene["initial_guess"]),
+        nominal=Values(scene.get("nominal", {})),
         span_trees=scene["time_span"] and tuple(scene["time_span"]),
         until_trees=tuple(scene["until"]),
         observe=tuple(scene["observe"]),

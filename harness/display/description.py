@@ -54,6 +54,7 @@ def _entries_of_scene(scene: "DescribedScene") -> Iterator[tuple[str, list[str]]
     yield "parameter_values", _values(scene.parameter_values.trees)
     yield "initial_state", _values(scene.initial_state.trees)
     yield "initial_guess", _values(scene.initial_guess.trees)
+    yield "nominal", _values(scene.nominal.trees)
     yield "time_span", [", ".join(map(scene_text, scene.span_trees))] if scene.span_trees else []
     yield "until", _zeros(scene.until_trees)
     yield "observe", _names(scene.observe)

@@ -279,6 +279,7 @@ def read_problem(text: str) -> MotionProblem:
         parameters=tuple(document["parameters"]),
         values={name: Fraction(value) for name, value in document["values"].items()},
         parametric_start=_parametric_start(document["parametric_start"]),
+        nominal={name: float(size) for name, size in document.get("nominal", {}).items()},
     )
 
 

@@ -200,6 +200,13 @@ def test_sizes_follow_the_units():
     assert other.coordinates == pytest.approx(one.coordinates * float(units.length), rel=1e-14)
 
 
+def test_a_scene_may_give_sizes(write_scene):
+    text = UNITS.format(**vars(SI)) + TEXTS["dry friction"]
+    given = text.replace("initial_state", "nominal = [x = 1/10^3, t = 5], initial_state")
+    sizes = nominal_of(motion_problem(write_scene(given), Request(), Limits()))
+    assert (sizes.time, *sizes.state) == (5.0, 1e-3, 2e-4)
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("units", SYSTEMS)
 @pytest.mark.parametrize("name", ["pendulum", "double pendulum"])
