@@ -119,13 +119,13 @@
 
 (defun system-entries (document)
   (entries-anew document
-    '(($title . text-anew) ($source . text-anew) ($coordinates . described-names) ($controls . described-names)
+    '(($title . identity) ($source . identity) ($coordinates . described-names) ($controls . described-names)
       ($parameters . described-names) ($kinetic_energy . described-effects) ($potential_energy . described-effects)
       ($forces . described-forces) ($constraints . described-list) ($drawing . described-drawing))))
 
 (defun scene-entries (document)
   (entries-anew document
-    '(($title . text-anew) ($effects . described-names) ($control_law . described-values)
+    '(($title . identity) ($effects . described-names) ($control_law . described-values)
       ($prescribed_reactions . described-values) ($servo_constraints . described-list)
       ($parameter_values . described-values) ($initial_state . described-values) ($initial_guess . described-values)
       ($nominal . described-values)      ($time_span . described-list) ($until . described-list) ($observe . described-names))))
@@ -137,7 +137,6 @@
                 (if (eq value 'null) nil (list (list '(mequal simp) (car reader) (funcall (cdr reader) value))))))
           readers))
 
-(defun text-anew (text) text)
 (defun listed (items) (cons '(mlist simp) items))
 (defun described-names (names) (mlist-of (mapcar #'described-symbol names)))
 (defun described-list (trees) (mlist-of (mapcar #'described-expression trees)))
