@@ -72,7 +72,8 @@ class TimeWatch:
             numbers = {name: Fraction(float(x)) for name, x in zip(self._problem.parameters, row, strict=True)}
             by_time = self._dependence(numbers)
             crossing = zeros_of_controls(with_values(self._problem, numbers), self._start, self._end)
-            self._known[key] = bool(crossing) or by_time[1:] != TimeDependence()[1:], by_time.stops
+            alone = bool(crossing) or by_time.end is not None or by_time.unresolved is not None
+            self._known[key] = alone, by_time.stops
         return self._known[key]
 
     def _dependence(self, numbers: Mapping[str, Fraction]) -> TimeDependence:
