@@ -4,11 +4,13 @@ import os
 from dataclasses import replace
 from fractions import Fraction
 
+import numpy as np
 import pytest
 from problems import problem
 
 from holonom.simulation.engines import choice, switching
 from holonom.simulation.engines.choice import Between, Choice, quicker_engine
+from holonom.simulation.engines.runge_kutta import FINEST
 from holonom.simulation.request import EngineName, SimulationRequest
 from holonom.simulation.simulate import simulate
 
@@ -49,6 +51,14 @@ def test_the_number_of_steps_ahead_is_that_of_the_motion():
 @pytest.mark.parametrize(("tol", "precision"), [(None, "double"), (1e-16, "double"), (1e-9, "quadruple")])
 def test_what_runge_kutta_cannot_hold_is_not_weighed(tol, precision):
     assert report(Fraction(1), tol=tol, precision=precision).choice is None
+
+
+@pytest.mark.usefixtures("gsl")
+@pytest.mark.parametrize(
+    ("tol", "held"), [(FINEST, True), (np.nextafter(FINEST, 0), False), (np.nextafter(1, 0), True), (1.0, False)]
+)
+def test_runge_kutta_holds_tolerances_from_its_finest_to_one(tol, held):
+    assert choice.comparable(float(tol)) is held
 
 
 def test_without_a_compiler_there_is_no_choice(monkeypatch):
