@@ -108,6 +108,11 @@ class Failure(Enum):
     DEFINITION_MISSING = ("the file does not define {detail}", "the companion shows how each step is derived there")
     NOT_A_SETTING = ("{detail} sets nothing", "write NAME=VALUE with a number, for instance N=64 or u0=3/10")
     NOT_A_PARAMETER = ("{detail} cannot be the name of a parameter", "give names with commas between them, such as m,g")
+    NO_NAME_IN_TEXT = (
+        "the form {detail} has the scene's values, and no names of its own",
+        "leave {--name} and {--parameters} out",
+        "write it as c or fmu",
+    )
     NOT_A_FILE = ("this form is no text for the terminal", "say where it goes: -o DIR for C, -o FILE.fmu for FMI")
     NOT_A_CHOICE = "there is no {detail}"
     NOT_AN_INSTANT = ("{detail} is no instant", "write a number such as 0.75 or 3/4")

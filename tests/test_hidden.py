@@ -22,9 +22,9 @@ from holonom.display.text import PlainConsole, html_of, text_of
 from holonom.failures import Failure, HolonomError
 from holonom.figures.style import Picture, figure_style, new_figure, svg_text
 from holonom.hidden import visible, visible_line
-from holonom.program.fmu import write_fmu
 from holonom.program.model import scene_model
 from holonom.program.request import Request
+from holonom.program.targets import fmu
 from holonom.sandbox import Limits
 from holonom.simulation.output import sample_file
 from holonom.simulation.result import Sampled
@@ -110,7 +110,7 @@ def test_a_figure_takes_titles_and_names_for_text(text, tmp_path):
 def test_a_unit_holds_xml(write_scene, c_compiler):
     file = write_scene(PARTICLE.partition("\n")[2])
     model = replace(scene_model(file, Request(), (), Limits()), title=HOSTILE + MARKUP, system=HOSTILE)
-    with zipfile.ZipFile(io.BytesIO(write_fmu(model, "unit"))) as unit:
+    with zipfile.ZipFile(io.BytesIO(fmu.write_model(model, "unit"))) as unit:
         root = ElementTree.fromstring(unit.read("modelDescription.xml"))
     assert root.get("modelName").replace("\r", r"\x0d") == visible(HOSTILE + MARKUP)
 

@@ -36,6 +36,7 @@ def imported(name: str) -> Iterator[str]:
             base = ".".join(filter(None, [*above, node.module]))
             for each in node.names:
                 full = f"{base}.{each.name}"
+                assert not node.level or {base, full} & MODULES.keys(), f"{name} imports {base}, which is not there"
                 yield from (found for found in [full if full in MODULES else base] if found in MODULES)
 
 

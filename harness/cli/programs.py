@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import click
 
 from ..failures import Failure, HolonomError
+from ..files import require_own_files, write_files, write_whole
+from ..program.forms import FORMS, MotionProgram
 from ..sandbox import Limits
 from .group import holonom
 from .options import asks_one_scene, chooses_solve, present, publish, runs_scenes, writes_json
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
 @click.option(
     "--to",
     "form",
-    type=click.Choice(["c", "fmu", "python", "javascript", "json"]),
+    type=click.Choice(FORMS),
     default="json",
     show_default=True,
     help="What is written.",
@@ -59,25 +61,18 @@ def program(
     same for FMI 3 model exchange. Controls, and parameters without a value or named by --parameters, are inputs of
     both.
     """
-    from ..program.forms import MotionProgram
-
     taken = MotionProgram(scene_file, request, limits)
-    texts = {"json": lambda: taken.document, "python": taken.to_python, "javascript": taken.to_javascript}
-    if form in texts:
-        if name or parameters:
-            raise click.UsageError("--name and --parameters go with --to c or --to fmu")
-        publish(texts[form](), output)
+    written = taken.written(form, name, parameters)
+    if isinstance(written, str):
+        publish(written, output)
     elif output == STANDARD_OUTPUT:
         raise HolonomError(Failure.NOT_A_FILE)
-    elif form == "c":
-        from ..files import require_own_files, write_files
-
-        files = taken.c_files(name, parameters)
-        if not is_forced():
-            require_own_files(output, files)
-        write_files(output, files)
+    elif isinstance(written, bytes):
+        write_whole(output, written)
     else:
-        taken.to_fmu(output, name, parameters)
+        if not is_forced():
+            require_own_files(output, written)
+        write_files(output, written)
     return 0
 
 

@@ -18,8 +18,7 @@ from . import infix
 from .arithmetic import ELEMENTARY, Arithmetic
 from .infix import Formula
 from .motion_program import Constant, Operation, Program, names_in
-
-IDENTIFIER = re.compile(r"[A-Za-z]\w*", re.ASCII)
+from .templates import filled, template
 
 FUNCTIONS = ELEMENTARY | {Operation.ABS: "fabs", Operation.SIGN: "sign"}
 
@@ -30,66 +29,6 @@ static inline double sign(double x) { return (x > 0) - (x < 0); }"""
 ROOTS_AND_POWERS = {Fraction(1, 2): "sqrt", Fraction(2): "square", Fraction(3): "cube"}
 MULTIPLIED_OUT = range(4, 17)  # exponents for which a few squares and cubes are sooner done than pow
 
-SOURCE = """\
-/* {title}
-
-{table}
-*/
-
-#include <math.h>
-#include <stddef.h>
-
-{helpers}
-
-/* One point: in and out hold its inputs and outputs. */
-void motion(const double *in, double *out)
-{{
-{one}
-}}
-
-{lanes}
-/* Many points: in[k*points + i] is input k of point i, out[k*points + i] output k. */
-void motion_batch(size_t points, const double *in, double *out)
-{{
-    size_t i = 0;
-    for (; i + LANES <= points; i += LANES) {{
-{many}
-    }}
-    for (; i < points; i++) {{
-        double values[{inputs}], results[{outputs}];
-        for (size_t k = 0; k < {inputs}; k++) values[k] = in[k*points + i];
-        motion(values, results);
-        for (size_t k = 0; k < {outputs}; k++) out[k*points + i] = results[k];
-    }}
-}}
-"""
-LANES = """\
-#include <string.h>
-
-#ifdef __GNUC__
-#pragma GCC diagnostic ignored "-Wpsabi" /* no lanes are passed from here to code compiled otherwise */
-#if defined __AVX512F__
-#define WIDTH 64
-#elif defined __AVX__
-#define WIDTH 32
-#else
-#define WIDTH 16
-#endif
-typedef double lanes __attribute__((vector_size(WIDTH))); /* as wide as the registers */
-#define LANE(x, k) (x)[k]
-#else
-typedef double lanes;
-#define LANE(x, k) (x)
-#endif
-enum { LANES = sizeof(lanes)/sizeof(double) };
-
-#define EACH_LANE(x, value) lanes x; for (int k = 0; k < LANES; k++) LANE(x, k) = (value); return x
-static inline lanes lanes_of(double number) { EACH_LANE(y, number); }
-static inline lanes lanes_at(const double *from) { lanes x; memcpy(&x, from, sizeof x); return x; }
-static inline void put_lanes(double *to, lanes x) { memcpy(to, &x, sizeof x); }
-static inline lanes lanes_square(lanes x) { return x*x; }
-static inline lanes lanes_cube(lanes x) { return x*x*x; }
-"""
 LANE_FUNCTIONS = {
     1: "static inline lanes lanes_{0}(lanes a) {{ EACH_LANE(y, {0}(LANE(a, k))); }}",
     2: "static inline lanes lanes_{0}(lanes a, lanes b) {{ EACH_LANE(y, {0}(LANE(a, k), LANE(b, k))); }}",
@@ -111,7 +50,8 @@ def c_source(program: Program) -> str:
     lanes = [f"lanes_at(in + {place}*points + i)" for place in places]
     results = [f"put_lanes(out + {place}*points + i, {{value}});" for place in range(len(program.outputs))]
     many = "\n".join(statements(program, MANY, lanes, results))
-    return SOURCE.format(
+    return filled(
+        "motion.c",
         title=comment_text(title_of(program)),
         table="\n".join(_table(program)),
         helpers=HELPERS,
@@ -196,7 +136,7 @@ def lanes_support(text: str) -> str:
     """What statements for `MANY` need before them: the type, and the functions that they call lane by lane."""
     arities = {name: 2 if name in ("pow", "atan2") else 1 for name in (*FUNCTIONS.values(), "pow")}
     called = set(re.findall(r"\blanes_(\w+)\(", text))
-    return LANES + "".join(
+    return template("lanes.h") + "".join(
         LANE_FUNCTIONS[arity].format(name) + "\n" for name, arity in arities.items() if name in called
     )
 

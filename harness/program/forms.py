@@ -1,22 +1,28 @@
 """The motion program of a scene, asked of Maxima, and the forms it can be taken away in."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..documents import Document, ask
 from ..extras import naming_the_extra
+from ..failures import Failure, HolonomError
 from ..files import write_files, write_whole
 from ..sandbox import Limits
 from ..source import Source, source_of
+from .identifiers import default_name
 from .motion_program import Program, read_program
 from .request import Request
+from .targets import TARGETS, target
 
 if TYPE_CHECKING:
     from .c_function import CFunction
-    from .model import Model
     from .numpy_function import NumpyFunction
+
+JSON = "json"
+FORMS = (JSON, *TARGETS)
+Written = str | Mapping[str, str] | bytes
 
 
 class MotionProgram:
@@ -67,15 +73,11 @@ class MotionProgram:
 
     def to_python(self) -> str:
         """A Python module that needs the standard library alone."""
-        from .python_source import python_source
-
-        return python_source(self.program)
+        return self.written("python")
 
     def to_javascript(self) -> str:
         """A script for a page or for Node that needs nothing but Math."""
-        from .javascript_source import javascript_source
-
-        return javascript_source(self.program)
+        return self.written("javascript")
 
     def to_c(self, directory: str | Path, name: str | None = None, parameters: Sequence[str] = ()) -> None:
         """Write a library in C11, as ``holonom program --to c`` does.
@@ -89,27 +91,31 @@ class MotionProgram:
         parameters : sequence of str
             Those that stay open although the scene gives them values.
         """
-        write_files(Path(directory), self.c_files(name, parameters))
-
-    def c_files(self, name: str | None = None, parameters: Sequence[str] = ()) -> dict[str, str]:
-        """The text of each file that `to_c` writes, by its name."""
-        from .c_library import c_library, default_name
-
-        return c_library(self._model(parameters), name or default_name(self._source.file))
+        write_files(Path(directory), self.written("c", name, parameters))
 
     def to_fmu(self, file: str | Path, name: str | None = None, parameters: Sequence[str] = ()) -> None:
         """Write an FMI 3.0 unit for model exchange; otherwise like `to_c`."""
-        from .c_library import default_name
-        from .fmu import write_fmu
+        write_whole(Path(file), self.written("fmu", name, parameters))
 
-        write_whole(Path(file), write_fmu(self._model(parameters), name or default_name(self._source.file)))
+    def written(self, form: str, name: str | None = None, parameters: Sequence[str] = ()) -> Written:
+        """Return it in one of the `FORMS`: a text, the texts of files by their names, or the bytes of one file.
+
+        Raises
+        ------
+        HolonomError
+            The form is a text, which takes no name and no parameters; or as `to_c`.
+        """
+        module = None if form == JSON else target(form)
+        if hasattr(module, "write_model"):
+            from .model import scene_model
+
+            model = scene_model(self._source, self._request, parameters, self._source.limits)
+            return module.write_model(model, name or default_name(self._source.file))
+        if name or parameters:
+            raise HolonomError(Failure.NO_NAME_IN_TEXT, detail=form)
+        return self.document if module is None else module.write(self.program)
 
     def __repr__(self) -> str:
         return (
             f"<MotionProgram of {len(self.inputs)} inputs, {len(self.outputs)} outputs, {self.operations} operations>"
         )
-
-    def _model(self, parameters: Sequence[str]) -> "Model":
-        from .model import scene_model
-
-        return scene_model(self._source, self._request, parameters, self._source.limits)

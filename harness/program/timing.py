@@ -3,15 +3,14 @@
 import ctypes
 import time
 from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .c_function import CFunction, load_c
+from .templates import template
 
-TIMER = Path(__file__).with_name("timer.c")
 ROUNDS = 9  # the shortest time counts: what disturbs a measurement makes it longer
 BATCH = 0.005  # seconds of calls in one round
 GUESSES = 3
@@ -26,7 +25,7 @@ class Timer:
     """Measures compiled functions without Python between the calls."""
 
     def __init__(self) -> None:
-        self._seconds = load_c(TIMER.read_text(encoding="utf-8")).seconds_a_call
+        self._seconds = load_c(template("timer.c")).seconds_a_call
         self._seconds.argtypes = (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_long)
         self._seconds.restype = ctypes.c_double
 

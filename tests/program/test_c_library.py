@@ -12,9 +12,10 @@ from click.testing import CliRunner
 from scipy.interpolate import CubicSpline
 
 from holonom.cli import holonom
-from holonom.program.c_library import c_library, default_name, identifiers
+from holonom.program.identifiers import default_name, identifiers
 from holonom.program.model import scene_model
 from holonom.program.request import Request
+from holonom.program.targets import c
 from holonom.sandbox import Limits
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -25,7 +26,7 @@ DOUBLES = np.ctypeslib.ndpointer(dtype=float, flags="C_CONTIGUOUS")
 def write_library(directory: Path, scene: str, name: str, *parameters: str) -> Path:
     model = scene_model(EXAMPLES / scene, Request(), parameters, Limits())
     directory.mkdir(exist_ok=True)
-    for file, text in c_library(model, name).items():
+    for file, text in c.write_model(model, name).items():
         (directory / file).write_text(text, encoding="utf-8")
     return directory
 
@@ -198,7 +199,7 @@ def test_names_that_c_does_not_know_stay_apart():
         (["--to", "c", "--name", "a-b", "-o", "lib"], "a-b cannot name a function"),
         (["--to", "c", "--parameters", "m,k", "-o", "lib"], "'k' cannot stay open; .* the scene, which has m, g, l0"),
         (["--to", "c", "--parameters", "m;", "-o", "lib"], "m; cannot be the name of a parameter"),
-        (["--to", "python", "--name", "bob"], "go with --to c or --to fmu"),
+        (["--to", "python", "--name", "bob"], "leave --name and --parameters out"),
     ],
 )
 def test_what_cannot_be_written_is_one_sentence_and_nothing_is_written(tmp_path, monkeypatch, options, sentence):

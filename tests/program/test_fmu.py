@@ -13,10 +13,10 @@ from fmpy.validation import validate_fmu
 
 from holonom.cli import holonom
 from holonom.failures import HolonomError
-from holonom.program.fmu import write_fmu
 from holonom.program.model import scene_model
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
+from holonom.program.targets import fmu
 from holonom.sandbox import Limits
 from holonom.simulation.request import SimulationRequest
 from holonom.simulation.simulate import simulate
@@ -88,11 +88,11 @@ def test_the_sources_compile_in_silence(unit, tmp_path):
 
 def test_the_same_scene_gives_the_same_description_and_sources():
     model = scene_model(PENDULUM, Request(), (), Limits())
-    assert write_fmu(model, "bob") == write_fmu(model, "bob")
+    assert fmu.write_model(model, "bob") == fmu.write_model(model, "bob")
 
 
 def test_what_has_no_value_to_start_from_is_refused(write_scene):
     text = re.sub(r"load\(.*\)\$", 'load("holonom.mac")$', PENDULUM.read_text(), count=1)
     file = write_scene(text.replace("m = 1, ", ""))
     with pytest.raises(HolonomError, match="nothing is given for m"):
-        write_fmu(scene_model(file, Request(), (), Limits()), "bob")
+        fmu.write_model(scene_model(file, Request(), (), Limits()), "bob")

@@ -15,7 +15,7 @@ from holonom.crosscheck.report import Verdict
 from holonom.program.c_function import compile_c
 from holonom.program.heyoka_function import heyoka_function
 from holonom.program.numpy_function import NumpyFunction
-from holonom.program.python_source import python_source
+from holonom.program.targets import python
 
 ORDER, DIGITS = 12, 25
 
@@ -93,7 +93,7 @@ def accelerations(scene):
     program = scene.program().program
     given = [0.5 if name == "t" else 0.0 if name.startswith("dot(") else STATE for name in program.inputs]
     module = {}
-    exec(python_source(program), module)
+    exec(python.write(program), module)
     forms = {
         "C": compile_c(program)(given),
         "NumPy": NumpyFunction(program)(given),

@@ -11,7 +11,7 @@ from programs import PENDULUM, assume_well_conditioned, chain, program, random_p
 from reference import assert_within_bounds, reference
 
 from holonom.failures import Failure, HolonomError
-from holonom.program.javascript_source import javascript_source
+from holonom.program.targets import javascript
 
 RUN = "\nconsole.log(JSON.stringify(JSON.parse(require('fs').readFileSync(0)).map(motion.evaluate)));"
 NODE = shutil.which("node")
@@ -20,7 +20,7 @@ by_node = pytest.mark.skipif(NODE is None, reason="no JavaScript was run: node i
 
 def run(written, points):
     """Outputs of the program at each point, by Node; shape (points, outputs)."""
-    script = javascript_source(written) + RUN
+    script = javascript.write(written) + RUN
     done = subprocess.run(
         [NODE, "-e", script], input=json.dumps(points.T.tolist()), capture_output=True, text=True, check=True
     )
@@ -51,10 +51,10 @@ def test_random_programs(written):
 def test_names_and_titles_cannot_end_what_they_stand_in():
     written = program(['a"; */ throw 1; /*'], [("w", ["Negate", 'a"; */ throw 1; /*'])], {"</script>": "w"})
     assert run(written, np.array([[2.0]])) == [[-2.0]]
-    assert "</script>" not in javascript_source(written)
+    assert "</script>" not in javascript.write(written)
 
 
 def test_what_cannot_name_a_constant_is_refused():
     with pytest.raises(HolonomError) as caught:
-        javascript_source(PENDULUM, "my motion")
+        javascript.write(PENDULUM, "my motion")
     assert caught.value.failure is Failure.NOT_AN_IDENTIFIER

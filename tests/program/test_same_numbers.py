@@ -12,13 +12,13 @@ from reference import assert_within_bounds, reference
 from holonom.program.c_function import compile_c
 from holonom.program.heyoka_function import HeyokaFunction, heyoka_function
 from holonom.program.numpy_function import NumpyFunction
-from holonom.program.python_source import python_source
+from holonom.program.targets import python
 
 
 def python_function(written):
     """The function of a program's Python source, run as its reader would."""
     module = {}
-    exec(python_source(written), module)
+    exec(python.write(written), module)
     return module["motion"]
 
 

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from fmpy.validation import validate_fmu
 
-from holonom.program.fmu import write_fmu
 from holonom.program.model import Model, scene_model
 from holonom.program.motion_problem import motion_problem
 from holonom.program.numpy_function import NumpyFunction
 from holonom.program.request import Request
+from holonom.program.targets import fmu
 from holonom.sandbox import Limits
 from holonom.simulation.request import SimulationRequest
 from holonom.simulation.simulate import simulate
@@ -61,7 +61,7 @@ def test_fmpy_finds_what_simulate_finds(
     request = Request(scene)
     model = scene_model(EXAMPLES / example, request, [], Limits())
     unit = tmp_path / "unit.fmu"
-    unit.write_bytes(write_fmu(model, "unit"))
+    unit.write_bytes(fmu.write_model(model, "unit"))
     assert list(validate_fmu(str(unit))) == []
     wanted = [*model.coordinates, *model.found]
     rows = fmpy.simulate_fmu(

@@ -18,11 +18,11 @@ from ...figures.style import lettered_text
 from ...free_motion import Free, FreeMotion
 from ...language import gettext
 from ...mathjson import from_sympy
-from ...program.javascript_source import javascript_source
 from ...program.model import Model, scene_model
 from ...program.motion_problem import motion_problem
 from ...program.motion_program import Program, program_of
 from ...program.request import Request
+from ...program.targets import javascript
 from ...record import Scene
 from ...sandbox import Limits
 from .. import TEMPLATES
@@ -118,11 +118,11 @@ def script(
         "free": free_setting(free, models["exponential"]),
     }
     parts = [
-        javascript_source(model.motion, "motion"),
-        javascript_source(model.constraints, "constraints"),
-        javascript_source(program, "drawing"),
-        *(javascript_source(each.law, f"law_{law}") for law, each in models.items()),
-        *(javascript_source(singular(found, scene), f"singular_{law}") for law, scene in LAWS.items()),
+        javascript.write(model.motion, "motion"),
+        javascript.write(model.constraints, "constraints"),
+        javascript.write(program, "drawing"),
+        *(javascript.write(each.law, f"law_{law}") for law, each in models.items()),
+        *(javascript.write(singular(found, scene), f"singular_{law}") for law, scene in LAWS.items()),
         f"const LAWS = {{{', '.join(f'{law}: law_{law}' for law in LAWS)}}};",
         f"const SINGULAR = {{{', '.join(f'{law}: singular_{law}' for law in LAWS)}}};",
         f"const DATA = {json.dumps(data)};",

@@ -9,34 +9,25 @@ import io
 import platform
 import zipfile
 from collections.abc import Iterator
-from pathlib import Path
 from xml.etree import ElementTree
 
-from ..failures import Failure, HolonomError
-from ..hidden import visible
-from ..temporary import private_directory
-from .c_function import compile_shared
-from .c_library import c_library
-from .c_source import range_of
-from .model import Model
+from ...failures import Failure, HolonomError
+from ...hidden import visible
+from ...temporary import private_directory
+from ..c_function import compile_shared
+from ..c_source import range_of
+from ..model import Model
+from ..templates import filled, template
+from . import c
 
 XML = "<?xml version='1.0' encoding='utf-8'?>\n"
-UNIT = Path(__file__).with_name("fmi3.c")
 OPTIONS = ("-std=c11", "-O2", "-fvisibility=hidden", "-shared", "-fPIC")
 SUFFIXES = {"linux": ".so", "darwin": ".dylib", "windows": ".dll"}
 MACHINES = {"amd64": "x86_64", "arm64": "aarch64"}
 EPOCH = (1980, 1, 1, 0, 0, 0)  # of every file in the archive: the same unit is the same bytes
 
-MODEL_H = """\
-#include "{name}.h"
-#define MODEL(function) {name}_##function
-#define TOKEN "{token}"
-enum {{ N = {NAME}_COORDINATES, G = {NAME}_MULTIPLIERS, M = {NAME}_CONTROLS, K = {NAME}_PARAMETERS,
-    F = {NAME}_FOUND_CONTROLS }};
-"""
 
-
-def write_fmu(model: Model, name: str) -> bytes:
+def write_model(model: Model, name: str) -> bytes:
     """Write a model as an FMI 3.0 unit.
 
     A ZIP archive with modelDescription.xml, the binary for this machine, and the sources.
@@ -47,11 +38,11 @@ def write_fmu(model: Model, name: str) -> bytes:
         There is no C compiler; the name is no identifier; something has no value to start from.
     """
     _require_start(model)
-    library = c_library(model, name)
+    library = c.write_model(model, name)
     sources = {f"{name}.c": library[f"{name}.c"], f"{name}.h": library[f"{name}.h"]}
-    sources["fmi3.c"] = UNIT.read_text(encoding="utf-8")
+    sources["fmi3.c"] = template("fmi3.c")
     token = hashlib.sha256("".join(sources.values()).encode()).hexdigest()
-    sources["model.h"] = MODEL_H.format(name=name, NAME=name.upper(), token=token)
+    sources["model.h"] = filled("model.h", name=name, NAME=name.upper(), token=token)
     folder, suffix = platform_folder()
     return _archive(
         {
@@ -137,8 +128,8 @@ def _inputs_at_start(model: Model) -> list[str]:
     """The control law's values at the start; 0 for a control without a law."""
     values = {}
     if model.law is not None:
-        from .numpy_function import NumpyFunction
-        from .table_numbers import pieces_of_tables
+        from ..numpy_function import NumpyFunction
+        from ..table_numbers import pieces_of_tables
 
         numbers = [float(model.start["t"]), *(float(model.values[name]) for name in model.parameters)]
         numbers += [float(c) for pieces in pieces_of_tables(model.tables) for c in pieces.at(numbers[0])]

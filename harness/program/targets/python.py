@@ -8,44 +8,24 @@ from collections.abc import Iterator
 from fractions import Fraction
 from functools import partial
 
-from . import infix
-from .arithmetic import ELEMENTARY, Arithmetic
-from .c_source import comment_text, title_of
-from .infix import Formula, Rank
-from .motion_program import Constant, Operation, Program
+from .. import infix
+from ..arithmetic import ELEMENTARY, Arithmetic
+from ..c_source import comment_text, title_of
+from ..infix import Formula, Rank
+from ..motion_program import Constant, Operation, Program
+from ..templates import filled
 
 FUNCTIONS = {operation: f"functions.{name}" for operation, name in ELEMENTARY.items()} | {
     Operation.ABS: "abs",
     Operation.SIGN: "sign",
 }
 
-SOURCE = '''\
-"""{title}."""
 
-import math
-from fractions import Fraction
-
-INPUTS = (
-{inputs}
-)
-OUTPUTS = (
-{outputs}
-)
-
-
-def motion(values, functions=math):
-    """Take the values of INPUTS, return those of OUTPUTS; functions is math, sympy or mpmath."""
-    sign = getattr(functions, "sign", lambda x: (x > 0) - (x < 0))
-    ({variables}) = values
-{body}
-    return [{results}]
-'''
-
-
-def python_source(program: Program) -> str:
+def write(program: Program) -> str:
     """Write a program as a Python module that needs the standard library alone, with its function ``motion``."""
     variables = {known: infix.atom(f"v{index}") for index, known in enumerate(_names(program))}
-    return SOURCE.format(
+    return filled(
+        "motion.py.txt",
         title=comment_text(title_of(program)),
         inputs=_listed(program.inputs),
         outputs=_listed(tuple(program.outputs)),

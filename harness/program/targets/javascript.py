@@ -3,44 +3,17 @@
 import json
 from collections.abc import Iterable
 
-from ..failures import Failure, HolonomError
-from .c_source import FUNCTIONS, IDENTIFIER, ONE, Target, comment_text, statements, title_of
-from .motion_program import Operation, Program
+from ..c_source import FUNCTIONS, ONE, Target, comment_text, statements, title_of
+from ..identifiers import require_identifier
+from ..motion_program import Operation, Program
+from ..templates import filled
 
 SCRIPT = Target("const", ONE.arithmetic)
 NAMES_IN_MATH = {Operation.ABS: "abs: fabs"}  # where C and Math differ
 MISSING_IN_MATH = {Operation.ERF}
 
-SOURCE = """\
-/* {title} */
-"use strict";
 
-const {name} = (() => {{
-  const {{{functions}, pow}} = Math;
-  const square = x => x*x, cube = x => x*x*x;
-  const erf = x => {{  // exp(-x^2) times the series of positive terms; 1 to rounding beyond 6
-    if (fabs(x) > 6) return sign(x);
-    let term = x, sum = x;
-    for (let n = 1; fabs(term) > 1e-17*fabs(sum); n++) sum += term *= 2*x*x/(2*n + 1);
-    return 2/sqrt(Math.PI)*exp(-x*x)*sum;
-  }};
-  const inputs = {inputs};
-  const outputs = {outputs};
-
-  /* Takes the values of inputs, returns those of outputs. */
-  function evaluate(values) {{
-    const results = new Array({count});
-{body}
-    return results;
-  }}
-  return {{inputs, outputs, evaluate}};
-}})();
-
-if (typeof module === "object") module.exports = {name};
-"""
-
-
-def javascript_source(program: Program, name: str = "motion") -> str:
+def write(program: Program, name: str = "motion") -> str:
     """Write a program as JavaScript.
 
     A classic script, which Node can require too: a constant of that name with `inputs`, `outputs` and ``evaluate``.
@@ -50,11 +23,11 @@ def javascript_source(program: Program, name: str = "motion") -> str:
     HolonomError
         The name cannot name a constant.
     """
-    if not IDENTIFIER.fullmatch(name):
-        raise HolonomError(Failure.NOT_AN_IDENTIFIER, detail=name)
+    require_identifier(name)
     reads = [f"values[{place}]" for place in range(len(program.inputs))]
     writes = [f"results[{place}] = {{value}};" for place in range(len(program.outputs))]
-    return SOURCE.format(
+    return filled(
+        "motion.js",
         title=comment_text(title_of(program)),
         name=name,
         functions=", ".join(

@@ -5,231 +5,21 @@ indices the header enumerates; ``u`` holds the controls, then their rates, then 
 """
 
 import re
-import unicodedata
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
-from pathlib import Path
 from textwrap import fill, indent
 
-from ..failures import Failure, HolonomError
-from .c_source import HELPERS, IDENTIFIER, MANY, ONE, comment_text, lanes_support, statements, title_of
-from .model import Model
-from .motion_problem import computing
-from .motion_program import Program
+from ..c_source import HELPERS, MANY, ONE, comment_text, lanes_support, statements, title_of
+from ..identifiers import identifiers, require_identifier
+from ..model import Model
+from ..motion_problem import computing
+from ..motion_program import Program
+from ..templates import filled, template
 
 UNKNOWN = "NAN"  # what has no value
 
-HEADER = """\
-/* {title}
 
-{explanation}
-*/
-
-#ifndef {NAME}_H
-#define {NAME}_H
-
-#include <stddef.h>
-
-#ifdef __cplusplus
-extern "C" {{
-#endif
-
-{enumerations}
-
-/* Names, each list ended by NULL. */
-extern const char *const {name}_coordinates[];
-extern const char *const {name}_multipliers[];
-extern const char *const {name}_controls[];
-extern const char *const {name}_found_controls[];
-extern const char *const {name}_parameters[];
-
-/* The scene's start: instant, coordinates, velocities; NAN where they depend on a parameter without value. */
-void {name}_start(double *t, double *q, double *v);
-
-/* The scene's values of the parameters; NAN for those to which it gives none. */
-void {name}_values(double *p);
-
-/* The control law with its rates: {law}. Other controls are left as they are. */
-void {name}_law(double t, const double *p, double *u);
-
-/* Accelerations a and multipliers lambda; infinite or NAN where a pivot vanishes, which is outside the range above. */
-void {name}_motion(double t, const double *q, const double *v, const double *u, const double *p,
-    double *a, double *lambda);
-
-/* The same for many points: number k of point i stands at [k*points + i]. */
-void {name}_motion_batch(size_t points, const double *t, const double *q, const double *v, const double *u,
-    const double *p, double *a, double *lambda);
-
-/* Residuals f of the constraints and their rates df/dt. */
-void {name}_residual(double t, const double *q, const double *v, const double *u, const double *p,
-    double *f, double *rate);
-
-/* Constraint Jacobian df/dq, row by row: J[beta*{NAME}_COORDINATES + s]. */
-void {name}_jacobian(double t, const double *q, const double *v, const double *u, const double *p, double *J);
-
-/* Controls that servo-constraints find, and the motion above has: {found}. */
-void {name}_servo(double t, const double *q, const double *v, const double *u, const double *p, double *found);
-
-/* Project a state in place onto position and velocity constraints, in the mass metric. Returns 0; or 1 where Newton's
-   method does not converge, and then the state is left as it was. */
-int {name}_project(double t, double *q, double *v, const double *u, const double *p);
-
-#ifdef __cplusplus
-}}
-#endif
-
-#endif
-"""
-
-SOURCE = """\
-/* {title} */
-
-#include "{name}.h"
-
-#include <float.h>
-#include <math.h>
-#include <string.h>
-
-{helpers}
-
-{names}
-
-void {name}_start(double *t, double *q, double *v)
-{{
-{start}
-}}
-
-void {name}_values(double *p)
-{{
-{values}
-}}
-
-{tables}void {name}_law(double t, const double *p, double *u)
-{{
-{law}
-}}
-
-/* {operations} operations */
-void {name}_motion(double t, const double *q, const double *v, const double *u, const double *p,
-    double *a, double *lambda)
-{{
-{motion}
-}}
-
-{lanes}
-void {name}_motion_batch(size_t points, const double *t, const double *q, const double *v, const double *u,
-    const double *p, double *a, double *lambda)
-{{
-    size_t i = 0;
-    for (; i + LANES <= points; i += LANES) {{
-{many}
-    }}
-    for (; i < points; i++) {{
-        double qi[{n} + 1], vi[{n} + 1], ui[3*{m} + 1], pi[{k} + 1], ai[{n} + 1], li[{g} + 1];
-        for (int j = 0; j < {n}; j++) qi[j] = q[j*points + i], vi[j] = v[j*points + i];
-        for (int j = 0; j < 3*{m}; j++) ui[j] = u[j*points + i];
-        for (int j = 0; j < {k}; j++) pi[j] = p[j*points + i];
-        {name}_motion(t[i], qi, vi, ui, pi, ai, li);
-        for (int j = 0; j < {n}; j++) a[j*points + i] = ai[j];
-        for (int j = 0; j < {g}; j++) lambda[j*points + i] = li[j];
-    }}
-}}
-
-void {name}_residual(double t, const double *q, const double *v, const double *u, const double *p,
-    double *f, double *rate)
-{{
-{residual}
-}}
-
-void {name}_jacobian(double t, const double *q, const double *v, const double *u, const double *p, double *J)
-{{
-{jacobian}
-}}
-
-void {name}_servo(double t, const double *q, const double *v, const double *u, const double *p, double *found)
-{{
-{servo}
-}}
-
-static void corrections(double t, const double *q, const double *v, const double *u, const double *p,
-    double *dq, double *dv)
-{{
-{corrections}
-}}
-
-static double size_of(const double *x)
-{{
-    double squares = 0;
-    for (int s = 0; s < {n}; s++) squares += x[s]*x[s];
-    return sqrt(squares);
-}}
-
-int {name}_project(double t, double *q, double *v, const double *u, const double *p)
-{{
-    double x[{n}], dq[{n}], dv[{n}], step = INFINITY;
-    memcpy(x, q, sizeof x);
-    corrections(t, x, v, u, p, dq, dv);
-    for (double next = size_of(dq); next < step/2; next = size_of(dq)) {{ /* until steps are rounding */
-        step = next;
-        for (int s = 0; s < {n}; s++) x[s] += dq[s];
-        corrections(t, x, v, u, p, dq, dv);
-    }}
-    if (!(step <= sqrt(DBL_EPSILON)*size_of(x)) || !isfinite(size_of(dv))) return 1;
-    for (int s = 0; s < {n}; s++) q[s] = x[s], v[s] += dv[s];
-    return 0;
-}}
-"""
-
-SEARCH = """\
-/* Of the polynomials {t_k, c_0, c_1, c_2, c_3} of a table, in order, the last that begins no later than t. */
-static const double *piece_at(double t, const double (*pieces)[5], size_t count)
-{
-    size_t first = 0;
-    while (count > 1) {
-        size_t half = count/2;
-        if (pieces[first + half][0] <= t) first += half, count -= half;
-        else count = half;
-    }
-    return pieces[first];
-}
-
-"""
-
-DRIVER = """\
-#include <stdio.h>
-#include "{name}.h"
-
-int main(void)
-{{
-    double t, q[{NAME}_COORDINATES], v[{NAME}_COORDINATES], a[{NAME}_COORDINATES];
-    double lambda[{NAME}_MULTIPLIERS + 1], p[{NAME}_PARAMETERS + 1], u[3*{NAME}_CONTROLS + 1] = {{0}};
-    {name}_start(&t, q, v);
-    {name}_values(p);
-    {name}_law(t, p, u);
-    {name}_motion(t, q, v, u, p, a, lambda);
-    for (int s = 0; s < {NAME}_COORDINATES; s++) printf("ddot(%s) = %.17g\\n", {name}_coordinates[s], a[s]);
-    for (int b = 0; b < {NAME}_MULTIPLIERS; b++) printf("%s = %.17g\\n", {name}_multipliers[b], lambda[b]);
-    return 0;
-}}
-"""
-
-CMAKE = """\
-cmake_minimum_required(VERSION 3.13)
-project({name} C)
-
-set(CMAKE_C_STANDARD 11)
-add_library({name} {name}.c)
-target_include_directories({name} PUBLIC ${{CMAKE_CURRENT_SOURCE_DIR}})
-if(UNIX)
-  target_link_libraries({name} PUBLIC m)
-endif()
-
-add_executable({name}_driver {name}_driver.c)
-target_link_libraries({name}_driver PRIVATE {name})
-"""
-
-
-def c_library(model: Model, name: str) -> dict[str, str]:
+def write_model(model: Model, name: str) -> dict[str, str]:
     """Write a model as a library in C11.
 
     The text of each file by its name: NAME.h, NAME.c, NAME_driver.c, CMakeLists.txt.
@@ -239,11 +29,11 @@ def c_library(model: Model, name: str) -> dict[str, str]:
     HolonomError
         The name cannot name a C function.
     """
-    if not IDENTIFIER.fullmatch(name):
-        raise HolonomError(Failure.NOT_AN_IDENTIFIER, detail=name)
+    require_identifier(name)
     written = {"name": name, "NAME": name.upper(), "title": comment_text(f"{model.system}: {model.title}")}
     return {
-        f"{name}.h": HEADER.format(
+        f"{name}.h": filled(
+            "library.h",
             **written,
             explanation=comment_text_of(explanation(model)),
             enumerations="\n".join(_enumerations(model, name.upper())),
@@ -251,15 +41,9 @@ def c_library(model: Model, name: str) -> dict[str, str]:
             found=comment_text(", ".join(model.found) or "the scene has none"),
         ),
         f"{name}.c": _source(model, written),
-        f"{name}_driver.c": DRIVER.format(**written),
-        "CMakeLists.txt": CMAKE.format(**written),
+        f"{name}_driver.c": filled("driver.c", **written),
+        "CMakeLists.txt": filled("CMakeLists.txt", **written),
     }
-
-
-def default_name(scene_file: Path) -> str:
-    """The name of a scene file as one for C."""
-    name = identifiers([scene_file.stem])[0]
-    return name if IDENTIFIER.fullmatch(name) else f"scene_{name}"
 
 
 def explanation(model: Model) -> str:
@@ -290,18 +74,6 @@ def _enumerations(model: Model, prefix: str) -> Iterator[str]:
         yield f"enum {{ {', '.join([*members, f'{prefix}_{group}S'])} }};"
 
 
-def identifiers(names: Sequence[str]) -> list[str]:
-    """Names as ends of C identifiers, each another: letters keep their case, what C does not know becomes ``_``."""
-    found: list[str] = []
-    for name in names:
-        plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
-        identifier = re.sub(r"\W", "_", plain)
-        while identifier in found or not identifier:
-            identifier += "_"
-        found.append(identifier)
-    return found
-
-
 def _source(model: Model, written: Mapping[str, str]) -> str:
     many = "\n".join(
         statements(
@@ -317,7 +89,8 @@ def _source(model: Model, written: Mapping[str, str]) -> str:
         for kind, array in (("position", "dq"), ("velocity", "dv"))
         for s in range(1, len(model.coordinates) + 1)
     }
-    return SOURCE.format(
+    return filled(
+        "library.c",
         **written,
         helpers=HELPERS,
         names="\n".join(_names(model, written["name"])),
@@ -395,7 +168,7 @@ def _tables(model: Model) -> Iterator[str]:
         rows = ",\n".join(f"    {{{', '.join(map(repr, row))}}}" for row in table.rows)
         yield f"static const double table{number}[][{len(table.inputs)}] = {{\n{rows}}};\n\n"
     if model.tables:
-        yield SEARCH
+        yield template("search.c")
 
 
 def _law(model: Model) -> str:

@@ -1,0 +1,96 @@
+/* @{title} */
+
+#include "@{name}.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+@{helpers}
+
+@{names}
+
+void @{name}_start(double *t, double *q, double *v)
+{
+@{start}
+}
+
+void @{name}_values(double *p)
+{
+@{values}
+}
+
+@{tables}void @{name}_law(double t, const double *p, double *u)
+{
+@{law}
+}
+
+/* @{operations} operations */
+void @{name}_motion(double t, const double *q, const double *v, const double *u, const double *p,
+    double *a, double *lambda)
+{
+@{motion}
+}
+
+@{lanes}
+void @{name}_motion_batch(size_t points, const double *t, const double *q, const double *v, const double *u,
+    const double *p, double *a, double *lambda)
+{
+    size_t i = 0;
+    for (; i + LANES <= points; i += LANES) {
+@{many}
+    }
+    for (; i < points; i++) {
+        double qi[@{n} + 1], vi[@{n} + 1], ui[3*@{m} + 1], pi[@{k} + 1], ai[@{n} + 1], li[@{g} + 1];
+        for (int j = 0; j < @{n}; j++) qi[j] = q[j*points + i], vi[j] = v[j*points + i];
+        for (int j = 0; j < 3*@{m}; j++) ui[j] = u[j*points + i];
+        for (int j = 0; j < @{k}; j++) pi[j] = p[j*points + i];
+        @{name}_motion(t[i], qi, vi, ui, pi, ai, li);
+        for (int j = 0; j < @{n}; j++) a[j*points + i] = ai[j];
+        for (int j = 0; j < @{g}; j++) lambda[j*points + i] = li[j];
+    }
+}
+
+void @{name}_residual(double t, const double *q, const double *v, const double *u, const double *p,
+    double *f, double *rate)
+{
+@{residual}
+}
+
+void @{name}_jacobian(double t, const double *q, const double *v, const double *u, const double *p, double *J)
+{
+@{jacobian}
+}
+
+void @{name}_servo(double t, const double *q, const double *v, const double *u, const double *p, double *found)
+{
+@{servo}
+}
+
+static void corrections(double t, const double *q, const double *v, const double *u, const double *p,
+    double *dq, double *dv)
+{
+@{corrections}
+}
+
+static double size_of(const double *x)
+{
+    double squares = 0;
+    for (int s = 0; s < @{n}; s++) squares += x[s]*x[s];
+    return sqrt(squares);
+}
+
+int @{name}_project(double t, double *q, double *v, const double *u, const double *p)
+{
+    double x[@{n}], dq[@{n}], dv[@{n}], step = INFINITY;
+    memcpy(x, q, sizeof x);
+    corrections(t, x, v, u, p, dq, dv);
+    for (double next = size_of(dq); next < step/2; next = size_of(dq)) { /* until steps are rounding */
+        step = next;
+        for (int s = 0; s < @{n}; s++) x[s] += dq[s];
+        corrections(t, x, v, u, p, dq, dv);
+    }
+    if (!(step <= sqrt(DBL_EPSILON)*size_of(x)) || !isfinite(size_of(dv))) return 1;
+    for (int s = 0; s < @{n}; s++) q[s] = x[s], v[s] += dv[s];
+    return 0;
+}
