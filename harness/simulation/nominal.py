@@ -2,7 +2,7 @@
 
 Tolerances, projections, events, switchings and residuals are relative to these sizes, so that a motion is the same in
 all units. A scene may give them, ``nominal = [x = 1e-6]``; the others are found. A coordinate is as large as at the
-start or, where it starts near zero, as the others are in the mass metric: A_ii q_i^2 is the same for all. Where all
+start or, where it starts near zero, as the least of the others in the mass metric: A_ii q_i^2 is the same. Where all
 start at zero, the distance counts that velocities, forces or moving constraints make in the time span. The time is as
 long as the span, or what the first velocities take for the size of the coordinates; both give the size of velocities.
 """
@@ -22,7 +22,7 @@ from .open_values import BesideState
 
 INSTANTS = 65  # of the time span at which forces and constraints are looked at where a motion starts at zero
 COARSE = 1e3  # power in which tolerances change: what is compiled with one serves many motions
-NEAR_ZERO = 1e-3  # of the size that other coordinates have in the mass metric
+NEAR_ZERO = 1e-3  # of the largest coordinate, as it is and in the mass metric: a light one is small in that alone
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -157,7 +157,10 @@ def _sizes(roots: Matrix, states: Matrix, span: float, reach: float) -> tuple[Ma
     time = np.where(time < np.inf, time, 1.0)
     size = np.where(size > 0, size, np.maximum(speed * time, reach))
     own = np.maximum(q, v * time)
-    found = np.where(roots * own >= NEAR_ZERO * size, own, size / roots)
+    felt = (roots * own >= NEAR_ZERO * size) | (own >= NEAR_ZERO * np.max(own, axis=0, initial=0.0))
+    felt &= own > 0
+    least = np.min(np.where(felt, roots * own, np.inf), axis=0, initial=np.inf)
+    found = np.where(felt, own, np.where(least < np.inf, least, size) / roots)
     return np.where((size > 0) & (size < np.inf), found, 1.0), time
 
 
