@@ -128,7 +128,8 @@
     '(($title . identity) ($effects . described-names) ($control_law . described-values)
       ($prescribed_reactions . described-values) ($servo_constraints . described-list)
       ($parameter_values . described-values) ($initial_state . described-values) ($initial_guess . described-values)
-      ($nominal . described-values) ($time_span . described-list) ($until . described-list) ($observe . described-names))))
+      ($nominal . described-values) ($time_span . described-list) ($until . described-list)
+      ($observe . described-names))))
 
 (defun entries-anew (document readers)
   "entry = value for each member of DOCUMENT that is not null, read by the function that belongs to it."
