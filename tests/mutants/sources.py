@@ -93,7 +93,8 @@ def nearest_tests(function: Function) -> list[str]:
     """Return test files, the nearest first: mirror of the path, those that name it, then a fixed few end to end."""
     python = function.language == "py"
     found = [*_mirrors(Path(function.path)), *(_by_import if python else _by_call)(function)]
-    return list(dict.fromkeys([*found, *END_TO_END, *(() if python else END_TO_END_OF_MAXIMA)]))
+    refusing = ["tests/test_refusals.py"] if "refuse(" in function.body else []
+    return list(dict.fromkeys([*found, *refusing, *END_TO_END, *(() if python else END_TO_END_OF_MAXIMA)]))
 
 
 def _mirrors(path: Path) -> list[str]:
