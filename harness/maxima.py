@@ -25,7 +25,7 @@ from typing import BinaryIO, NamedTuple
 from .failures import Failure, HolonomError
 from .files import near_file, shared
 from .hidden import visible_line
-from .preloaded import ARGUMENTS, ENVIRONMENT, JOBS, QUIET, is_removed_as_broken, preloaded_image, quoted
+from .preloaded import ARGUMENTS, ENVIRONMENT, JOBS, QUIET, preloaded_image, quoted, remove_if_broken
 from .sandbox import MIB, LimitExceeded, Limits, Place, Sandbox, is_isolated, run_process, surroundings
 from .scene_files import copy_scene_files
 from .supervisor import doing
@@ -345,7 +345,8 @@ def _run(run: Run, start: str) -> Ended:
     place = _place(run, Path(maxima))
     output = bytearray()
     ending = _attempt(run, start, maxima, image, place, output)
-    if ending is not None and ending.failure is Failure.NOT_MAXIMA and image and is_removed_as_broken(image, place):
+    if ending is not None and ending.failure is Failure.NOT_MAXIMA and image:  # broken, or removed by another command
+        remove_if_broken(image, place)
         ending = _attempt(run, start, maxima, None, place, output)
     return Ended(ending, output.decode(errors="replace"))
 

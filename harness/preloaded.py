@@ -61,13 +61,11 @@ def preloaded_image(maxima: str, library: Path, environment: frozenset[tuple[str
     return None
 
 
-def is_removed_as_broken(image: Path, place: Place) -> bool:
+def remove_if_broken(image: Path, place: Place) -> None:
     """Remove an image that does not run any more, with any limits; the next run makes it again."""
     with suppress(LimitExceeded, OSError):
         if not _runs(image, replace(place, limits=MAKING)):
             image.unlink()
-            return True
-    return False
 
 
 def quoted(text: str | Path) -> str:

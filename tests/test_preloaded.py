@@ -68,6 +68,17 @@ def test_image_that_does_not_run_is_made_again(made, particle_scene, monkeypatch
     assert image() == made
 
 
+@pytest.mark.parametrize("content", [None, "#!/bin/sh\nexit 134\n"])
+def test_an_image_that_another_command_removes_is_done_without(content, particle_scene, tmp_path, monkeypatch):
+    """GCL reads its own file again as it starts, and aborts where that is gone."""
+    image = tmp_path / "gone.image"
+    if content is not None:
+        image.write_text(content)
+        image.chmod(0o755)
+    monkeypatch.setattr(maxima, "_image", lambda _: image)
+    assert ask(Document.RECORD, particle_scene)
+
+
 def test_image_in_a_folder_that_others_may_write_to_is_not_used(made, monkeypatch):
     monkeypatch.setattr(preloaded, "_known", {})
     made.parent.chmod(0o777)

@@ -10,10 +10,16 @@ from holonom.program.motion_problem import motion_problem
 from holonom.program.precision import read_precision
 from holonom.program.request import Request
 from holonom.sandbox import Limits
-from holonom.simulation.constraints.program_projection import ProgramProjection, _nearest_by_lapack, nearest_state
+from holonom.simulation.constraints.program_projection import (
+    ProgramProjection,
+    _nearest_by_lapack,
+    distance,
+    nearest_state,
+)
 from holonom.simulation.engines.robust import RobustEngine
 from holonom.simulation.evaluation import CompiledIfItPays, evaluation, evaluation_once
 from holonom.simulation.matrices import MotionMatrices
+from holonom.simulation.nominal import nominal_of
 from holonom.simulation.piecewise import PiecewiseMotion
 from holonom.simulation.request import SimulationRequest
 
@@ -77,9 +83,9 @@ def test_the_projection_by_numpy_is_the_compiled_one(problem, states):
     compiled, keeper = nearest_state(problem, DOUBLE), ProgramProjection(problem, DOUBLE, MotionMatrices(problem))
     for point in states.T:
         state, found = point[1:].copy(), compiled(np.ascontiguousarray(point))
-        distance = keeper.project(point[0], state)
-        assert np.allclose(state, found[:-1], rtol=1e-13, atol=1e-13)
-        assert distance == pytest.approx(found[-1] ** 0.5, rel=1e-12)
+        moved = keeper.project(point[0], state)
+        assert np.allclose(state, found, rtol=1e-13, atol=1e-13)
+        assert moved == pytest.approx(distance(point[1:], found, nominal_of(problem).state), rel=1e-12)
 
 
 def test_the_projection_by_lapack_is_the_compiled_one(problem, states):
