@@ -9,12 +9,23 @@ from fractions import Fraction
 from typing import Generic, TypeVar
 
 from ..functions import FUNCTIONS
+from . import infix
 from .motion_program import Atom, Call, Constant, Expression, Name, Operation, Program
 
 Value = TypeVar("Value")
 
 ELEMENTARY = {Operation(each.head): each.program for each in FUNCTIONS if each.program}
 """Functions that C, Python, NumPy, JavaScript and heyoka call by the same names."""
+
+
+INFIX = {
+    Operation.ADD: infix.add,
+    Operation.MULTIPLY: infix.multiply,
+    Operation.SUBTRACT: infix.subtract,
+    Operation.DIVIDE: infix.divide,
+    Operation.NEGATE: infix.negate,
+}
+"""Operations that C, Python and JavaScript write alike."""
 
 
 @dataclass(frozen=True)

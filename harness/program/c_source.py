@@ -15,9 +15,9 @@ from math import e, pi
 from textwrap import indent
 
 from . import infix
-from .arithmetic import ELEMENTARY, Arithmetic
+from .arithmetic import ELEMENTARY, INFIX, Arithmetic
 from .infix import Formula
-from .motion_program import Constant, Operation, Program, names_in
+from .motion_program import Constant, Operation, Program, names_used
 from .templates import filled, template
 
 FUNCTIONS = ELEMENTARY | {Operation.ABS: "fabs", Operation.SIGN: "sign"}
@@ -117,9 +117,7 @@ def statements(program: Program, target: Target, inputs: Sequence[str], writes: 
     writes : sequence of str
         For each output the statement that puts ``{value}`` where it belongs.
     """
-    used = set().union(*(names_in(expression) for _, expression in program.assignments))
-    used |= set().union(*map(names_in, program.outputs.values()))
-    names = {}
+    used, names = names_used(program), {}
     for index, (name, value) in enumerate(zip(program.inputs, inputs, strict=True)):
         names[name] = infix.atom(f"v{index}")
         if name in used:
@@ -170,11 +168,7 @@ def _arithmetic(prefix: str, number: Callable[[Fraction | float], Formula]) -> A
         power=power,
         operations={
             **{operation: partial(infix.call, prefix + function) for operation, function in FUNCTIONS.items()},
-            Operation.ADD: infix.add,
-            Operation.MULTIPLY: infix.multiply,
-            Operation.SUBTRACT: infix.subtract,
-            Operation.DIVIDE: infix.divide,
-            Operation.NEGATE: infix.negate,
+            **INFIX,
             Operation.POWER: partial(infix.call, f"{prefix}pow"),
         },
     )

@@ -175,6 +175,12 @@ def names_in(expression: Expression) -> Set[str]:
             return set()
 
 
+def names_used(program: Program) -> Set[str]:
+    """Names that the assignments and outputs of a program are made of."""
+    expressions = [*(expression for _, expression in program.assignments), *program.outputs.values()]
+    return set().union(*map(names_in, expressions))
+
+
 def calls_in(expression: Expression) -> Iterator[Call]:
     """Yield the operations in an expression, each before those in its arguments."""
     if isinstance(expression, Call):

@@ -18,7 +18,17 @@ import numpy as np
 
 from ..program.arithmetic import ELEMENTARY, Arithmetic, run_program
 from ..program.motion_problem import computing
-from ..program.motion_program import Call, Constant, Expression, Name, Operation, Program, calls_in, names_in
+from ..program.motion_program import (
+    Call,
+    Constant,
+    Expression,
+    Name,
+    Operation,
+    Program,
+    calls_in,
+    names_in,
+    names_used,
+)
 from .radius import TOO_FEW, UNDECIDED, Radius
 
 MOST_WORK = 40_000  # operations times critical functions beyond which nothing is looked for
@@ -76,9 +86,7 @@ def _located(zero: complex, zeros: Sequence[complex]) -> Radius:
 
 def _follows_state(program: Program) -> bool:
     """Whether the accelerations depend on the state: a motion may then be singular where its equations are not."""
-    used = set().union(*(names_in(expression) for _, expression in computing(program, program.outputs).assignments))
-    used |= set().union(*map(names_in, program.outputs.values()))
-    return not used.isdisjoint(program.inputs[1:])
+    return not names_used(computing(program, program.outputs)).isdisjoint(program.inputs[1:])
 
 
 def _switches(program: Program) -> bool:

@@ -28,6 +28,7 @@ import numpy as np
 
 from ..failures import Failure, HolonomError
 from ..program.motion_problem import By, MotionProblem, Sign, computing, function_of_knot
+from ..program.motion_program import names_used
 from ..program.precision import Precision
 from ..program.sign_pattern import (
     HELD,
@@ -219,7 +220,7 @@ class PiecewiseMotion:
         self._knots = _knots_of(problem, precision)
         self._parts: dict[tuple[Any, ...], Part] = {}
         self._known: dict[Hashable, MotionProblem] = problem.once("parts", problem.matrices, dict)
-        self._functions: dict[Hashable, Evaluation] = problem.once(
+        self._functions: dict[Hashable, tuple[Evaluation, list[int]]] = problem.once(
             ("switching", precision.name), problem.matrices, dict
         )
         self._others = BesideState(problem, precision)
@@ -562,28 +563,29 @@ class PiecewiseMotion:
 
     def _output(self, name: str, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> float:
         """Value of a `switching_function`, which is compiled when it is first asked for."""
-        return float(self._function(name, sign, pattern)(self._inputs(t, state))[0])
+        return float(self._function(name, sign, pattern)[0](self._inputs(t, state))[0])
 
     def _vanishes(self, name: str, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> bool:
         """Whether a `switching_function` is rounding, beside what it changes by as the state and the time do."""
-        function = self._function(name, sign, pattern)
-        sizes = np.maximum(np.abs(as_floats(state)), self.nominal.state)
-        moves = [*np.diag(sizes), *np.zeros((len(LATER), len(state)))]
-        later = [0.0] * len(state) + [share * self.nominal.time for share in LATER]
-        numbers = [
-            [self._precision.number(repr(float(each))) for each in (*move, dt)]
-            for move, dt in zip(moves, later, strict=True)
-        ]
-        here = float(function(self._inputs(t, state))[0])
-        there = [float(function(self._inputs(t + dt, state + np.array(move)))[0]) for *move, dt in numbers]
+        function, places = self._function(name, sign, pattern)
+        number = self._precision.number
+        others = [(t + number(repr(share * self.nominal.time)), state) for share in LATER]
+        for place in places:
+            moved, size = state.copy(), max(abs(float(state[place])), float(self.nominal.state[place]))
+            moved[place] += number(repr(size))
+            others.append((t, moved))
+        here, *there = (float(function(self._inputs(*at))[0]) for at in ((t, state), *others))
         changes = np.abs(np.array(there) - here)
         return abs(here) <= ZERO * float(np.sum(changes, where=np.isfinite(changes)))
 
-    def _function(self, name: str, sign: Sign, pattern: Pattern) -> Evaluation:
+    def _function(self, name: str, sign: Sign, pattern: Pattern) -> tuple[Evaluation, list[int]]:
+        """A `switching_function`, and the places in the state of what it contains."""
         what = name, sign.name, frozenset(pattern.items())
         if what not in self._functions:
             program = switching_function(self._problem, name, sign.name, pattern)
-            self._functions[what] = evaluation(program, self._precision)
+            used = names_used(program)
+            places = [place for place, each in enumerate(self._problem.state) if each in used]
+            self._functions[what] = evaluation(program, self._precision), places
         return self._functions[what]
 
     def _momenta(self, part: Part, t: Any, state: Numbers) -> Numbers:

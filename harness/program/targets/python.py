@@ -9,7 +9,7 @@ from fractions import Fraction
 from functools import partial
 
 from .. import infix
-from ..arithmetic import ELEMENTARY, Arithmetic
+from ..arithmetic import ELEMENTARY, INFIX, Arithmetic
 from ..c_source import comment_text, title_of
 from ..infix import Formula, Rank
 from ..motion_program import Constant, Operation, Program
@@ -67,11 +67,7 @@ PYTHON = Arithmetic(
     power=_power,
     operations={
         **{operation: partial(infix.call, function) for operation, function in FUNCTIONS.items()},
-        Operation.ADD: infix.add,
-        Operation.MULTIPLY: infix.multiply,
-        Operation.SUBTRACT: infix.subtract,
-        Operation.DIVIDE: infix.divide,
-        Operation.NEGATE: infix.negate,
+        **INFIX,
         Operation.POWER: _to_the,
     },
 )
