@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ..failures import Failure, HolonomError
-from ..files import require_own_files, write_files, write_whole
-from ..program.forms import FORMS, MotionProgram
+from ..program.targets import FORMS
 from ..sandbox import Limits
 from .group import holonom
 from .options import asks_one_scene, chooses_solve, present, publish, runs_scenes, writes_json
@@ -61,6 +60,9 @@ def program(
     same for FMI 3 model exchange. Controls, and parameters without a value or named by --parameters, are inputs of
     both.
     """
+    from ..files import require_own_files, write_files, write_whole
+    from ..program.forms import MotionProgram
+
     taken = MotionProgram(scene_file, request, limits)
     written = taken.written(form, name, parameters)
     if isinstance(written, str):

@@ -14,14 +14,12 @@ from ..source import Source, source_of
 from .identifiers import default_name
 from .motion_program import Program, read_program
 from .request import Request
-from .targets import TARGETS, target
+from .targets import JSON, target
 
 if TYPE_CHECKING:
     from .c_function import CFunction
     from .numpy_function import NumpyFunction
 
-JSON = "json"
-FORMS = (JSON, *TARGETS)
 Written = str | Mapping[str, str] | bytes
 
 
@@ -98,7 +96,7 @@ class MotionProgram:
         write_whole(Path(file), self.written("fmu", name, parameters))
 
     def written(self, form: str, name: str | None = None, parameters: Sequence[str] = ()) -> Written:
-        """Return it in one of the `FORMS`: a text, the texts of files by their names, or the bytes of one file.
+        """Return it in a form of `targets.FORMS`: a text, the texts of files by their names, or the bytes of one file.
 
         Raises
         ------

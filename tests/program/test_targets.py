@@ -3,8 +3,9 @@
 from particle import PARTICLE
 
 from holonom.program import targets
-from holonom.program.forms import FORMS, MotionProgram
+from holonom.program.forms import MotionProgram
 from holonom.program.request import Request
+from holonom.program.targets import FORMS
 from holonom.program.templates import filled, template
 from holonom.sandbox import Limits
 

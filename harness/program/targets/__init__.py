@@ -8,7 +8,8 @@ from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
-TARGETS = tuple(sorted(file.stem for file in Path(__file__).parent.glob("[!_]*.py")))
+JSON = "json"  # the program's own document
+FORMS = (JSON, *sorted(file.stem for file in Path(__file__).parent.glob("[!_]*.py")))
 
 
 def target(name: str) -> ModuleType:
