@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .evaluation import Numbers
+from .nominal import share_of
 
 ITERATIONS = 60  # Newton's method halves the way to a double root
 ROUNDING = 8 * np.finfo(float).eps  # relative size of a correction that is none
@@ -137,12 +138,6 @@ class NearestRoots:
                 known[active[improved]] = True
                 active = active[improved] if reach is None else active[:0]
         return best, known
-
-
-def share_of(change: Numbers, here: Numbers, sizes: Numbers) -> Numbers:
-    """The largest change of k points, shape (u, k), beside their largest number, all in terms of nominal sizes."""
-    largest = np.max(np.abs(here) / sizes[:, None], axis=0, initial=1.0)
-    return np.max(np.abs(change) / sizes[:, None], axis=0) / largest
 
 
 def _starts(mass: Numbers, far: Numbers) -> Iterator[Numbers]:

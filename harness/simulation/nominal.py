@@ -50,7 +50,7 @@ class Nominal(NamedTuple):
         return self.velocities / self.time
 
     def absolute(self) -> float:
-        """What a tolerance is to be multiplied by for a method that takes it as relative to the largest of all numbers.
+        """Return the factor of a tolerance for a method that takes it as relative to the largest of all numbers.
 
         Such a method takes it as absolute where all of them are below one. A velocity is a coordinate's in terms of the
         time, and errors go with that: a share of a power of `COARSE` will do.
@@ -66,9 +66,14 @@ class Nominal(NamedTuple):
         return float(np.max(mass.diagonal() * self.velocities**2, initial=0.0))
 
     def share(self, change: Vector, state: Vector) -> float:
-        """The largest change of a state, beside its largest number, all in terms of nominal sizes."""
-        largest = np.max(np.abs(state) / self.state, initial=1.0)
-        return float(np.max(np.abs(change) / self.state, initial=0.0) / largest)
+        """The largest change of a state, as `share_of` has it."""
+        return float(share_of(change, state, self.state))
+
+
+def share_of(change: Matrix, numbers: Matrix, sizes: Vector) -> Vector:
+    """The largest change of numbers, shape (n,) or (n, k), beside the largest of them, all in terms of their sizes."""
+    change, numbers = np.abs(change.T) / sizes, np.abs(numbers.T) / sizes
+    return np.max(change, axis=-1, initial=0.0) / np.max(numbers, axis=-1, initial=1.0)
 
 
 def with_nominal(problem: MotionProblem, span: float) -> MotionProblem:
