@@ -3,7 +3,7 @@
 The command runs in a process below the supervisor, which waits for it or for a signal, ends what is left, and removes
 the directory for temporary files. The supervisor is itself a child of the process that was started, and learns of its
 end: even if that is killed, all is ended and removed. The kernel alone does not see to that: bubblewrap, killed at the
-wrong instant, leaves a child that waits for it for ever. What a killed supervisor leaves, the next command removes.
+wrong instant, leaves a child that waits for it for ever. The next command removes the files of a killed supervisor.
 """
 
 import math

@@ -13,6 +13,9 @@ if TYPE_CHECKING:
 
     from ..series.power_series import Continuation, MotionSeries, Values
     from ..simulation.engines.choice import Choice
+    from ..simulation.piecewise import Switching
+    from ..simulation.result import Report, Simulation
+    from ..simulation.trust import Doubt
     from ..sweeps.run import Sweep
 
 
@@ -73,13 +76,6 @@ def _rounded(value: mpmath.mpf) -> str:
 
 
 LISTED = 3  # instants that are told one by one
-
-if TYPE_CHECKING:
-    from rich.console import Console
-
-    from ..simulation.piecewise import Switching
-    from ..simulation.result import Report, Simulation
-    from ..simulation.trust import Doubt
 
 
 def show_simulation(console: "Console", simulation: "Simulation") -> None:

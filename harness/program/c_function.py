@@ -104,7 +104,7 @@ def load_c(source: str, *options: str) -> ctypes.CDLL:
 
 
 def unload(library: ctypes.CDLL) -> None:
-    """Close a library whose functions and numbers nobody uses any more."""
+    """Close a library whose functions and numbers are not used any more."""
     close = ctypes.CDLL(None).dlclose
     close.argtypes = (ctypes.c_void_p,)
     close(library._handle)

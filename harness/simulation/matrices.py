@@ -56,7 +56,7 @@ class MotionMatrices:
         require_signs_known(problem)
         self.coordinates, self._kept = len(problem.coordinates), problem.independent
         self._problem = problem
-        self._layout = Layout(problem)
+        self._layout = _Layout(problem)
         self._evaluate = evaluation_once(problem, problem.matrices, read_precision("double"))
         self._others = np.array([0.0] * len(problem.multipliers) + list(problem.numbers))
         self._values, self._lasting = OpenValues(problem, read_precision("double")), len(problem.parameters)
@@ -99,7 +99,7 @@ class LaneMatrices:
 
     def __init__(self, problem: MotionProblem) -> None:
         require_signs_known(problem)
-        self._layout, self._g = Layout(problem), len(problem.multipliers)
+        self._layout, self._g = _Layout(problem), len(problem.multipliers)
         self._evaluate = lane_evaluation(problem, problem.matrices)
 
     def __call__(self, t: float | Numbers, states: Numbers, values: Numbers) -> Matrices:
@@ -121,7 +121,7 @@ class LaneMatrices:
         return self._layout.matrices(self._evaluate(np.concatenate([instants, states, unused, values])))
 
 
-class Layout:
+class _Layout:
     """Where the outputs of the program of the matrices go."""
 
     def __init__(self, problem: MotionProblem) -> None:

@@ -40,7 +40,7 @@ class Doubt(NamedTuple):
 
     @property
     def reason(self) -> str:
-        """What is missed, a clause."""
+        """Say in a clause by how much the quantity is missed."""
         what = MISSED.get(self.quantity, f"the {self.quantity} that the constraints allow")
         if np.isnan(self.missed):
             return f"{what} has no finite value"

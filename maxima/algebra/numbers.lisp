@@ -35,7 +35,7 @@
     (times-power-of-two (nearest-integer number exponent) exponent)))
 
 (defun decimal-digits (value digits)
-  "A rational, rounded to so many significant decimal digits or one more: \"-123e-2\"."
+  "A rational, rounded to DIGITS significant decimal digits or one more: \"-123e-2\"."
   (if (eql value 0)
       "0e0"
       (let ((exponent (- (floor (* (binary-magnitude value) (log 2d0 10d0))) digits)))
@@ -47,7 +47,7 @@
     (format nil "~d~:[/~d~;~]" (numerator value) (eql (denominator value) 1) (denominator value))))
 
 (defun $decimal_text (number digits)
-  "A rational number, rounded to so many significant digits: \"-1.23e-4\"."
+  "A rational number, rounded to DIGITS significant digits: \"-1.23e-4\"."
   (let ((value (rational-of number)))
     (if (eql value 0)
         "0"

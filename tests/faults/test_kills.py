@@ -79,7 +79,7 @@ def end_in_the_middle(command: list[str], number: int, place: Path, begun: str) 
     said = process.communicate(timeout=60)[1].decode()
     assert process.returncode == (-number if number == signal.SIGKILL else 128 + number)
     assert "Traceback" not in said
-    assert soon(lambda: not any(each.is_running() and each.status() != psutil.STATUS_ZOMBIE for each in started))
+    assert soon(lambda: ended(started))
     assert list(temporary.iterdir()) == []
 
 
@@ -110,7 +110,7 @@ def test_what_no_parent_ends_is_ended_when_the_command_is_killed(kill, tmp_path)
     assert "sleep" in names(started)
     kill(process.pid, signal.SIGKILL)
     process.communicate()
-    assert soon(lambda: not any(each.is_running() and each.status() != psutil.STATUS_ZOMBIE for each in started))
+    assert soon(lambda: ended(started))
     assert list(tmp_path.iterdir()) == []
 
 
@@ -126,7 +126,7 @@ def test_where_the_kernel_kills_no_child_of_a_killed_parent_the_child_ends_all_t
     process.kill()
     process.communicate()
     assert started
-    assert soon(lambda: not any(each.is_running() and each.status() != psutil.STATUS_ZOMBIE for each in started))
+    assert soon(lambda: ended(started))
 
 
 def running(process: subprocess.Popen[bytes]) -> list[psutil.Process]:
@@ -134,6 +134,10 @@ def running(process: subprocess.Popen[bytes]) -> list[psutil.Process]:
         return psutil.Process(process.pid).children(recursive=True)
     except psutil.NoSuchProcess:
         return []
+
+
+def ended(processes: list[psutil.Process]) -> bool:
+    return not any(each.is_running() and each.status() != psutil.STATUS_ZOMBIE for each in processes)
 
 
 def names(processes: list[psutil.Process]) -> list[str]:

@@ -86,7 +86,7 @@ EXAMPLES = [
     *((f"hard/{name}.mac", None) for name in ("bricard_linkage", "heavy_bob", "repeated_constraint", "sarrus_linkage")),
     *((f"hard/{name}.mac", None) for name in ("stiff_spring", "swing", "vanishing_length")),
 ]
-# What is done in 3e-15 of a unit of time has Taylor coefficients beyond the range of doubles at order 20: heyoka's
+# Motions of 3e-15 of a unit of time have Taylor coefficients beyond the range of doubles at order 20: heyoka's
 # integrator ends, and the robust one takes its place where the engine is open.
 TOO_FAST = {"andrews.mac", "heavy_top.mac", "hard/heavy_bob.mac"}
 DIGIT_LOST = {"linkage.mac"}  # its multipliers are large next to dead centres, and lose one there
@@ -94,7 +94,7 @@ DIGIT_LOST = {"linkage.mac"}  # its multipliers are large next to dead centres, 
 
 @dataclass(frozen=True)
 class Seen:
-    """What is seen of a motion, in SI."""
+    """Verdicts and samples of a motion, in SI."""
 
     told: tuple  # all that has to be the same
     samples: dict[str, np.ndarray]  # by kind

@@ -17,7 +17,7 @@ PROGRAMS = "motion", "projection", "matrices", "energy", "controls", "servo_matr
 
 @dataclass(frozen=True)
 class Units:
-    """What a mass, a length and a time of one are in these units."""
+    """The units of mass, length and time of SI, in these units."""
 
     mass: Fraction
     length: Fraction

@@ -8,8 +8,8 @@ to the end of their time spans; 16, 212 and 438 operations:
     compact    0.050  0.26   0.7       0.24  0.61  2.4
     unrolled   0.080  2.4    11        0.17  0.46  1.9
 
-In quadruple precision and beyond, functions do the arithmetic, and all three run alike. What a run takes is counted by
-these times, by steps and operations, never measured: which code computes must not depend on the machine or its load.
+In quadruple precision and beyond, functions do the arithmetic, and all three run alike. The time of a run is
+predicted from these times, by steps and operations, never measured: the choice must not depend on the machine's load.
 """
 
 from enum import StrEnum
@@ -51,7 +51,7 @@ def pays(code: Code, better: Code, operations: int, steps: float, tol: float) ->
 
 
 def running(code: Code, operations: int, steps: float, tol: float) -> float:
-    """Seconds that steps of a motion program of so many operations take."""
+    """Return the seconds that steps of a motion program take, by its operations."""
     return SHARE[code] * steps * OPERATION * operations * (_order(tol) / _order(REFERENCE)) ** ORDERS
 
 
