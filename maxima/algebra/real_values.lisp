@@ -7,6 +7,8 @@
 (defvar *unreal-symbols* '($%i $inf $minf $infinity $und $ind $unknown t nil))
 (defvar *unreal-operators* '(mlist $matrix $set mequal mnotequal mlessp mleqp mgreaterp mgeqp mand mor mnot lambda))
 
+(defvar *rounded-imaginary-part* 1d-20 "What rounding leaves of a zero imaginary part.")
+
 (defvar *partial-functions* '(mexpt %log %asin %acos %acosh %atanh %asec %acsc %asech %acoth)
   "Functions with real arguments and no real value there.")
 
@@ -28,7 +30,7 @@
   (let* (($errormsg nil)
          (found (errset ($rectform ($bfloat e))))
          (imaginary (if found ($float ($imagpart (car found))))))
-    (and found (not (and (floatp imaginary) (> (abs imaginary) 1d-20))))))
+    (and found (not (and (floatp imaginary) (> (abs imaginary) *rounded-imaginary-part*))))))
 
 (defun $partial_functions_of (names e)
   "The powers, roots, logarithms and inverse functions in an expression that contain these names and no others."
