@@ -4,6 +4,8 @@ import re
 from collections import Counter
 from pathlib import Path
 
+import pytest
+
 from holonom.maxima import LIBRARY, run_batch
 from holonom.preloaded import JOBS
 
@@ -70,6 +72,33 @@ def test_no_layer_calls_one_above_it():
         if layer[home[name]] > layer[file]
     ]
     assert upwards == []
+
+
+ONE_HOME = {
+    r"share_of_disagreement": "algebra/zero.mac",  # numbers of two precisions, compared
+    r"(?<!define_variable\()trial_seed|(?<![\w%])random\(": "algebra/trial_points.mac",
+    r"(?:%kernels_met|%kernel_\w+|%branch_points|%two_sided) :": "algebra/kernels.mac",
+    r'"d\^2f/dt\^2"': "derivation/constraint_acceleration.mac",  # the terms of (7)
+    r'"dT0/dq_s"': "derivation/expanded_equations.mac",  # those of (3)
+}
+
+
+@pytest.mark.parametrize(("mechanism", "home"), ONE_HOME.items(), ids=ONE_HOME.values())
+def test_a_mechanism_of_the_algebra_has_one_home(mechanism, home):
+    files = {file for file in layers() if re.search(mechanism, without_comments(LIBRARY / file))}
+    assert files - {"algebra/tolerances.mac"} == {home}
+
+
+def test_tolerances_have_names():
+    small = re.compile(r"\b\d+b-\d+|1/10\^\d+|10b0\^\(-\d+\)|10\^\(-\d+\)")
+    unnamed = [
+        (file, line)
+        for file in layers()
+        if file.endswith(".mac") and file != "algebra/tolerances.mac"
+        for line in without_comments(LIBRARY / file).splitlines()
+        if small.search(line) and not line.startswith("define_variable(")
+    ]
+    assert unnamed == []
 
 
 def test_every_file_of_the_library_has_its_place_in_the_load_list():
