@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from ..series.power_series import Continuation, MotionSeries, Values
     from ..simulation.engines.choice import Choice
-    from ..simulation.piecewise import Switching
+    from ..simulation.hybrid_motion import Switching
     from ..simulation.result import Report, Simulation
     from ..simulation.trust import Doubt
     from ..sweeps.run import Sweep

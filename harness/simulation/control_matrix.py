@@ -10,10 +10,10 @@ from numpy.polynomial import chebyshev
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import names_in
 from ..program.precision import Precision
-from .engines.engine import Piece
+from .engines.engine import Step
 from .evaluation import Numbers, as_floats, evaluation_once
+from .inputs import Inputs
 from .matrices import INDEXED, Vector
-from .open_values import BesideState
 from .surfaces import BETWEEN, CORRECTIONS, PLACES, TO_COEFFICIENTS, SignedFunctions
 
 TOUCHED = 1e-9  # of a determinant's largest size nearby: a minimum that is a zero
@@ -48,58 +48,57 @@ class ControlMatrix(SignedFunctions):
         super().__init__(precision, span)
         places = [INDEXED.fullmatch(name).groups()[1:] for name in problem.servo_matrix.outputs]
         self._shape = tuple(max(map(int, numbers)) for numbers in zip(*places, strict=True))
-        self._others = BesideState(problem, precision)
+        self._inputs = Inputs(problem, precision)
         self._evaluate = evaluation_once(problem, problem.servo_matrix, precision)
         self._kept: Vector | None = None  # the rows whose determinant is followed
         self._scale: Numbers | float = 1.0  # of each row
 
-    def lost(self, piece: Piece) -> float | None:
+    def lost(self, step: Step) -> float | None:
         """The first instant of a step at which the matrix loses rank; None where it keeps it."""
         while True:
-            self._choose_rows(piece)
-            found = self._first_zero(piece)
+            self._choose_rows(step)
+            found = self._first_zero(step)
             if found is None:
                 return None
             zero, nearby = found
-            if self._loses_rank(zero, nearby, piece):
+            if self._loses_rank(zero, nearby, step):
                 return zero
             behind = zero + self._precision.number(repr(BEHIND * float(nearby.end - nearby.start)))
-            if not behind < piece.end:
+            if not behind < step.end:
                 return None
-            piece = Piece(behind, piece.end, piece.states)
+            step = step._replace(start=behind)
 
     def values(self, instants: Numbers, states: Numbers) -> Numbers:
         """The determinant of the rows that are followed, shape (1, k)."""
         return np.linalg.det(self._matrices(instants, states)[:, self._kept])[None]
 
     def _matrices(self, instants: Numbers, states: Numbers) -> Numbers:
-        inputs = np.concatenate([np.reshape(instants, (1, -1)), states, self._others(instants)])
-        found = as_floats(np.array(self._evaluate(np.ascontiguousarray(inputs))))
+        found = as_floats(np.array(self._evaluate(self._inputs(instants, states))))
         return found.T.reshape(-1, *self._shape) / self._scale
 
-    def _choose_rows(self, piece: Piece) -> None:
+    def _choose_rows(self, step: Step) -> None:
         """Follow the determinant of the rows with the largest pivots at the beginning of a step."""
         from scipy.linalg import qr
 
-        at = np.array([piece.start])
+        at = np.array([step.start])
         self._scale = 1.0
-        matrix = self._matrices(at, piece.states(at))[0]
+        matrix = self._matrices(at, step.states(at))[0]
         if not np.isfinite(matrix).all():
             matrix = np.ones(self._shape)
         sizes = np.max(np.abs(matrix), axis=1, keepdims=True)
         self._scale = np.where(sizes > 0, sizes, 1.0)
         self._kept = np.sort(qr((matrix / self._scale).T, mode="r", pivoting=True)[1][: self._shape[1]])
 
-    def _first_zero(self, piece: Piece) -> tuple[float, Piece] | None:
+    def _first_zero(self, step: Step) -> tuple[float, Step] | None:
         """The first zero of the determinant in a step, with the part of the step around it."""
         self._rows = [("", -1, 1)]
-        for part, places, values in self._looked_at(piece):
+        for part, places, values in self._looked_at(step):
             zeros = [t for t in self._zeros_in(part, places, values[0]) if t is not None]
             if zeros:
                 return min(zeros), part
         return None
 
-    def _zeros_in(self, part: Piece, places: Numbers, values: Vector) -> list[float | None]:
+    def _zeros_in(self, part: Step, places: Numbers, values: Vector) -> list[float | None]:
         """Candidates in a part: at samples, between samples of different signs, and at minima between them."""
         largest = float(np.max(np.abs(values), where=np.isfinite(values), initial=0.0))
         near_zero = np.flatnonzero(np.abs(values) <= ZERO * largest)
@@ -110,14 +109,14 @@ class ControlMatrix(SignedFunctions):
             *(self._touched(part, place, places, values, largest) for place in _minima(values)),
         ]
 
-    def _changed(self, part: Piece, before: float, after: float) -> float | None:
+    def _changed(self, part: Step, before: float, after: float) -> float | None:
         """Where the determinant changes its sign between two instants; None where it does so through infinity."""
         side = 1 if self._value(part, before) > 0 else -1
         bound = max(abs(self._value(part, t)) for t in (before, after))
         zero = self._last_inside(lambda at: side * self.values(at, part.states(at))[0], before, after)
         return zero if abs(self._value(part, zero)) <= bound else None
 
-    def _touched(self, part: Piece, place: float, places: Numbers, values: Vector, largest: float) -> float | None:
+    def _touched(self, part: Step, place: float, places: Numbers, values: Vector, largest: float) -> float | None:
         """A minimum of the determinant's size that is a zero, or that lies behind one."""
         instant = part.start + (part.end - part.start) * self._precision.number(repr(float(place)))
         value = self._value(part, instant)
@@ -126,14 +125,14 @@ class ControlMatrix(SignedFunctions):
             return self._changed(part, before, instant)
         return instant if abs(value) <= TOUCHED * largest else None
 
-    def _value(self, part: Piece, instant: float) -> float:
+    def _value(self, part: Step, instant: float) -> float:
         at = np.array([instant])
         return float(self.values(at, part.states(at))[0, 0])
 
-    def _loses_rank(self, zero: float, nearby: Piece, piece: Piece) -> bool:
+    def _loses_rank(self, zero: float, nearby: Step, step: Step) -> bool:
         """Whether all rows together move the controls in fewer directions than nearby."""
         around = np.array([zero, nearby.start, (nearby.start + nearby.end) / 2, nearby.end])
-        matrices = self._matrices(around, piece.states(around))
+        matrices = self._matrices(around, step.states(around))
         here, *others = (float(np.linalg.svd(each, compute_uv=False)[-1]) for each in matrices)
         return here <= LOST * max(others)
 

@@ -66,13 +66,14 @@ def stands(problem: MotionProblem) -> bool:
 
     from ..program.numpy_function import NumpyFunction
     from ..program.sign_pattern import at_start
+    from .inputs import Inputs
+    from .matrices import start_of
 
-    motion = at_start(problem).motion
-    function = problem.once("start", motion, lambda: NumpyFunction(motion))
-    state = [float(problem.start[name]) for name in ("t", *problem.state)]
-    unused = [0.0] * len(problem.multipliers) + [1.0] * len(problem.signs)
+    begun = at_start(problem)
+    function = problem.once("start", begun.motion, lambda: NumpyFunction(begun.motion))
     with np.errstate(all="ignore"):
-        return bool(np.isfinite(function([*state, *unused, *problem.numbers])).all())
+        inputs = Inputs(begun)(*start_of(begun), signs=[1.0] * len(begun.signs))
+        return bool(np.isfinite(function(inputs)).all())
 
 
 def _moved(problem: MotionProblem, settings: Mapping[str, str]) -> MotionProblem | None:

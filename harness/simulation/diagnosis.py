@@ -4,18 +4,19 @@ Its matrices tell at the start and at the end; what the engines meet on the way,
 configurations, vanishing gradients, they tell themselves.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from enum import StrEnum
-from typing import NamedTuple
+from functools import cached_property
 
 import numpy as np
 
 from ..language import translatable
+from ..program.motion_problem import MotionProblem
 from .constraints.directions import Matrix, rank_of, weighted_constraints
 from .constraints.factorization import factored_constraints
 from .diagnostics import condition
 from .matrices import Matrices, MotionMatrices, Vector
-from .nominal import Nominal
 
 ILL_CONDITIONED, DEPENDENT = 1e8, 1e20  # condition of G: half of a double's digits lost, and none left
 UNEQUAL_MASSES = 1e8  # ratio of the entries on A's diagonal: half of a double's digits
@@ -45,30 +46,27 @@ class HardCase(StrEnum):
     VANISHING_LENGTH = translatable("vanishing length")
 
 
-class Instant(NamedTuple):
-    """A state of a motion."""
+@dataclass(frozen=True)
+class Instant:
+    """A state of a motion, with the matrices of its mode."""
 
+    matrices: MotionMatrices
     t: float
     state: Vector  # shape (2n,)
 
+    @cached_property
+    def here(self) -> Matrices:
+        """The matrices at the state."""
+        return self.matrices(self.t, self.state)
+
 
 def hard_cases(
-    matrices: Callable[[float, Vector], Matrices],
-    nominal: Nominal,
-    independent: Sequence[int],
-    start: Instant,
-    end: Instant,
-    multipliers: Vector,
-    steps: int,
+    independent: Sequence[int], start: Instant, end: Instant, multipliers: Vector, steps: int
 ) -> Iterator[HardCase]:
     """The kinds of hard case that a motion is.
 
     Parameters
     ----------
-    matrices : callable
-        As `MotionMatrices`.
-    nominal : Nominal
-        Sizes of the motion's quantities.
     independent : sequence of int
         Constraints, from 0, that are not known to follow from the others.
     multipliers : ndarray, shape (g,)
@@ -82,7 +80,7 @@ def hard_cases(
         Redundant constraints that the program leaves out, nearly dependent constraints, large mass ratio, overflow,
         free motion, long run, stiffness.
     """
-    ends = [matrices(*start), matrices(*end)]
+    ends = [start.here, end.here]
     if len(independent) < len(multipliers):
         yield HardCase.REDUNDANT
     if any(ILL_CONDITIONED < condition(at.under(independent)) < DEPENDENT for at in ends):
@@ -95,16 +93,16 @@ def hard_cases(
         yield HardCase.FREE_CANCELLATION
     if steps > MANY_STEPS:
         yield HardCase.LONG_RUN
-    if stiffness(matrices, nominal, start) > STIFF or _held_back(matrices, nominal, start, end, steps):
+    if stiffness(start) > STIFF or _held_back(start, end, steps):
         yield HardCase.STIFF
 
 
-def dependence(matrices: MotionMatrices, at: Instant) -> str | None:
+def dependence(problem: MotionProblem, at: Instant) -> str | None:
     """Why no fixed order of pivots can solve the equations of motion at a state, if none can.
 
     A clause; constraints that are known to follow from others are left apart.
     """
-    found = matrices.independent(*at)
+    found = at.here.under(problem.independent)
     rank = rank_of(weighted_constraints(found.mass, found.jacobian).singular_values())
     g = len(found.jacobian)
     if rank == g:
@@ -112,7 +110,7 @@ def dependence(matrices: MotionMatrices, at: Instant) -> str | None:
     return translatable("of %(g)s constraints only %(rank)s are independent at t = %(t)g", g=g, rank=rank, t=at.t)
 
 
-def stiffness(matrices: MotionMatrices, nominal: Nominal, at: Instant) -> float:
+def stiffness(at: Instant) -> float:
     """Ratio of the largest to the smallest square of a frequency that small deviations from a motion have.
 
     Returns
@@ -121,12 +119,12 @@ def stiffness(matrices: MotionMatrices, nominal: Nominal, at: Instant) -> float:
         From the derivative of the accelerations with respect to the coordinates, along what the constraints leave
         free, in the mass metric.
     """
-    here = matrices(*at)
+    here = at.here
     free = _free_directions(here)
     if not free.size:
         return 1.0
     moves = np.concatenate([free, np.zeros_like(free)])
-    change = free.T @ here.mass @ _change_of_accelerations(matrices, nominal, at, moves)
+    change = free.T @ here.mass @ _change_of_accelerations(at, moves)
     if not np.isfinite(change).all():
         return 1.0
     squares = np.abs(np.linalg.eigvals(change))
@@ -134,7 +132,7 @@ def stiffness(matrices: MotionMatrices, nominal: Nominal, at: Instant) -> float:
     return float(moving.max() / moving.min()) if moving.size else 1.0
 
 
-def fastest_decay(matrices: MotionMatrices, nominal: Nominal, at: Instant) -> float:
+def fastest_decay(at: Instant) -> float:
     """Largest rate at which small deviations from a motion decay more than they oscillate; zero where none does.
 
     Returns
@@ -142,22 +140,22 @@ def fastest_decay(matrices: MotionMatrices, nominal: Nominal, at: Instant) -> fl
     float
         From the derivatives of the accelerations with respect to coordinates and velocities, as `stiffness`.
     """
-    here = matrices(*at)
+    here = at.here
     free = _free_directions(here)
     if not free.size:
         return 0.0
     nothing, one = np.zeros_like(free), np.eye(free.shape[1])
     moves = np.block([[free, nothing], [nothing, free]])
-    change = free.T @ here.mass @ _change_of_accelerations(matrices, nominal, at, moves)
+    change = free.T @ here.mass @ _change_of_accelerations(at, moves)
     if not np.isfinite(change).all():
         return 0.0
     exponents = np.linalg.eigvals(np.block([[0 * one, one], [change]]))
     return float(-exponents.real[-exponents.real >= np.abs(exponents.imag)].min(initial=0.0))
 
 
-def _held_back(matrices: MotionMatrices, nominal: Nominal, start: Instant, end: Instant, steps: int) -> bool:
+def _held_back(start: Instant, end: Instant, steps: int) -> bool:
     """Whether many steps were as short as a decay demands that is over long ago."""
-    return steps > MANY_STEPS and fastest_decay(matrices, nominal, end) * (end.t - start.t) > DECAYED * steps
+    return steps > MANY_STEPS and fastest_decay(end) * (end.t - start.t) > DECAYED * steps
 
 
 def _free_directions(at: Matrices) -> Matrix:
@@ -167,18 +165,18 @@ def _free_directions(at: Matrices) -> Matrix:
     return np.linalg.solve(weighted.factor.T, left[:, rank_of(values) :])
 
 
-def _change_of_accelerations(matrices: MotionMatrices, nominal: Nominal, at: Instant, moves: Matrix) -> Matrix:
+def _change_of_accelerations(at: Instant, moves: Matrix) -> Matrix:
     """Derivatives, shape (n, k), of the accelerations along moves of the state, shape (2n, k).
 
     A a - J^T lambda = h, J a = -c, differentiated: one factorization solves for all of them.
     """
-    here = matrices(*at)
+    here, matrices = at.here, at.matrices
     factored = factored_constraints(here.mass, here.jacobian)
     accelerations, multipliers = (
         solve(here.force, here.curvature) for solve in (factored.accelerations, factored.multipliers)
     )
     changes = []
-    lengths = DIFFERENCE / np.max(np.abs(moves) / nominal.state[:, None], axis=0)
+    lengths = DIFFERENCE / np.max(np.abs(moves) / matrices.nominal.state[:, None], axis=0)
     steps = (lengths * moves).T
     for some in np.array_split(steps, -(-len(steps) // AT_ONCE)):
         ahead, behind = (

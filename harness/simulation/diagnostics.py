@@ -21,9 +21,9 @@ from ..program.motion_program import names_in
 from ..program.precision import Precision, read_precision
 from .constraints.directions import weighted_constraints
 from .evaluation import Numbers, as_floats, evaluation_once, zeros
+from .inputs import Inputs
 from .matrices import Matrices, Vector
 from .nominal import Nominal
-from .open_values import OpenValues
 from .trust import may_hide
 
 POINTS_PER_DIGIT = 10 / 17  # of the quadrature: exact over a piece to about the order of the Taylor engine
@@ -97,9 +97,9 @@ class EnergyBalance:
     ) -> None:
         self._precision = read_precision(precision) if isinstance(precision, str) else precision
         self._evaluate = evaluation_once(problem, problem.energy, self._precision)
-        self._values = OpenValues(problem, self._precision)
+        self._inputs = Inputs(problem, self._precision)
         self._rows = {name: row for row, name in enumerate(problem.energy.outputs)}
-        self._g, self._multipliers = len(problem.multipliers), multipliers
+        self._multipliers = multipliers
         self._moving = _constraints_move(problem)
         hidden = bool(problem.tables) or may_hide(computing(problem.energy, {"power"}), problem.parameters)
         self.passing = 0.0
@@ -117,12 +117,11 @@ class EnergyBalance:
 
     def energy(self, instants: Numbers, states: Numbers) -> Numbers:
         """The energy function at states of the motion."""
-        return self._output("energy", instants, states, self._no_multipliers(len(instants)))
+        return self._output("energy", instants, states, None)
 
     def power(self, instants: Numbers, states: Numbers) -> Numbers:
         """Power of what is not conservative and of the controls, at states of the motion."""
-        reactions = self._multipliers(instants, states) if self._moving else self._no_multipliers(len(instants))
-        return self._output("power", instants, states, reactions)
+        return self._output("power", instants, states, self._multipliers(instants, states) if self._moving else None)
 
     def instants_between(self, starts: Sequence[Any], ends: Sequence[Any]) -> Numbers:
         """Where `works` needs the motion in intervals: `inner_states` in each, one interval after the other.
@@ -151,12 +150,8 @@ class EnergyBalance:
         self.passing = float(np.max(np.abs(as_floats(np.cumsum(parts, axis=1))), initial=self.passing))
         return parts.sum(axis=1)
 
-    def _output(self, name: str, instants: Numbers, states: Numbers, multipliers: Numbers) -> Numbers:
-        inputs = np.concatenate([np.reshape(instants, (1, -1)), states, multipliers, self._values(instants)])
-        return self._evaluate(np.ascontiguousarray(inputs))[self._rows[name]]
-
-    def _no_multipliers(self, points: int) -> Numbers:
-        return zeros(self._precision, self._g, points)
+    def _output(self, name: str, instants: Numbers, states: Numbers, multipliers: Numbers | None) -> Numbers:
+        return self._evaluate(self._inputs(instants, states, multipliers))[self._rows[name]]
 
     def _numbers(self, values: Vector) -> Numbers:
         return np.array([self._precision.number(repr(float(value))) for value in values])
@@ -165,7 +160,7 @@ class EnergyBalance:
         """Constraints at rest do no work; whether anything else does shows at any state."""
         states = self._numbers(np.outer(np.arange(1, size + 1), PROBES).ravel() % 1).reshape(size, -1)
         instants = self._numbers(np.array(PROBES))
-        return not any(self._output("power", instants, states, self._no_multipliers(len(PROBES))))
+        return not any(self._output("power", instants, states, None))
 
 
 def _gauss_legendre(n: int, precision: Precision) -> tuple[Numbers, Numbers]:

@@ -158,6 +158,8 @@ def in_full_vectors(function: Callable[[Numbers], Numbers]) -> Evaluation:
 
 def zeros(precision: Precision, *shape: int) -> Numbers:
     """An array of zeros of these numbers."""
+    if precision.name == "double":
+        return np.zeros(shape)
     array = np.empty(shape, dtype=np.asarray([precision.number("0")]).dtype)
     array[...] = precision.number("0")
     return array

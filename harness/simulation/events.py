@@ -13,10 +13,11 @@ from ..failures import Failure, HolonomError
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import names_in
 from ..program.precision import Precision
-from .engines.engine import Piece, Solutions
+from .engines.engine import Solutions, Step
 from .evaluation import Numbers, as_floats, evaluation_once
-from .open_values import BesideState
-from .piecewise import PiecewiseMotion
+from .hybrid_motion import HybridMotion
+from .inputs import Inputs
+from .mode import Mode
 from .surfaces import NODES, Crossing, SignedFunctions
 
 ZERO = 1e-12  # of an expression at the start, beside what it is in the first step: no sign
@@ -31,7 +32,7 @@ class Ending(NamedTuple):
     crossed: str | None
 
 
-def first_event(motion: PiecewiseMotion, precision: Precision, end: Any) -> Crossing | None:
+def first_event(motion: HybridMotion, precision: Precision, end: Any) -> Crossing | None:
     """Follow a motion, from its start, to the first zero crossing of one of its events; None where there is none.
 
     Raises
@@ -40,20 +41,19 @@ def first_event(motion: PiecewiseMotion, precision: Precision, end: Any) -> Cros
         An expression has no real, finite value; the motion cannot be followed so far.
     """
     sides: dict[str, int] = {}
-    parts: dict[int, Events] = {}
+    events: dict[Mode, Events] = {}
     span = float(end - motion.time)
-    for piece in motion.pieces(end):
-        part = motion.part
-        if id(part) not in parts:
-            parts[id(part)] = Events(part.problem, precision, span, part.engine.solutions)
-        found = parts[id(part)].first_event(piece, sides)
+    for step in motion.integrate(end):
+        if step.mode not in events:
+            events[step.mode] = Events(step.mode.problem, precision, span, step.mode.engine.solutions)
+        found = events[step.mode].first_event(step, sides)
         if found is not None:
             return found
     return None
 
 
 class Events(SignedFunctions):
-    """The expressions of one analytic part of a motion.
+    """The expressions of one mode of a motion.
 
     Parameters
     ----------
@@ -73,14 +73,14 @@ class Events(SignedFunctions):
         solutions: Callable[[Numbers, Numbers], Solutions],
     ) -> None:
         super().__init__(precision, span)
-        self._names, self._others = problem.until, BesideState(problem, precision)
+        self._names, self._inputs = problem.until, Inputs(problem, precision)
         program = problem.events
         used = set().union(*(names_in(value) for _, value in program.assignments))
         used |= set().union(*map(names_in, program.outputs.values()))
         self._solutions = solutions if used & set(problem.multipliers) else None
         self._evaluate = evaluation_once(problem, program, precision)
 
-    def first_event(self, piece: Piece, sides: dict[str, int]) -> Crossing | None:
+    def first_event(self, step: Step, sides: dict[str, int]) -> Crossing | None:
         """The first crossing within a step.
 
         `sides` are the signs that expressions have had since they left zero; what this step shows is added.
@@ -91,8 +91,8 @@ class Events(SignedFunctions):
             An expression has no real, finite value before.
         """
         all_rows = self._rows = [(name, -1, 1) for name in self._names]
-        sizes = self._sizes_in(piece) if len(sides) < len(self._names) else None
-        for part, places, values in self._looked_at(piece):
+        sizes = self._sizes_in(step) if len(sides) < len(self._names) else None
+        for part, places, values in self._looked_at(step):
             begun = () if sizes is None else self._see_sides(values, sizes, sides)
             known = [row for row, name in enumerate(self._names) if name in sides]
             self._rows = [(self._names[row], -sides[self._names[row]], sides[self._names[row]]) for row in known]
@@ -105,9 +105,9 @@ class Events(SignedFunctions):
             self._rows = all_rows
         return None
 
-    def _sizes_in(self, piece: Piece) -> Numbers:
+    def _sizes_in(self, step: Step) -> Numbers:
         """How large expressions are in a step."""
-        _, values = self._samples(piece, NODES)
+        _, values = self._samples(step, NODES)
         return np.max(np.abs(np.where(np.isfinite(values), values, 0.0)), axis=1)
 
     def _see_sides(self, values: Numbers, sizes: Numbers, sides: dict[str, int]) -> list[str]:
@@ -128,7 +128,7 @@ class Events(SignedFunctions):
             if found is None or places[place] <= found.t:
                 self._refuse(self._names[row], places[place])
 
-    def _require_crossing(self, found: Crossing, part: Piece, values: Numbers) -> None:
+    def _require_crossing(self, found: Crossing, part: Step, values: Numbers) -> None:
         """Refuse a change of sign through infinity, which is no zero."""
         row = [name for name, *_ in self._rows].index(found.name)
         at = np.array([found.t])
@@ -141,11 +141,7 @@ class Events(SignedFunctions):
 
     def values(self, instants: Numbers, states: Numbers) -> Numbers:
         """As `SignedFunctions.values`; expressions whose side is not known are left out."""
-        others = self._others(instants)
-        if self._solutions is not None:
-            multipliers = self._solutions(instants, states).multipliers
-            others[: len(multipliers)] = multipliers
-        inputs = np.ascontiguousarray(np.concatenate([np.reshape(instants, (1, -1)), states, others]))
-        found = np.array([as_floats(row) for row in self._evaluate(inputs)])
+        multipliers = None if self._solutions is None else self._solutions(instants, states).multipliers
+        found = np.array([as_floats(row) for row in self._evaluate(self._inputs(instants, states, multipliers))])
         places = [self._names.index(name) for name, *_ in self._rows]
         return np.array([side for *_, side in self._rows], dtype=float)[:, None] * found[places]

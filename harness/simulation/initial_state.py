@@ -19,6 +19,7 @@ from ..program.motion_problem import By, MotionProblem, Origin, computing
 from ..program.sign_pattern import at_start, problem_in
 from .diagnostics import constraint_residuals, scaled_residual
 from .evaluation import Numbers, lane_evaluation
+from .inputs import Inputs
 from .matrices import LaneMatrices
 from .nearest_root import ITERATIONS, ROUNDING, SETTLED, Linearized, NearestRoots
 from .nominal import nominal_of, share_of
@@ -228,11 +229,11 @@ class InitialStatesBySign:
     def _signs(self, values: Numbers) -> Numbers:
         """Signs at the start, shape (signs, k), each function after those that it may contain."""
         k, problem = values.shape[1], self._problem
-        signs, unused = np.ones((len(problem.signs), k)), np.zeros((len(problem.state) + len(problem.multipliers), k))
+        signs, unused, inputs = np.ones((len(problem.signs), k)), np.zeros((len(problem.state), k)), Inputs(problem)
         scale = max(self._time, abs(self._start))
         for index, clock in self._clocks.items():
             now, soon = (
-                clock(np.concatenate([np.full((1, k), instant), unused, signs, values]))[0]
+                clock(inputs(instant, unused, signs=signs, values=values))[0]
                 for instant in (self._start, self._start + SOON * scale)
             )
             signs[index] = np.where(np.where(np.abs(now) > ROUNDING * scale, now, soon) >= 0, 1.0, -1.0)

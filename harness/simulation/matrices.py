@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from ..program.motion_problem import MotionProblem, require_signs_known
 from ..program.precision import read_precision
 from .evaluation import Numbers, evaluation_once, lane_evaluation
+from .inputs import Inputs
 from .nominal import Nominal, nominal_of
-from .open_values import OpenValues
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -58,9 +58,7 @@ class MotionMatrices:
         self._problem = problem
         self._layout = _Layout(problem)
         self._evaluate = evaluation_once(problem, problem.matrices, read_precision("double"))
-        self._others = np.array([0.0] * len(problem.multipliers) + list(problem.numbers))
-        self._values, self._lasting = OpenValues(problem, read_precision("double")), len(problem.parameters)
-        self._tables = bool(problem.tables)
+        self._inputs = Inputs(problem)
 
     @cached_property
     def nominal(self) -> Nominal:
@@ -81,13 +79,7 @@ class MotionMatrices:
         Matrices
             At k states, each with a first axis more, of length k.
         """
-        rest = state.shape[:-1]
-        instants = np.broadcast_to(t, rest)
-        parts = [instants[..., None], state, np.broadcast_to(self._others, (*rest, len(self._others)))]
-        if self._tables:
-            parts.append(self._values(instants.ravel())[self._lasting :].T.reshape(*rest, -1))
-        inputs = np.concatenate(parts, axis=-1)
-        return self._layout.matrices_at_each(self._evaluate(np.ascontiguousarray(inputs.T)).T)
+        return self._layout.matrices_at_each(self._evaluate(self._inputs(t, state.T)).T)
 
     def independent(self, t: float, state: Vector) -> Matrices:
         """Evaluate the matrices of the constraints that do not follow from others."""
@@ -99,7 +91,7 @@ class LaneMatrices:
 
     def __init__(self, problem: MotionProblem) -> None:
         require_signs_known(problem)
-        self._layout, self._g = _Layout(problem), len(problem.multipliers)
+        self._layout, self._inputs = _Layout(problem), Inputs(problem)
         self._evaluate = lane_evaluation(problem, problem.matrices)
 
     def __call__(self, t: float | Numbers, states: Numbers, values: Numbers) -> Matrices:
@@ -116,9 +108,7 @@ class LaneMatrices:
         Matrices
             Each with a last axis more, of length k.
         """
-        lanes = states.shape[1]
-        instants, unused = np.full((1, lanes), t), np.zeros((self._g, lanes))
-        return self._layout.matrices(self._evaluate(np.concatenate([instants, states, unused, values])))
+        return self._layout.matrices(self._evaluate(self._inputs(t, states, values=values)))
 
 
 class _Layout:

@@ -16,9 +16,8 @@ from numpy.typing import NDArray
 
 from ..program.motion_problem import MotionProblem
 from ..program.numpy_function import NumpyFunction
-from ..program.precision import read_precision
 from ..program.sign_pattern import program_in
-from .open_values import BesideState
+from .inputs import Inputs
 
 INSTANTS = 65  # of the time span at which forces and constraints are looked at where a motion starts at zero
 COARSE = 1e3  # power in which tolerances change: what is compiled with one serves many motions
@@ -192,8 +191,7 @@ class _Start:
         instants = float(problem.start["t"]) + span * np.linspace(0, 1, INSTANTS)
         pattern = {sign.name: 1 for sign in problem.signs}
         program = program_in(problem, problem.matrices, pattern) if pattern else problem.matrices
-        inputs = [instants, *np.repeat(state, INSTANTS, axis=1)]
-        inputs += [*BesideState(problem, read_precision("double"))(instants)]
+        inputs = Inputs(problem)(instants, np.repeat(state, INSTANTS, axis=1))
         self._values = dict(zip(program.outputs, NumpyFunction(program).at_points(inputs), strict=True))
         self._places = range(1, len(problem.coordinates) + 1)
         self.roots = _roots(np.array([self._at(f"A[{s},{s}]")[:1] for s in self._places]).reshape(-1, 1))

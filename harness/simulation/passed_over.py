@@ -17,9 +17,8 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from ..program.precision import Precision
-from .engines.engine import Piece
+from .engines.engine import Step
 from .evaluation import Numbers, as_floats
-from .piecewise import PiecewiseMotion
 
 PARTS = 1024  # of the time span: longer steps are looked into
 AT_ONCE = 64  # parts of a step
@@ -31,8 +30,6 @@ class StepsHeldAgainstTheEquations:
 
     Parameters
     ----------
-    motion : PiecewiseMotion
-        At work.
     span : number
         Length of the time span.
 
@@ -42,30 +39,30 @@ class StepsHeldAgainstTheEquations:
         Relative to the largest velocity where that is more than its nominal size.
     """
 
-    def __init__(self, motion: PiecewiseMotion, span: Any, precision: Precision) -> None:
-        self._motion, self._span = motion, float(span)
+    def __init__(self, span: Any, precision: Precision) -> None:
+        self._span = float(span)
         self._nodes, self._weights = (
             np.array([precision.number(repr(float(value))) for value in values]) for values in (NODES, WEIGHTS)
         )
         self.missed = 0.0
 
-    def take(self, piece: Piece) -> None:
-        """Look into a step that is long, a piece of the phase at work."""
-        length = piece.end - piece.start
+    def take(self, step: Step) -> None:
+        """Look into a step that is long."""
+        length = step.end - step.start
         parts = ceil(float(length) / self._span * PARTS)
         if parts > 1:
             for first in range(0, parts, AT_ONCE):
-                edges = piece.start + length * np.arange(first, min(first + AT_ONCE, parts) + 1) / parts
-                self.missed = max(self.missed, self._missed_between(edges, piece), key=_size)
+                edges = step.start + length * np.arange(first, min(first + AT_ONCE, parts) + 1) / parts
+                self.missed = max(self.missed, self._missed_between(edges, step), key=_size)
 
-    def _missed_between(self, edges: Numbers, piece: Piece) -> float:
+    def _missed_between(self, edges: Numbers, step: Step) -> float:
         half = (edges[1:] - edges[:-1]) / 2
         instants = (edges[:-1, None] + half[:, None] * (1 + self._nodes)).ravel()
-        accelerations = self._motion.solutions(instants, piece.states(instants)).accelerations
+        accelerations = step.mode.engine.solutions(instants, step.states(instants)).accelerations
         n = len(accelerations)
         gained = half * (accelerations.reshape(n, len(half), -1) * self._weights).sum(axis=2)
-        velocities = piece.states(edges)[n:]
-        sizes = self._motion.nominal.velocities[:, None]
+        velocities = step.states(edges)[n:]
+        sizes = step.mode.matrices.nominal.velocities[:, None]
         missed = as_floats(np.diff(velocities, axis=1) - gained) / sizes
         largest = np.max(np.abs(as_floats(velocities) / sizes), initial=1.0)
         return float(np.max(np.abs(missed), initial=0.0) / largest)

@@ -4,21 +4,20 @@ They are handed on in stretches, so that a motion of any number of samples takes
 """
 
 from collections.abc import Callable, Iterable, Iterator
-from itertools import islice
+from itertools import groupby, islice
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from .diagnostics import EnergyBalance
-from .engines.engine import Piece
+from .engines.engine import Step
 from .evaluation import Numbers, as_floats
-from .piecewise import PiecewiseMotion
+from .mode import Mode
 
 STRETCH = 2**14
 """Samples that are handed on together: enough for arrays to pay, little beside what a process takes anyway."""
 
 PORTION = 2**10
-"""Samples that are looked up together in one piece; the work until each is a sum over ten states."""
+"""Samples that are looked up together in one step; the work until each is a sum over ten states."""
 
 TOGETHER = 2**8
 """Intervals over which the power is integrated together: between two points of a table there may be one alone."""
@@ -30,10 +29,18 @@ class Stretch(NamedTuple):
     instants: Numbers  # shape (k,)
     states: Numbers  # shape (2n, k)
     works: Numbers  # shape (k,): work done until each instant
+    modes: list[Mode]  # of each
+
+    def by_mode(self) -> Iterator[tuple[Mode, Numbers, Numbers]]:
+        """Runs of samples in one mode: the mode, its instants and states."""
+        first = 0
+        for mode, run in groupby(self.modes):
+            here = slice(first, first := first + sum(1 for _ in run))
+            yield mode, self.instants[here], self.states[:, here]
 
 
 class Interval(NamedTuple):
-    """A part of a piece, up to an instant that is wanted or to the piece's end."""
+    """A part of a step, up to an instant that is wanted or to the step's end."""
 
     start: Any
     end: Any
@@ -46,13 +53,17 @@ class Recording:
 
     Parameters
     ----------
+    mode : Mode
+        In which the motion begins.
     instants : iterable of numbers, or None
-        In order, before the last; None for the ends of the pieces.
+        In order, before the last; None for the ends of the steps.
     hand_on : callable
         Takes each `Stretch`.
 
     Attributes
     ----------
+    mode : Mode
+        Of the last step.
     work : number
         Work done in all.
     largest_work : float
@@ -60,18 +71,18 @@ class Recording:
     """
 
     def __init__(
-        self, motion: PiecewiseMotion, instants: Iterable[Any] | None, zero: Any, hand_on: Callable[[Stretch], None]
+        self, mode: Mode, instants: Iterable[Any] | None, zero: Any, hand_on: Callable[[Stretch], None]
     ) -> None:
-        self._motion, self._hand_on = motion, hand_on
+        self.mode, self._hand_on = mode, hand_on
         self._steps = instants is None
         self._waiting = iter(instants or ())
         self._next = next(self._waiting, None)
         self._instants: list[Any] = []
         self._states: list[Numbers] = []
         self._works: list[Any] = []
-        self._intervals: list[Interval] = []  # of one part of the motion, their works not yet known
+        self._modes: list[Mode] = []
+        self._intervals: list[Interval] = []  # of one mode, their works not yet known
         self._inside: list[tuple[Numbers, Numbers]] = []  # where the power is needed
-        self._balance: EnergyBalance | None = None
         self.work = self._zero = zero
         self.largest_work = 0.0
 
@@ -80,26 +91,25 @@ class Recording:
         if self._steps or any(True for _ in self._wanted_until(instant)):
             self._keep(instant, state.copy())
 
-    def take(self, piece: Piece) -> None:
-        """Keep what is wanted of a piece, which begins where the last one ended."""
-        start = piece.start
-        while start != piece.end:
-            wanted = [piece.end] if self._steps else list(islice(self._wanted_until(piece.end), PORTION))
-            ends = wanted if len(wanted) == PORTION or piece.end in wanted[-1:] else [*wanted, piece.end]
-            self._look_up(piece, [start, *ends[:-1]], ends, wanted)
-            start = ends[-1]
+    def take(self, step: Step) -> None:
+        """Keep what is wanted of a step, which begins where the last one ended."""
+        start, impulse = step.start, step.impulse
+        while start != step.end:
+            wanted = [step.end] if self._steps else list(islice(self._wanted_until(step.end), PORTION))
+            ends = wanted if len(wanted) == PORTION or step.end in wanted[-1:] else [*wanted, step.end]
+            self._look_up(step, [start, *ends[:-1]], ends, wanted, impulse)
+            start, impulse = ends[-1], self._zero
 
-    def _look_up(self, piece: Piece, starts: list[Any], ends: list[Any], wanted: list[Any]) -> None:
-        balance = self._motion.part.balance
-        if balance is not self._balance or len(self._intervals) >= TOGETHER:
+    def _look_up(self, step: Step, starts: list[Any], ends: list[Any], wanted: list[Any], impulse: Any) -> None:
+        if step.mode is not self.mode or len(self._intervals) >= TOGETHER:
             self._settle()
-            self._balance = balance
-        inside, at_ends = balance.instants_between(starts, ends), [None] * len(ends)
+            self.mode = step.mode
+        inside, at_ends = self.mode.balance.instants_between(starts, ends), [None] * len(ends)
         if wanted or len(inside):
-            states = piece.states(np.concatenate([np.array(wanted), inside]) if wanted else inside)
+            states = step.states(np.concatenate([np.array(wanted), inside]) if wanted else inside)
             at_ends[: len(wanted)] = states[:, : len(wanted)].T
             self._inside.append((inside, states[:, len(wanted) :]))
-        impulses = [self._motion.take_impulse(), *[self._zero] * (len(ends) - 1)]
+        impulses = [impulse, *[self._zero] * (len(ends) - 1)]
         self._intervals += map(Interval, starts, ends, at_ends, impulses)
 
     def _settle(self) -> None:
@@ -110,15 +120,15 @@ class Recording:
         self._intervals, self._inside = [], []
         starts, ends = (np.array([interval[side] for interval in intervals]) for side in (0, 1))
         until = []
-        for interval, work in zip(intervals, self._balance.works(starts, ends, inside), strict=True):
+        for interval, work in zip(intervals, self.mode.balance.works(starts, ends, inside), strict=True):
             self.work = self.work + (interval.impulse + work)
             until.append(self.work)
             if interval.state is not None:
                 self._keep(interval.end, interval.state)
-        self.largest_work = max(largest(until, self.largest_work), self._balance.passing)
+        self.largest_work = max(largest(until, self.largest_work), self.mode.balance.passing)
 
     def end(self, instant: Any, state: Numbers) -> None:
-        """Keep the last state, projected as it is, in the place of the one that the last piece ended with."""
+        """Keep the last state, projected as it is, in the place of the one that the last step ended with."""
         self._settle()
         if self._instants and self._instants[-1] == instant:
             self._states[-1] = state.copy()
@@ -128,8 +138,9 @@ class Recording:
     def hand_on(self) -> None:
         """Hand on what has been kept since the last time."""
         if self._instants:
-            self._hand_on(Stretch(np.array(self._instants), np.array(self._states).T, np.array(self._works)))
-        self._instants, self._states, self._works = [], [], []
+            arrays = np.array(self._instants), np.array(self._states).T, np.array(self._works)
+            self._hand_on(Stretch(*arrays, self._modes))
+        self._instants, self._states, self._works, self._modes = [], [], [], []
 
     def _keep(self, instant: Any, state: Numbers) -> None:
         if len(self._instants) == STRETCH:  # the last one stays, for `end` may change it
@@ -137,6 +148,7 @@ class Recording:
         self._instants.append(instant)
         self._states.append(state)
         self._works.append(self.work)
+        self._modes.append(self.mode)
 
     def _wanted_until(self, end: Any) -> Iterator[Any]:
         while self._next is not None and self._next <= end:

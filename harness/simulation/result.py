@@ -13,7 +13,7 @@ from .diagnosis import HardCase
 from .engines.choice import Choice
 from .engines.switching import Leg
 from .events import Ending
-from .piecewise import Switching
+from .hybrid_motion import Switching
 from .trust import Doubt
 
 if TYPE_CHECKING:

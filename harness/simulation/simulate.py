@@ -1,7 +1,7 @@
 """A simulation: engines follow the motion, a recording keeps what is wanted of it, a report says how well it went."""
 
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
 from fractions import Fraction
 from math import inf
@@ -16,12 +16,11 @@ from ..program.sign_pattern import with_values_in
 from ..supervisor import doing
 from .diagnosis import HardCase, Instant, hard_cases
 from .diagnostics import condition, residuals
-from .engines.engine import JUDGED_AFTER, Piece, Solutions, require_reach
+from .engines.engine import JUDGED_AFTER, Solutions, Step, require_reach
 from .evaluation import Numbers, as_floats, one_blas_thread
 from .events import Ending, first_event
-from .matrices import Matrices
+from .hybrid_motion import HybridMotion
 from .passed_over import StepsHeldAgainstTheEquations
-from .piecewise import PiecewiseMotion
 from .recording import Recording, Stretch, largest
 from .request import FINAL_STATE_ALONE, EngineName, SimulationRequest, Stabilization
 from .result import Report, Sampled, Samples, Simulation, joined
@@ -29,8 +28,7 @@ from .trust import doubts, energy_missed, expected, may_hide
 
 Progress = Callable[[float], None]
 TakeSamples = Callable[[Sampled], None]
-TakePiece = Callable[[Piece], None]
-Watch = Callable[[PiecewiseMotion], TakePiece]
+TakeStep = Callable[[Step], None]
 
 
 def simulate(problem: MotionProblem, request: SimulationRequest, progress: Progress | None = None) -> Simulation:
@@ -48,7 +46,7 @@ def follow(
     request: SimulationRequest,
     take: TakeSamples,
     progress: Progress | None = None,
-    watch: Watch | None = None,
+    watch: TakeStep | None = None,
 ) -> Report:
     """Follow a motion, and hand on its samples as they come, some thousands together.
 
@@ -59,7 +57,7 @@ def follow(
     progress : callable or None
         Told the fraction that is done, now and then.
     watch : callable or None
-        Takes the motion before its first step, and returns what takes each step.
+        Takes each step.
 
     Raises
     ------
@@ -94,7 +92,7 @@ def end_of(problem: MotionProblem, request: SimulationRequest) -> tuple[Any, End
         return end, None
     with (
         doing("looking for the end of the motion"),
-        closing(PiecewiseMotion(followable(problem, request), request, precision, end)) as motion,
+        closing(HybridMotion(followable(problem, request), request, precision, end)) as motion,
     ):
         event = first_event(motion, precision, end)
     if event is None:
@@ -143,20 +141,20 @@ class _Simulation:
         self.precision, self.end, self.ending = read_precision(str(request.precision)), end, ending
         self.start = self.precision.number(problem.start["t"])
         begun = time.perf_counter()
-        self.motion = PiecewiseMotion(problem, request, self.precision, self.end)
-        self.first = self.motion.state.copy()
+        self.motion = HybridMotion(problem, request, self.precision, self.end)
+        self.first, self.begun = self.motion.state.copy(), self.motion.mode
         self.compile_seconds = time.perf_counter() - begun - self.motion.compile_seconds
         zero = self.precision.number("0")
-        self.recording = Recording(self.motion, self._wanted_instants(), zero, self._hand_on)
+        self.recording = Recording(self.begun, self._wanted_instants(), zero, self._hand_on)
         self.exchange = Exchange()
         self.reactions = np.zeros(len(problem.multipliers))  # the largest multipliers so far
         self.steps = (
-            StepsHeldAgainstTheEquations(self.motion, self.end - self.start, self.precision)
+            StepsHeldAgainstTheEquations(self.end - self.start, self.precision)
             if may_hide(problem.matrices, ("t", *problem.parameters))
             else None
         )
 
-    def run(self, progress: Progress | None, watch: Watch | None) -> Report:
+    def run(self, progress: Progress | None, watch: TakeStep | None) -> Report:
         begun, compiled = time.perf_counter(), self.motion.compile_seconds
         self.recording.begin(self.start, self.first)
         self._follow(self._take(progress, watch))
@@ -167,28 +165,28 @@ class _Simulation:
 
     def _hand_on(self, stretch: Stretch) -> None:
         """Work out what is observed at samples, and what the report needs of them."""
-        instants, states, works = stretch
-        self.solutions = self.motion.solutions(instants, states)
+        found = (mode.engine.solutions(t, states) for mode, t, states in stretch.by_mode())
+        self.solutions = Solutions(*map(_side_by_side, zip(*found, strict=True)))
         self.reactions = np.array(
             [largest(row, known) for row, known in zip(self.solutions.multipliers, self.reactions, strict=True)]
         )
-        energies = self._energies(instants, states, works)
+        energies, self.controls = self._energies(stretch), self._controls(stretch)
         self.exchange.add(energies["energy"], energies["energy_error"])
         self.take(
             Sampled(
-                instants=instants,
-                **self._motion(states, self.solutions),
+                instants=stretch.instants,
+                **self._motion(stretch.states, self.solutions),
                 energy=energies if "energy" in self.problem.observe else {},
-                residuals=self._residual_samples(instants, states, self.solutions),
-                controls=self.motion.controls(instants, states),
+                residuals=self._residual_samples(stretch, self.solutions),
+                controls=self.controls,
             )
         )
 
-    def _follow(self, take: TakePiece | None) -> None:
+    def _follow(self, take: TakeStep | None) -> None:
         if take is None:
             return self.motion.advance(self.end)
-        for piece in self.motion.pieces(self.end):
-            take(piece)
+        for step in self.motion.integrate(self.end):
+            take(step)
 
     def _wanted_instants(self) -> Iterator[Any] | None:
         """Instants to keep; None for those of the steps. The last one is kept in any case."""
@@ -197,30 +195,34 @@ class _Simulation:
         inner = range(self.samples - 1) if self.samples != FINAL_STATE_ALONE else ()
         return (self.start + (self.end - self.start) * i / (self.samples - 1) for i in inner)
 
-    def _take(self, progress: Progress | None, watch: Watch | None) -> TakePiece | None:
-        """What is done with each piece; None where nothing has to be."""
-        nothing_to_integrate = self.motion.conservative and self.steps is None
+    def _take(self, progress: Progress | None, watch: TakeStep | None) -> TakeStep | None:
+        """What is done with each step; None where nothing has to be."""
+        nothing_to_integrate = not self.problem.signs and self.begun.balance.conservative and self.steps is None
         if self.samples == FINAL_STATE_ALONE and nothing_to_integrate and progress is watch is None:
             return None
         takers = [self.recording.take]
         if self.steps is not None:
             takers.append(self.steps.take)
         if watch is not None:
-            takers.append(watch(self.motion))
+            takers.append(watch)
 
-        def take(piece: Piece) -> None:
+        def take(step: Step) -> None:
             for each in takers:
-                each(piece)
+                each(step)
             if progress is not None:
-                progress(float((piece.end - self.start) / (self.end - self.start)))
+                progress(float((step.end - self.start) / (self.end - self.start)))
 
         return take
 
-    def _energies(self, instants: Numbers, states: Numbers, works: Numbers) -> Samples:
+    def _energies(self, stretch: Stretch) -> Samples:
         """Energies at the samples, and what they differ by from the energy at the start and the work done since."""
-        start = self.motion.energy(np.array([self.start]), self.first[:, None])
-        energy = self.motion.energy(instants, states)
-        return {"energy": energy, "energy_error": energy - start - works}
+        energy = np.concatenate([mode.balance.energy(t, states) for mode, t, states in stretch.by_mode()])
+        return {"energy": energy, "energy_error": energy - self.begun.energy_at(self.start, self.first) - stretch.works}
+
+    def _controls(self, stretch: Stretch) -> Samples:
+        found = [mode.controls(t, states) for mode, t, states in stretch.by_mode()]
+        names = () if self.problem.controls is None else self.problem.controls.outputs
+        return dict(zip(names, np.concatenate(found, axis=1), strict=True))
 
     def _motion(self, states: Numbers, solutions: Solutions) -> Mapping[str, Samples]:
         """Samples of what the scene observes."""
@@ -235,23 +237,23 @@ class _Simulation:
             "constraint_forces": {f"Lambda[{s}]": row for s, row in enumerate(forces, start=1)},
         }
 
-    def _residual_samples(self, instants: Numbers, states: Numbers, solutions: Solutions) -> Samples:
+    def _residual_samples(self, stretch: Stretch, solutions: Solutions) -> Samples:
         if "residuals" not in self.problem.observe:
             return {}
-        columns = zip(instants, states.T, solutions.accelerations.T, strict=True)
-        found = [self._residuals(t, state, accelerations) for t, state, accelerations in columns]
+        columns = zip(stretch.modes, stretch.instants, stretch.states.T, solutions.accelerations.T, strict=True)
+        found = [
+            _residuals(Instant(mode.matrices, float(t), as_floats(state)), accelerations)
+            for mode, t, state, accelerations in columns
+        ]
         return {name: np.array([each[name] for each in found]) for name in found[0]}
 
-    def _residuals(self, instant: Any, state: Numbers, accelerations: Numbers) -> Mapping[str, float]:
-        at = self.motion.matrices(float(instant), as_floats(state))
-        return residuals(at, as_floats(state), as_floats(accelerations), self.motion.nominal)
-
     def _report(self, seconds: float) -> Report:
-        state, n = self.motion.state.copy(), len(self.problem.coordinates)
+        state, n, mode = self.motion.state.copy(), len(self.problem.coordinates), self.recording.mode
+        start = Instant(self.begun.matrices, float(self.start), as_floats(self.first))
+        end = Instant(mode.matrices, float(self.end), as_floats(state))
         observed = self.problem.reactions if "multipliers" in self.problem.observe else ()
-        at = self.motion.matrices(float(self.end), as_floats(state))
         multipliers = self.solutions.multipliers[:, -1]
-        left = residuals(at, as_floats(state), as_floats(self.solutions.accelerations[:, -1]), self.motion.nominal)
+        left = _residuals(end, self.solutions.accelerations[:, -1])
         return Report(
             t=self.end,
             coordinates=dict(zip(self.problem.coordinates, state[:n], strict=True)),
@@ -259,7 +261,7 @@ class _Simulation:
             multipliers=dict(zip(observed, multipliers, strict=False)),
             residuals=left,
             energy_error=self.exchange.last_error,
-            condition=condition(at.under(self.problem.independent)),
+            condition=condition(end.here.under(self.problem.independent)),
             steps=self.motion.steps,
             legs=tuple(self.motion.legs),
             code=self.motion.code,
@@ -270,46 +272,44 @@ class _Simulation:
             run_seconds=seconds,
             correction=self.problem.correction,
             moved=self.problem.moved,
-            cases=self._cases(state),
+            cases=self._cases(start, end),
             switchings=tuple(self.motion.switchings),
             ending=self.ending,
             choice=self.motion.choice,
-            controls={
-                name: values[-1] for name, values in self.motion.controls(np.array([self.end]), state[:, None]).items()
-            },
+            controls={name: values[-1] for name, values in self.controls.items()},
             relative_degrees=self.problem.relative_degrees,
             unresolved=self.motion.unresolved,
-            doubts=tuple(doubts(self._missed(left, at), self.motion.tol, self.motion.steps)),
+            doubts=tuple(doubts(self._missed(left, start, end), self.motion.tol, self.motion.steps)),
         )
 
-    def _missed(self, left: Mapping[str, float], at: Matrices) -> Mapping[str, float]:
+    def _missed(self, left: Mapping[str, float], start: Instant, end: Instant) -> Mapping[str, float]:
         """What is missed of each quantity that the tolerance speaks of, relative to its size."""
         within = {} if self.steps is None else {"acceleration": self.steps.missed}
         kept = {name: left[name] for name in ("position", "velocity")}
         if not np.isfinite(self.reactions).all():
             kept["multipliers"] = np.nan
-        first, last = as_floats(self.first), as_floats(self.motion.state)
-        start, end = (self.motion.matrices(float(self.start), first), first), (at, last)
+        ends = (start.here, start.state), (end.here, end.state)
         exchanged = max(self.recording.largest_work, self.exchange.exchanged)
         small = expected(self.motion.tol, self.motion.steps) * self.motion.nominal.velocities
-        return {**kept, "energy": float(energy_missed(start, end, self.exchange.error, exchanged, small)), **within}
+        return {**kept, "energy": float(energy_missed(*ends, self.exchange.error, exchanged, small)), **within}
 
-    def _cases(self, state: Numbers) -> tuple[HardCase, ...]:
+    def _cases(self, start: Instant, end: Instant) -> tuple[HardCase, ...]:
         """Those that the robust engine was called for, then those that the ends tell; each once."""
-        start, end = Instant(float(self.start), as_floats(self.first)), Instant(float(self.end), as_floats(state))
         called_for = [leg.case for leg in self.motion.legs if leg.case is not None]
-        found = hard_cases(
-            self.motion.matrices,
-            self.motion.nominal,
-            self.problem.independent,
-            start,
-            end,
-            self.reactions,
-            self.motion.steps,
-        )
+        found = hard_cases(self.problem.independent, start, end, self.reactions, self.motion.steps)
         answering = self.problem.reactions or not self.problem.servo  # servo-constraints have no reaction by themselves
         found = (case for case in found if answering or case is not HardCase.FREE_CANCELLATION)
         return tuple(dict.fromkeys([*called_for, *found]))
+
+
+def _residuals(at: Instant, accelerations: Numbers) -> Mapping[str, float]:
+    return residuals(at.here, at.state, as_floats(accelerations), at.matrices.nominal)
+
+
+def _side_by_side(parts: Sequence[Numbers]) -> Numbers:
+    """Rows that all parts have: the robust engine adds constraint forces that the scene does not observe."""
+    shared = min(len(rows) for rows in parts)
+    return np.concatenate([rows[:shared] for rows in parts], axis=1)
 
 
 class Exchange:

@@ -21,10 +21,10 @@ from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Program
 from ..program.precision import Precision
 from ..program.sign_pattern import HELD, Pattern, switching_function
-from .engines.engine import Piece
+from .engines.engine import Step
 from .evaluation import Numbers, as_floats, evaluation
+from .inputs import Inputs
 from .matrices import Vector
-from .open_values import BesideState
 
 DEGREE, FINE = 32, 256
 NODES = np.concatenate([[0.0], np.sort(1 + chebyshev.chebpts1(DEGREE + 1)) / 2, [1.0]])
@@ -64,7 +64,7 @@ class SignedFunctions(ABC):
         ndarray of float, shape (functions, k)
         """
 
-    def first_crossing(self, piece: Piece, left: Sequence[str]) -> Crossing | None:
+    def first_crossing(self, step: Step, left: Sequence[str]) -> Crossing | None:
         """Where the motion first leaves its pattern within a step.
 
         Parameters
@@ -74,15 +74,15 @@ class SignedFunctions(ABC):
         """
         if not self._rows:
             return None
-        for part, places, values in self._looked_at(piece):
-            found = self._first_in(part, places, values, left if part.start == piece.start else ())
+        for part, places, values in self._looked_at(step):
+            found = self._first_in(part, places, values, left if part.start == step.start else ())
             if found is not None:
                 return found
         return None
 
-    def _looked_at(self, piece: Piece) -> Iterator[tuple[Piece, Numbers, Numbers]]:
+    def _looked_at(self, step: Step) -> Iterator[tuple[Step, Numbers, Numbers]]:
         """The parts of a step in order, each with its samples."""
-        waiting = list(reversed(self._cut(piece, ceil(float(piece.end - piece.start) / self._span * PARTS))))
+        waiting = list(reversed(self._cut(step, ceil(float(step.end - step.start) / self._span * PARTS))))
         while waiting:
             part = waiting.pop()
             places, values = self._samples(part, NODES)
@@ -91,41 +91,41 @@ class SignedFunctions(ABC):
             else:
                 yield part, places, values
 
-    def _cut(self, piece: Piece, count: int) -> list[Piece]:
+    def _cut(self, step: Step, count: int) -> list[Step]:
         """A step in parts of the same length."""
         if count <= 1:
-            return [piece]
+            return [step]
         numbers = np.array([self._precision.ratio(Fraction(place, count)) for place in range(count)])
-        edges = [*(piece.start + (piece.end - piece.start) * numbers), piece.end]
-        return [Piece(start, end, piece.states) for start, end in pairwise(edges)]
+        edges = [*(step.start + (step.end - step.start) * numbers), step.end]
+        return [step._replace(start=start, end=end) for start, end in pairwise(edges)]
 
-    def _first_in(self, piece: Piece, places: Numbers, values: Numbers, left: Sequence[str]) -> Crossing | None:
+    def _first_in(self, step: Step, places: Numbers, values: Numbers, left: Sequence[str]) -> Crossing | None:
         for row, (name, *_) in enumerate(self._rows):
             if name in left:
                 values[row, 0] = max(values[row, 0], 0.0)
             self._sizes[name] = max(self._sizes.get(name, 0.0), np.max(np.abs(values[row])))
-        found = [self._in_row(piece, row, places, values[row]) for row in range(len(self._rows))]
+        found = [self._in_row(step, row, places, values[row]) for row in range(len(self._rows))]
         return min((crossing for crossing in found if crossing), key=lambda crossing: crossing.t, default=None)
 
-    def _in_row(self, piece: Piece, row: int, places: Numbers, values: Numbers) -> Crossing | None:
+    def _in_row(self, step: Step, row: int, places: Numbers, values: Numbers) -> Crossing | None:
         name, to, _ = self._rows[row]
         negative = np.flatnonzero(values < 0)
         last = negative[0] if negative.size else len(values)
         if last == 0:
-            return Crossing(piece.start, name, to)
+            return Crossing(step.start, name, to)
         before, after = (places[last - 1], places[last]) if negative.size else (None, None)
-        dip = self._dip(piece, row, values, NODES[last] if negative.size else 1.0)
+        dip = self._dip(step, row, values, NODES[last] if negative.size else 1.0)
         if dip is not None:
             before, after = dip
         if after is None:
             return None
 
         def inside(instants: Numbers) -> Vector:
-            return self.values(instants, piece.states(instants))[row]
+            return self.values(instants, step.states(instants))[row]
 
         return Crossing(self._last_inside(inside, before, after), name, to)
 
-    def _dip(self, piece: Piece, row: int, values: Numbers, end: float) -> tuple[Any, Any] | None:
+    def _dip(self, step: Step, row: int, values: Numbers, end: float) -> tuple[Any, Any] | None:
         """Between two samples, instants between which the function becomes negative to rise again."""
         inner = values[1:-1]
         if not np.isfinite(inner).all() or np.min(inner) > np.ptp(inner):
@@ -136,17 +136,17 @@ class SignedFunctions(ABC):
         around = PLACES[places[0] + np.array([-1, 0])] if places.size else _narrow_dip(coefficients, between, end)
         if around is None:
             return None
-        instants, found = self._samples(piece, around)
+        instants, found = self._samples(step, around)
         rounding = 10.0 ** (SURE - self._precision.sure_digits) * self._sizes[self._rows[row][0]]
         return tuple(instants) if found[row, 0] >= 0 and found[row, 1] < -rounding else None
 
-    def _samples(self, piece: Piece, places: Numbers) -> tuple[Numbers, Numbers]:
+    def _samples(self, step: Step, places: Numbers) -> tuple[Numbers, Numbers]:
         """Instants of a step, and the functions there, shape (surfaces, k)."""
         numbers = np.array([self._precision.number(repr(float(place))) for place in places])
-        instants = piece.start + (piece.end - piece.start) * numbers
+        instants = step.start + (step.end - step.start) * numbers
         if places[-1] == 1.0:
-            instants[-1] = piece.end
-        return instants, self.values(instants, piece.states(instants))
+            instants[-1] = step.end
+        return instants, self.values(instants, step.states(instants))
 
     def _last_inside(self, values: Callable[[Numbers], Vector], before: Any, after: Any) -> Any:
         """The last instant before a function of instants is negative, between one where it is not and one where it is.
@@ -171,7 +171,7 @@ class Surfaces(SignedFunctions):
         self, problem: MotionProblem, pattern: Pattern, precision: Precision, span: float, known: Collection[str] = ()
     ) -> None:
         super().__init__(precision, span)
-        self._others = BesideState(problem, precision)
+        self._inputs = Inputs(problem, precision)
         for sign in problem.signs:
             if sign.name not in known:
                 value = pattern[sign.name]
@@ -185,8 +185,7 @@ class Surfaces(SignedFunctions):
 
     def values(self, instants: Numbers, states: Numbers) -> Numbers:
         """How far inside of its pattern the motion is, by each surface; negative outside."""
-        beside = self._others(instants)
-        inputs = np.ascontiguousarray(np.concatenate([np.reshape(instants, (1, -1)), states, beside]))
+        inputs = self._inputs(instants, states)
         found = [as_floats(function(inputs)[0]) for function in self._functions]
         inside = np.array([side for *_, side in self._rows], dtype=float)
         return inside[:, None] * np.reshape(found, (len(self._rows), len(instants)))

@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..program.arithmetic import run_program
-from ..program.heyoka_function import dynamics, heyoka_expressions, import_heyoka, zero_multipliers
+from ..program.heyoka_function import dynamics, heyoka_expressions, import_heyoka
 from ..program.motion_problem import MotionProblem, require_expandable
 from ..series.radius import ENTIRE, POLYNOMIAL, Radius, estimate_radii
 from ..series.singularities import COMPLEX
+from ..simulation.inputs import heyoka_inputs, named_inputs
 
 ORDER = 40
 LANES = 8
@@ -47,10 +48,10 @@ def _solves(problem: MotionProblem, series: Floats, values: Floats) -> NDArray[n
     rows = np.moveaxis(series[:n], 1, 2)
     paths = [np.einsum("ij,nkj->nik", _rates(powers, z, order), rows) for order in range(3)]
     lanes = np.zeros((len(z), series.shape[2]), dtype=complex)
-    state = [float(problem.start["t"]) + z[:, None] + lanes, *paths[0], *paths[1]]
-    inputs = [*state, *[lanes] * len(problem.multipliers), *(lanes + row for row in values)]
+    t, state = float(problem.start["t"]) + z[:, None] + lanes, [*paths[0], *paths[1]]
+    inputs = named_inputs(problem, t, state, lanes, [lanes + row for row in values])
     with np.errstate(all="ignore"):
-        found = run_program(problem.motion, dict(zip(problem.motion.inputs, inputs, strict=True)), COMPLEX)
+        found = run_program(problem.motion, inputs, COMPLEX)
         accelerations = np.array([found[f"ddot({name})"] + lanes for name in problem.coordinates])
         missed = np.abs(accelerations - paths[2]) <= SATISFIED * (1 + np.abs(paths[2]))
     return missed.all(axis=(0, 1))
@@ -86,10 +87,8 @@ def expanded(problem: MotionProblem, states: Floats, values: Floats) -> Floats:
 def _expanding(problem: MotionProblem) -> Any:
     """Heyoka's batch integrator, its state ending with the integrals of the multipliers."""
     heyoka = import_heyoka()
-    parameters = {name: heyoka.par[place] for place, name in enumerate(problem.parameters)}
-    given = parameters | zero_multipliers(problem.multipliers, 0.0)
-    variables = {name: heyoka.expression(name) for name in problem.state}
-    solved = heyoka_expressions(problem.motion, {"t": heyoka.time, **variables, **given})
+    given = heyoka_inputs(problem)
+    solved = heyoka_expressions(problem.motion, given)
     integrals = [(heyoka.expression(f"integral of {name}"), solved[name]) for name in problem.multipliers]
     return heyoka.taylor_adaptive_batch(
         [*dynamics(problem.motion, given), *integrals],

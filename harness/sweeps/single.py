@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 from ..program.heyoka_function import import_heyoka
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Expression
-from ..simulation.engines.engine import Piece
+from ..simulation.engines.engine import Step
 from ..simulation.evaluation import in_full_vectors
-from ..simulation.piecewise import PiecewiseMotion
+from ..simulation.mode import Mode
 from ..simulation.request import SimulationRequest
 from ..simulation.result import Report
-from ..simulation.simulate import TakePiece, follow
+from ..simulation.simulate import follow
 from .extremes import Steps
 from .quantities import expressions_of, solved_names
 
@@ -69,23 +69,18 @@ class SingleMotions:
         HolonomError
             The motion cannot be followed to the end.
         """
-        looks: list[_Look] = []
+        look = _Look(partial(self._values, problem), self._along, stops)
+        report = follow(problem, self._request, lambda samples: None, watch=look.take)
+        return look.motion(report)
 
-        def watch(motion: PiecewiseMotion) -> TakePiece:
-            looks.append(_Look(motion, partial(self._values, motion, problem), self._along, stops))
-            return looks[-1].take
-
-        report = follow(problem, self._request, lambda samples: None, watch=watch)
-        return looks[-1].motion(report)
-
-    def _values(self, motion: PiecewiseMotion, problem: MotionProblem, instants: Floats, states: Floats) -> Floats:
-        """All quantities at states of a motion, shape (quantities, k)."""
+    def _values(self, problem: MotionProblem, mode: Mode, instants: Floats, states: Floats) -> Floats:
+        """All quantities at states of a mode, shape (quantities, k)."""
         if self._quantities is None:
             return np.empty((0, len(instants)))
-        solved = np.concatenate(motion.solutions(instants, states))[: self._solved]
-        others = np.array([motion.energy(instants, states), *motion.controls(instants, states).values()])
-        matrices = motion.matrices_by_phase(instants, states)
-        fields = np.concatenate([np.hstack([at.force, at.jacobian.reshape(len(at.force), -1)]) for at in matrices]).T
+        solved = np.concatenate(mode.engine.solutions(instants, states))[: self._solved]
+        others = np.array([mode.balance.energy(instants, states), *mode.controls(instants, states)])
+        at = mode.matrices(instants, states.T)
+        fields = np.hstack([at.force, at.jacobian.reshape(len(at.force), -1)]).T
         parameters = np.repeat(np.array(problem.numbers)[:, None], len(instants), axis=1)
         inputs = [instants[None], states, solved, others, fields, parameters.reshape(-1, len(instants))]
         return self._quantities(np.concatenate(inputs))
@@ -103,45 +98,41 @@ class SingleMotion(NamedTuple):
 class _Look:
     """Looks at quantities along a motion, step by step, and keeps states at stops."""
 
-    def __init__(
-        self,
-        motion: PiecewiseMotion,
-        values: Callable[[Floats, Floats], Floats],
-        along: int,
-        stops: Sequence[float],
-    ) -> None:
-        self._motion, self._values, self._along, self._stops = motion, values, along, stops
+    def __init__(self, values: Callable[[Mode, Floats, Floats], Floats], along: int, stops: Sequence[float]) -> None:
+        self._values, self._along, self._stops = values, along, stops
         self._taken: list[tuple] = []
-        self._states = {motion.time: motion.state.copy()}
+        self._points: dict[float, Floats] = {}
+        self._reached = -np.inf
 
-    def take(self, piece: Piece) -> None:
+    def take(self, step: Step) -> None:
         """Look at a step."""
         if self._along:
-            self._taken += self._polynomials(piece)
-        here = [stop for stop in self._stops if piece.start < stop <= piece.end]
-        if here:
-            self._states |= zip(here, piece.states(np.array(here)).T, strict=True)
+            self._taken += self._polynomials(step)
+        here = np.array([stop for stop in self._stops if self._reached < stop <= step.end])
+        if len(here):
+            self._points |= zip(here, self._values(step.mode, here, step.states(here))[self._along :].T, strict=True)
+        self._reached, self._mode = step.end, step.mode
 
     def motion(self, report: Report) -> SingleMotion:
         """What came of it."""
-        end, state = float(report.t), self._motion.state.copy()
-        states = [self._states[stop] if stop < end else state for stop in self._stops]
-        points = self._values(np.minimum(self._stops, end), np.array(states).T)[self._along :].T
+        end, state = float(report.t), np.array([*report.coordinates.values(), *report.velocities.values()])
+        last = self._values(self._mode, np.array([end]), state[:, None])[self._along :, 0]
+        points = np.array([self._points[stop] if stop < end else last for stop in self._stops])
         return SingleMotion(report, state, points, _steps(self._taken))
 
-    def _polynomials(self, piece: Piece) -> list[tuple]:
+    def _polynomials(self, step: Step) -> list[tuple]:
         """The quantities on parts of a step so short that coefficients fall off: middle, half length, coefficients."""
-        count, found = PARTS, self._in_parts(piece, PARTS)
+        count, found = PARTS, self._in_parts(step, PARTS)
         while count < MOST_PARTS and not all(each.resolved().all() for each in _steps(found)):
             count *= FINER
-            found = self._in_parts(piece, count)
+            found = self._in_parts(step, count)
         return found
 
-    def _in_parts(self, piece: Piece, count: int) -> list[tuple]:
-        edges = np.linspace(float(piece.start), float(piece.end), count + 1)
+    def _in_parts(self, step: Step, count: int) -> list[tuple]:
+        edges = np.linspace(float(step.start), float(step.end), count + 1)
         middles, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2
         instants = (middles[:, None] + half[:, None] * NODES).ravel()
-        values = self._values(instants, piece.states(instants))[: self._along]
+        values = self._values(step.mode, instants, step.states(instants))[: self._along]
         parts = values.reshape(self._along, count, len(NODES)) @ TO_POWERS.T
         return list(zip(middles, half, np.moveaxis(parts, 1, 0), strict=True))
 

@@ -28,8 +28,8 @@ from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.precision import read_precision
 from holonom.program.request import Request
 from holonom.sandbox import Limits
+from holonom.simulation.hybrid_motion import HybridMotion
 from holonom.simulation.initial_state import at_values
-from holonom.simulation.piecewise import PiecewiseMotion
 from holonom.simulation.request import EngineName, SimulationRequest, Stabilization
 from holonom.simulation.simulate import followable
 from holonom.sweeps.axes import read_axes
@@ -159,8 +159,8 @@ def rows_of_other_engines(base: float) -> Iterator[str]:
 
 def engine_seconds(problem: MotionProblem, request: SimulationRequest) -> float:
     precision = read_precision("double")
-    motion = PiecewiseMotion(followable(problem, request), request, precision, precision.number("10"))
-    return _processor(lambda: motion.part.engine.advance(10.0))
+    motion = HybridMotion(followable(problem, request), request, precision, precision.number("10"))
+    return _processor(lambda: motion.mode.engine.advance(10.0))
 
 
 def ensemble() -> float:

@@ -5,7 +5,7 @@ import pytest
 
 from holonom.program.precision import read_precision
 from holonom.simulation.control_matrix import ControlMatrix
-from holonom.simulation.engines.engine import Piece
+from holonom.simulation.engines.engine import Step
 from holonom.simulation.surfaces import SignedFunctions
 
 
@@ -27,5 +27,5 @@ class OneControl(ControlMatrix):
     ],
 )
 def test_rank_is_lost_when_all_rows_vanish_and_not_when_one_does(rows, lost):
-    found = OneControl(*rows).lost(Piece(0.0, 3.0, lambda instants: np.zeros((2, len(instants)))))
+    found = OneControl(*rows).lost(Step(0.0, 3.0, lambda instants: np.zeros((2, len(instants)))))
     assert found == (None if lost is None else pytest.approx(lost, rel=1e-8))

@@ -29,7 +29,6 @@ def test_stiffness_is_the_ratio_of_two_pendulums_lengths(write_scene, monkeypatc
         lambda *of, known=diagnosis.factored_constraints: factored.append(1) or known(*of),
     )
     problem = motion_problem(write_scene(PENDULUMS), Request(), Limits())
-    at = diagnosis.Instant(*start_of(problem))
-    matrices = MotionMatrices(problem)
-    assert diagnosis.stiffness(matrices, matrices.nominal, at) == pytest.approx(100, rel=1e-6)
+    at = diagnosis.Instant(MotionMatrices(problem), *start_of(problem))
+    assert diagnosis.stiffness(at) == pytest.approx(100, rel=1e-6)
     assert len(factored) == 1

@@ -27,7 +27,7 @@ def followed(asked, until: float):
     balance = balance_of(motion, asked)
     start = balance.energy(np.array([motion.time]), motion.state[:, None])[0]
     starts, ends, between = [], [], []
-    for piece in motion.pieces(until):
+    for piece in motion.integrate(until):
         inside = balance.instants_between([piece.start], [piece.end])
         starts, ends = [*starts, piece.start], [*ends, piece.end]
         between += [(inside, piece.states(inside))] if len(inside) else []

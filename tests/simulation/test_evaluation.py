@@ -18,9 +18,9 @@ from holonom.simulation.constraints.program_projection import (
 )
 from holonom.simulation.engines.robust import RobustEngine
 from holonom.simulation.evaluation import CompiledIfItPays, evaluation, evaluation_once
+from holonom.simulation.hybrid_motion import HybridMotion
 from holonom.simulation.matrices import MotionMatrices
 from holonom.simulation.nominal import nominal_of
-from holonom.simulation.piecewise import PiecewiseMotion
 from holonom.simulation.request import SimulationRequest
 
 DOUBLE = read_precision("double")
@@ -118,11 +118,11 @@ def test_a_long_projection_is_not_carried_out_by_numpy():
 def test_all_that_follow_a_motion_ask_the_same_matrices():
     """Each had its own, carried out by NumPy some hundred times before it was compiled."""
     linkage = example("linkage.mac")
-    motion = PiecewiseMotion(linkage, SimulationRequest(until=Fraction(1)), DOUBLE, 1.0)
+    motion = HybridMotion(linkage, SimulationRequest(until=Fraction(1)), DOUBLE, 1.0)
     motion.advance(1.0)  # past a dead centre
-    part = motion.phases[0].part
-    first, second = part.engine._first, part.engine._second
+    mode = motion.mode
+    first, second = mode.engine._first, mode.engine._second
     assert isinstance(second, RobustEngine)
     assert second.steps > 0
-    assert part.matrices is second.matrices
-    assert part.matrices is first.watch._matrices
+    assert mode.matrices is second.matrices
+    assert mode.matrices is first.watch._matrices

@@ -218,9 +218,8 @@ def test_a_decay_that_holds_back_all_steps_was_a_long_run_alone(c, stiff, write_
     truth = (fast * np.exp(-6 * slow) - slow * np.exp(-6 * fast)) / (fast - slow)
     assert report.coordinates["x"] == pytest.approx(truth, rel=1e-8)
     assert (HardCase.STIFF in report.cases) is stiff
-    end = Instant(6.0, np.array([*report.coordinates.values(), *report.velocities.values()]))
-    matrices = MotionMatrices(motion)
-    assert fastest_decay(matrices, matrices.nominal, end) == pytest.approx(fast, rel=1e-6)
+    state = np.array([*report.coordinates.values(), *report.velocities.values()])
+    assert fastest_decay(Instant(MotionMatrices(motion), 6.0, state)) == pytest.approx(fast, rel=1e-6)
 
 
 WALL = """load("holonom.mac")$

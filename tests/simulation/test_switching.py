@@ -23,7 +23,7 @@ from holonom.program.request import Request
 from holonom.program.sign_pattern import drawing_at_any_time
 from holonom.sandbox import Limits
 from holonom.simulation.engines.taylor import TaylorEngine
-from holonom.simulation.piecewise import Passage
+from holonom.simulation.hybrid_motion import Passage
 from holonom.simulation.request import EngineName, SimulationRequest
 from holonom.simulation.result import Report
 from holonom.simulation.simulate import simulate
@@ -227,7 +227,7 @@ def test_each_of_many_switchings_took_as_long_as_all_before_it():
 
     def count_operations(frame, event, argument):
         nonlocal taken
-        if not frame.f_code.co_filename.endswith("piecewise.py"):
+        if not frame.f_code.co_filename.endswith(("hybrid_motion.py", "mode.py")):
             return None
         frame.f_trace_opcodes, frame.f_trace_lines = True, False
         taken += event == "opcode"

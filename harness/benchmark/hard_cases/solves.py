@@ -13,6 +13,7 @@ from ...program.motion_problem import MotionProblem
 from ...program.motion_program import Solve
 from ...program.numpy_function import NumpyFunction
 from ...simulation.constraints.factorization import factored_constraints
+from ...simulation.inputs import Inputs
 from ...simulation.matrices import Matrices, MotionMatrices, Vector
 from .case import Result, ours, theirs
 from .runs import problem
@@ -75,10 +76,10 @@ def pivoted(matrices: Matrices) -> Solved:
 def programmed(motion: MotionProblem) -> SolveAt:
     """As the motion program solves."""
     evaluate, n = NumpyFunction(motion.motion), len(motion.coordinates)
-    unused = np.zeros(len(motion.multipliers))
+    inputs, g = Inputs(motion), len(motion.multipliers)
 
     def solve(t: float, state: Vector) -> Solved:
-        values = evaluate([t, *state, *unused])
-        return Solved(values[:n], values[n : n + len(unused)])
+        values = evaluate(inputs(t, state))
+        return Solved(values[:n], values[n : n + g])
 
     return solve

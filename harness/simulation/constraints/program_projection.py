@@ -15,8 +15,8 @@ from ...program.motion_problem import MotionProblem, computing
 from ...program.numpy_function import NumpyFunction
 from ...program.precision import Precision
 from ..evaluation import OPERATION, CompiledIfItPays, Evaluation, Numbers, as_floats, may_wait, zeros
+from ..inputs import Inputs, named_inputs
 from ..matrices import MotionMatrices, Vector
-from ..open_values import OpenValues
 from ..parts_of_scipy import lapack
 
 SOLVED, SOLVED_UNKNOWN = 5e-5, 5e-11  # seconds that LAPACK takes for a solve, and for the cube of its unknowns
@@ -44,9 +44,9 @@ class ProgramProjection:
         self._nearest = problem.once(("projection", precision.name), problem.projection, build)
         self._inputs = zeros(precision, 1 + len(problem.state) + len(problem.open_inputs))
         self._moving, self._open = slice(1, 1 + len(problem.state)), slice(1 + len(problem.state), None)
-        self._values, self._lasting = OpenValues(problem, precision), not problem.tables
+        self._values, self._lasting = Inputs(problem, precision).open_values, not problem.tables
         self._sizes = matrices.nominal.state
-        self._inputs[self._open] = self._values.after(precision.number(problem.start["t"]))
+        self._inputs[self._open] = self._values(precision.number(problem.start["t"]), "right")
 
     def project(self, instant: Any, state: Numbers) -> float:
         """Move a state, in place, to the nearest one that keeps the constraints.
@@ -63,7 +63,7 @@ class ProgramProjection:
         self._inputs[0] = instant
         self._inputs[self._moving] = state
         if not self._lasting:
-            self._inputs[self._open] = self._values.at(instant)
+            self._inputs[self._open] = self._values(instant)
         found = self._nearest(self._inputs)
         changed = distance(state, found, self._sizes)
         state[:] = found
@@ -107,14 +107,14 @@ def _nearest_by_lapack(matrices: MotionMatrices) -> Evaluation:
 
 def _nearest_by_numpy(problem: MotionProblem) -> Evaluation:
     function, n = NumpyFunction(problem.projection), len(problem.coordinates)
-    unused = np.zeros(len(problem.multipliers))
+    inputs_of = Inputs(problem)
     rows = {name: row for row, name in enumerate(function.outputs)}
     position, velocity = (
         [rows[f"{kind}_correction[{index}]"] for index in range(1, n + 1)] for kind in ("position", "velocity")
     )
 
     def nearest(inputs: Numbers) -> Numbers:
-        given = np.concatenate([inputs, unused])[:, None]
+        given = inputs_of(inputs[0], inputs[1:, None])
         moved = given.copy()
         moved[1 : 1 + n] += function.at_points(given)[position]
         moved[1 + n : 1 + 2 * n] += function.at_points(moved)[velocity]
@@ -145,7 +145,9 @@ def nearest_state(problem: MotionProblem, precision: Precision, **options: Any) 
     """
     heyoka = import_heyoka()
     variables = {name: heyoka.expression(name) for name in ("t", *problem.state, *problem.open_inputs)}
-    inputs = {**variables, **dict.fromkeys(problem.multipliers, heyoka.expression(precision.number("0")))}
+    t, *rest = variables.values()
+    state, open_values = rest[: len(problem.state)], rest[len(problem.state) :]
+    inputs = named_inputs(problem, t, state, heyoka.expression(precision.number("0")), open_values)
     velocities = problem.state[len(problem.coordinates) :]
     position = {**inputs, **_corrected(problem, "position_correction", problem.coordinates, inputs, precision)}
     both = {**position, **_corrected(problem, "velocity_correction", velocities, position, precision)}

@@ -146,9 +146,11 @@ def vanishing_instants(problem: MotionProblem, matrices: MotionMatrices, end: fl
     return sorted({t for beta in constraints for t in _without_gradient(matrices, instants, state, beta)})
 
 
-def require_gradient(problem: MotionProblem, matrices: MotionMatrices, t: float, at: Instant) -> None:
+def require_gradient(problem: MotionProblem, t: float, at: Instant) -> None:
     """Refuse to go on to an instant at which a constraint may lose its gradient, when it has just before."""
-    left, whole = (np.linalg.norm(matrices(*when).jacobian, axis=1) for when in (at, start_of(problem)))
+    left, whole = (
+        np.linalg.norm(at.matrices(*when).jacobian, axis=1) for when in ((at.t, at.state), start_of(problem))
+    )
     lost = np.flatnonzero(left < VANISHED * whole)
     if len(lost):
         raise no_gradient(t, problem.multipliers[lost[0]])

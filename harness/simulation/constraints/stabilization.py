@@ -13,10 +13,11 @@ whose multipliers mu and nu, d = A^-1 J^T mu and e = A^-1 J^T nu, act here throu
 from fractions import Fraction
 from typing import Any
 
-from ...program.heyoka_function import dynamics, heyoka_expressions, import_heyoka, zero_multipliers
+from ...program.heyoka_function import dynamics, heyoka_expressions, import_heyoka
 from ...program.motion_problem import MotionProblem
 from ...program.motion_program import Program
 from ...program.precision import Precision
+from ..inputs import heyoka_inputs
 from ..request import Stabilization
 
 Equations = list[tuple[Any, Any]]
@@ -27,14 +28,7 @@ def equations_of_motion(problem: MotionProblem, program: Program, precision: Pre
 
     Each coordinate and each velocity with its rate; what is open are heyoka's parameters.
     """
-    return dynamics(program, _beside_state(problem, precision), precision.ratio)
-
-
-def _beside_state(problem: MotionProblem, precision: Precision) -> dict[str, Any]:
-    """Values of the inputs that are neither the time nor the state: heyoka's parameters for what is open."""
-    heyoka = import_heyoka()
-    parameters = {name: heyoka.par[place] for place, name in enumerate(problem.open_inputs)}
-    return parameters | zero_multipliers(problem.multipliers, precision.number("0"))
+    return dynamics(program, heyoka_inputs(problem, precision.number("0")), precision.ratio)
 
 
 def stabilized_equations(
@@ -53,7 +47,7 @@ def stabilized_equations(
     """
     gamma = import_heyoka().expression(precision.ratio(Fraction(decay)))
     two = import_heyoka().expression(precision.ratio(Fraction(2)))
-    found = _corrections(problem, precision)
+    found = heyoka_expressions(problem.projection, heyoka_inputs(problem, precision.number("0")), precision.ratio)
     n = len(problem.coordinates)
     position = [found[f"position_correction[{s}]"] for s in range(1, n + 1)]
     velocity = [found[f"velocity_correction[{s}]"] for s in range(1, n + 1)]
@@ -64,10 +58,3 @@ def stabilized_equations(
         cures = [gamma * d for d in (*position, *velocity)]
     plain = equations_of_motion(problem, program, precision)
     return [(variable, rate + cure) for (variable, rate), cure in zip(plain, cures, strict=True)]
-
-
-def _corrections(problem: MotionProblem, precision: Precision) -> dict[str, Any]:
-    heyoka = import_heyoka()
-    variables = {name: heyoka.expression(name) for name in problem.state}
-    inputs = {"t": heyoka.time, **variables, **_beside_state(problem, precision)}
-    return heyoka_expressions(problem.projection, inputs, precision.ratio)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from math import inf
-from typing import Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from numpy.typing import NDArray
 
@@ -10,6 +10,9 @@ from ...failures import Failure, HolonomError
 from ..diagnosis import HardCase
 from ..evaluation import Numbers
 from ..request import EngineName
+
+if TYPE_CHECKING:
+    from ..mode import Mode
 
 JUDGED_AFTER, MOST_STEPS = 1_000, 1e11  # steps: after which what is left is judged, and which nobody waits for
 
@@ -27,13 +30,16 @@ def require_reach(steps: int, done: Any, left: Any) -> None:
         raise HolonomError(Failure.TOO_MANY_STEPS, detail=f"the motion takes about {about:.0e} steps to its end")
 
 
-class Piece(NamedTuple):
+class Step(NamedTuple):
     """A step of the motion with its dense output."""
 
     start: Any
     end: Any
     # takes instants of the step, shape (k,), to states, shape (2n, k): coordinates, then velocities
     states: Callable[[NDArray[Any]], NDArray[Any]]
+    # mode, impulse: the motion's mode, and the energy that an impulse at the start brought; None from an engine
+    mode: "Mode | None" = None
+    impulse: Any = None
 
 
 class Solutions(NamedTuple):
@@ -91,10 +97,10 @@ class Engine(Protocol):
             The motion itself ends.
         """
 
-    def pieces(self, until: Any) -> Iterator[Piece]:
+    def integrate(self, until: Any) -> Iterator[Step]:
         """Follow the motion to an instant, step by step, with its states between; raises as `advance`.
 
-        A piece's states are to be asked for before the next piece.
+        A step's states are to be asked for before the next step.
         """
 
     def solutions(self, instants: Numbers, states: Numbers) -> Solutions:

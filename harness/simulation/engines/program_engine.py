@@ -21,11 +21,11 @@ from ...program.precision import Precision
 from ..constraints.factorization import factored_constraints
 from ..constraints.singularity import Watch, no_controls, no_gradient
 from ..diagnosis import HardCase
-from ..evaluation import Evaluation, Numbers, as_floats, evaluation_once, zeros
+from ..evaluation import Evaluation, Numbers, as_floats, evaluation_once
+from ..inputs import Inputs
 from ..matrices import MotionMatrices
-from ..open_values import OpenValues
 from ..request import EngineName
-from .engine import Obstacle, Piece, Solutions, require_reach
+from .engine import Obstacle, Solutions, Step, require_reach
 
 FIRST_BLOCK = 128  # steps; what surrounds a block, projection above all, takes as long as some small steps
 WATCHED = 32  # steps behind an obstacle
@@ -97,9 +97,9 @@ class ProgramEngine:
         return self._integrator.time
 
     @cached_property
-    def open_values(self) -> OpenValues:
-        """Values of what the programs leave open."""
-        return OpenValues(self._problem, self.precision)
+    def inputs(self) -> Inputs:
+        """Inputs of the programs."""
+        return Inputs(self._problem, self.precision)
 
     @cached_property
     def watch(self) -> Watch:
@@ -132,13 +132,13 @@ class ProgramEngine:
             ended, _ = self._block(until, dense=False)
             require_reach(self.steps - steps, self.time - begun, until - self.time)
 
-    def pieces(self, until: Any) -> Iterator[Piece]:
+    def integrate(self, until: Any) -> Iterator[Step]:
         """Follow the motion to an instant, with its states between the steps; raises as `advance`."""
         self._begin()
         ended, steps, begun = self._integrator.time == until, self.steps, self.time
         while not ended:
-            ended, pieces = self._block(until, dense=True)
-            yield from pieces
+            ended, dense_steps = self._block(until, dense=True)
+            yield from dense_steps
             require_reach(self.steps - steps, self.time - begun, until - self.time)
 
     def solutions(self, instants: Numbers, states: Numbers) -> Solutions:
@@ -148,9 +148,7 @@ class ProgramEngine:
             begun = time.perf_counter()
             self._evaluate = evaluation_once(self._problem, self._problem.motion, self.precision)
             self.compile_seconds += time.perf_counter() - begun
-        parts = [np.reshape(instants, (1, -1)), states, zeros(self.precision, g, len(instants))]
-        inputs = np.concatenate([*parts, self.open_values(instants)])
-        found = self._evaluate(np.ascontiguousarray(inputs))
+        found = self._evaluate(self.inputs(instants, states))
         return Solutions(found[:n], found[n : n + g], found[n + g :])
 
     def close(self) -> None:
@@ -165,24 +163,24 @@ class ProgramEngine:
     def _prepare_next(self, until: Any) -> None:
         """What has to be done after a block that is not the last."""
 
-    def _with_states(self, until: Any, most: int) -> tuple[Taken, list[Piece]]:
+    def _with_states(self, until: Any, most: int) -> tuple[Taken, list[Step]]:
         """Take steps as the integrator does, each with its states."""
         raise NotImplementedError
 
-    def _block(self, until: Any, dense: bool) -> tuple[bool, list[Piece]]:
-        """Take a block of steps; whether it was the last, and its pieces where they are asked for."""
+    def _block(self, until: Any, dense: bool) -> tuple[bool, list[Step]]:
+        """Take a block of steps; whether it was the last, and its dense_steps where they are asked for."""
         if self._obstacle is not None:
             raise self._obstacle
         if self._behind_obstacle:
             self._behind_obstacle = False
-            pieces = self._watched(until, dense, WATCHED)
-            return self.time == until, pieces
+            dense_steps = self._watched(until, dense, WATCHED)
+            return self.time == until, dense_steps
         integrator = self._integrator
         instant, before = integrator.time, self.state.copy()
         if dense:
-            (_, shortest, longest, steps), pieces = self._with_states(until, self._length)
+            (_, shortest, longest, steps), dense_steps = self._with_states(until, self._length)
         else:
-            (_, shortest, longest, steps, *_), pieces = integrator.propagate_until(until, self._length), []
+            (_, shortest, longest, steps, *_), dense_steps = integrator.propagate_until(until, self._length), []
         ended = integrator.time == until
         broken_off = steps < self._length and not ended
         longest, reached = max(self._usual, longest), until if broken_off else integrator.time
@@ -193,11 +191,11 @@ class ProgramEngine:
             self._prepare_next(until)
         if not quiet or not self._in_numbers:
             self._go_back(instant, before)
-            pieces = self._watched(reached, dense, self._length)
-            return self.time == until, pieces
+            dense_steps = self._watched(reached, dense, self._length)
+            return self.time == until, dense_steps
         self.steps += steps
         self._usual = longest
-        return ended, pieces
+        return ended, dense_steps
 
     @property
     def _in_numbers(self) -> bool:
@@ -205,23 +203,23 @@ class ProgramEngine:
         quickly = isfinite(self.state.dot(self.state))  # a square beyond the range is looked at closely
         return quickly or bool(np.isfinite(as_floats(self.state)).all())
 
-    def _watched(self, until: Any, dense: bool, steps: int) -> list[Piece]:
+    def _watched(self, until: Any, dense: bool, steps: int) -> list[Step]:
         """Single steps, so many, until an instant or until the motion program is about to fail."""
         self.watch.begin(self.time, self.state)
-        pieces = []
+        dense_steps = []
         for _ in range(steps):
             if self.time == until or self._obstacle is not None:
                 break
-            pieces += self._watched_step(until, dense)
+            dense_steps += self._watched_step(until, dense)
         self._length = self._first_block
-        return pieces
+        return dense_steps
 
-    def _watched_step(self, until: Any, dense: bool) -> list[Piece]:
+    def _watched_step(self, until: Any, dense: bool) -> list[Step]:
         instant, before = self.time, self.state.copy()
         if dense:
-            (outcome, _, step, _), pieces = self._with_states(until, 1)
+            (outcome, _, step, _), dense_steps = self._with_states(until, 1)
         else:
-            (outcome, _, step, *_), pieces = self._integrator.propagate_until(until, 1), []
+            (outcome, _, step, *_), dense_steps = self._integrator.propagate_until(until, 1), []
         if outcome == self._failed:
             self._go_back(instant, before)
             reason = translatable("numbers leave the range of %(precision)s precision", precision=self.precision.name)
@@ -235,7 +233,7 @@ class ProgramEngine:
         self.steps += 1
         self._longest, self._usual = max(self._longest, self._usual, step), step or self._usual
         self._obstacle = self._found_ahead(until)
-        return pieces
+        return dense_steps
 
     def _found_ahead(self, until: Any) -> HolonomError | None:
         """What the constraints' directions, the gradients and the length of the last step say about the next ones."""

@@ -23,7 +23,7 @@ from ..constraints.projection import InconsistentConstraints, settle
 from ..constraints.singularity import extrapolated_zero, least_of, probed, singular_values_at
 from ..matrices import Matrix, MotionMatrices, Vector, start_of
 from ..request import EngineName
-from .engine import Piece, Solutions, require_reach
+from .engine import Solutions, Step, require_reach
 from .singular_passage import NODES, Arc, arc_over
 from .stiffness import StiffnessWatch
 
@@ -97,11 +97,11 @@ class RobustEngine:
         HolonomError
             The motion cannot be followed so far.
         """
-        for _ in self.pieces(until):
+        for _ in self.integrate(until):
             pass
 
-    def pieces(self, until: float) -> Iterator[Piece]:
-        """Follow the motion to an instant, step by step. A piece's states are to be asked for before the next step.
+    def integrate(self, until: float) -> Iterator[Step]:
+        """Follow the motion to an instant, step by step. A step's states are to be asked for before the next step.
 
         Raises as `advance`.
         """
@@ -162,7 +162,7 @@ class RobustEngine:
 
     # ---- steps ----
 
-    def _step(self, until: float) -> Piece:
+    def _step(self, until: float) -> Step:
         """One step of SciPy's integrator, at most half of the way to a singular configuration."""
         start, solver, length = self.time, self._solver, self._solver.h_abs
         solver.t_bound, solver.status = min(until, (start + self._vanishing) / 2), "running"
@@ -177,7 +177,7 @@ class RobustEngine:
         self._move(solver.t, solver.y)
         if self.stiff and isinstance(solver, DOP853):
             self._begin(self.time, self.state)
-        return Piece(start, self.time, lambda instants: self._projected(instants, solver.dense_output()(instants)))
+        return Step(start, self.time, lambda instants: self._projected(instants, solver.dense_output()(instants)))
 
     def _projected(self, instants: Vector, states: Matrix) -> Matrix:
         """States between two steps, on the constraints."""
@@ -328,7 +328,7 @@ class RobustEngine:
     def _accelerations(self, instants: Vector, states: Matrix) -> Matrix:
         return self._kept(instants, states)[1]
 
-    def _along_arc(self, until: float) -> Piece:
+    def _along_arc(self, until: float) -> Step:
         """Along the arc, to its end or to the instant asked for."""
         start, arc = self.time, self._arc
         if until < arc.end:
@@ -336,4 +336,4 @@ class RobustEngine:
         else:
             self._arc = None
             self._begin(arc.end, arc.last)
-        return Piece(start, self.time, arc)
+        return Step(start, self.time, arc)

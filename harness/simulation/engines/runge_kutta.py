@@ -28,11 +28,12 @@ from ...program.c_source import HELPERS, scalar_statements
 from ...program.motion_problem import MotionProblem, computing
 from ...program.motion_program import Program
 from ...program.precision import read_precision
+from ..inputs import named_inputs
 from ..matrices import MotionMatrices
 from ..nominal import Nominal
 from ..parts_of_scipy import dormand_prince
 from ..request import EngineName, Stabilization
-from .engine import Piece
+from .engine import Step
 from .program_engine import SHRUNK, ProgramEngine, Taken, decay_in
 
 FINEST, USUAL = 1e-14, 1e-12  # tolerances; below the first, rounding decides about the steps
@@ -119,9 +120,9 @@ class RungeKuttaEngine(ProgramEngine):
     def _set_values(self) -> None:
         """Give the program the polynomials that tables are from this instant on."""
         if self._problem.tables:
-            self._integrator.open_values[:] = self.open_values.after(self._integrator.time)
+            self._integrator.open_values[:] = self.inputs.open_values(self._integrator.time, "right")
 
-    def _with_states(self, until: Any, most: int) -> tuple[Taken, list[Piece]]:
+    def _with_states(self, until: Any, most: int) -> tuple[Taken, list[Step]]:
         return self._integrator.with_states(until, most)
 
     def close(self) -> None:
@@ -226,7 +227,7 @@ class DormandPrince(ctypes.Structure):
         failed = self._advance(self._address) != 0
         return failed, self._shortest, self._longest, self._taken
 
-    def with_states(self, until: float, most: int) -> tuple[Taken, list[Piece]]:
+    def with_states(self, until: float, most: int) -> tuple[Taken, list[Step]]:
         """Take steps likewise, each with its states."""
         instants, states = np.empty(most + 1), np.empty((most, len(self.state)))
         self._instants, self._states = instants.ctypes.data, states.ctypes.data
@@ -235,7 +236,7 @@ class DormandPrince(ctypes.Structure):
         instants[taken[3]] = self.time
         ends = pairwise(instants[: taken[3] + 1].tolist())
         between = (partial(self._states_between, begin, state) for begin, state in zip(instants, states, strict=False))
-        return taken, [Piece(*step, found) for step, found in zip(ends, between, strict=False)]
+        return taken, [Step(*step, found) for step, found in zip(ends, between, strict=False)]
 
     def _states_between(self, begin: float, state: Floats, instants: Floats) -> Floats:
         """States at instants of a step, shape (2n, k), each reached by a step of its own, as exact as the motion."""
@@ -294,9 +295,9 @@ def _keeping(drift: Stabilization, decay: float) -> Iterator[str]:
 
 def _function(problem: MotionProblem, name: str, program: Program, outputs: set[str]) -> str:
     state = [f"state[{place}]" for place in range(len(problem.state))]
-    unused = ["0.0"] * len(problem.multipliers)
     open_values = [f"open_values[{place}]" for place in range(len(problem.open_inputs))]
-    statements = scalar_statements(computing(program, outputs), ["t", *state, *unused, *open_values])
+    inputs = named_inputs(problem, "t", state, "0.0", open_values)
+    statements = scalar_statements(computing(program, outputs), list(inputs.values()))
     return FUNCTION.format(name=name, body=indent("\n".join(statements), " " * 4))
 
 

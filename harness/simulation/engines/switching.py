@@ -24,7 +24,7 @@ from ..evaluation import Numbers, as_floats
 from ..matrices import MotionMatrices
 from ..request import EngineName, SimulationRequest
 from .choice import TRIAL, Between, Choice, comparable, quicker_engine
-from .engine import Engine, Obstacle, Piece, Solutions
+from .engine import Engine, Obstacle, Solutions, Step
 from .program_engine import DECAYS_IN_A_RUN
 
 if TYPE_CHECKING:
@@ -128,11 +128,11 @@ class SwitchingEngine:
         HolonomError
             The motion cannot be followed so far by the engines allowed.
         """
-        deque(self._followed(until, _without_pieces), maxlen=0)
+        deque(self._followed(until, _without_steps), maxlen=0)
 
-    def pieces(self, until: Any) -> Iterator[Piece]:
+    def integrate(self, until: Any) -> Iterator[Step]:
         """Follow the motion to an instant, step by step; raises as `advance`."""
-        return self._followed(until, _with_pieces)
+        return self._followed(until, _with_steps)
 
     def solutions(self, instants: Numbers, states: Numbers) -> Solutions:
         """What the equations of motion determine, by the engine that followed the motion there or is at work."""
@@ -210,7 +210,7 @@ class SwitchingEngine:
 
     # ---- legs ----
 
-    def _followed(self, until: Any, along: Callable[[Engine, Any], Iterator[Piece]]) -> Iterator[Piece]:
+    def _followed(self, until: Any, along: Callable[[Engine, Any], Iterator[Step]]) -> Iterator[Step]:
         while self.time != until:
             try:
                 yield from self._leg(along(self._first, until), lambda: False, *self._why_first)
@@ -219,7 +219,7 @@ class SwitchingEngine:
                     raise
                 yield from self._past(obstacle, self._second, until)
 
-    def _past(self, obstacle: Obstacle, second: Engine, until: Any) -> Iterator[Piece]:
+    def _past(self, obstacle: Obstacle, second: Engine, until: Any) -> Iterator[Step]:
         """The motion past an obstacle, or to an instant before that."""
         second.restart(self._first.time, self._first.state.copy())
         self._current = second
@@ -227,15 +227,15 @@ class SwitchingEngine:
         def passed() -> bool:
             return not second.amid_passage and obstacle.passed(second.time, second.state)
 
-        yield from self._leg(second.pieces(until), passed, obstacle.case, obstacle.reason)
+        yield from self._leg(second.integrate(until), passed, obstacle.case, obstacle.reason)
         self._first.restart(second.time, second.state)
         self._current = self._first
 
-    def _leg(self, pieces: Iterator[Piece], done: Callable[[], bool], *why: Any) -> Iterator[Piece]:
+    def _leg(self, steps: Iterator[Step], done: Callable[[], bool], *why: Any) -> Iterator[Step]:
         self._begun = float(self.time)
         try:
-            for piece in pieces:
-                yield piece
+            for step in steps:
+                yield step
                 if done():
                     break
         finally:
@@ -257,11 +257,11 @@ class SwitchingEngine:
         self.legs.append(leg)
 
 
-def _with_pieces(engine: Engine, until: Any) -> Iterator[Piece]:
-    return engine.pieces(until)
+def _with_steps(engine: Engine, until: Any) -> Iterator[Step]:
+    return engine.integrate(until)
 
 
-def _without_pieces(engine: Engine, until: Any) -> Iterator[Piece]:
+def _without_steps(engine: Engine, until: Any) -> Iterator[Step]:
     engine.advance(until)
     yield from ()
 

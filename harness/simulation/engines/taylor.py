@@ -24,7 +24,7 @@ from ..evaluation import Numbers
 from ..matrices import MotionMatrices
 from ..request import EngineName, Stabilization
 from .code import Code, better_code, pays
-from .engine import Piece
+from .engine import Step
 from .program_engine import FIRST_BLOCK, ProgramEngine, Taken, decay_in
 
 DRIFT = 100  # times what rounding does to a number: how far a state may leave the constraints inside a block
@@ -110,20 +110,20 @@ class TaylorEngine(ProgramEngine):
             return None
         return ceil(trial * float(until - begun) / covered)
 
-    def _with_states(self, until: Any, most: int) -> tuple[Taken, list[Piece]]:
+    def _with_states(self, until: Any, most: int) -> tuple[Taken, list[Step]]:
         """Take steps: a few one by one, many at once, for which heyoka compiles a function of the states between."""
         longest = max(self._usual, self._integrator.last_h)
         few = most < FEW or until - self.time < FEW * longest
         return self._one_by_one(until, most) if few else self._at_once(until, most)
 
-    def _at_once(self, until: Any, most: int) -> tuple[Taken, list[Piece]]:
+    def _at_once(self, until: Any, most: int) -> tuple[Taken, list[Step]]:
         *taken, between, _ = self._integrator.propagate_until(until, most, c_output=True)
         steps = [] if between is None else pairwise(between.times)
-        return tuple(taken), [Piece(*step, lambda instants: between(instants).T.copy()) for step in steps]
+        return tuple(taken), [Step(*step, lambda instants: between(instants).T.copy()) for step in steps]
 
-    def _one_by_one(self, until: Any, most: int) -> tuple[Taken, list[Piece]]:
+    def _one_by_one(self, until: Any, most: int) -> tuple[Taken, list[Step]]:
         """Each step with its Taylor polynomials."""
-        integrator, pieces = self._integrator, []
+        integrator, dense_steps = self._integrator, []
         shortest, longest, outcome = inf, 0, None
         for _ in range(most):
             begun, rest = integrator.dtime
@@ -131,12 +131,12 @@ class TaylorEngine(ProgramEngine):
             if outcome == self._failed or not taken:
                 break
             shortest, longest = min(shortest, least), max(longest, greatest)
-            pieces.append(
-                Piece(begun, integrator.time, partial(states_of, begun, rest, integrator.tc.T[..., None].copy()))
+            dense_steps.append(
+                Step(begun, integrator.time, partial(states_of, begun, rest, integrator.tc.T[..., None].copy()))
             )
             if integrator.time == until:
                 break
-        return (outcome, shortest, longest, len(pieces)), pieces
+        return (outcome, shortest, longest, len(dense_steps)), dense_steps
 
     def restart(self, instant: Any, state: Numbers) -> None:
         """Go on from another instant and state, shape (2n,)."""
@@ -148,14 +148,14 @@ class TaylorEngine(ProgramEngine):
         """Give the equations the values of what is open from this instant on, as far as they contain it."""
         contained = len(self._integrator.pars)
         if contained:
-            self._integrator.pars[:] = self.open_values.after(self._integrator.time)[:contained]
+            self._integrator.pars[:] = self.inputs.open_values(self._integrator.time, "right")[:contained]
 
     def _begin(self) -> None:
         self._length = self._first_block
         if self._problem.tables:
             self._set_values()
 
-    def _block(self, until: Any, dense: bool) -> tuple[bool, list[Piece]]:
+    def _block(self, until: Any, dense: bool) -> tuple[bool, list[Step]]:
         self._compile_if_it_pays(until)
         return super()._block(until, dense)
 

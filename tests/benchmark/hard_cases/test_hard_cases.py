@@ -79,5 +79,4 @@ def test_a_plain_pendulum_needs_no_advice(write_scene):
 def test_stiffness_is_the_ratio_of_two_springs(write_scene, ratio):
     springs = SOMEBODYS[HardCase.STIFF] | {"potential_energy": f"x^2/2 + {ratio}*y^2/2"}
     problem = motion_problem(write_scene(SCENE.format(**PENDULUM | springs)), Request(), Limits())
-    matrices = MotionMatrices(problem)
-    assert stiffness(matrices, matrices.nominal, Instant(*start_of(problem))) == pytest.approx(ratio, rel=1e-6)
+    assert stiffness(Instant(MotionMatrices(problem), *start_of(problem))) == pytest.approx(ratio, rel=1e-6)

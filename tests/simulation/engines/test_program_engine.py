@@ -53,7 +53,7 @@ def test_a_run_repeated_from_the_start_is_the_same_bit_by_bit(engine):
 
 def test_pieces_join_and_hold_the_states_between(engine):
     motion, other = (engine(problem("pendulum.mac")) for _ in range(2))
-    pieces = list(motion.pieces(100.0))
+    pieces = list(motion.integrate(100.0))
     assert len(pieces) == motion.steps > 2 * FIRST_BLOCK
     assert [pieces[0].start, pieces[-1].end] == [0, 100]
     for before, after in pairwise(pieces):
@@ -71,7 +71,7 @@ def test_an_obstacle_leaves_the_last_good_state(engine):
     motion = engine(problem("linkage.mac"))
     pieces = []
     with pytest.raises(Obstacle, match="nears a singular one"):
-        pieces.extend(motion.pieces(10.0))
+        pieces.extend(motion.integrate(10.0))
     assert pieces[-1].end == motion.time
     assert np.isfinite(motion.state).all()
     x, y = motion.state[:2]

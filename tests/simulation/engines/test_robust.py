@@ -38,7 +38,7 @@ def test_it_stays_on_its_branch_for_many_revolutions(bars, revolutions):
 
 def test_states_between_the_steps_and_within_an_arc_are_on_the_motion():
     motion = RobustEngine(problem("linkage.mac"), 1e-12)
-    for piece in motion.pieces(1.5):
+    for piece in motion.integrate(1.5):
         instants = np.linspace(piece.start, piece.end, 5)
         tips = np.array([linkage_tip(1, t) for t in instants])
         assert np.allclose(piece.states(instants)[:2].T, tips, rtol=0, atol=1e-8)
@@ -203,7 +203,7 @@ upright : holonomic_scene(bars, initial_state = [x0 = 0, y0 = 1, x1 = 1, y1 = 1,
 def test_a_near_miss_is_no_passage(write_scene):
     asked = motion_problem(write_scene(NEAR_MISS), Request(), Limits())
     motion, conditions = RobustEngine(asked, 1e-11), []
-    for piece in motion.pieces(3.0):
+    for piece in motion.integrate(3.0):
         v0, v1 = motion.state[4:6], motion.state[6:]
         energy = (2 * (v0 @ v0 + v1 @ v1) + v0 @ v1) / 6 + GRAVITY * (motion.state[1] + motion.state[3])
         assert energy == pytest.approx(5 / 6 + 2 * GRAVITY, abs=1e-8), piece.end

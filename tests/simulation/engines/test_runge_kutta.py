@@ -84,7 +84,7 @@ def test_a_motion_in_one_call_is_that_in_pieces_and_past_a_block():
     """Truth: the same steps, to the last bit; 100 time units take several blocks."""
     until, motions = 100.0, [RungeKuttaEngine(problem("pendulum.mac", "swing_scene"), 1e-9) for _ in range(2)]
     motions[0].advance(until)
-    for _ in motions[1].pieces(until):
+    for _ in motions[1].integrate(until):
         pass
     assert motions[0].time == motions[1].time == until
     assert motions[0].steps == motions[1].steps > FIRST_BLOCK

@@ -1,0 +1,102 @@
+"""The inputs of a motion's programs: t, state, multipliers, signs, open parameters, tables, in this order."""
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Any, Literal
+
+import numpy as np
+
+from ..program.heyoka_function import import_heyoka
+from ..program.motion_problem import MotionProblem
+from ..program.precision import Precision, read_precision
+from ..program.table_numbers import PiecesOfTable
+from .evaluation import Numbers, as_floats, zeros
+
+
+def named_inputs(
+    problem: MotionProblem, t: Any, state: Sequence[Any], zero: Any, open_values: Sequence[Any]
+) -> dict[str, Any]:
+    """Return the inputs by name, as terms of another language; multipliers are zero."""
+    names = "t", *problem.state, *problem.multipliers, *problem.open_inputs
+    return dict(zip(names, (t, *state, *[zero] * len(problem.multipliers), *open_values), strict=True))
+
+
+def heyoka_inputs(problem: MotionProblem, zero: Any = 0.0) -> dict[str, Any]:
+    """Return the inputs for heyoka's integrators: its time, variables and, for open inputs, its parameters."""
+    heyoka = import_heyoka()
+    variables, count = map(heyoka.expression, problem.state), len(problem.open_inputs)
+    return named_inputs(problem, heyoka.time, variables, heyoka.expression(zero), [heyoka.par[k] for k in range(count)])
+
+
+class Inputs:
+    """Inputs of the programs of a motion, in the numbers of a precision."""
+
+    def __init__(self, problem: MotionProblem, precision: Precision | None = None) -> None:
+        self._problem, self._precision = problem, precision or read_precision("double")
+        self._state = slice(1, 1 + len(problem.state))
+        self._multipliers = slice(self._state.stop, self._state.stop + len(problem.multipliers))
+        self._open = len(problem.open_inputs)
+
+    def __call__(
+        self,
+        instants: Any,
+        states: Numbers,
+        multipliers: Numbers | None = None,
+        signs: Sequence[Any] = (),
+        values: Numbers | None = None,
+    ) -> Numbers:
+        """Return the inputs at one state or at k of them.
+
+        Parameters
+        ----------
+        instants : number or ndarray, shape (k,)
+        states : ndarray, shape (2n,) or (2n, k)
+        multipliers : ndarray, shape (g, k), or None
+            None for zeros.
+        signs : sequence
+            One number, or k, for each sign that the program takes.
+        values : ndarray, shape (p, k), or None
+            Of the open parameters of k motions; None for those of the problem.
+
+        Returns
+        -------
+        ndarray, shape (inputs,) or (inputs, k)
+        """
+        behind = self._multipliers.stop + len(signs)
+        found = zeros(self._precision, behind + self._open, *states.shape[1:])
+        found[0], found[self._state] = instants, states
+        if multipliers is not None:
+            found[self._multipliers] = multipliers
+        for place, sign in enumerate(signs, start=self._multipliers.stop):
+            found[place] = sign
+        found[behind:].T[...] = (self.open_values(instants) if values is None else values).T
+        return found
+
+    def open_values(self, instants: Any, side: Literal["left", "right"] = "left") -> Numbers:
+        """Return the open parameters and what tables are at instants: shape (p,) or, with tables, (p, k).
+
+        Parameters
+        ----------
+        instants : number or ndarray, shape (k,)
+        side : str
+            ``left`` for the polynomial that ends at a knot, ``right`` for the one that begins there.
+        """
+        if not self._tables:
+            return self._lasting
+        floats = as_floats(instants)
+        lasting = np.repeat(self._lasting[:, None], len(floats), axis=1) if floats.ndim else self._lasting
+        return np.concatenate([lasting, *(pieces.at(floats, side) for pieces in self._tables)])
+
+    @cached_property
+    def _lasting(self) -> Numbers:
+        values = [self._precision.ratio(self._problem.values[name]) for name in self._problem.parameters]
+        return np.array(values) if values else zeros(self._precision, 0)
+
+    @cached_property
+    def _tables(self) -> list[PiecesOfTable]:
+        return [
+            self._problem.once(
+                ("table", self._precision.name), table, lambda table=table: PiecesOfTable(table, self._precision)
+            )
+            for table in self._problem.tables
+        ]

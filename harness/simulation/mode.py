@@ -1,0 +1,154 @@
+"""A mode of a motion: the smooth motion of one pattern of signs, and what belongs to it."""
+
+from collections.abc import Hashable, Iterator, Mapping
+from dataclasses import replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ..failures import Failure, HolonomError
+from ..program.motion_problem import By, MotionProblem, computing
+from ..program.precision import Precision
+from ..program.sign_pattern import Pattern, in_numbers, problem_in, program_in, sharing_programs
+from .clock import Tick
+from .constraints.program_projection import ProgramProjection
+from .constraints.singularity import no_controls, require_gradient, shortly_before, vanishing_instants
+from .control_matrix import ControlMatrix, controls_may_fail
+from .diagnosis import Instant, dependence
+from .diagnostics import EnergyBalance
+from .engines.choice import Between
+from .engines.engine import Step
+from .engines.switching import SwitchingEngine
+from .evaluation import Evaluation, Numbers, as_floats, evaluation, evaluation_once
+from .inputs import Inputs
+from .matrices import MotionMatrices, start_of
+from .request import SimulationRequest
+from .surfaces import Surfaces
+from .time_dependence import time_dependence
+
+
+class Mode:
+    """The smooth motion of one pattern of signs, with its engine and its surfaces.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        Its start is where the motion first has this pattern.
+    clock : mapping of str to Tick
+        The signs that the time alone decides.
+    request, precision, end
+        As for `HybridMotion`.
+    known : dict
+        The analytic motions of other modes, as `sharing_programs` keeps them.
+    """
+
+    def __init__(
+        self,
+        problem: MotionProblem,
+        pattern: Pattern,
+        clock: Mapping[str, Tick],
+        request: SimulationRequest,
+        precision: Precision,
+        end: Any,
+        known: dict[Hashable, MotionProblem],
+    ) -> None:
+        self._whole, self.pattern, self._precision, self._clock = problem, pattern, precision, clock
+        analytic = problem_in(problem, pattern)
+        if any(sign.by is By.TIME for sign in problem.signs):
+            analytic = sharing_programs(analytic, known)
+        self.matrices, self._inputs = MotionMatrices(analytic), Inputs(analytic, precision)
+        obstacle = analytic.obstacle or dependence(analytic, Instant(self.matrices, *start_of(analytic)))
+        self.problem = replace(analytic, obstacle=obstacle)
+        self.balance = EnergyBalance(self.problem, self._multipliers, precision)
+        between = None if problem.signs or problem.tables else Between(request.samples or 0, self.balance.inner_states)
+        self.engine = SwitchingEngine(self.problem, request, precision, end, self.matrices, between)
+        self._start, self._end = float(problem.start["t"]), float(end)
+        self._doubtful = vanishing_instants(self.problem, self.matrices, self._end)
+        to_come = (float(tick.t) for name, tick in clock.items() if pattern[name] != tick.to)
+        self.by_time = time_dependence(
+            in_numbers(self.problem, self.problem.matrices),
+            self._start,
+            min([self._end, *to_come]),
+            self.problem.tables,
+        )
+        ends = () if self.by_time.end is None else (self.by_time.end,)
+        before = (shortly_before(t, self._start) for t in self._doubtful)
+        self.stops = sorted({*self.by_time.stops, *ends, *before})
+
+    @cached_property
+    def surfaces(self) -> Surfaces:
+        """The surfaces on which the pattern ends."""
+        return Surfaces(self._whole, self.pattern, self._precision, self._end - self._start, self._clock)
+
+    @cached_property
+    def momenta(self) -> Any:
+        """dL/d dot(q) as a function of the state."""
+        switching = self._whole.switching
+        wanted = {name for name in switching.outputs if name.startswith("momentum[")}
+
+        def build() -> Evaluation:
+            return evaluation(program_in(self._whole, computing(switching, wanted), self.pattern), self._precision)
+
+        return self._whole.once(("momenta", self._precision.name, frozenset(self.pattern.items())), switching, build)
+
+    def controls(self, instants: Numbers, states: Numbers) -> Numbers:
+        """Return the observed controls at instants, shape (k,), and states, shape (2n, k).
+
+        Raises
+        ------
+        HolonomError
+            One has no value at one of the instants.
+        """
+        if self.problem.controls is None:
+            return np.empty((0, len(instants)))
+        found = self._controls(self._inputs(instants, states))
+        missing = np.argwhere(~np.isfinite(as_floats(found)).T)
+        if len(missing):
+            point, control = missing[0]
+            reason = f"the control {list(self.problem.controls.outputs)[control]} has no value"
+            raise HolonomError(Failure.NO_WAY_ON, detail=f"{float(instants[point]):.10g}, where {reason}")
+        return found
+
+    @cached_property
+    def _controls(self) -> Evaluation:
+        return evaluation_once(self.problem, self.problem.controls, self._precision)
+
+    @cached_property
+    def projection(self) -> ProgramProjection:
+        """What projects states in the numbers of the run."""
+        return ProgramProjection(self.problem, self._precision, self.matrices)
+
+    def integrate(self, until: Any) -> Iterator[Step]:
+        """Follow the motion as its engine does, to where servo-constraints leave their controls without values."""
+        for step in self.engine.integrate(until):
+            step = step._replace(mode=self)
+            lost = None if self._control_matrix is None else self._control_matrix.lost(step)
+            if lost is None:
+                yield step
+                continue
+            if lost > step.start:
+                yield step._replace(end=lost)
+            raise no_controls(float(lost))
+
+    @cached_property
+    def _control_matrix(self) -> ControlMatrix | None:
+        if not controls_may_fail(self.problem):
+            return None
+        return ControlMatrix(self.problem, self._precision, self._end - self._start)
+
+    def require_way_on(self, until: Any) -> None:
+        """Refuse to go on where a constraint loses its gradient, or an expression of the time its smoothness."""
+        now = self.engine.time
+        if self.by_time.end is not None and float(now) >= self.by_time.end and now != until:
+            raise HolonomError(Failure.NO_WAY_ON, detail=f"{self.by_time.end:.10g}, where {self.by_time.reason}")
+        for t in self._doubtful:
+            if shortly_before(t, self._start) == float(now):
+                require_gradient(self.problem, t, Instant(self.matrices, float(now), as_floats(self.engine.state)))
+
+    def energy_at(self, t: Any, state: Numbers) -> Any:
+        """Return the energy at one state."""
+        return self.balance.energy(np.array([t]), state[:, None])[0]
+
+    def _multipliers(self, instants: Numbers, states: Numbers) -> Numbers:
+        return self.engine.solutions(instants, states).multipliers
