@@ -115,8 +115,11 @@ class Failure(Enum):
     )
     NOT_A_FILE = ("this form is no text for the terminal", "say where it goes: -o DIR for C, -o FILE.fmu for FMI")
     NOT_A_CHOICE = "there is no {detail}"
-    NOT_AN_INSTANT = ("{detail} is no instant", "write a number such as 0.75 or 3/4")
-    TOO_FEW_SAMPLES = "a motion has two samples or more, not {detail}"
+    NOT_AN_INSTANT = (
+        "{detail} is no instant",
+        "write a number such as 0.75 or 3/4, of a size that a double can have",
+    )
+    NOT_IN_RANGE = "{detail}"
     NO_SUCH_SCENE = "there is no scene {detail}"
     TOO_MANY_SAMPLES = ("{detail}", "ask for fewer, for a file in CSV or Parquet alone", "raise {--memory-limit}")
     DISK_TOO_SMALL = ("{detail}", "ask for fewer", "write to another disk")

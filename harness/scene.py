@@ -6,24 +6,24 @@ What is asked for is computed when it is asked for, once; a scene does not chang
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from decimal import Decimal
-from enum import StrEnum
-from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from . import display  # noqa: F401  # results show their tables
 from .equations import Equations
 from .extras import naming_the_extra
 from .failures import Failure, HolonomError
 from .files import near_file, scene_file
+from .options import Number, options_of, takes_options
 from .program.forms import MotionProgram
-from .program.motion_program import Solve
-from .program.request import Request, read_settings
+from .program.request import Request, Solve, read_settings
 from .sandbox import Limits, warn_unconfined
+from .series.request import SeriesRequest
 from .simulation.derivations import Derivations
+from .simulation.request import SimulationRequest
 from .source import Source
+from .sweeps.request import SweepRequest
 from .temporary import KeptDirectory
 
 if TYPE_CHECKING:
@@ -40,9 +40,6 @@ if TYPE_CHECKING:
     from .sweeps.run import Sweep
     from .typeset.notebook import Letter
 
-Choice = TypeVar("Choice", bound=StrEnum)
-Number = int | float | Fraction | Decimal | str
-FEWEST_SAMPLES = 2  # the first instant and the last
 LOADS_THE_LIBRARY = re.compile(r"\bload\s*\(.*?holonom")
 
 
@@ -107,6 +104,11 @@ def _opened(file: Path, scene: str | None, settings: Mapping[str, Number], limit
     return Scene(file, scene, _settings(settings), limits)
 
 
+@takes_options(
+    *options_of(SweepRequest, "tol", "until", "drift"),
+    *options_of(Request, "solve"),
+    *options_of(SweepRequest, "chunk", "workers", "scheduler"),
+)
 def sweep(
     scene: "Scene | str | Path",
     grid: Mapping[str, tuple[Number, Number, int]] | None = None,
@@ -116,13 +118,8 @@ def sweep(
     output: str | Path | None = None,
     size: int | None = None,
     seed: int | None = None,
-    tol: float = 1e-12,
-    until: Number | None = None,
-    drift: str = "projection",
-    solve: str = "direct",
-    chunk: int = 10_000,
-    workers: int = 1,
-    scheduler: str | None = None,
+    *,
+    options: dict[str, Any],
 ) -> "Sweep":
     """Follow a motion for many values of its parameters.
 
@@ -142,21 +139,7 @@ def sweep(
         The folder of its files; None for one that is removed with the result.
     size, seed : int or None
         Of the sample.
-    tol : float
-        Tolerance of a step.
-    until : number or None
-        The last instant; None for the end of the scene's time span.
-    drift : str
-        ``projection`` or ``none``.
-    solve : str
-        ``direct`` or ``orthogonal``.
-    chunk : int
-        Rows of a file.
-    workers : int
-        Processes that compute. A program that asks for more than this one must guard its main part by
-        ``if __name__ == "__main__"``, since each of them imports it.
-    scheduler : str or None
-        Address of a running Dask scheduler that is to be used instead.
+    {options}
 
     Returns
     -------
@@ -167,22 +150,25 @@ def sweep(
     ------
     HolonomError
         The request cannot be met, or the folder holds something else.
+
+    Notes
+    -----
+    A program that asks for more than one process must guard its main part by ``if __name__ == "__main__"``, since each
+    of them imports it.
     """
-    from .simulation.request import Stabilization
-    from .sweeps.axes import read_axes
+    from .sweeps import axes
     from .sweeps.kept import read_kept
-    from .sweeps.run import SweepRequest, run_sweep
+    from .sweeps.run import run_sweep
 
     opened = scene if isinstance(scene, Scene) else load(scene)
-    grids = [f"{name}={first}:{last}:{count}" for name, (first, last, count) in (grid or {}).items()]
-    lists = [f"{name}={','.join(map(str, numbers))}" for name, numbers in (values or {}).items()]
-    samples = [f"{name}={text}" for name, text in (sample or {}).items()]
-    axes = read_axes(grids, lists, samples, size, seed)
-    cure = _choice(Stabilization, drift)
-    wanted = SweepRequest(axes, read_kept(keep), tol, _instant(until), cure, chunk, workers, scheduler)
+    varied = [axes.grid(name, *numbers) for name, numbers in (grid or {}).items()]
+    varied += [axes.listed(name, numbers) for name, numbers in (values or {}).items()]
+    drawn = [axes.sample(name, text) for name, text in (sample or {}).items()]
+    request = opened._request(options.pop("solve"))
+    wanted = SweepRequest(axes.make_axes(varied, drawn, size, seed), read_kept(keep), **options)
     directory = KeptDirectory() if output is None else None
     folder = directory.path if directory is not None else Path(output)
-    found = run_sweep(opened._source, opened._request(solve), wanted, folder, opened.limits)
+    found = run_sweep(opened._source, request, wanted, folder, opened.limits)
     return replace(found, _directory=directory)
 
 
@@ -275,30 +261,18 @@ class Scene:
         """Which terms and effects there are, and what each costs in operations and in measured time."""
         from .program.effects import scene_costs
 
-        return scene_costs(self._source, self._request("direct"), self.limits)
+        return scene_costs(self._source, self._request(), self.limits)
 
     # ---- the motion ----
 
     @naming_the_extra()
-    def series(
-        self,
-        order: int = 20,
-        digits: int | str = "automatic",
-        precision: str | int | None = None,
-        until: Number | None = None,
-    ) -> "MotionSeries":
+    @takes_options(*options_of(SeriesRequest))
+    def series(self, options: dict[str, Any]) -> "MotionSeries":
         """Expand the initial motion in power series.
 
         Parameters
         ----------
-        order : int
-            Highest power of t - t0.
-        digits : int or str
-            Confirmed significant digits; ``exact`` for rationals or nothing; ``automatic``: exact where possible.
-        precision : str, int or None
-            Compute with heyoka instead, in ``double``, ``extended``, ``quadruple`` or so many digits.
-        until : number or None
-            Instant to which the motion is continued by further expansions.
+        {options}
 
         Raises
         ------
@@ -306,45 +280,18 @@ class Scene:
             The control law is not analytic at t0, G is singular there, or the digits cannot be had.
         """
         from .series.compute import compute_series
-        from .series.power_series import SeriesRequest
 
-        last = _instant(until)
-        request = SeriesRequest(order, self._name, digits, last, self.settings, precision)
+        request = SeriesRequest(scene=self._name, settings=self.settings, **options)
         return compute_series(self._source, request, self.limits)
 
     @naming_the_extra()
-    def simulate(
-        self,
-        until: Number | None = None,
-        samples: int | None = None,
-        tol: float | None = None,
-        precision: str | int = "double",
-        engine: str = "auto",
-        drift: str = "projection",
-        solve: str = "direct",
-        max_step: float | None = None,
-        **parameters: Number,
-    ) -> "Simulation":
+    @takes_options(*options_of(SimulationRequest), *options_of(Request, "solve"))
+    def simulate(self, options: dict[str, Any], **parameters: Number) -> "Simulation":
         """Follow the motion in numbers.
 
         Parameters
         ----------
-        until : number or None
-            The last instant; None for the end of the scene's time span.
-        samples : int or None
-            So many equidistant instants; None for the engine's own steps.
-        tol : float or None
-            Tolerance of a step; None for what the precision holds.
-        precision : str or int
-            ``double``, ``extended``, ``quadruple`` or a number of digits.
-        engine : str
-            ``auto``, ``taylor``, ``runge-kutta`` or ``robust``.
-        drift : str
-            What keeps the constraints: ``projection``, ``baumgarte``, ``ggl`` or ``none``.
-        solve : str
-            ``direct`` or ``orthogonal``.
-        max_step : float or None
-            Time that no step is to exceed; None where the engine alone decides.
+        {options}
         **parameters : number
             Values in the place of the scene's; one that is named like an argument goes through `with_settings`. The
             next call with other values of the same ones derives and compiles nothing again.
@@ -360,23 +307,17 @@ class Scene:
             The request cannot be met, or the motion cannot be followed so far.
         """
         if parameters:
-            return self.with_settings(parameters).simulate(
-                until, samples, tol, precision, engine, drift, solve, max_step
-            )
+            return self.with_settings(parameters).simulate(**options)
         from .program.precision import read_precision
-        from .simulation.request import EngineName, SimulationRequest, Stabilization
         from .simulation.simulate import simulate
 
-        if samples is not None and samples < FEWEST_SAMPLES:
-            raise HolonomError(Failure.TOO_FEW_SAMPLES, detail=str(samples))
-        last = _instant(until)
-        problem = self._problem(solve, read_precision(str(precision)).digits)
-        follower, cure = _choice(EngineName, engine), _choice(Stabilization, drift)
-        request = SimulationRequest(tol, str(precision), follower, cure, last, samples, max_step=max_step)
-        return simulate(problem, request)
+        solve = options.pop("solve")
+        request = SimulationRequest(**options)
+        return simulate(self._problem(solve, read_precision(str(request.precision)).digits), request)
 
     @naming_the_extra()
-    def rhs(self, solve: str = "direct") -> "RightHandSide":
+    @takes_options(*options_of(Request, "solve"))
+    def rhs(self, options: dict[str, Any]) -> "RightHandSide":
         """The equations of motion as f(t, y) for any integrator, y the coordinates and then the velocities.
 
         The control law and the parameters are put in; nothing keeps the constraints but the accelerations.
@@ -391,11 +332,12 @@ class Scene:
         from .program.right_hand_side import RightHandSide
         from .program.sign_pattern import with_values_in
 
-        return RightHandSide(with_values_in(self._problem(solve, DOUBLE_DIGITS)))
+        return RightHandSide(with_values_in(self._problem(options["solve"], DOUBLE_DIGITS)))
 
-    def program(self, solve: str = "direct") -> MotionProgram:
+    @takes_options(*options_of(Request, "solve"))
+    def program(self, options: dict[str, Any]) -> MotionProgram:
         """The motion program: accelerations and multipliers of (t, q, dot q, u, dot u, ddot u)."""
-        return MotionProgram(self._source, self._request(solve), self.limits)
+        return MotionProgram(self._source, self._request(**options), self.limits)
 
     def __repr__(self) -> str:
         scene = f", scene={self._name!r}" if self._name else ""
@@ -408,27 +350,11 @@ class Scene:
     def _repr_latex_(self) -> str:
         return self.equations._repr_latex_()
 
-    def _request(self, solve: str) -> Request:
-        return Request(self._name, _choice(Solve, solve), self.settings)
+    def _request(self, solve: Solve = Solve.DIRECT) -> Request:
+        return Request(self._name, solve, self.settings)
 
-    def _problem(self, solve: str, digits: int) -> "MotionProblem":
+    def _problem(self, solve: Solve, digits: int) -> "MotionProblem":
         return self._derived.motion(self._request(solve), digits)
-
-
-def _instant(until: Number | None) -> Fraction | None:
-    """An instant, exactly as it is written."""
-    try:
-        return None if until is None else Fraction(str(until))
-    except (ValueError, ZeroDivisionError):
-        raise HolonomError(Failure.NOT_AN_INSTANT, detail=str(until)) from None
-
-
-def _choice(choices: type[Choice], text: str) -> Choice:
-    """The member of an enumeration that is written so."""
-    try:
-        return choices(text)
-    except ValueError:
-        raise HolonomError(Failure.NOT_A_CHOICE, detail=f"{text}; there are {', '.join(choices)}") from None
 
 
 def _settings(settings: Mapping[str, Number]) -> dict[str, str]:

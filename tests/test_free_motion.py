@@ -20,7 +20,7 @@ from holonom.program.request import Request
 from holonom.record import derived_record
 from holonom.sandbox import Limits
 from holonom.series.compute import compute_series
-from holonom.series.power_series import SeriesRequest
+from holonom.series.request import SeriesRequest
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 t = Symbol("t", real=True)

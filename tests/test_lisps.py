@@ -17,8 +17,7 @@ import pytest
 from holonom.documents import Document, ask
 from holonom.maxima import run_rtest
 from holonom.program.forms import MotionProgram
-from holonom.program.motion_program import Solve
-from holonom.program.request import Request
+from holonom.program.request import Request, Solve
 from holonom.sandbox import Limits
 
 HERE = Path(__file__).parent

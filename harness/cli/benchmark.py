@@ -6,28 +6,28 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..options import options_of
 from ..sandbox import Limits
+from ..simulation.request import SimulationRequest
 from .group import holonom
-from .options import asks_one_scene, present, read_instant, runs_scenes, writes_json
+from .options import asks_one_scene, present, runs_scenes, takes, writes_json
 from .outputs import OutputFile
 
 if TYPE_CHECKING:
-    from fractions import Fraction
-
     from ..benchmark.hard_cases.case import CaseReport
     from ..program.request import Request
 
 
 @holonom.command()
-@asks_one_scene
-@click.option("--until", metavar="T", callback=read_instant, help="The last instant, in place of the scene's.")
+@asks_one_scene()
+@takes(*options_of(SimulationRequest, "until"))
 @click.option("--plot", "plot_file", metavar="FILE", type=OutputFile(), help="Also draw a figure, SVG.")
 @writes_json
 @runs_scenes
 def accuracy(
     scene_file: Path,
     request: "Request",
-    until: "Fraction | None",
+    options: dict[str, Any],
     plot_file: Path | None,
     json_file: Path | None,
     limits: Limits,
@@ -37,7 +37,7 @@ def accuracy(
     from ..display.measurements import show_study
     from ..display.progress import progress
 
-    plan = Plan(until=until)
+    plan = Plan(**options)
     with progress("methods", plan.steps) as advance:
         done = study(scene_file, request, limits, plan, advance)
     present(study_document(done), json_file, show_study, done)

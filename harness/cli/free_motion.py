@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 @holonom.command()
-@asks_one_scene
+@asks_one_scene()
 @click.option(
     "--order",
     metavar="N",

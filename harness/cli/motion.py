@@ -3,60 +3,53 @@
 import gc
 import sys
 from contextlib import suppress
+from dataclasses import replace
+from fractions import Fraction
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import click
 
 from ..failures import HolonomError
+from ..options import options_of
+from ..program.request import Request
 from ..sandbox import Limits
+from ..series.request import AUTOMATIC, EXACT, SeriesRequest
+from ..simulation.request import FINAL_STATE_ALONE, SimulationRequest
 from .group import OWN_PROCESS, holonom
 from .meanwhile import meanwhile
-from .options import asks_one_scene, chooses_solve, json_text, present, publish, read_instant, runs_scenes, writes_json
+from .options import as_instant, asks_one_scene, json_text, present, publish, runs_scenes, takes, writes_json
 from .outputs import STANDARD_OUTPUT, OutputFile
-
-if TYPE_CHECKING:
-    from fractions import Fraction
-
-    from ..program.request import Request
 
 
 @holonom.command()
-@asks_one_scene
-@click.option("--order", metavar="N", type=click.IntRange(min=2), required=True, help="Highest power of the time.")
+@asks_one_scene()
+@takes(*options_of(SeriesRequest, "order", "precision", "until"))
 @click.option("--exact", is_flag=True, help="Rational coefficients, or none; the default is exact where possible.")
 @click.option("--digits", metavar="D", type=click.IntRange(min=1), help="Coefficients of D significant digits.")
-@click.option(
-    "--precision",
-    metavar="double|extended|quadruple|DIGITS",
-    help="Compute with heyoka, in these numbers; their last digits are rounded, not confirmed.",
-)
-@click.option("--at", metavar="T", callback=read_instant, help="Also add the series up at the instant T.")
-@click.option("--until", metavar="T", callback=read_instant, help="Also continue the motion to T, beyond the radius.")
+@click.option("--at", metavar="T", callback=as_instant, help="Also add the series up at the instant T.")
 @writes_json
 @runs_scenes
 def series(
     scene_file: Path,
-    request: "Request",
-    order: int,
+    request: Request,
+    options: dict[str, Any],
     exact: bool,
     digits: int | None,
-    precision: str | None,
-    at: "Fraction | None",
-    until: "Fraction | None",
+    at: Fraction | None,
     json_file: Path | None,
     limits: Limits,
 ) -> int:
     """Expand the initial motion of a SCENE in power series, and say how far they hold."""
     from ..display.motion import show_series
     from ..series.compute import compute_series
-    from ..series.power_series import AUTOMATIC, EXACT, SeriesRequest, series_document, values_at
+    from ..series.power_series import series_document, values_at
 
-    if sum([exact, digits is not None, precision is not None]) > 1:
+    if sum([exact, digits is not None, options["precision"] is not None]) > 1:
         raise click.UsageError("--exact, --digits and --precision exclude one another")
     wanted = EXACT if exact else digits or AUTOMATIC
-    asked = SeriesRequest(order, request.scene, wanted, until, request.settings, precision)
+    asked = SeriesRequest(scene=request.scene, digits=wanted, settings=request.settings, **options)
     motion = compute_series(scene_file, asked, limits)
     values = None if at is None else values_at(motion, at)
     present(series_document(motion, values), json_file, show_series, motion, values)
@@ -68,34 +61,8 @@ FAILED = 1  # exit status of a result that is none
 
 
 @holonom.command()
-@asks_one_scene
-@click.option("--tol", type=float, help="Tolerance of a step; without it, what the precision holds.")
-@click.option(
-    "--precision",
-    metavar="double|extended|quadruple|DIGITS",
-    default="double",
-    show_default=True,
-    help="Numbers to use.",
-)
-@click.option(
-    "--engine",
-    type=click.Choice(["auto", "taylor", "runge-kutta", "robust"]),
-    default="auto",
-    show_default=True,
-    help="What follows the motion; auto is the quicker of taylor and runge-kutta, and robust where that fails.",
-)
-@click.option(
-    "--drift",
-    type=click.Choice(["projection", "baumgarte", "ggl", "none"]),
-    default="projection",
-    show_default=True,
-    help="What keeps the constraints; the robust engine always projects.",
-)
-@chooses_solve
-@click.option("--compact/--no-compact", default=None, help="heyoka's compact mode; without it, what pays.")
-@click.option("--until", metavar="T", callback=read_instant, help="The last instant, in place of the scene's.")
-@click.option("--max-step", metavar="H", type=click.FloatRange(min=0, min_open=True), help="No step is to be longer.")
-@click.option("--samples", metavar="N", type=click.IntRange(min=2), help="Keep N equidistant instants, not the steps.")
+@asks_one_scene(*options_of(Request, "solve"))
+@takes(*options_of(SimulationRequest))
 @click.option("--final", is_flag=True, help="Of the motion, only the final state goes into the JSON document.")
 @writes_json
 @click.option(
@@ -109,15 +76,8 @@ FAILED = 1  # exit status of a result that is none
 @runs_scenes
 def simulate(
     scene_file: Path,
-    request: "Request",
-    tol: float | None,
-    precision: str,
-    engine: str,
-    drift: str,
-    compact: bool | None,
-    until: "Fraction | None",
-    max_step: float | None,
-    samples: int | None,
+    request: Request,
+    options: dict[str, Any],
     final: bool,
     json_file: Path | None,
     output: Path | None,
@@ -134,7 +94,8 @@ def simulate(
     from ..simulation.derivations import open_names, stands
     from ..source import Source
 
-    source, digits = Source(scene_file, limits), _digits_of(precision)
+    wanted = SimulationRequest(**options)
+    source, digits = Source(scene_file, limits), _digits_of(wanted.precision)
     imports = partial(_import_what_follows, click.get_current_context().obj is OWN_PROCESS)
     with meanwhile(scene_file, limits, imports):
         document = problem_document(source, request, limits, digits, open_names(request, digits))
@@ -153,24 +114,20 @@ def simulate(
         streams,
         write_files,
     )
-    from ..simulation.request import FINAL_STATE_ALONE, EngineName, SimulationRequest, Stabilization
     from ..simulation.simulate import follow
     from ..simulation.simulate import simulate as follow_and_keep
 
     require_formats(output, plot_file)
     if final and output is None and plot_file is None:
-        samples = FINAL_STATE_ALONE
-    elif samples is None and plot_file is not None:
-        samples = SAMPLES_OF_A_PLOT
-    wanted = SimulationRequest(
-        tol, precision, EngineName(engine), Stabilization(drift), until, samples, compact, max_step
-    )
+        wanted = replace(wanted, samples=FINAL_STATE_ALONE)
+    elif wanted.samples is None and plot_file is not None:
+        wanted = replace(wanted, samples=SAMPLES_OF_A_PLOT)
     if output is not None and streams(output) and plot_file is None and (json_file is None or final):
-        require_disk(problem, samples or 0, output)
+        require_disk(problem, wanted.samples or 0, output)
         with motion_progress(problem.title) as progress, sample_file(output, digits) as take:
             report = follow(problem, wanted, take, progress)
     else:
-        require_memory(problem, samples or 0, limits.memory_mib)
+        require_memory(problem, wanted.samples or 0, limits.memory_mib)
         with motion_progress(problem.title) as progress:
             simulation = follow_and_keep(problem, wanted, progress)
         write_files(simulation, output, plot_file)

@@ -4,21 +4,22 @@ import functools
 import json
 import sys
 from collections.abc import Callable
+from dataclasses import Field
+from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
+from ..failures import HolonomError
 from ..hidden import visible
+from ..options import choices_of, kind_of, options_of, read, read_instant
+from ..program.request import Request, read_settings
 from ..sandbox import UNCONFINED, Limits, Sandbox, is_isolated
 from ..supervisor import EXPECTED, limit_time
 from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile
 
-if TYPE_CHECKING:
-    from fractions import Fraction
-
 DISAGREEMENT = 1  # exit status where SymPy contradicts Maxima
-SHOWN = 40  # letters of an option that is refused
 LONGEST = 1e9  # seconds of a time limit: 30 years
 MOST_MEMORY = 2**30  # MiB of a memory limit
 
@@ -47,35 +48,68 @@ def takes_settings(command: Callable[..., int]) -> Callable[..., int]:
 
 
 def _read_settings(ctx: click.Context, parameter: click.Parameter, texts: tuple[str, ...]) -> dict[str, str]:
-    from ..program.request import read_settings
-
     return read_settings(texts)
 
 
-def chooses_solve(command: Callable[..., int]) -> Callable[..., int]:
-    """Give a command the option --solve."""
+def takes(*taken: Field, name: str = "options") -> Callable[[Callable[..., int]], Callable[..., int]]:
+    """Give a command options that are fields of requests; it takes their values as one mapping of that name."""
+
+    def decorate(command: Callable[..., int]) -> Callable[..., int]:
+        @functools.wraps(command)
+        def called(**given: Any) -> int:
+            values = {each.name: read(each, given.pop(each.name)) for each in taken}
+            return command(**{name: values}, **given)
+
+        for each in reversed(taken):
+            called = _click_option(each)(called)
+        return called
+
+    return decorate
+
+
+def _click_option(each: Field) -> Callable[[Callable[..., int]], Callable[..., int]]:
+    stated, kind = each.metadata["option"], kind_of(each)
+    written = "--" + each.name.replace("_", "-")
+    names = (*(stated.spelt or [written]), each.name)
+    choices, details = choices_of(each), {}
+    if choices:
+        details["type"] = click.Choice(choices)
+    elif kind is Fraction:
+        details["callback"] = as_instant
+    elif kind is bool and each.default is None:
+        names = (f"{written}/--no-{written[2:]}", each.name)
+    elif kind is bool:
+        details["is_flag"] = True
+    elif kind in (int, float) and not stated.least is stated.most is stated.above is None:
+        bound = click.IntRange if kind is int else click.FloatRange
+        least, is_open = (stated.least, False) if stated.above is None else (stated.above, True)
+        details["type"] = bound(least, stated.most, min_open=is_open)
+    elif kind in (int, float):
+        details["type"] = kind
+    default = None if stated.required else each.default
     return click.option(
-        "--solve",
-        type=click.Choice(["direct", "orthogonal"]),
-        default="direct",
-        show_default=True,
-        help="How the multipliers are solved for; orthogonal keeps more digits near singular configurations.",
-    )(command)
+        *names,
+        metavar=stated.metavar,
+        default=str(default) if choices and default is not None else default,
+        show_default=default not in (None, False),
+        required=stated.required,
+        help=stated.help,
+        **details,
+    )
 
 
-def asks_one_scene(command: Callable[..., int]) -> Callable[..., int]:
-    """Give a command a scene file, and as its `request` a scene in it, numbers for what is open, and the solve."""
+def asks_one_scene(*taken: Field) -> Callable[[Callable[..., int]], Callable[..., int]]:
+    """Give a command a scene file, and as its `request` a scene in it, numbers for what is open, and other fields."""
 
-    @functools.wraps(command)
-    def asked(*, scene: str | None, settings: dict[str, str], solve: str = "direct", **options: Any) -> int:
-        from ..program.motion_program import Solve
-        from ..program.request import Request
+    def decorate(command: Callable[..., int]) -> Callable[..., int]:
+        @functools.wraps(command)
+        def asked(*, settings: dict[str, str], chosen: dict[str, Any], **more: Any) -> int:
+            return command(request=Request(settings=settings, **chosen), **more)
 
-        return command(request=Request(scene, Solve(solve), settings), **options)
+        asked = takes(*options_of(Request, "scene"), *taken, name="chosen")(takes_settings(asked))
+        return click.argument("scene_file", metavar="SCENE", type=SceneFile())(asked)
 
-    asked = takes_settings(asked)
-    asked = click.option("--scene", metavar="NAME", help="The scene in the file; without it, the last one.")(asked)
-    return click.argument("scene_file", metavar="SCENE", type=SceneFile())(asked)
+    return decorate
 
 
 def runs_scenes(command: Callable[..., int]) -> Callable[..., int]:
@@ -143,25 +177,12 @@ def _sandbox(trust: bool, sandbox: bool) -> Sandbox:
     return wanted
 
 
-def read_instant(ctx: click.Context, parameter: click.Parameter, text: str | None) -> "Fraction | None":
-    """Read an instant: an integer, a decimal or a quotient of integers."""
-    from fractions import Fraction
-
-    from ..program.request import within_reach
-
-    if text is None:
-        return None
+def as_instant(ctx: click.Context, parameter: click.Parameter, text: str | None) -> Fraction | None:
+    """Read an instant."""
     try:
-        if not within_reach(text):
-            raise OverflowError
-        return Fraction(text)
-    except (ValueError, ZeroDivisionError, OverflowError):
-        shown = text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
-        raise click.BadParameter(
-            f"{shown} is no instant; write a number such as 0.75 or 3/4, of a size that a double can have",
-            ctx,
-            parameter,
-        ) from None
+        return None if text is None else read_instant(text)
+    except HolonomError as error:
+        raise click.BadParameter(error.sentence(), ctx, parameter) from None
 
 
 def json_text(document: Any) -> str:

@@ -2,24 +2,21 @@
 
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from ..failures import Failure, HolonomError
+from ..options import options_of
+from ..program.request import Request
 from ..program.targets import FORMS
 from ..sandbox import Limits
 from .group import holonom
-from .options import asks_one_scene, chooses_solve, present, publish, runs_scenes, writes_json
+from .options import asks_one_scene, present, publish, runs_scenes, writes_json
 from .outputs import STANDARD_OUTPUT, OutputFile, is_forced
-
-if TYPE_CHECKING:
-    from ..program.request import Request
 
 
 @holonom.command()
-@asks_one_scene
-@chooses_solve
+@asks_one_scene(*options_of(Request, "solve"))
 @click.option(
     "--to",
     "form",
@@ -46,7 +43,7 @@ if TYPE_CHECKING:
 @runs_scenes
 def program(
     scene_file: Path,
-    request: "Request",
+    request: Request,
     form: str,
     name: str | None,
     parameters: tuple[str, ...],
@@ -79,13 +76,12 @@ def program(
 
 
 @holonom.command()
-@asks_one_scene
-@chooses_solve
+@asks_one_scene(*options_of(Request, "solve"))
 @writes_json
 @runs_scenes
 def effects(
     scene_file: Path,
-    request: "Request",
+    request: Request,
     json_file: Path | None,
     limits: Limits,
 ) -> int:

@@ -2,25 +2,23 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import click
 
+from ..options import options_of
+from ..program.request import Request
 from ..sandbox import Limits
+from ..sweeps.request import SweepRequest
 from .group import holonom
-from .options import asks_one_scene, chooses_solve, present, read_instant, runs_scenes, writes_json
+from .options import asks_one_scene, present, runs_scenes, takes, writes_json
 from .outputs import OutputFile, as_given
-
-if TYPE_CHECKING:
-    from fractions import Fraction
-
-    from ..program.request import Request
 
 FAILED = 1  # exit status of a sweep none of whose rows came about
 
 
 @holonom.command()
-@asks_one_scene
+@asks_one_scene(*options_of(Request, "solve"))
 @click.option("--grid", "grids", metavar="NAME=FIRST:LAST:COUNT", multiple=True, help="Equidistant values.")
 @click.option("--list", "lists", metavar="NAME=VALUE,...", multiple=True, help="These values.")
 @click.option(
@@ -43,22 +41,7 @@ FAILED = 1  # exit status of a sweep none of whose rows came about
 @click.option(
     "-o", "--output", metavar="FOLDER", required=True, type=click.Path(path_type=Path), help="Where the rows go."
 )
-@click.option("--tol", type=float, default=1e-12, show_default=True, help="Tolerance of a step.")
-@click.option("--until", metavar="T", callback=read_instant, help="The last instant, in place of the scene's.")
-@click.option(
-    "--drift",
-    type=click.Choice(["projection", "none"]),
-    default="projection",
-    show_default=True,
-    help="What keeps the constraints.",
-)
-@chooses_solve
-@click.option(
-    "--chunk", metavar="ROWS", type=click.IntRange(1, 10**7), default=10_000, show_default=True, help="Rows of a file."
-)
-@click.option("--workers", metavar="N", type=click.IntRange(1, 4096), help="Processes; without it, one a processor.")
-@click.option("--dask", "scheduler", metavar="ADDRESS", help="A running Dask scheduler, whose workers compute instead.")
-@click.option("--resume", is_flag=True, help="Go on with what is there; without it, that or begin.")
+@takes(*options_of(SweepRequest))
 @click.option(
     "--plot",
     "plot_file",
@@ -70,7 +53,7 @@ FAILED = 1  # exit status of a sweep none of whose rows came about
 @runs_scenes
 def sweep(
     scene_file: Path,
-    request: "Request",
+    request: Request,
     grids: Sequence[str],
     lists: Sequence[str],
     samples: Sequence[str],
@@ -78,13 +61,7 @@ def sweep(
     seed: int | None,
     keep: Sequence[str],
     output: Path,
-    tol: float,
-    until: "Fraction | None",
-    drift: str,
-    chunk: int,
-    workers: int | None,
-    scheduler: str | None,
-    resume: bool,
+    options: dict[str, Any],
     plot_file: Path | None,
     json_file: Path | None,
     limits: Limits,
@@ -97,10 +74,9 @@ def sweep(
     from ..display.motion import show_sweep
     from ..display.progress import sweep_progress
     from ..simulation.output import require_formats
-    from ..simulation.request import Stabilization
     from ..sweeps.axes import read_axes
     from ..sweeps.kept import read_kept
-    from ..sweeps.run import SweepRequest, run_sweep
+    from ..sweeps.run import run_sweep
 
     axes, kept = read_axes(grids, lists, samples, size, seed), read_kept(keep)
     if plot_file is not None:
@@ -108,8 +84,7 @@ def sweep(
 
         require_formats(None, plot_file)
         require_plottable(axes)
-    cure, called = Stabilization(drift), as_given(scene_file)
-    wanted = SweepRequest(axes, kept, tol, until, cure, chunk, workers, scheduler, resume, called)
+    wanted = SweepRequest(axes, kept, called=as_given(scene_file), **options)
     with sweep_progress(axes.rows) as progress:
         found = run_sweep(scene_file, request, wanted, output, limits, progress)
     for name in found.mended:

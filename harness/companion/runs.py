@@ -24,7 +24,8 @@ from ..program.request import Request
 from ..record import Record, derived_record
 from ..sandbox import Limits
 from ..series.compute import compute_series
-from ..series.power_series import MotionSeries, SeriesRequest
+from ..series.power_series import MotionSeries
+from ..series.request import SeriesRequest
 from ..simulation.request import SimulationRequest
 from ..simulation.result import Simulation
 from ..source import Source, describe

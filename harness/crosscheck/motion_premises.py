@@ -8,7 +8,8 @@ from dataclasses import replace
 from mpmath import mp
 
 from ..program.motion_problem import MotionProblem, computing
-from ..program.motion_program import Name, Program, Solve
+from ..program.motion_program import Name, Program
+from ..program.request import Solve
 from .described_motion import DescribedMotion
 from .digits import WORKING_DIGITS
 from .irregular_point import IrregularPoint

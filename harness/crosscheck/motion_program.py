@@ -14,7 +14,8 @@ from mpmath import mp
 from ..description import DescribedScene, Description
 from ..failures import Failure, HolonomError
 from ..program.motion_problem import MotionProblem, read_problem
-from ..program.motion_program import Program, Solve, read_program
+from ..program.motion_program import Program, read_program
+from ..program.request import Solve
 from . import motion_states as states
 from .described_motion import DescribedMotion
 from .digits import DIGITS, POINTS

@@ -17,8 +17,9 @@ from ..description import Description
 from ..failures import HolonomError
 from ..number_texts import number, numbers
 from ..program.motion_problem import MotionProblem
-from ..program.motion_program import Solve
-from ..series.power_series import EXACT, MotionSeries, read_series
+from ..program.request import Solve
+from ..series.power_series import MotionSeries, read_series
+from ..series.request import EXACT
 from .described_motion import DescribedMotion
 from .digits import DIGITS
 from .irregular_point import IrregularPoint

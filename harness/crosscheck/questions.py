@@ -11,7 +11,7 @@ from typing import NamedTuple
 from ..description import DescribedScene, Description
 from ..documents import Document, Question, ask_all
 from ..failures import HolonomError
-from ..program.motion_program import Solve
+from ..program.request import Solve
 from ..source import Source
 from .digits import WORKING_DIGITS
 from .taylor import SPECIAL

@@ -23,8 +23,9 @@ from ..files import shared
 from ..language import gettext
 from ..sandbox import Limits
 from ..series.compute import compute_series
-from ..series.power_series import MotionSeries, SeriesRequest
+from ..series.power_series import MotionSeries
 from ..series.radius import ENTIRE, Radius
+from ..series.request import SeriesRequest
 from .style import (
     BLUE,
     GREEN,

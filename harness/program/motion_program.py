@@ -20,6 +20,7 @@ from typing import Any
 
 from ..documents import Document, read, require
 from ..failures import Failure, HolonomError
+from .request import Solve
 
 DEEPEST = 100  # levels of an expression: Maxima names what is deeper, and Python's recursion limit stays far away
 LONGEST_NUMBER = 4000  # characters of a number's digits; Python reads 4300
@@ -70,13 +71,6 @@ class Constant(StrEnum):
 
 
 CONSTANTS = frozenset(Constant)
-
-
-class Solve(StrEnum):
-    """How the program solves for the multipliers."""
-
-    DIRECT = "direct"
-    ORTHOGONAL = "orthogonal"
 
 
 @dataclass(frozen=True, slots=True)

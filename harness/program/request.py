@@ -3,32 +3,33 @@
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from enum import StrEnum
 
 from ..failures import Failure, HolonomError
-from .motion_program import Solve
+from ..options import LONGEST, option, within_reach
 
-LONGEST = 200  # digits of a number that an option gives
-LARGEST_EXPONENT = 307  # of a double
 SETTING = re.compile(r"([^\W\d]\w*)=(-?\d+(?:\.\d+)?(?:e-?\d+)?(?:/\d+)?)", re.IGNORECASE)
+
+
+class Solve(StrEnum):
+    """How the program solves for the multipliers."""
+
+    DIRECT = "direct"
+    ORTHOGONAL = "orthogonal"
 
 
 @dataclass(frozen=True)
 class Request:
     """Which scene of a file, and how."""
 
-    scene: str | None = None  # name of the scene; None for the last one, or for the system where there is none
-    solve: Solve = Solve.DIRECT
+    # name of the scene; None for the last one, or for the system where there is none
+    scene: str | None = option(None, "The scene in the file; without it, the last one.", metavar="NAME")
+    solve: Solve = option(
+        Solve.DIRECT,
+        "How the multipliers are solved for; orthogonal keeps more digits near singular configurations.",
+    )
     # numbers in Maxima's notation, for what the file leaves open and for parameters
     settings: Mapping[str, str] = field(default_factory=dict)
-
-
-def within_reach(number: str) -> bool:
-    """Whether a double holds the parts of a decimal number or quotient, told without computing them."""
-    for part in number.lower().split("/"):
-        digits, _, exponent = part.partition("e")
-        if len(digits) > LONGEST or len(exponent) > 4 or not abs(int(exponent or 0)) + len(digits) <= LARGEST_EXPONENT:
-            return False
-    return True
 
 
 def read_settings(texts: Iterable[str]) -> dict[str, str]:

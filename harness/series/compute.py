@@ -5,7 +5,8 @@ from pathlib import Path
 from ..documents import Document, ask
 from ..sandbox import Limits
 from ..source import Source
-from .power_series import MotionSeries, SeriesRequest, read_series
+from .power_series import MotionSeries, read_series
+from .request import SeriesRequest
 
 
 def compute_series(file: Source | Path, request: SeriesRequest, limits: Limits) -> MotionSeries:

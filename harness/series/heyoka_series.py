@@ -27,7 +27,8 @@ from ..program.request import Request
 from ..program.sign_pattern import with_numbers
 from ..sandbox import Limits
 from ..source import Source
-from .power_series import Continuation, MotionSeries, NumberTexts, SeriesRequest
+from .power_series import Continuation, MotionSeries, NumberTexts
+from .request import SeriesRequest
 
 MOST_STEPS = 10**6  # of a continuation
 ONCE, OFTEN = 0, 3  # LLVM's levels of optimisation: compiled in a tenth of the time, and run in half

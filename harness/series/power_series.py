@@ -6,7 +6,7 @@ as many digits, where something is computed from them.
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
@@ -20,27 +20,10 @@ from ..program.motion_program import Program, program_of
 from ..shown import Shown
 from .radius import POLYNOMIAL, UNPROVED, Radius, described, estimate_radius, truncation_error
 
-EXACT = "exact"
-AUTOMATIC = "automatic"
 WORKING_DIGITS = 50  # for what is computed from exact coefficients
 MORE_DIGITS = 10  # than the coefficients have, for what is computed from rounded ones
 
 NumberTexts = tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class SeriesRequest:
-    """Which power series of a scene file."""
-
-    order: int  # highest power of t - t0
-    scene: str | None = None  # name of the scene; None for the last one
-    # significant decimal digits, ``exact``, or ``automatic``: exact where that is possible
-    digits: int | str = AUTOMATIC
-    until: Fraction | None = None  # instant to which the motion is continued by further expansions
-    # numbers for what the file leaves open and for parameters
-    settings: Mapping[str, str] = field(default_factory=dict)
-    # heyoka's numbers, as `holonom.program.precision.read_precision` takes them; None for Maxima's, with the digits
-    precision: str | int | None = None
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 
+from ..options import option
+
 FINAL_STATE_ALONE = 0
 
 
@@ -30,21 +32,23 @@ class Stabilization(StrEnum):
     NONE = "none"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class SimulationRequest:
     """How a motion is to be followed."""
 
-    tol: float | None = None  # tolerance of a step, relative; None for what the engine and the precision can hold
-    # ``double``, ``extended``, ``quadruple``, or a number of decimal digits. Only the Taylor engine knows others than
-    # double.
-    precision: str | int = "double"
-    engine: EngineName = EngineName.AUTO
-    # what the Taylor and the Runge-Kutta engine do; the robust one always projects
-    drift: Stabilization = Stabilization.PROJECTION
-    until: Fraction | None = None  # last instant; None for the end of the scene's time span
-    # so many equidistant instants from the first to the last, or, with 0, the final state alone; None for the engine's
-    # own steps
-    samples: int | None = None
-    # whether heyoka compiles in its compact mode; None to choose by what the compilation takes and the run gains
-    compact: bool | None = None
-    max_step: float | None = None  # time that no step is to exceed; None where the engine alone decides
+    until: Fraction | None = option(None, "The last instant, in place of the scene's.", metavar="T")
+    # 0 keeps the final state alone
+    samples: int | None = option(None, "Keep N equidistant instants, not the steps.", metavar="N", least=2)
+    # relative
+    tol: float | None = option(None, "Tolerance of a step; without it, what the precision holds.")
+    # only the Taylor engine knows others than double
+    precision: int | str = option("double", "Numbers to use.", metavar="double|extended|quadruple|DIGITS")
+    engine: EngineName = option(
+        EngineName.AUTO,
+        "What follows the motion; auto is the quicker of taylor and runge-kutta, and robust where that fails.",
+    )
+    drift: Stabilization = option(
+        Stabilization.PROJECTION, "What keeps the constraints; the robust engine always projects."
+    )
+    max_step: float | None = option(None, "No step is to be longer.", metavar="H", above=0)
+    compact: bool | None = option(None, "heyoka's compact mode; without it, what pays.")

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ..documents import NAME
 from ..failures import Failure, HolonomError
-from ..program.request import within_reach
+from ..options import Number, within_reach
 
 BLOCK = 1024  # members of a sample that one generator draws
 MOST_ROWS = 10**12
@@ -142,6 +142,25 @@ def read_axes(
         ``NAME=VALUE,VALUE,...``.
     samples : iterable of str
         ``NAME=normal(MEAN,DEVIATION)``, ``NAME=uniform(LEAST,GREATEST)`` or ``NAME=loguniform(LEAST,GREATEST)``.
+    size, seed : int or None
+        As for `make_axes`.
+
+    Raises
+    ------
+    HolonomError
+        One of them is not of its form; as `make_axes`.
+    """
+    values = [*map(_read_grid, grids), *map(_read_list, lists)]
+    return make_axes(values, [sample(*_named(text), text) for text in samples], size, seed)
+
+
+def make_axes(values: Sequence[Values], samples: Sequence[Sample], size: int | None, seed: int | None) -> Axes:
+    """Return what a sweep varies.
+
+    Parameters
+    ----------
+    values, samples : sequence
+        One for each parameter.
     size : int or None
         Members of the sample; there is one where there are samples.
     seed : int or None
@@ -150,39 +169,40 @@ def read_axes(
     Raises
     ------
     HolonomError
-        One of them is not of its form; a parameter comes twice, none does; there are too many rows.
+        A parameter comes twice, none does; there are too many rows.
     """
-    values, drawn = [*map(_grid, grids), *map(_list, lists)], [*map(_sample, samples)]
-    names = [axis.name for axis in chain(values, drawn)]
+    names = [axis.name for axis in chain(values, samples)]
     if not names:
         raise HolonomError(Failure.NOTHING_VARIES)
     if twice := next((name for name in names if names.count(name) > 1), None):
         raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{twice} is varied twice")
-    if bool(drawn) != (size is not None):
-        missing = "a sample needs its --size" if drawn else "--size is that of a --sample, and there is none"
+    if bool(samples) != (size is not None):
+        missing = "a sample needs its --size" if samples else "--size is that of a --sample, and there is none"
         raise HolonomError(Failure.NOT_AN_AXIS, detail=missing)
-    axes = Axes(tuple(values), tuple(drawn), size or 1, seed or 0)
+    axes = Axes(tuple(values), tuple(samples), size or 1, seed or 0)
     if axes.rows > MOST_ROWS:
         raise HolonomError(Failure.NOT_AN_AXIS, detail=f"these are {axes.rows} rows, and {MOST_ROWS} are the most")
     return axes
 
 
-def _grid(text: str) -> Grid:
-    name, rest = _named(text)
-    first, last, count = _parts(rest, ":", 3, text)
-    if not count.isdecimal() or not 1 <= len(count) <= 12 or int(count) < 1:
+def grid(name: str, first: Number, last: Number, count: int | str, text: str | None = None) -> Grid:
+    """Return equidistant numbers; raises as `read_axes`."""
+    text = text or f"{name}={first}:{last}:{count}"
+    if not str(count).isdecimal() or not 1 <= len(str(count)) <= 12 or int(count) < 1:
         raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{text} has no number of values")
-    return Grid(name, _number(first, text), _number(last, text), int(count), text)
+    return Grid(_required_name(name, text), _number(first, text), _number(last, text), int(count), text)
 
 
-def _list(text: str) -> Listed:
-    name, rest = _named(text)
-    return Listed(name, tuple(_number(part, text) for part in rest.split(",")), text)
+def listed(name: str, numbers: Sequence[Number], text: str | None = None) -> Listed:
+    """Return numbers one after the other; raises as `read_axes`."""
+    text = text or f"{name}={','.join(map(str, numbers))}"
+    return Listed(_required_name(name, text), tuple(_number(number, text) for number in numbers or [""]), text)
 
 
-def _sample(text: str) -> Sample:
-    name, rest = _named(text)
-    found = DRAWN.fullmatch(rest.strip())
+def sample(name: str, drawn: str, text: str | None = None) -> Sample:
+    """Return the sample that a distribution with its two numbers describes; raises as `read_axes`."""
+    text = text or f"{name}={drawn}"
+    found = DRAWN.fullmatch(drawn.strip())
     if found is None or found[1] not in set(Distribution):
         raise HolonomError(
             Failure.NOT_AN_AXIS, detail=f"{text} draws from none of {', '.join(Distribution)}(NUMBER,NUMBER)"
@@ -194,27 +214,38 @@ def _sample(text: str) -> Sample:
         raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{text} has no least number below its greatest")
     if kind is Distribution.LOGUNIFORM and not first > 0:
         raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{text} has no logarithm")
-    return Sample(name, kind, first, second, text)
+    return Sample(_required_name(name, text), kind, first, second, text)
+
+
+def _read_grid(text: str) -> Grid:
+    name, rest = _named(text)
+    parts = [part.strip() for part in rest.split(":")]
+    if len(parts) != 3:
+        raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{text} has not 3 parts")
+    return grid(name, *parts, text)
+
+
+def _read_list(text: str) -> Listed:
+    name, rest = _named(text)
+    return listed(name, rest.split(","), text)
 
 
 def _named(text: str) -> tuple[str, str]:
     name, equals, rest = text.partition("=")
-    if not equals or not NAME.fullmatch(name.strip()):
+    return _required_name(name if equals else "", text), rest
+
+
+def _required_name(name: str, text: str) -> str:
+    if not NAME.fullmatch(name.strip()):
         raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{text} names no parameter")
-    return name.strip(), rest
+    return name.strip()
 
 
-def _parts(text: str, separator: str, count: int, whole: str) -> Sequence[str]:
-    parts = [part.strip() for part in text.split(separator)]
-    if len(parts) != count:
-        raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{whole} has not {count} parts")
-    return parts
-
-
-def _number(text: str, whole: str) -> float:
-    if not re.fullmatch(NUMBER, text.strip()) or not within_reach(text.strip().lstrip("+-")):
-        raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{whole} holds what is no number, {text.strip()!r}")
+def _number(given: Number, whole: str) -> float:
+    text = str(given).strip()
+    if not re.fullmatch(NUMBER, text) or not within_reach(text.lstrip("+-")):
+        raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{whole} holds what is no number, {text!r}")
     try:
-        return float(Fraction(text.strip()))
+        return float(Fraction(text))
     except ZeroDivisionError:
         raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{whole} divides by zero") from None

@@ -24,8 +24,8 @@ from math import isfinite
 
 from ..failures import Failure, HolonomError
 from ..functions import FUNCTIONS
+from ..options import within_reach
 from ..program.motion_program import Call, Constant, Expression, Name, Operation
-from ..program.request import within_reach
 
 LONGEST = 500  # characters of an item
 OPERATORS = {

@@ -33,6 +33,7 @@ from .extremes import Steps, first_zero, largest, largest_size
 from .kept import ALONG, Kept, Kind
 from .lanes import LaneEngine, Look
 from .quantities import along_motion, constraint_forces, expressions_of, other_forces, require_known
+from .request import TOLERANCE
 from .series import lane_radii
 from .single import SingleMotions
 from .time_watch import TimeWatch
@@ -40,7 +41,6 @@ from .time_watch import TimeWatch
 if TYPE_CHECKING:
     import pyarrow
 
-TOLERANCE = 1e-12  # of a step
 KINKED = frozenset({Operation.ABS, Operation.SIGN, Operation.ARCTAN2})  # with kinks, or jumps
 GROUP = 10_000  # rows that are held in memory at a time, whatever the chunk
 

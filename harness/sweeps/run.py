@@ -15,12 +15,12 @@ from ..program.precision import read_precision
 from ..program.request import Request
 from ..sandbox import Limits
 from ..simulation.engines.taylor import held
-from ..simulation.request import Stabilization
 from ..source import Source, source_of
 from .axes import Axes, Grid, Listed, Sample
 from .dataset import SweepFolder, chunks_of
-from .kept import Kept, Kind
-from .rows import TOLERANCE, Plan, RowMaker
+from .kept import Kind
+from .request import SweepRequest
+from .rows import Plan, RowMaker
 from .workers import compute, require_address
 
 if TYPE_CHECKING:
@@ -29,25 +29,8 @@ if TYPE_CHECKING:
 
     from ..figures.style import Picture
 
-CHUNK = 10_000
 PACKAGES = ("holonom", "heyoka", "numpy", "pyarrow")  # whose versions may decide about the last bit
 Progress = Callable[[int], None]
-
-
-@dataclass(frozen=True)
-class SweepRequest:
-    """What a sweep is asked for."""
-
-    axes: Axes
-    kept: tuple[Kept, ...]
-    tol: float = TOLERANCE  # tolerance of a step
-    until: Fraction | None = None  # the last instant; None for the end of the scene's time span
-    drift: Stabilization = Stabilization.PROJECTION  # ``PROJECTION`` or ``NONE``
-    chunk: int = CHUNK  # rows of a file
-    workers: int | None = None  # processes that compute; None for one a processor
-    scheduler: str | None = None  # address of a running Dask scheduler that is to be used instead
-    resume: bool = False  # whether the sweep must have been begun before
-    called: str | None = None  # what the document calls the scene file; None for its path
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ from holonom.program.request import Request
 from holonom.sandbox import Limits
 from holonom.series.compute import compute_series
 from holonom.series.heyoka_series import OFTEN, expanding_integrator
-from holonom.series.power_series import SeriesRequest
+from holonom.series.request import SeriesRequest
 
 PAPER = Path(__file__).parents[2] / "examples" / "paper" / "paper.mac"
 START = ((3, 10), (1, 1), (2, 1), (1, 2), (-1, 3))  # u, q1, q2, dot(q1), dot(q2)

@@ -132,7 +132,7 @@ def general_bars(paper: Motion) -> Iterator[Bar]:
 def _worst_residuals(motion: Motion, problem: MotionProblem) -> dict[str, float]:
     """The larger residuals of the constraints that the two engines leave."""
     requests = (
-        SimulationRequest(float(TOLERANCE), engine=engine, until=motion.until, samples=0)
+        SimulationRequest(tol=float(TOLERANCE), engine=engine, until=motion.until, samples=0)
         for engine in (EngineName.TAYLOR, EngineName.RUNGE_KUTTA)
     )
     found = [simulate(problem, request).report.residuals for request in requests]

@@ -34,8 +34,8 @@ from holonom.simulation.request import EngineName, SimulationRequest, Stabilizat
 from holonom.simulation.simulate import followable
 from holonom.sweeps.axes import read_axes
 from holonom.sweeps.kept import read_kept
+from holonom.sweeps.request import CHUNK
 from holonom.sweeps.rows import Plan, RowMaker
-from holonom.sweeps.run import CHUNK
 
 ROOT = Path(__file__).parents[2]
 CRANE, PAPER = ROOT / "examples" / "crane.mac", ROOT / "examples" / "paper" / "paper.mac"

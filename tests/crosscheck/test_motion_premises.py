@@ -15,7 +15,8 @@ from holonom.crosscheck.motions import read_motions
 from holonom.crosscheck.questions import ask_for_check
 from holonom.crosscheck.report import Verdict
 from holonom.crosscheck.switches import law_instants
-from holonom.program.motion_program import Call, Name, Operation, Solve
+from holonom.program.motion_program import Call, Name, Operation
+from holonom.program.request import Solve
 from holonom.source import Source
 
 SCENE = """load("holonom.mac")$

@@ -12,8 +12,9 @@ from holonom.crosscheck.motion_series import SceneSeries, judge_series, judge_se
 from holonom.crosscheck.motions import read_motions
 from holonom.crosscheck.questions import ask_for_check
 from holonom.crosscheck.report import Verdict
-from holonom.program.motion_program import Call, Operation, Solve
-from holonom.series.power_series import EXACT
+from holonom.program.motion_program import Call, Operation
+from holonom.program.request import Solve
+from holonom.series.request import EXACT
 from holonom.source import Source
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -13,7 +13,8 @@ from holonom.crosscheck.motions import read_motions
 from holonom.crosscheck.questions import ask_for_check
 from holonom.crosscheck.report import Verdict
 from holonom.program.motion_problem import MotionProblem
-from holonom.program.motion_program import Call, Name, Operation, Program, Solve
+from holonom.program.motion_program import Call, Name, Operation, Program
+from holonom.program.request import Solve
 from holonom.source import Source
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -47,7 +47,7 @@ def test_the_steps_are_as_many_as_will_be_taken(pendulum, monkeypatch):
 REQUESTS = {
     "a motion": lambda problem, numbers: simulate(problem, SimulationRequest(precision=numbers.digits)),
     "a motion by larger steps": lambda problem, numbers: follow(
-        problem, SimulationRequest(1e-300, numbers.digits, until=Fraction(100)), print
+        problem, SimulationRequest(tol=1e-300, precision=numbers.digits, until=Fraction(100)), print
     ),
     "a series": lambda problem, numbers: expand(problem, 5000, numbers),
     "a series continued": lambda problem, numbers: continue_motion(problem, Fraction(2), numbers),

@@ -12,8 +12,8 @@ from test_same_numbers import assert_same_numbers
 from holonom.cli import holonom
 from holonom.failures import Failure, HolonomError
 from holonom.program.forms import MotionProgram
-from holonom.program.motion_program import Program, Solve, count_operations, read_program
-from holonom.program.request import Request, read_settings
+from holonom.program.motion_program import Program, count_operations, read_program
+from holonom.program.request import Request, Solve, read_settings
 from holonom.sandbox import Limits
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

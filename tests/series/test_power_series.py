@@ -14,8 +14,9 @@ from paper_series import START, paper_by_hand
 from holonom.failures import HolonomError
 from holonom.sandbox import Limits
 from holonom.series.compute import compute_series
-from holonom.series.power_series import MotionSeries, SeriesRequest, number, numbers, read_series, values_at
+from holonom.series.power_series import MotionSeries, number, numbers, read_series, values_at
 from holonom.series.radius import truncation_error
+from holonom.series.request import SeriesRequest
 
 ROOT = Path(__file__).resolve().parents[2]
 PAPER = ROOT / "examples" / "paper" / "paper.mac"
@@ -182,7 +183,7 @@ def worst_difference_at_the_end(one, other):
 
 def test_continuation_passes_the_radius():
     """Beyond it, heyoka's integrator in quadruple precision is the witness of Maxima's expansions."""
-    found = compute_series(PAPER, SeriesRequest(8, None, "exact", Fraction(3)), Limits()).continuation
+    found = compute_series(PAPER, SeriesRequest(8, digits="exact", until=Fraction(3)), Limits()).continuation
     assert worst_difference_at_the_end(found, compiled(8, "quadruple", until=Fraction(3)).continuation) < 1e-26
 
 
@@ -190,7 +191,7 @@ def test_continuation_passes_the_radius():
     ("precision", "error"), [("double", 1e-13), pytest.param("extended", 1e-16, marks=needs_extended), ("40", 1e-39)]
 )
 def test_continuation_has_the_precision_of_its_numbers(precision, error):
-    witness = compute_series(PAPER, SeriesRequest(8, None, 50, Fraction(-2)), Limits()).continuation
+    witness = compute_series(PAPER, SeriesRequest(8, digits=50, until=Fraction(-2)), Limits()).continuation
     found = compiled(8, precision, until=Fraction(-2)).continuation
     assert number(found.instants[-1]) == -2
     assert worst_difference_at_the_end(found, witness) < error

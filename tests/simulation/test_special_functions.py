@@ -21,7 +21,7 @@ from holonom.program.request import Request
 from holonom.sandbox import Limits
 from holonom.series.compute import compute_series
 from holonom.series.heyoka_series import expand
-from holonom.series.power_series import SeriesRequest
+from holonom.series.request import SeriesRequest
 from holonom.simulation.request import EngineName, SimulationRequest
 from holonom.simulation.simulate import simulate
 

@@ -4,7 +4,8 @@ from fractions import Fraction
 
 import pytest
 
-from holonom.program.motion_program import Call, Name, Operation, Program, Solve
+from holonom.program.motion_program import Call, Name, Operation, Program
+from holonom.program.request import Solve
 from holonom.simulation.time_dependence import TimeDependence, time_dependence, time_expressions
 
 T, X = Name("t"), Name("x")

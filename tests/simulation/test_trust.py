@@ -7,7 +7,8 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from holonom.program.motion_program import Call, Name, Operation, Program, Solve
+from holonom.program.motion_program import Call, Name, Operation, Program
+from holonom.program.request import Solve
 from holonom.simulation.trust import doubts, expected, may_hide, trusted
 
 KEPT = {"position": 1e-16, "velocity": 1e-15, "energy": 1e-13}

@@ -21,6 +21,7 @@ from holonom.sandbox import Limits
 from holonom.sweeps import run
 from holonom.sweeps.axes import read_axes
 from holonom.sweeps.kept import read_kept
+from holonom.sweeps.request import SweepRequest
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 CRANE = EXAMPLES / "crane.mac"
@@ -232,6 +233,6 @@ def test_a_sweep_started_a_worker_for_each_core_of_the_machine(monkeypatch, tmp_
     started = []
     monkeypatch.setattr(os, "sched_getaffinity", lambda process: {0, 3, 5}, raising=False)
     monkeypatch.setattr(run, "compute", lambda plan, chunks, take, workers, scheduler: started.append(workers))
-    wanted = run.SweepRequest(read_axes(["m=50:500:2"], [], [], None, None), read_kept(["x"]))
+    wanted = SweepRequest(read_axes(["m=50:500:2"], [], [], None, None), read_kept(["x"]))
     run.run_sweep(CRANE, Request(None), wanted, tmp_path / "runs", Limits())
     assert started == [3]

@@ -13,7 +13,8 @@ from holonom.simulation.engines.choice import Choice
 from holonom.simulation.initial_state import at_values
 from holonom.simulation.request import EngineName, SimulationRequest
 from holonom.simulation.simulate import simulate
-from holonom.sweeps.rows import TOLERANCE, RowMaker, Status
+from holonom.sweeps.request import TOLERANCE
+from holonom.sweeps.rows import RowMaker, Status
 
 
 def scene(coordinates: str, kinetic: str, potential: str, start: str, end: str, more: str = "constraints = []") -> str:

@@ -16,8 +16,7 @@ from scipy.integrate import solve_ivp
 from ...files import shared
 from ...language import translatable
 from ...program.motion_problem import MotionProblem, motion_problem
-from ...program.motion_program import Solve
-from ...program.request import Request
+from ...program.request import Request, Solve
 from ...sandbox import Limits
 from ...simulation.diagnosis import HardCase
 from ...simulation.matrices import Matrix, MotionMatrices, Vector

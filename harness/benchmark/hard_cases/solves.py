@@ -10,8 +10,8 @@ import numpy as np
 
 from ...language import translatable
 from ...program.motion_problem import MotionProblem
-from ...program.motion_program import Solve
 from ...program.numpy_function import NumpyFunction
+from ...program.request import Solve
 from ...simulation.constraints.factorization import factored_constraints
 from ...simulation.inputs import Inputs
 from ...simulation.matrices import Matrices, MotionMatrices, Vector

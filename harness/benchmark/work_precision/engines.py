@@ -12,8 +12,8 @@ import numpy as np
 from ...language import translatable
 from ...program.expense import order_for
 from ...program.motion_problem import MotionProblem
-from ...program.motion_program import Solve
 from ...program.precision import Precision, read_precision
+from ...program.request import Solve
 from ...simulation.engines.runge_kutta import RungeKuttaEngine
 from ...simulation.engines.taylor import TaylorEngine
 from ...simulation.request import Stabilization

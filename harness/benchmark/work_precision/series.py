@@ -22,6 +22,7 @@ from ...program.motion_problem import MotionProblem
 from ...program.precision import read_precision
 from ...program.request import Request
 from ...series.heyoka_series import expand, expanding_integrator
+from ...series.request import EXACT
 from ...source import Source
 from .measurement import WORKING_DIGITS, Candidate, Group, Measurement, Prepared, State, relative_error
 from .operations import acceleration_program, expansion_operations
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
     from ...sandbox import Limits
     from .reference import Reference
 
-EXACT = "exact"
 ORDER_OF_RADIUS = 40  # of the expansion that the radius is estimated from
 INSIDE = 0.5  # share of the radius at which the series are added up
 ENTIRE = 1  # unit of time: where they are added up if no radius is known

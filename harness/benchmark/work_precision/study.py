@@ -12,9 +12,8 @@ from ...documents import Publication, published
 from ...failures import Failure, HolonomError
 from ...language import translatable
 from ...program.motion_problem import MotionProblem, motion_problem, require_analytic
-from ...program.motion_program import Solve
 from ...program.precision import read_precision
-from ...program.request import Request
+from ...program.request import Request, Solve
 from ...sandbox import Limits
 from ...simulation.engines.taylor import TaylorEngine
 from ...simulation.request import Stabilization

@@ -26,8 +26,7 @@ from holonom.documents import schema
 from holonom.failures import HolonomError
 from holonom.figures.benchmark import draw_study
 from holonom.program.motion_problem import motion_problem
-from holonom.program.motion_program import Solve
-from holonom.program.request import Request
+from holonom.program.request import Request, Solve
 from holonom.sandbox import Limits
 from holonom.simulation.request import Stabilization
 

@@ -131,7 +131,7 @@ def test_projection_keeps_the_constraints_that_a_coarse_tolerance_loses():
 
 def test_the_work_of_a_control_is_balanced():
     """Truth: energy; the car axis' road does work on it all the time."""
-    request = SimulationRequest(1e-11, engine=EngineName.RUNGE_KUTTA, samples=0)
+    request = SimulationRequest(tol=1e-11, engine=EngineName.RUNGE_KUTTA, samples=0)
     report = simulate(problem("car_axis.mac"), request).report
     assert abs(report.energy_error) < 1e-11
     assert [leg.engine for leg in report.legs] == [EngineName.RUNGE_KUTTA]
@@ -141,14 +141,12 @@ def test_the_work_of_a_control_is_balanced():
 @pytest.mark.parametrize(
     ("request_", "said"),
     [
-        (SimulationRequest(1e-15), "holds tolerances from 1e-14 to 1, not 1e-15"),
+        (SimulationRequest(tol=1e-15), "holds tolerances from 1e-14 to 1, not 1e-15"),
         (SimulationRequest(precision="quadruple"), "computes in double precision, not quadruple"),
     ],
 )
 def test_what_it_lacks_is_refused(request_, said):
-    wanted = SimulationRequest(
-        request_.tol, request_.precision, EngineName.RUNGE_KUTTA, request_.drift, until=Fraction(1), samples=0
-    )
+    wanted = replace(request_, engine=EngineName.RUNGE_KUTTA, until=Fraction(1), samples=0)
     with pytest.raises(HolonomError, match=said):
         simulate(problem("pendulum.mac"), wanted)
 

@@ -1,0 +1,164 @@
+"""Options of requests: the command line, the arguments in Python and the reference are made of a request's fields.
+
+An option is a field of a dataclass. Its type is an enumeration, ``Fraction`` (an instant), ``bool``, ``int``, ``float``
+or ``str``; ``| None`` where it may be left out.
+"""
+
+import inspect
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from dataclasses import Field, dataclass, field, fields
+from decimal import Decimal
+from enum import StrEnum
+from fractions import Fraction
+from functools import wraps
+from types import NoneType
+from typing import Any, TypeVar
+
+from .failures import Failure, HolonomError
+
+LONGEST = 200  # digits of a number that an option gives
+LARGEST_EXPONENT = 307  # of a double
+SHOWN = 40  # letters of an instant that is refused
+NAMES = {bool: "bool", int: "int", float: "float", str: "str", Fraction: "number", NoneType: "None"}
+Number = int | float | Fraction | Decimal | str
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+@dataclass(frozen=True)
+class Option:
+    """How an option is written, and which values it takes."""
+
+    help: str  # one sentence, on the command line and in Python
+    metavar: str | None = None  # placeholder of the value on the command line
+    spelt: tuple[str, ...] = ()  # on the command line, where it is not the name of the field
+    least: float | None = None
+    most: float | None = None
+    above: float | None = None  # a bound that is not among the values
+    choices: tuple[StrEnum, ...] = ()  # of an enumeration; without them, all members
+    required: bool = False  # on the command line
+    in_python: Any = None  # default in Python, where it is another than the field's
+
+
+def option(default: Any, help: str, **details: Any) -> Any:
+    """Make a field of a request an option.
+
+    Parameters
+    ----------
+    default : object
+        Default of the field.
+    help, **details
+        Fields of `Option`.
+    """
+    return field(default=default, metadata={"option": Option(help, **details)})
+
+
+def options_of(request: type, *names: str) -> tuple[Field, ...]:
+    """Return the fields of a request that are options: all, or those named."""
+    found = {each.name: each for each in fields(request) if "option" in each.metadata}
+    return tuple(found[name] for name in names) if names else tuple(found.values())
+
+
+def kind_of(each: Field) -> type:
+    """Return the type of an option's values other than None; of int | str, str."""
+    return [kind for kind in _types(each) if kind is not NoneType][-1]
+
+
+def _types(each: Field) -> tuple[type, ...]:
+    return getattr(each.type, "__args__", (each.type,))
+
+
+def choices_of(each: Field) -> tuple[str, ...]:
+    """Return the values of an option that is an enumeration, as text; of any other, none."""
+    kind = kind_of(each)
+    return tuple(map(str, each.metadata["option"].choices or kind)) if issubclass(kind, StrEnum) else ()
+
+
+def read(each: Field, value: Any) -> Any:
+    """Return the value of an option as the request holds it.
+
+    Raises
+    ------
+    HolonomError
+        The value is not one of the choices, not in the range, or no instant.
+    """
+    kind, stated = kind_of(each), each.metadata["option"]
+    if value is None:
+        return None
+    if choices := choices_of(each):
+        if str(value) not in choices:
+            raise HolonomError(Failure.NOT_A_CHOICE, detail=f"{value}; there are {', '.join(choices)}")
+        return kind(str(value))
+    if kind is Fraction:
+        return read_instant(value)
+    if kind is str:
+        return value
+    if stated.least is not None and value < stated.least:
+        raise HolonomError(Failure.NOT_IN_RANGE, detail=f"{each.name} is {stated.least:g} or more, not {value}")
+    return value
+
+
+def read_instant(value: Any) -> Fraction:
+    """Return an instant, exactly as it is written: an integer, a decimal or a quotient of integers.
+
+    Raises
+    ------
+    HolonomError
+        It is none, or no double holds it.
+    """
+    text = str(value)
+    with suppress(ValueError, ZeroDivisionError):
+        if within_reach(text):
+            return Fraction(text)
+    raise HolonomError(Failure.NOT_AN_INSTANT, detail=text if len(text) <= SHOWN else f"{text[:SHOWN]}...")
+
+
+def within_reach(number: str) -> bool:
+    """Whether a double holds the parts of a decimal number or quotient, told without computing them."""
+    for part in number.lower().split("/"):
+        digits, _, exponent = part.partition("e")
+        if len(digits) > LONGEST or len(exponent) > 4 or not abs(int(exponent or 0)) + len(digits) <= LARGEST_EXPONENT:
+            return False
+    return True
+
+
+def takes_options(*taken: Field) -> Callable[[Function], Function]:
+    """Give a function options as arguments, passed on as the mapping `options`; ``{options}`` in its docstring too."""
+
+    def decorate(function: Function) -> Function:
+        own = inspect.signature(function)
+        rest = {each.kind: each for each in own.parameters.values() if each.kind is each.VAR_KEYWORD}
+        before = [each for each in own.parameters.values() if each.name != "options" and each.kind not in rest]
+        signature = own.replace(parameters=[*before, *map(_parameter, taken), *rest.values()])
+
+        @wraps(function)
+        def called(*arguments: Any, **keywords: Any) -> Any:
+            given = signature.bind(*arguments, **keywords)
+            given.apply_defaults()
+            values = dict(given.arguments)
+            options = {each.name: read(each, values.pop(each.name)) for each in taken}
+            more = values.pop(rest[inspect.Parameter.VAR_KEYWORD].name) if rest else {}
+            return function(**values, options=options, **more)
+
+        called.__signature__ = signature
+        called.__doc__ = inspect.cleandoc(function.__doc__ or "").replace("{options}", _documented(taken))
+        return called
+
+    return decorate
+
+
+def _parameter(each: Field) -> inspect.Parameter:
+    other = each.metadata["option"].in_python
+    default = each.default if other is None else other
+    default = str(default) if isinstance(default, StrEnum) else default
+    return inspect.Parameter(each.name, inspect.Parameter.POSITIONAL_OR_KEYWORD, default=default)
+
+
+def _documented(taken: Iterable[Field]) -> str:
+    """Return the options as the section "Parameters" of a docstring has them."""
+    return "\n".join(f"{each.name} : {_type_name(each)}\n    {each.metadata['option'].help}" for each in taken)
+
+
+def _type_name(each: Field) -> str:
+    choices = choices_of(each)
+    return f"{{{', '.join(map(repr, choices))}}}" if choices else " or ".join(NAMES[kind] for kind in _types(each))

@@ -1,0 +1,30 @@
+"""Which power series are asked for."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from ..options import option
+
+EXACT = "exact"
+AUTOMATIC = "automatic"
+
+
+@dataclass(frozen=True)
+class SeriesRequest:
+    """Which power series of a scene file."""
+
+    order: int = option(20, "Highest power of the time.", metavar="N", least=2, required=True)
+    scene: str | None = None  # name of the scene; None for the last one
+    # on the command line --digits and --exact
+    digits: int | str = option(
+        AUTOMATIC, "Confirmed digits; exact for rationals or nothing; automatic: exact if possible."
+    )
+    precision: int | str | None = option(
+        None,
+        "Compute with heyoka, in these numbers; their last digits are rounded, not confirmed.",
+        metavar="double|extended|quadruple|DIGITS",
+    )
+    until: Fraction | None = option(None, "Also continue the motion to T, beyond the radius.", metavar="T")
+    # numbers for what the file leaves open and for parameters
+    settings: Mapping[str, str] = field(default_factory=dict)

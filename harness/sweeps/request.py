@@ -1,0 +1,40 @@
+"""What a sweep is asked for."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from ..options import option
+from ..simulation.request import Stabilization
+
+if TYPE_CHECKING:
+    from .axes import Axes
+    from .kept import Kept
+
+TOLERANCE = 1e-12  # of a step
+CHUNK = 10_000
+
+
+@dataclass(frozen=True)
+class SweepRequest:
+    """What a sweep is asked for."""
+
+    axes: "Axes"
+    kept: "tuple[Kept, ...]"
+    tol: float = option(TOLERANCE, "Tolerance of a step.")
+    until: Fraction | None = option(None, "The last instant, in place of the scene's.", metavar="T")
+    drift: Stabilization = option(
+        Stabilization.PROJECTION,
+        "What keeps the constraints.",
+        choices=(Stabilization.PROJECTION, Stabilization.NONE),
+    )
+    chunk: int = option(CHUNK, "Rows of a file.", metavar="ROWS", least=1, most=10**7)
+    # in Python 1, since each process imports the program that asks for more
+    workers: int | None = option(
+        None, "Processes; without it, one a processor.", metavar="N", least=1, most=4096, in_python=1
+    )
+    scheduler: str | None = option(
+        None, "A running Dask scheduler, whose workers compute instead.", metavar="ADDRESS", spelt=("--dask",)
+    )
+    resume: bool = option(False, "Go on with what is there; without it, that or begin.")
+    called: str | None = None  # what the document calls the scene file; None for its path

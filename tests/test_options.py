@@ -1,0 +1,93 @@
+"""An option is one field of a request: the command line, the arguments in Python and the reference follow from it."""
+
+import inspect
+from dataclasses import dataclass
+from enum import StrEnum
+from fractions import Fraction
+
+import click
+import pytest
+from click.testing import CliRunner
+
+from holonom.cli.options import takes
+from holonom.failures import Failure, HolonomError
+from holonom.options import option, options_of, takes_options
+from holonom.reference.topics import command_options, option_row
+
+
+class Color(StrEnum):
+    RED = "red"
+    BLUE = "blue"
+
+
+@dataclass(frozen=True)
+class Toy:
+    color: Color = option(Color.RED, "Color of the toy.")
+    size: int | None = option(None, "Size of the toy.", metavar="N", least=2)
+    bought: Fraction | None = option(None, "When it was bought.", spelt=("--when",), metavar="T")
+    noisy: bool = option(False, "Make noise.")
+    owner: str = "nobody"  # not an option
+
+
+@click.command()
+@takes(*options_of(Toy))
+def toy(options):
+    click.echo(repr(Toy(**options)))
+
+
+class Shop:
+    @takes_options(*options_of(Toy))
+    def toy(self, options, **more):
+        """Return a toy.
+
+        Parameters
+        ----------
+        {options}
+        """
+        return Toy(**options), more
+
+
+@pytest.mark.parametrize(
+    ("arguments", "made"),
+    [
+        ([], Toy()),
+        (["--color", "blue", "--size", "3"], Toy(Color.BLUE, 3)),
+        (["--when", "3/4", "--noisy"], Toy(bought=Fraction(3, 4), noisy=True)),
+    ],
+)
+def test_field_of_request_is_option_of_command(arguments, made):
+    assert CliRunner().invoke(toy, arguments).output.strip() == repr(made)
+
+
+def test_field_of_request_is_argument_in_python():
+    assert Shop().toy() == (Toy(), {})
+    assert Shop().toy("blue", 3, bought="0.75", m=2) == (Toy(Color.BLUE, 3, Fraction(3, 4)), {"m": 2})
+    assert list(inspect.signature(Shop.toy).parameters) == ["self", "color", "size", "bought", "noisy", "more"]
+    assert "color : {'red', 'blue'}\n    Color of the toy.\nsize : int or None\n" in Shop.toy.__doc__
+
+
+def test_field_of_request_is_row_of_reference():
+    assert [option_row(each) for each in command_options(toy)] == [
+        ("--color red|blue", "Color of the toy.", "red"),
+        ("--size N", "Size of the toy.", ""),
+        ("--when T", "When it was bought.", ""),
+        ("--noisy", "Make noise.", ""),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("given", "failure"),
+    [
+        ({"color": "green"}, Failure.NOT_A_CHOICE),
+        ({"size": 1}, Failure.NOT_IN_RANGE),
+        ({"bought": "noon"}, Failure.NOT_AN_INSTANT),
+        ({"bought": "1e999"}, Failure.NOT_AN_INSTANT),
+    ],
+)
+def test_wrong_value_of_option_is_refused(given, failure):
+    with pytest.raises(HolonomError) as refused:
+        Shop().toy(**given)
+    assert refused.value.failure is failure
+    name, value = next(iter(given.items()))
+    spelt = "--when" if name == "bought" else f"--{name}"
+    assert CliRunner().invoke(toy, [spelt, str(value)]).exit_code == 2
