@@ -6,23 +6,14 @@ SymPy expressions are made of the trees when they are first asked for, and SymPy
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
+from .structs import key
 from .trees import Tree
 
 if TYPE_CHECKING:
     from sympy import Expr
 
-NAMED_QUANTITIES = (
-    "coordinates",
-    "velocities",
-    "accelerations",
-    "controls",
-    "control_rates",
-    "control_accelerations",
-    "parameters",
-    "multipliers",
-)
 Result = TypeVar("Result")
 
 
@@ -31,7 +22,7 @@ class Effect:
     """A named part of the kinetic or of the potential energy."""
 
     effect: str
-    tree: Tree
+    tree: Tree = key("value")
 
     @cached_property
     def value(self) -> "Expr":
@@ -44,7 +35,7 @@ class ForceEffect:
     """A named part of the generalized forces, one component a coordinate."""
 
     effect: str
-    trees: tuple[Tree, ...]
+    trees: tuple[Tree, ...] = key("value")
 
     @cached_property
     def value(self) -> "tuple[Expr, ...]":
@@ -73,12 +64,19 @@ class System:
     kinetic_energy: tuple[Effect, ...]
     potential_energy: tuple[Effect, ...]
     forces: tuple[ForceEffect, ...]  # Q as a sum of named parts
-    constraint_trees: tuple[Tree, ...]  # each is zero on every motion
+    constraint_trees: tuple[Tree, ...] = key("constraints")  # each is zero on every motion
 
     @cached_property
     def constraints(self) -> "tuple[Expr, ...]":
         """The constraints, g of them."""
         return each(expression, self.constraint_trees)
+
+
+class Correction(NamedTuple):
+    """A change of an initial value, so that it satisfies the constraints."""
+
+    name: str
+    size: str  # in decimal digits
 
 
 class Values(Mapping[str, "Expr"]):
@@ -101,28 +99,6 @@ class Values(Mapping[str, "Expr"]):
 
     def __len__(self) -> int:
         return len(self.trees)
-
-
-def read_system(system: dict[str, Any]) -> System:
-    """Read a system as records and other documents hold it, with the names of all its quantities."""
-    return System(
-        title=system["title"],
-        source=system["source"],
-        time=system["time"],
-        **{kind: tuple(system[kind]) for kind in NAMED_QUANTITIES},
-        kinetic_energy=each(_effect, system["kinetic_energy"]),
-        potential_energy=each(_effect, system["potential_energy"]),
-        forces=each(_force_effect, system["forces"]),
-        constraint_trees=tuple(system["constraints"]),
-    )
-
-
-def _effect(part: dict[str, Any]) -> Effect:
-    return Effect(part["effect"], part["value"])
-
-
-def _force_effect(part: dict[str, Any]) -> ForceEffect:
-    return ForceEffect(part["effect"], tuple(part["value"]))
 
 
 def expression(tree: Tree) -> "Expr":

@@ -8,16 +8,17 @@ hold no characters that hide or reverse text.
 import json
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .described import Effect, ForceEffect, System, Values, each, expression
+from .described import System, Values, each, expression
 from .failures import Failure, HolonomError
 from .formats import Document, read
 from .hidden import hidden_character
+from .structs import key, structured
 from .trees import JSON_INTEGERS, Tree
 
 if TYPE_CHECKING:
@@ -57,14 +58,14 @@ class DescribedScene:
         The parameters that have values; settings are among them.
     initial_state, initial_guess : mapping of str to Expr
         Coordinates and velocities that the scene gives, and those near which it wants the others.
-    nominal : mapping of str to Expr
-        Sizes of coordinates, velocities and the time ``t``.
     span_trees : pair of trees or None
         First and last instant.
     until_trees : tuple of trees
         Expressions whose zeros end the motion.
     observe : tuple of str
         What to compute.
+    nominal : mapping of str to Expr
+        Sizes of coordinates, velocities and the time ``t``.
     """
 
     name: str
@@ -72,14 +73,14 @@ class DescribedScene:
     effects: tuple[str, ...]
     control_law: Values
     prescribed_reactions: Values
-    servo_trees: tuple[Tree, ...]
+    servo_trees: tuple[Tree, ...] = key("servo_constraints")
     parameter_values: Values
     initial_state: Values
     initial_guess: Values
-    nominal: Values
-    span_trees: tuple[Tree, Tree] | None
-    until_trees: tuple[Tree, ...]
+    span_trees: tuple[Tree, Tree] | None = key("time_span")
+    until_trees: tuple[Tree, ...] = key("until")
     observe: tuple[str, ...]
+    nominal: Values = field(default_factory=lambda: Values({}))
 
     @cached_property
     def time_span(self) -> "tuple[Expr, Expr] | None":
@@ -128,12 +129,12 @@ class Description:
     @cached_property
     def tables(self) -> tuple[Table, ...]:
         """The tables of its control laws and servo-constraints."""
-        return each(_table, self.content["tables"])
+        return tuple(structured(Table, table) for table in self.content["tables"])
 
     @cached_property
     def scenes(self) -> tuple[DescribedScene, ...]:
         """Its scenes, oldest first."""
-        return each(_scene, self.content["scenes"])
+        return tuple(structured(DescribedScene, scene) for scene in self.content["scenes"])
 
     @property
     def unused_parameters(self) -> tuple[str, ...]:
@@ -203,49 +204,19 @@ def _strings(part: Any) -> Iterator[str]:
 
 def _system(system: dict[str, Any]) -> System:
     coordinates, controls = tuple(system["coordinates"]), tuple(system["controls"])
-    return System(
-        title=system["title"],
-        source=system["source"],
-        time=TIME,
-        coordinates=coordinates,
-        velocities=_rates("dot", coordinates),
-        accelerations=_rates("ddot", coordinates),
-        controls=controls,
-        control_rates=_rates("dot", controls),
-        control_accelerations=_rates("ddot", controls),
-        parameters=tuple(system["parameters"]),
-        multipliers=tuple(f"lambda{place}" for place, _ in enumerate(system["constraints"], 1)),
-        kinetic_energy=tuple(Effect(part["effect"], part["value"]) for part in system["kinetic_energy"]),
-        potential_energy=tuple(Effect(part["effect"], part["value"]) for part in system["potential_energy"]),
-        forces=tuple(ForceEffect(part["effect"], tuple(part["value"])) for part in system["forces"]),
-        constraint_trees=tuple(system["constraints"]),
-    )
+    names = {
+        "time": TIME,
+        "velocities": _rates("dot", coordinates),
+        "accelerations": _rates("ddot", coordinates),
+        "control_rates": _rates("dot", controls),
+        "control_accelerations": _rates("ddot", controls),
+        "multipliers": [f"lambda{place}" for place, _ in enumerate(system["constraints"], 1)],
+    }
+    return structured(System, system | names)
 
 
 def _rates(dots: str, names: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(f"{dots}({name})" for name in names)
-
-
-def _table(table: dict[str, Any]) -> Table:
-    return Table(tuple(map(tuple, table["points"])), table["ends"] and tuple(table["ends"]))
-
-
-def _scene(scene: dict[str, Any]) -> DescribedScene:
-    return DescribedScene(
-        name=scene["name"],
-        title=scene["title"],
-        effects=tuple(scene["effects"]),
-        control_law=Values(scene["control_law"]),
-        prescribed_reactions=Values(scene["prescribed_reactions"]),
-        servo_trees=tuple(scene["servo_constraints"]),
-        parameter_values=Values(scene["parameter_values"]),
-        initial_state=Values(scene["initial_state"]),
-        initial_guess=Values(scene["initial_guess"]),
-        nominal=Values(scene.get("nominal", {})),
-        span_trees=scene["time_span"] and tuple(scene["time_span"]),
-        until_trees=tuple(scene["until"]),
-        observe=tuple(scene["observe"]),
-    )
 
 
 def _with_value(content: dict[str, Any], name: str, value: Tree, file: Path) -> dict[str, Any]:

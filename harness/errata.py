@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 from .documents import Document, ask, read
 from .files import shared
-from .mathjson import Tree
+from .structs import structured
+from .trees import Tree
 
 PRINTED = shared("examples") / "paper" / "printed.mac"
 
@@ -40,4 +41,4 @@ def errata() -> tuple[PrintedEquation, ...]:
         Maxima is missing or refuses.
     """
     document = read(Document.ERRATA, ask(Document.ERRATA, PRINTED))
-    return tuple(PrintedEquation(**equation) for equation in document["equations"])
+    return tuple(structured(PrintedEquation, equation) for equation in document["equations"])

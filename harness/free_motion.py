@@ -3,7 +3,7 @@
 And the motion under prescribed reactions, of which free motion is the case zero.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property
@@ -13,13 +13,14 @@ from sympy import Add, Expr, Mul, Symbol
 
 from .crosscheck.report import Judgement
 from .crosscheck.system import described_system
-from .described import read_system
+from .described import System, Values, each
 from .documents import Document, ask, read
 from .free_verdicts import FreeMotionTrial
 from .mathjson import to_sympy
 from .sandbox import Limits
 from .shown import Shown
 from .source import Source
+from .structs import key, structured
 from .trees import Tree
 
 Law = Mapping[str, Expr]
@@ -47,7 +48,8 @@ class MotionVerdict:
     """Whether the motion of the scene is free."""
 
     verdict: Free  # free only where that is proved
-    states: str  # ``all states``, where every motion under the scene's law is free, or ``this state``
+    # ``all states``, where every motion under the scene's law is free, or ``this state``
+    states: str = key("for")
     evidence: str  # what shows it, or what is in the way of a proof: one sentence
     # where undecided, the order to which all coefficients of the multipliers vanish; None where there are none
     order: int | None
@@ -62,7 +64,8 @@ class UniversalLaw:
     constants: tuple[str, ...]  # constants of integration: any numbers
     free: tuple[str, ...]  # controls that stay free functions of the time
     positive: tuple[Expr, ...]  # what must be positive where the law holds; empty where it always holds
-    check: Judgement  # what SymPy found when it tried the law on the equations of motion
+    # what SymPy found when it tried the law on the equations of motion; None before that
+    check: Judgement | None = None
 
 
 @dataclass(frozen=True)
@@ -94,21 +97,22 @@ class TrajectoryControl:
     # scene's numbers, along its time span), ``series`` (with the scene's numbers, at the initial instant), ``any
     # control``, ``none`` (there is none) or ``not determined``
     kind: str
-    law: Law  # by control; where there is an order a truncated series, an unevaluated sum, lowest power first
+    # by control; where there is an order a truncated series, an unevaluated sum, lowest power first
+    law: Values
     free: tuple[str, ...]  # controls that stay free functions of the time; a closed form may contain them
-    order: int | None  # to which the law is a series; None where it is closed
-    motion: Law  # the free motion by coordinate, where its closed form is known
+    motion: Values  # the free motion by coordinate, where its closed form is known
     # instants of the scene's time span with the values of the controls, as far as there are such controls
     samples: tuple[tuple[float, ...], ...]
     reason: str
+    order: int | None = None  # to which the law is a series; None where it is closed
 
 
 @dataclass(frozen=True)
 class PrescribedReactions:
     """The multipliers that a scene prescribes, by name, and what the controls do then: ``ddot(u)`` by name."""
 
-    reactions: Law
-    controls: Law
+    reactions: Values
+    controls: Values
 
 
 @dataclass(frozen=True)
@@ -117,8 +121,28 @@ class OpenAccelerations:
 
     rank: int  # of the mass matrix
     # directions that it turns into zero, each by the accelerations in it; empty where they were not worked out
-    directions: tuple[Law, ...]
+    directions: tuple[Values, ...]
     deciding: tuple[int, ...]  # numbers of the constraints that decide, from 1
+
+
+@dataclass(frozen=True)
+class Premises:
+    """What the answers are about: the system with the scene's effects, and the scene's numbers."""
+
+    system: System
+    effects: tuple[str, ...]
+    redundant: tuple[str, ...]  # multipliers of the constraints that are left out
+    parameter_values: Values
+    control_law: Values
+    time_span: tuple[Tree, Tree] | None
+
+    def trial(self) -> FreeMotionTrial:
+        """What the verdicts are tried on."""
+        return FreeMotionTrial(
+            described_system(self.system, self.effects).without(self.redundant),
+            {Symbol(name, real=True): value for name, value in self.parameter_values.items()},
+            self.time_span and each(to_sympy, self.time_span),
+        )
 
 
 @dataclass(frozen=True, repr=False)
@@ -132,7 +156,7 @@ class FreeMotion(Shown):
     """
 
     scene: str
-    condition_trees: tuple[Tree, ...] | None  # as MathJSON
+    condition_trees: tuple[Tree, ...] | None = key("condition")  # as MathJSON
     left_out: str | None
     motion: MotionVerdict
     universal: UniversalControls
@@ -140,11 +164,12 @@ class FreeMotion(Shown):
     prescribed: PrescribedReactions | None
     open: OpenAccelerations | None
     redundant: tuple[str, ...]
+    premises: Premises
 
     @cached_property
     def condition(self) -> tuple[Expr, ...] | None:
         """What vanishes where a motion is free, for each constraint; None where it is not written out."""
-        return None if self.condition_trees is None else _expressions(self.condition_trees)
+        return None if self.condition_trees is None else each(to_sympy, self.condition_trees)
 
 
 def free_motion(
@@ -171,11 +196,11 @@ def free_motion(
     ----------
     Chen, Guo & Mei (2019), section 2, eq. (10).
     """
-    return read_free_motion(ask(Document.FREE_MOTION, file, scene, order, settings=settings, limits=limits))
+    return judged(read_free_motion(ask(Document.FREE_MOTION, file, scene, order, settings=settings, limits=limits)))
 
 
 def read_free_motion(text: str) -> FreeMotion:
-    """Read what Maxima wrote, and check the laws in it.
+    """Read what Maxima wrote; its verdicts are not judged yet (`judged`).
 
     Raises
     ------
@@ -183,32 +208,30 @@ def read_free_motion(text: str) -> FreeMotion:
         As `holonom.documents.read`.
     """
     document = read(Document.FREE_MOTION, text)
-    trial = _trial(document)
-    motion, trajectory, prescribed, left_open = (
-        document[part] for part in ("motion", "trajectory", "prescribed", "open")
+    series = document["trajectory"]["series"]
+    found = structured(
+        FreeMotion, document, universal=_universal(document["universal"]), premises=structured(Premises, document)
     )
-    return FreeMotion(
-        document["scene"],
-        None if document["condition"] is None else tuple(document["condition"]),
-        document["left_out"],
-        _motion(motion, trial, _law(document["control_law"])),
-        _universal(document["universal"], trial),
-        TrajectoryControl(
-            trajectory["kind"],
-            _law(trajectory["law"]) if trajectory["series"] is None else _truncated_law(trajectory["series"]),
-            tuple(trajectory["free"]),
-            trajectory["series"] and trajectory["series"]["order"],
-            _law(trajectory["motion"]),
-            tuple(tuple(map(float, sample)) for sample in trajectory["samples"]),
-            trajectory["reason"],
-        ),
-        prescribed and PrescribedReactions(_law(prescribed["reactions"]), _law(prescribed["controls"])),
-        left_open
-        and OpenAccelerations(
-            left_open["rank"], tuple(map(_law, left_open["directions"])), tuple(left_open["deciding"])
-        ),
-        tuple(document["redundant"]),
-    )
+    if series is None:
+        return found
+    law, order = _truncated_law(series), series["order"]
+    return replace(found, trajectory=replace(found.trajectory, law=law, order=order))
+
+
+def judged(found: FreeMotion) -> FreeMotion:
+    """Try each verdict on the equations of motion; one that they contradict becomes undecided."""
+    trial = found.premises.trial()
+    motion, universal = found.motion, found.universal
+    contradiction = ""
+    if motion.verdict is Free.FREE and motion.states == "all states" and found.premises.control_law:
+        contradiction = trial.contradiction_of_free_motion(found.premises.control_law)
+    if contradiction:
+        evidence = f"{motion.evidence}; but {contradiction}"
+        motion = replace(motion, verdict=Free.UNDECIDED, states="this state", evidence=evidence)
+    laws = tuple(replace(law, check=trial.of_law(law.controls, law.positive)) for law in universal.laws)
+    verdict, contradiction = trial.verdict_on_laws(universal.verdict, [law.check for law in laws])
+    reason = contradiction or universal.reason
+    return replace(found, motion=motion, universal=replace(universal, verdict=verdict, laws=laws, reason=reason))
 
 
 def _truncated_law(series: dict) -> Law:
@@ -219,60 +242,17 @@ def _truncated_law(series: dict) -> Law:
         terms = [Mul(c, step**k, evaluate=k != 1 or c == 1) for k, c in enumerate(coefficients) if c != 0]
         return Add(*terms, evaluate=False) if len(terms) > 1 else Add(*terms)
 
-    return {name: added_up(_expressions(trees)) for name, trees in series["coefficients"].items()}
+    return {name: added_up(each(to_sympy, trees)) for name, trees in series["coefficients"].items()}
 
 
-def _trial(document: dict) -> FreeMotionTrial:
-    span = document["time_span"]
-    return FreeMotionTrial(
-        described_system(read_system(document["system"]), document["effects"]).without(document["redundant"]),
-        {Symbol(name, real=True): value for name, value in _law(document["parameter_values"]).items()},
-        span and (to_sympy(span[0]), to_sympy(span[1])),
-    )
-
-
-def _motion(motion: dict, trial: FreeMotionTrial, law: Law) -> MotionVerdict:
-    found = MotionVerdict(
-        Free(motion["verdict"]),
-        motion["for"],
-        motion["evidence"],
-        motion["order"],
-        motion["first"] and FirstCoefficient(**motion["first"]),
-    )
-    if found.verdict is not Free.FREE or found.states != "all states" or not law:
-        return found
-    contradiction = trial.contradiction_of_free_motion(law)
-    if not contradiction:
-        return found
-    return replace(
-        found, verdict=Free.UNDECIDED, states="this state", evidence=f"{found.evidence}; but {contradiction}"
-    )
-
-
-def _universal(universal: dict, trial: FreeMotionTrial) -> UniversalControls:
+def _universal(universal: dict) -> UniversalControls:
     families = zip(*(universal[part] for part in ("laws", "constants", "free", "positive")), strict=True)
-    laws = tuple(_checked_law(trial, *family) for family in families)
-    verdict, contradiction = trial.verdict_on_laws(universal["verdict"], [law.check for law in laws])
-    return UniversalControls(
-        verdict,
-        laws,
-        tuple(
-            ControlCondition(to_sympy(each["expression"]), to_sympy(each["place"]), tuple(each["effects"]))
-            for each in universal["conditions"]
-        ),
-        universal["generic"],
-        contradiction or universal["reason"],
+    laws = tuple(
+        UniversalLaw(Values(law), tuple(constants), tuple(free), each(to_sympy, positive))
+        for law, constants, free, positive in families
     )
-
-
-def _checked_law(trial: FreeMotionTrial, law: dict, constants: list, free: list, positive: list) -> UniversalLaw:
-    controls, conditions = _law(law), _expressions(positive)
-    return UniversalLaw(controls, tuple(constants), tuple(free), conditions, trial.of_law(controls, conditions))
-
-
-def _expressions(trees: Iterable[Tree]) -> tuple[Expr, ...]:
-    return tuple(to_sympy(tree) for tree in trees)
-
-
-def _law(trees: dict) -> Law:
-    return {name: to_sympy(tree) for name, tree in trees.items()}
+    conditions = tuple(
+        ControlCondition(to_sympy(found["expression"]), to_sympy(found["place"]), tuple(found["effects"]))
+        for found in universal["conditions"]
+    )
+    return structured(UniversalControls, universal, laws=laws, conditions=conditions)

@@ -9,14 +9,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from .described import System, Values, each, expression, read_system
+from .described import Correction, System, Values, expression
 from .documents import Document, ask, read
 from .failures import Failure, HolonomError
 from .maxima import DEFAULT_LIMITS, NO_SETTINGS
 from .sandbox import Limits
 from .source import Source
+from .structs import key, structured
 from .trees import Tree
 
 if TYPE_CHECKING:
@@ -27,8 +28,8 @@ if TYPE_CHECKING:
 class Relation:
     """left = right, on every motion of the system."""
 
-    left_tree: Tree
-    right_tree: Tree
+    left_tree: Tree = key("left")
+    right_tree: Tree = key("right")
 
     @cached_property
     def left(self) -> "Expr":
@@ -100,9 +101,8 @@ class Scene:
         All coordinates and velocities at the initial instant, by name.
     given : tuple of str
         Coordinates and velocities whose initial values the scene gives; the others follow from the constraints.
-    correction : (str, str) or None
-        The given value that missed the constraints in its last digits and was corrected most, and the size of the
-        correction in decimal digits.
+    correction : Correction or None
+        That of the given value that missed the constraints in its last digits and was corrected most.
     span_trees : pair of trees or None
         First and last instant.
     observe : tuple of str
@@ -119,12 +119,12 @@ class Scene:
     title: str
     derivation: int
     effects: tuple[str, ...]
-    control_law: Mapping[str, "Expr"]
-    parameter_values: Mapping[str, "Expr"]
-    initial_state: Mapping[str, "Expr"]
+    control_law: Values
+    parameter_values: Values
+    initial_state: Values
     given: tuple[str, ...]
-    correction: tuple[str, str] | None
-    span_trees: tuple[Tree, Tree] | None
+    correction: Correction | None
+    span_trees: tuple[Tree, Tree] | None = key("time_span")
     observe: tuple[str, ...]
     equations: tuple[Equation, ...]
     left_out: LeftOut | None = None
@@ -164,57 +164,8 @@ def read_record(text: str) -> Record:
     HolonomError
         The text is not JSON, or has not the shape of a record.
     """
-    document = read(Document.RECORD, text)
-    record = Record(
-        maxima=document["maxima"],
-        system=read_system(document["system"]),
-        derivations=each(_derivation, document["derivations"]),
-        scenes=each(_scene, document["scenes"]),
-    )
+    record = structured(Record, read(Document.RECORD, text))
     for scene in record.scenes:
         if scene.derivation >= len(record.derivations):
             raise HolonomError(Failure.NOT_A_RECORD, detail=f"the scene {scene.name} has no derivation")
     return record
-
-
-def _derivation(derivation: dict[str, Any]) -> Derivation:
-    return Derivation(
-        tuple(derivation["effects"]),
-        each(_equation, derivation["equations"]),
-        derivation["mass_matrix"],
-        tuple(derivation["redundant"]),
-        derivation["closed_form_operations"],
-        _left_out(derivation["left_out"]),
-    )
-
-
-def _left_out(found: dict[str, Any] | None) -> LeftOut | None:
-    return found and LeftOut(tuple(found["numbers"]), found["size"], found["limit"])
-
-
-def _scene(scene: dict[str, Any]) -> Scene:
-    span = scene["time_span"]
-    return Scene(
-        name=scene["name"],
-        title=scene["title"],
-        derivation=scene["derivation"],
-        effects=tuple(scene["effects"]),
-        control_law=Values(scene["control_law"]),
-        law_around_start=scene.get("law_around_start", False),
-        parameter_values=Values(scene["parameter_values"]),
-        initial_state=Values(scene["initial_state"]),
-        given=tuple(scene["given"]),
-        correction=scene["correction"] and (scene["correction"]["name"], scene["correction"]["size"]),
-        span_trees=None if span is None else (span[0], span[1]),
-        observe=tuple(scene["observe"]),
-        equations=each(_equation, scene["equations"]),
-        left_out=_left_out(scene["left_out"]),
-    )
-
-
-def _equation(equation: dict[str, Any]) -> Equation:
-    return Equation(equation["id"], equation["number"], equation["name"], each(_relation, equation["relations"]))
-
-
-def _relation(relation: dict[str, Any]) -> Relation:
-    return Relation(relation["left"], relation["right"])

@@ -20,8 +20,9 @@ from ..language import translatable
 from ..sandbox import Limits
 from ..shown import Shown
 from ..source import Source
+from ..structs import key, structured
 from .c_function import compile_c
-from .motion_program import Program, program_of
+from .motion_program import Program
 from .numpy_function import NumpyFunction
 from .request import Request
 from .timing import Batch, Timer, python_batch, shortest_times
@@ -50,7 +51,7 @@ class TermProgram:
     """A term of one of the paper's equations."""
 
     equation: str
-    name: str
+    name: str = key("term")
     program: Program | None  # it computes the term for every s, or beta; None where the term is identically zero
 
 
@@ -120,12 +121,7 @@ def read_costs(text: str) -> Costs:
     HolonomError
         The text is not such a document, or one of its programs is none.
     """
-    document = read(Document.EFFECTS, text)
-    return Costs(
-        program_of(document["program"]),
-        tuple(TermProgram(t["equation"], t["term"], _program_if_any(t["program"])) for t in document["terms"]),
-        tuple(EffectProgram(e["name"], e["called"], _program_if_any(e["otherwise"])) for e in document["effects"]),
-    )
+    return structured(Costs, read(Document.EFFECTS, text))
 
 
 def measure_costs(costs: Costs) -> MeasuredCosts:
@@ -193,7 +189,3 @@ def _points(names: Mapping[str, None]) -> Iterator[dict[str, float]]:
     places = count(1)
     for _ in range(ATTEMPTS):
         yield {name: 0.5 + GOLDEN * place % 1 for name, place in zip(names, places, strict=False)}
-
-
-def _program_if_any(document: object) -> Program | None:
-    return None if document is None else program_of(document)

@@ -11,9 +11,10 @@ from ..documents import NAME, Document, ask, read
 from ..failures import Failure, HolonomError
 from ..sandbox import Limits
 from ..source import Source
-from .motion_program import Program, program_of
+from ..structs import structured
+from .motion_program import Program
 from .request import Request
-from .table import Table, read_tables
+from .table import Table
 
 
 @dataclass(frozen=True)
@@ -82,17 +83,5 @@ def read_model(text: str) -> Model:
         It is no such document, or one of its programs is no program.
     """
     document = read(Document.MODEL, text)
-    names = {kind: tuple(document[kind]) for kind in ("coordinates", "multipliers", "controls", "parameters")}
-    parts = ("law", "motion", "constraints", "projection", "servo")
-    programs = {part: document[part] and program_of(document[part]) for part in parts}
-    return Model(
-        system=document["system"]["title"],
-        source=document["system"]["source"],
-        scene=document["scene"],
-        title=document["title"],
-        values=document["values"],
-        start=document["start"],
-        tables=read_tables(document["tables"]),
-        **names,
-        **programs,
-    )
+    system = document["system"]
+    return structured(Model, document, system=system["title"], source=system["source"])

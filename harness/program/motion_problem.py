@@ -11,13 +11,15 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
+from ..described import Correction
 from ..documents import Document, ask, read
 from ..failures import Failure, HolonomError
 from ..sandbox import Limits
 from ..source import Source
-from .motion_program import Program, count_operations, names_in, program_of
+from ..structs import structured
+from .motion_program import Program, count_operations, names_in
 from .request import Request
-from .table import Table, read_tables
+from .table import Table
 
 if TYPE_CHECKING:
     from .drawing import Drawing
@@ -87,7 +89,7 @@ class MotionProblem:
     # value decides about the others
     start: Mapping[str, str]
     # the given value that missed the constraints in its last digits and was corrected most, and by how much
-    correction: tuple[str, str] | None
+    correction: Correction | None
     obstacle: str | None  # why no order of pivots solves the equations of motion; None where one does
     # ``ddot(q)``, the multipliers by name and, where the scene observes them, ``Lambda[s]``; None with an obstacle
     motion: Program | None
@@ -111,7 +113,7 @@ class MotionProblem:
     # of each output that servo-constraints prescribe: which of its rates the controls are in
     relative_degrees: tuple[int, ...] = ()
     # the initial value that differs most from the scene's guess, and by how much; None without a guess
-    moved: tuple[str, str] | None = None
+    moved: Correction | None = None
     # expressions whose first zero crossing ends the motion, as Maxima prints them; empty where the time span alone does
     until: tuple[str, ...] = ()
     events: Program | None = None  # ``event[i]``, their values; they may need the multipliers. None without `until`.
@@ -246,41 +248,22 @@ def read_problem(text: str) -> MotionProblem:
         It is no such document, or one of its programs is no program.
     """
     document = read(Document.MOTION_PROBLEM, text)
-    span, tables = document["time_span"], read_tables(document.get("tables", ()))
-    return MotionProblem(
-        system=document["system"]["title"],
-        source=document["system"]["source"],
-        scene=document["scene"],
-        title=document["title"],
-        time_span=span and tuple(span),
-        observe=tuple(document["observe"]),
-        coordinates=tuple(document["coordinates"]),
-        multipliers=tuple(document["multipliers"]),
+    system, span, drawing = document["system"], document["time_span"], document["drawing"]
+    start = document["parametric_start"]
+    problem = structured(
+        MotionProblem,
+        document,
+        system=system["title"],
+        source=system["source"],
         start=document["start"] or {"t": span[0] if span else "0"},
-        correction=(correction := document["correction"]) and (correction["name"], correction["size"]),
-        moved=(moved := document.get("moved")) and (moved["name"], moved["size"]),
-        obstacle=document["obstacle"],
-        motion=_optional(document["motion"]),
-        projection=_optional(document["projection"]),
-        matrices=program_of(document["matrices"]),
-        energy=program_of(document["energy"]),
-        drawing=_drawing(document["drawing"], tables),
-        law_end=document.get("law_end"),
-        written_out=tuple(document.get("written_out", ())),
-        controls=_optional(document.get("controls")),
-        servo_matrix=_optional(document.get("servo_matrix")),
-        servo=document.get("servo", 0),
-        relative_degrees=tuple(document.get("relative_degrees", ())),
-        until=tuple(document.get("until", ())),
-        events=_optional(document.get("events")),
-        signs=tuple(Sign(sign["name"], sign["of"], By(sign["by"])) for sign in document["signs"]),
-        switching=_optional(document["switching"]),
-        tables=tables,
-        parameters=tuple(document["parameters"]),
-        values={name: Fraction(value) for name, value in document["values"].items()},
-        parametric_start=_parametric_start(document["parametric_start"]),
-        nominal={name: float(size) for name, size in document.get("nominal", {}).items()},
+        parametric_start=start and structured(ParametricStart, start | {"origins": start["origins"] or {}}),
+        drawing=None,
     )
+    if drawing is None:
+        return problem
+    from .drawing import Drawing
+
+    return replace(problem, drawing=structured(Drawing, drawing, tables=problem.tables))
 
 
 def computing(program: Program, wanted: Collection[str]) -> Program:
@@ -294,22 +277,3 @@ def computing(program: Program, wanted: Collection[str]) -> Program:
             needed |= names_in(expression)
     part = replace(program, outputs=outputs, assignments=tuple(reversed(kept)))
     return replace(part, operations=count_operations(part))
-
-
-def _optional(document: Any) -> Program | None:
-    return None if document is None else program_of(document)
-
-
-def _parametric_start(document: Any) -> ParametricStart | None:
-    if document is None:
-        return None
-    origins = {name: Origin(origin) for name, origin in (document["origins"] or {}).items()}
-    return ParametricStart(_optional(document["program"]), origins, document["obstacle"])
-
-
-def _drawing(document: Any, tables: tuple[Table, ...]) -> "Drawing | None":
-    if document is None:
-        return None
-    from .drawing import Drawing, Shape
-
-    return Drawing(tuple(map(Shape, document["shapes"])), program_of(document["program"]), tables)

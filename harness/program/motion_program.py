@@ -20,6 +20,7 @@ from typing import Any
 
 from ..documents import Document, read, require
 from ..failures import Failure, HolonomError
+from ..structs import structured
 from .request import Solve
 
 DEEPEST = 100  # levels of an expression: Maxima names what is deeper, and Python's recursion limit stays far away
@@ -107,6 +108,12 @@ class Program:
     # constraint forces are unique, multipliers are not
     redundant: tuple[str, ...] = ()
 
+    @staticmethod
+    def of_document(document: Any) -> "Program":
+        """Read a motion program that is part of a larger document. Raises as `read_program`."""
+        require(Document.PROGRAM, document)
+        return _checked(document)
+
 
 def read_program(text: str) -> Program:
     """Read the document of a motion program.
@@ -119,23 +126,10 @@ def read_program(text: str) -> Program:
     return _checked(read(Document.PROGRAM, text))
 
 
-def program_of(document: Any) -> Program:
-    """Read a motion program that is part of a larger document. Raises as `read_program`."""
-    require(Document.PROGRAM, document)
-    return _checked(document)
-
-
 def _checked(document: Mapping[str, Any]) -> Program:
-    program = Program(
-        scene=document["scene"],
-        solve=Solve(document["solve"]),
-        method=document["method"],
-        redundant=tuple(document["redundant"]),
-        operations=document["operations"],
-        inputs=tuple(document["inputs"]),
-        assignments=tuple((name, _expression(tree, DEEPEST)) for name, tree in document["assignments"]),
-        outputs={name: _atom(tree) for name, tree in document["outputs"].items()},
-    )
+    assignments = tuple((name, _expression(tree, DEEPEST)) for name, tree in document["assignments"])
+    outputs = {name: _atom(tree) for name, tree in document["outputs"].items()}
+    program = structured(Program, document, assignments=assignments, outputs=outputs)
     _require_straight_line(program)
     return program
 

@@ -4,11 +4,10 @@ Programs have the letters of such a polynomial among their inputs, t_k and the c
 (`maxima/laws/table.mac`); its numbers are data, and found by the time.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
 
 Piece = tuple[str, str, str, str, str]  # t_k, c0, c1, c2, c3, exact or in decimal digits
 
@@ -39,8 +38,3 @@ class Table:
     def rows(self) -> Iterator[tuple[float, ...]]:
         """The polynomials in double precision."""
         return ((float(t), *map(float, piece[1:])) for t, piece in zip(self.begins, self.pieces, strict=True))
-
-
-def read_tables(document: Sequence[Mapping[str, Any]]) -> tuple[Table, ...]:
-    """The tables of a document of Maxima."""
-    return tuple(Table(tuple(table["inputs"]), tuple(map(tuple, table["pieces"]))) for table in document)

@@ -16,8 +16,9 @@ import mpmath
 from ..documents import Document, Publication, published, read
 from ..failures import Failure, HolonomError
 from ..number_texts import number, numbers
-from ..program.motion_program import Program, program_of
+from ..program.motion_program import Program
 from ..shown import Shown
+from ..structs import structured
 from .radius import POLYNOMIAL, UNPROVED, Radius, described, estimate_radius, truncation_error
 
 WORKING_DIGITS = 50  # for what is computed from exact coefficients
@@ -110,22 +111,7 @@ def read_series(text: str) -> MotionSeries:
     HolonomError
         It is no such document.
     """
-    document = read(Document.MOTION_SERIES, text)
-    continuation = document["continuation"]
-    return MotionSeries(
-        scene=document["scene"],
-        title=document["title"],
-        order=document["order"],
-        t0=document["t0"],
-        arithmetic=document["arithmetic"],
-        coordinates=_series(document["coordinates"]),
-        multipliers=_series(document["multipliers"]),
-        constraint_forces=_series(document["constraint_forces"]),
-        continuation=None if continuation is None else _continuation(continuation),
-        switch=document.get("switch"),
-        polynomial=document.get("polynomial", False),
-        program=program_of(document["program"]) if document.get("program") else None,
-    )
+    return structured(MotionSeries, read(Document.MOTION_SERIES, text))
 
 
 def values_at(motion: MotionSeries, time: Fraction) -> Values:
@@ -187,19 +173,6 @@ def series_document(motion: MotionSeries, values: Values | None = None) -> dict[
     if motion.continuation is not None:
         content["continuation"] = vars(motion.continuation)
     return published(Publication.SERIES, content)
-
-
-def _series(group: Mapping[str, Any]) -> dict[str, NumberTexts]:
-    return {name: tuple(map(str, coefficients)) for name, coefficients in group.items()}
-
-
-def _continuation(document: Mapping[str, Any]) -> Continuation:
-    return Continuation(
-        digits=document["digits"],
-        instants=tuple(document["instants"]),
-        coordinates=_series(document["coordinates"]),
-        velocities=_series(document["velocities"]),
-    )
 
 
 def _require_inside(motion: MotionSeries, time: Fraction, distance: float) -> None:

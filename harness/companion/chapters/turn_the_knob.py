@@ -20,7 +20,7 @@ from ...language import gettext
 from ...mathjson import from_sympy
 from ...program.model import Model, scene_model
 from ...program.motion_problem import motion_problem
-from ...program.motion_program import Program, program_of
+from ...program.motion_program import Program
 from ...program.request import Request
 from ...program.targets import javascript
 from ...record import Scene
@@ -146,7 +146,7 @@ def singular(found: Derived, name: str) -> Program:
     real, imaginary = denominator(found).subs(law).expand(complex=True).as_real_imag()
     parts = {"re": sympy.simplify(real), "im": sympy.simplify(imaginary)}
     inputs = sorted({str(symbol) for part in parts.values() for symbol in part.free_symbols} | {"a", "b"})
-    return program_of(
+    return Program.of_document(
         {
             "format": "holonom-program",
             "version": 1,

@@ -8,7 +8,7 @@ import pytest
 
 from holonom.benchmark.work_precision.operations import expansion_operations
 from holonom.program.arithmetic import Arithmetic, run_program
-from holonom.program.motion_program import Name, Operation, program_of
+from holonom.program.motion_program import Name, Operation, Program
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
@@ -43,7 +43,7 @@ class CountingSeries:
 
 
 def program(assignments):
-    return program_of(
+    return Program.of_document(
         {
             "format": "holonom-program",
             "version": 1,

@@ -1,0 +1,77 @@
+"""Typed values of documents: a dataclass of what JSON holds, by the annotations of its fields.
+
+A document has the shape of its schema when it comes here (`holonom.formats.read`): nothing is checked a second time.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import field, fields, is_dataclass
+from functools import cache, partial
+from types import NoneType, UnionType
+from typing import Any, TypeVar, get_args, get_origin
+
+Struct = TypeVar("Struct")
+AS_IT_IS = (bool, int, str)
+
+
+def key(name: str) -> Any:
+    """Make a field of a dataclass that has another name in the document."""
+    return field(metadata={"key": name})
+
+
+def structured(kind: type[Struct], content: Mapping[str, Any], **given: Any) -> Struct:
+    """Return the dataclass, or named tuple, that an object of a document describes.
+
+    Parameters
+    ----------
+    kind : type
+        The type. Of its fields those of dataclasses, named tuples, ``tuple[...]`` and ``Mapping[str, ...]`` are read in
+        the same way; a class that has ``of_document`` reads itself; other classes are called, as enumerations are.
+        Fields that the object does not have keep their defaults.
+    content : mapping
+        The object.
+    **given
+        Values of fields that are not read.
+    """
+    read = {
+        name: _value(annotation, content[place])
+        for name, place, annotation in _fields(kind)
+        if name not in given and place in content
+    }
+    return kind(**read, **given)
+
+
+@cache
+def _fields(kind: type) -> tuple[tuple[str, str, Any], ...]:
+    """Return name, key and annotation of each field."""
+    if is_dataclass(kind):
+        return tuple((each.name, each.metadata.get("key", each.name), each.type) for each in fields(kind))
+    return tuple((name, name, annotation) for name, annotation in kind.__annotations__.items())
+
+
+def _value(kind: Any, content: Any) -> Any:
+    reader = reader_of(kind)
+    return content if reader is None else reader(content)
+
+
+@cache
+def reader_of(kind: Any) -> Callable[[Any], Any] | None:
+    """Return the function that reads a part of a document as a type; None if the part is kept as it is."""
+    origin, inside = get_origin(kind), get_args(kind)
+    if origin is UnionType:
+        reader = reader_of(inside[0]) if len(inside) == 2 and inside[1] is NoneType else None
+        return reader and (lambda content: None if content is None else reader(content))
+    if origin is tuple:
+        readers = [reader_of(each) for each in inside if each is not Ellipsis]
+        if not any(readers):
+            return tuple
+        if Ellipsis in inside:
+            return lambda content: tuple(map(readers[0], content))
+        return lambda content: tuple(_value(each, part) for each, part in zip(inside, content, strict=True))
+    if origin is not None and issubclass(origin, Mapping):
+        reader = reader_of(inside[1])
+        return reader and (lambda content: {name: reader(part) for name, part in content.items()})
+    if not isinstance(kind, type) or kind in AS_IT_IS:
+        return None
+    if hasattr(kind, "of_document"):
+        return kind.of_document
+    return partial(structured, kind) if is_dataclass(kind) or hasattr(kind, "_fields") else kind
