@@ -83,7 +83,7 @@ bench: setup ## Time the motion program, power series, simulations and sweeps ag
 
 pictures: setup ## Draw the README's pictures and run the notebooks again
 	$(BIN)/holonom errata --force --svg examples/paper/errata.svg > /dev/null
-	$(BIN)/python -m holonom.figures.convergence examples/paper/radius.svg
+	$(BIN)/python tests/benchmarks/radius.py examples/paper/radius.svg
 	$(BIN)/holonom stability --force --plot examples/hard/stability.svg > /dev/null
 	$(BIN)/jupyter execute --inplace examples/notebooks/*.ipynb
 

@@ -123,11 +123,6 @@ class Failure(Enum):
     NO_SUCH_SCENE = "there is no scene {detail}"
     TOO_MANY_SAMPLES = ("{detail}", "ask for fewer, for a file in CSV or Parquet alone", "raise {--memory-limit}")
     DISK_TOO_SMALL = ("{detail}", "ask for fewer", "write to another disk")
-    TIME_TOO_SHORT = (
-        "{detail}",
-        "ask for fewer digits, a lower order or an earlier end",
-        "allow it the time with {--time-limit}",
-    )
     TOO_MANY_STEPS = ("{detail}", "ask for an earlier end with {--until}", "take longer steps")
     NOT_A_STEP = ("{detail} is no length of a step", "give a number greater than 0 with {--max-step}")
     MEMORY_TOO_SMALL = ("{detail}", "ask for fewer digits or a lower order")

@@ -25,7 +25,6 @@ CRASHED = 3
 ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 PARENT_ENDED = signal.SIGUSR1  # sent to the supervisor
 QUIET_ENDS = (*ENDING_SIGNALS, signal.SIGPIPE)
-EXPECTED = 120.0  # seconds: what surely takes longer is to be asked for with a time limit
 BOARD = 512  # bytes of memory in which the command leaves what it is doing
 
 _board: mmap.mmap | None = None
@@ -106,13 +105,6 @@ def limit_time(seconds: float) -> None:
         signal.signal(signal.SIGALRM, signal.SIG_DFL)
         signal.setitimer(signal.ITIMER_REAL, seconds)
         _write(_written())
-
-
-def time_left() -> float:
-    """Return the seconds that the command has left, `EXPECTED` if nothing limits it; infinite without supervision."""
-    if _board is None:
-        return math.inf
-    return _deadline - time.monotonic() if math.isfinite(_deadline) else EXPECTED
 
 
 def time_to_limit() -> float:

@@ -1,6 +1,5 @@
 """The commands about one motion: as a power series, and in numbers."""
 
-import gc
 import sys
 from contextlib import suppress
 from dataclasses import replace
@@ -165,14 +164,10 @@ def _import_what_follows(own_process: bool) -> None:
         from ..display import motion, progress  # noqa: F401
         from ..simulation import output, simulate  # noqa: F401
         from ..simulation.engines import runge_kutta, taylor  # noqa: F401
-        from ..simulation.evaluation import wake_compiler
         from ..simulation.parts_of_scipy import lapack, superlu
 
-        wake_compiler()
         lapack()
         superlu()
-        if own_process:
-            gc.freeze()  # all this stays: to look through it for garbage again and again takes a tenth of a short run
 
 
 def _import_heyoka_alone() -> None:

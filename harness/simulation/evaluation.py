@@ -173,12 +173,6 @@ def as_floats(numbers: Numbers) -> NDArray[np.float64]:
     return np.array([float(number) for number in array.ravel()]).reshape(array.shape)
 
 
-def wake_compiler() -> None:
-    """Compile next to nothing: heyoka's first compilation takes 0.1 s longer than any other, best while one waits."""
-    heyoka = import_heyoka()
-    heyoka.cfunc([heyoka.expression("x")], vars=[heyoka.expression("x")], opt_level=0)
-
-
 def one_blas_thread() -> AbstractContextManager[object]:
     """Keep BLAS to one thread inside the block.
 

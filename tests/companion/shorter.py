@@ -5,8 +5,8 @@ from fractions import Fraction
 from holonom.benchmark.work_precision.study import Plan, Study, study
 from holonom.companion.chapter import Run
 from holonom.companion.chapters import INITIAL_SCENE, PAPER
+from holonom.companion.convergence import RadiiFound, find_radii
 from holonom.companion.paper import REPOSITORY, chapter_of_the_paper
-from holonom.figures.convergence import RadiiFound, find_radii
 from holonom.program.request import Request
 from holonom.sandbox import Limits
 

@@ -14,9 +14,9 @@ from holonom.companion import runs
 from holonom.companion.book import APPENDICES
 from holonom.companion.cards import named_equations, scene_named
 from holonom.companion.chapters import BEAD, INITIAL_SCENE, PAPER
+from holonom.companion.convergence import draw_radius
 from holonom.companion.paper import REPOSITORY, book_of_the_paper, chapter_of_the_paper
 from holonom.companion.runs import drawn
-from holonom.figures.convergence import draw_radius
 from holonom.series.radius import ENTIRE
 
 CARDS = {

@@ -1,4 +1,4 @@
-"""What many digits take is known before: as many steps as there will be, to the order that heyoka has."""
+"""The memory that many digits take is known before, from the order that heyoka has."""
 
 from fractions import Fraction
 from pathlib import Path
@@ -9,7 +9,7 @@ import pytest
 
 from holonom.failures import Failure, HolonomError
 from holonom.program import expense
-from holonom.program.expense import order_for, require_means
+from holonom.program.expense import order_for, require_memory
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.precision import GUARD_DIGITS, read_precision
 from holonom.program.request import Request
@@ -34,16 +34,6 @@ def test_the_order_is_that_of_heyokas_steps(pendulum, digits):
     assert order_for(digits + GUARD_DIGITS) == pytest.approx(engine._integrator.order, abs=1)
 
 
-def test_the_steps_are_as_many_as_will_be_taken(pendulum, monkeypatch):
-    told = []
-    monkeypatch.setattr(expense, "_require_time", lambda steps, *_: told.append(steps))
-    precision = read_precision("200")
-    engine, until = TaylorEngine(pendulum, None, precision), precision.number("2")
-    require_means(pendulum, precision, engine._integrator.order, until)
-    engine.advance(until)
-    assert told == [pytest.approx(engine.steps, rel=0.2)]
-
-
 REQUESTS = {
     "a motion": lambda problem, numbers: simulate(problem, SimulationRequest(precision=numbers.digits)),
     "a motion by larger steps": lambda problem, numbers: follow(
@@ -55,24 +45,17 @@ REQUESTS = {
 
 
 @pytest.mark.parametrize("asked", REQUESTS)
-def test_a_thousand_digits_ran_until_the_time_was_over(asked, pendulum, monkeypatch):
-    monkeypatch.setattr(expense, "time_left", lambda: 0.1)
-    with pytest.raises(HolonomError, match="to order .* in 1000 digits at .* s each take much") as refused:
+def test_more_digits_than_memory_holds_are_refused(asked, pendulum, monkeypatch):
+    monkeypatch.setattr(psutil, "virtual_memory", lambda: SimpleNamespace(available=2**18))
+    with pytest.raises(HolonomError, match="about .* MiB of memory, and 0 are free") as refused:
         REQUESTS[asked](pendulum, read_precision(str(DIGITS)))
-    assert refused.value.failure is Failure.TIME_TOO_SHORT
-
-
-def test_more_digits_than_the_memory_holds_are_refused(pendulum, monkeypatch):
-    monkeypatch.setattr(psutil, "virtual_memory", lambda: SimpleNamespace(available=2**20))
-    with pytest.raises(HolonomError, match="about .* MiB of memory, and 1 are free") as refused:
-        expand(pendulum, 5000, read_precision(str(DIGITS)))
     assert refused.value.failure is Failure.MEMORY_TOO_SMALL
 
 
-def test_where_nothing_limits_the_time_none_is_too_long(pendulum):
-    require_means(pendulum, read_precision(str(DIGITS)), 5000)
+def test_what_the_memory_holds_is_made(pendulum):
+    require_memory(pendulum, read_precision(str(DIGITS)), 5000)
 
 
-def test_what_is_quickly_done_is_not_tried_before(pendulum, monkeypatch):
+def test_low_orders_are_not_tried_before(pendulum, monkeypatch):
     monkeypatch.setattr(expense, "import_heyoka", None)
-    require_means(pendulum, read_precision("100"), order_for(110), 10**9)
+    require_memory(pendulum, read_precision("100"), order_for(110))

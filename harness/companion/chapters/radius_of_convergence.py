@@ -10,12 +10,12 @@ import mpmath
 import sympy
 from sympy import Expr, Symbol
 
-from ...figures.convergence import draw_partial_sums, draw_radius, find_radii
 from ...number_texts import number, numbers
 from ...series.power_series import MotionSeries
 from ...simulation.result import Simulation
 from ..cards import named_equations, scene_named
 from ..chapter import Page, Run
+from ..convergence import draw_partial_sums, draw_radius, find_radii
 from ..expressions import zeros
 from ..runs import Derived, derived, drawn, series, simulation
 from . import FREE_SCENE, INITIAL_SCENE, PAPER, PENDULUM

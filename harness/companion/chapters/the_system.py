@@ -4,12 +4,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ...figures.tilted_plane import draw_tilted_plane
 from ..cards import derivation_cards, files_of, scene_named
 from ..chapter import Page, Run
 from ..excerpts import excerpt
 from ..mathematics import description
 from ..runs import derived, printed
+from ..tilted_plane import draw_tilted_plane
 from . import CABIN, FREE_SCENE, LINKAGE, PAPER, PENDULUM
 
 

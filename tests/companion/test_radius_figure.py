@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from holonom.figures import convergence
+from holonom.companion import convergence
 
 SVG = "{http://www.w3.org/2000/svg}"
 

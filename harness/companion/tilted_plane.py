@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ..figures.style import BLUE, GREEN, INK, VERMILION, figure_style, new_figure, svg_text
 from ..language import gettext
-from .style import BLUE, GREEN, INK, VERMILION, figure_style, new_figure, svg_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

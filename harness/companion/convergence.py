@@ -9,7 +9,6 @@ points are estimated from the coefficients alone.
 """
 
 import math
-import sys
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
@@ -19,14 +18,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..files import shared
-from ..language import gettext
-from ..sandbox import Limits
-from ..series.compute import compute_series
-from ..series.power_series import MotionSeries
-from ..series.radius import ENTIRE, Radius
-from ..series.request import SeriesRequest
-from .style import (
+from ..figures.style import (
     BLUE,
     GREEN,
     INK,
@@ -39,6 +31,13 @@ from .style import (
     svg_text,
     write_figure,
 )
+from ..files import shared
+from ..language import gettext
+from ..sandbox import Limits
+from ..series.compute import compute_series
+from ..series.power_series import MotionSeries
+from ..series.radius import ENTIRE, Radius
+from ..series.request import SeriesRequest
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -182,7 +181,3 @@ def _draw_singularities(axes: "Axes", controls: Sequence[Fraction], radii: Seque
 
 def _parts(points: Sequence[complex]) -> tuple[list[float], list[float]]:
     return [z.real for z in points], [z.imag for z in points]
-
-
-if __name__ == "__main__":
-    draw_radius(find_radii(), Path(sys.argv[1]))

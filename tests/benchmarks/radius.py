@@ -1,0 +1,12 @@
+"""`make pictures`: the README's figure of the radius of convergence.
+
+python tests/benchmarks/radius.py examples/paper/radius.svg
+"""
+
+import sys
+from pathlib import Path
+
+from holonom.companion.convergence import draw_radius, find_radii
+
+if __name__ == "__main__":
+    draw_radius(find_radii(), Path(sys.argv[1]))
