@@ -25,6 +25,7 @@ CRASHED = 3
 ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 PARENT_ENDED = signal.SIGUSR1  # sent to the supervisor
 QUIET_ENDS = (*ENDING_SIGNALS, signal.SIGPIPE)
+EXPECTED = 120.0  # seconds: what takes longer is to be asked for with a time limit
 BOARD = 512  # bytes of memory in which the command leaves what it is doing
 
 _board: mmap.mmap | None = None
@@ -105,6 +106,12 @@ def limit_time(seconds: float) -> None:
         signal.signal(signal.SIGALRM, signal.SIG_DFL)
         signal.setitimer(signal.ITIMER_REAL, seconds)
         _write(_written())
+
+
+def limit_expected_time() -> None:
+    """Limit the time of a command that has no limit: what takes longer than expected is to be asked for with one."""
+    if math.isinf(_time_limit):
+        limit_time(EXPECTED)
 
 
 def time_to_limit() -> float:

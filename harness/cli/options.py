@@ -16,7 +16,7 @@ from ..hidden import visible
 from ..options import choices_of, kind_of, options_of, read, read_instant
 from ..program.request import Request, read_settings
 from ..sandbox import UNCONFINED, Limits, Sandbox, is_isolated
-from ..supervisor import limit_time
+from ..supervisor import EXPECTED, limit_time
 from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile
 
 DISAGREEMENT = 1  # exit status where SymPy contradicts Maxima
@@ -121,7 +121,8 @@ def runs_scenes(command: Callable[..., int]) -> Callable[..., int]:
         metavar="SECONDS",
         type=float,
         callback=_read_seconds,
-        help=f"Time for the whole command; without it, {defaults.seconds:g} s for each run of Maxima.",
+        help=f"Time for the whole command; without it, {defaults.seconds:g} s for each run of Maxima, and nothing in "
+        f"many digits that takes longer than {EXPECTED:g} s.",
     )
     @click.option(
         "--memory-limit",

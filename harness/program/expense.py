@@ -1,4 +1,4 @@
-"""Memory that an expansion in numbers of many digits takes, found out before it is made."""
+"""Expansions in numbers of many digits: the memory that they take, found out before, and a limit of their time."""
 
 import math
 
@@ -6,6 +6,7 @@ import numpy as np
 
 from ..failures import Failure, HolonomError
 from ..sandbox import MIB
+from ..supervisor import limit_expected_time
 from .heyoka_function import dynamics, import_heyoka, zero_multipliers
 from .motion_problem import MotionProblem
 from .precision import GUARD_DIGITS, Precision
@@ -25,8 +26,8 @@ def order_for(digits: float) -> int:
     return math.ceil(1 + digits * math.log(10) / 2)
 
 
-def require_memory(problem: MotionProblem, precision: Precision, order: int) -> None:
-    """Refuse expansions that the memory of the machine does not hold.
+def require_means(problem: MotionProblem, precision: Precision, order: int) -> None:
+    """Refuse expansions that the memory of the machine does not hold; limit the time of those that it holds.
 
     Parameters
     ----------
@@ -40,6 +41,7 @@ def require_memory(problem: MotionProblem, precision: Precision, order: int) -> 
     """
     if order <= HIGH_ORDER:
         return
+    limit_expected_time()
     import psutil
 
     start = np.array([precision.number(problem.start[name]) for name in problem.state])

@@ -18,7 +18,7 @@ import mpmath
 import numpy as np
 
 from ..failures import Failure, HolonomError
-from ..program.expense import order_for, require_memory
+from ..program.expense import order_for, require_means
 from ..program.heyoka_function import dynamics, heyoka_expressions, import_heyoka, zero_multipliers
 from ..program.motion_problem import MotionProblem, motion_problem, require_expandable
 from ..program.motion_program import Program
@@ -56,7 +56,7 @@ def expand(problem: MotionProblem, order: int, precision: Precision) -> MotionSe
     HolonomError
         heyoka is not installed; the order is too high, or a coefficient is too large for the numbers.
     """
-    require_memory(problem, precision, order)
+    require_means(problem, precision, order)
     integrator = expanding_integrator(problem, order, precision)
     integrator.step(write_tc=True)
     coefficients = integrator.tc
@@ -95,7 +95,7 @@ def continue_motion(problem: MotionProblem, until: Fraction, precision: Precisio
         heyoka is not installed; the steps shrink to nothing, or there are more than `MOST_STEPS`.
     """
     last = precision.ratio(until)
-    require_memory(problem, precision, order_for(precision.digits + GUARD_DIGITS))
+    require_means(problem, precision, order_for(precision.digits + GUARD_DIGITS))
     integrator = continuing_integrator(problem, precision)
     states = [(integrator.time, integrator.state.copy())]
     shortest = abs(last - integrator.time) * precision.number(f"1e-{precision.sure_digits}")

@@ -1,15 +1,17 @@
 """The memory that many digits take is known before, from the order that heyoka has."""
 
 from fractions import Fraction
+from math import inf
 from pathlib import Path
 from types import SimpleNamespace
 
 import psutil
 import pytest
 
+from holonom import supervisor
 from holonom.failures import Failure, HolonomError
 from holonom.program import expense
-from holonom.program.expense import order_for, require_memory
+from holonom.program.expense import order_for, require_means
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.precision import GUARD_DIGITS, read_precision
 from holonom.program.request import Request
@@ -52,10 +54,19 @@ def test_more_digits_than_memory_holds_are_refused(asked, pendulum, monkeypatch)
     assert refused.value.failure is Failure.MEMORY_TOO_SMALL
 
 
+@pytest.mark.parametrize(("limit", "seconds"), [(inf, [supervisor.EXPECTED]), (1000.0, [])])
+def test_a_thousand_digits_ran_until_the_time_was_over(limit, seconds, pendulum, monkeypatch):
+    given = []
+    monkeypatch.setattr(supervisor, "_time_limit", limit)
+    monkeypatch.setattr(supervisor, "limit_time", given.append)
+    require_means(pendulum, read_precision(str(DIGITS)), 5000)
+    assert given == seconds
+
+
 def test_what_the_memory_holds_is_made(pendulum):
-    require_memory(pendulum, read_precision(str(DIGITS)), 5000)
+    require_means(pendulum, read_precision(str(DIGITS)), 5000)
 
 
 def test_low_orders_are_not_tried_before(pendulum, monkeypatch):
     monkeypatch.setattr(expense, "import_heyoka", None)
-    require_memory(pendulum, read_precision("100"), order_for(110))
+    require_means(pendulum, read_precision("100"), order_for(110))

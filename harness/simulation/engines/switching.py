@@ -269,11 +269,11 @@ def _without_steps(engine: Engine, until: Any) -> Iterator[Step]:
 def _taylor(
     problem: MotionProblem, request: SimulationRequest, precision: Precision, end: Any, matrices: MotionMatrices
 ) -> "TaylorEngine":
-    from ...program.expense import order_for, require_memory
+    from ...program.expense import order_for, require_means
     from .taylor import TaylorEngine, held
 
     digits = precision.digits + GUARD_DIGITS if request.tol is None else -log10(held(request.tol, precision))
-    require_memory(at_start(problem), precision, order_for(digits))
+    require_means(at_start(problem), precision, order_for(digits))
     decay = decay_until(end, problem, precision)
     return TaylorEngine(problem, request.tol, precision, request.drift, request.compact, decay, matrices, end)
 
