@@ -9,8 +9,7 @@
 ;;;
 ;;;   public_names(name, ...)$              declares names of the vocabulary
 ;;;   public_steps(name(a, b, [c]), ...)$   declares functions that a user calls as well. The library calls their twins;
-;;;                                         the plain name checks its arguments first (steps.mac). Those in
-;;;                                         brackets are given all or not at all
+;;; the plain name checks its arguments first (steps.mac). Those in brackets are given all or not at all
 ;;;   private_names(name, ...)$             declares names that head data: json_object(...)
 ;;;   load_library(directory, [file, ...])$ reads Maxima and Lisp files into the namespace, once
 ;;;   internal_names();                     lists the names that have a twin
@@ -48,8 +47,7 @@
   (or (fboundp name) (get name 'operators) (get name 'mfexpr*) (get name 'autoload) (get name 'alias)
       (and (mget name 'mexpr) (not (users-function-p name)))))
 
-(defun users-function-p (name)
-  (member name (cdr $functions) :key #'caar))
+(defun users-function-p (name) (member name (cdr $functions) :key #'caar))
 
 (defun maximas-variable-p (name)
   (or (nth-value 1 (gethash name *variable-initial-values*)) (get name 'assign) (get name 'sysconst)))
@@ -187,8 +185,7 @@
 
 (defun text-of-file (path)
   (with-open-file (stream path)
-    (let ((text (make-string (file-length stream))))
-      (subseq text 0 (read-sequence text stream)))))
+    (let ((text (make-string (file-length stream)))) (subseq text 0 (read-sequence text stream)))))
 
 (defun lisp-forms (stream)
   (let ((*package* (find-package :maxima)))
@@ -221,8 +218,7 @@
   "A definition of a door with its body under the defaults; any other statement as it is."
   (if (and (eq (caar statement) 'mdefine) (door-p (caaadr statement)))
       (destructuring-bind (head function body) statement
-        (list head function
-              `((mprog) ((mlist) ,@(mapcar #'binding-of-flag *defaults*)) ,body)))
+        (list head function `((mprog) ((mlist) ,@(mapcar #'binding-of-flag *defaults*)) ,body)))
       statement))
 
 ;;; Maxima's own reader takes some flags by another name: $modulus is modulus, $obase *print-base*.
@@ -251,16 +247,12 @@
 
 ;;; ---- for Maxima --------------------------------------------------------------------------
 
-(defmspec $public_names (form)
-  (dolist (name (cdr form) '$done) (note name *public-names* 'function)))
+(defmspec $public_names (form) (dolist (name (cdr form) '$done) (note name *public-names* 'function)))
 
 (defmspec $public_steps (form)
-  (dolist (call (cdr form) '$done)
-    (note (caar call) *defined-names* t)
-    (push call *steps*)))
+  (dolist (call (cdr form) '$done) (note (caar call) *defined-names* t) (push call *steps*)))
 
-(defmspec $private_names (form)
-  (dolist (name (cdr form) '$done) (note name *defined-names* t)))
+(defmspec $private_names (form) (dolist (name (cdr form) '$done) (note name *defined-names* t)))
 
 (defun public-option-p (value) (and (symbolp value) (eq (gethash value *public-names*) 'option)))
 

@@ -66,21 +66,14 @@
 (defun zero-term-p (term) (zerop (term-coefficient term)))
 (defun number-term-p (term) (one-p (term-node term)))
 (defun one-p (node) (and (eq (node-kind node) 'product) (null (node-parts node))))
-
-(defun symbol-term (symbol)
-  (node-term (node-of 'symbol symbol (list 'symbol symbol))))
-
+(defun symbol-term (symbol) (node-term (node-of 'symbol symbol (list 'symbol symbol))))
 (defun node-term (node) (make-term :coefficient 1 :node node))
 
 (defun scaled-term (number term)
-  (if (eql number 1)
-      term
-      (normal-term (* number (term-coefficient term)) (term-node term))))
+  (if (eql number 1) term (normal-term (* number (term-coefficient term)) (term-node term))))
 
 (defun normal-term (coefficient node)
-  (if (zerop coefficient)
-      (number-term 0)
-      (make-term :coefficient coefficient :node node)))
+  (if (zerop coefficient) (number-term 0) (make-term :coefficient coefficient :node node)))
 
 ;;; ---- sums ------------------------------------------------------------------------------
 
@@ -103,11 +96,9 @@
 
 (defun contains-number-p (term)
   (or (number-term-p term)
-      (and (eq (node-kind (term-node term)) 'sum)
-           (some #'number-term-p (node-parts (term-node term))))))
+      (and (eq (node-kind (term-node term)) 'sum) (some #'number-term-p (node-parts (term-node term))))))
 
-(defun multiples (number terms)
-  (mapcar #'(lambda (term) (scaled-term number term)) terms))
+(defun multiples (number terms) (mapcar #'(lambda (term) (scaled-term number term)) terms))
 
 (defun collect-like-terms (terms)
   "The terms in the order of their nodes, each node once, none with coefficient zero."
@@ -127,19 +118,15 @@
   "The magnitude all coefficients share, or 1; with the sign of the first."
   (let* ((first (term-coefficient (car terms)))
          (magnitude (abs first)))
-    (dolist (term (cdr terms))
-      (if (/= magnitude (abs (term-coefficient term))) (setq magnitude 1)))
+    (dolist (term (cdr terms)) (if (/= magnitude (abs (term-coefficient term))) (setq magnitude 1)))
     (if (minusp first) (- magnitude) magnitude)))
 
 (defun sum-with-scale (scale terms)
-  (make-term :coefficient scale
-             :node (sum-node (grouped-by-magnitude
-                              (multiples (/ scale) terms)))))
+  (make-term :coefficient scale :node (sum-node (grouped-by-magnitude (multiples (/ scale) terms)))))
 
 (defun sum-node (terms)
   (node-of 'sum terms
-           (cons 'sum (mapcan #'(lambda (term) (list (term-coefficient term) (term-order term)))
-                              terms))))
+           (cons 'sum (mapcan #'(lambda (term) (list (term-coefficient term) (term-order term))) terms))))
 
 (defun grouped-by-magnitude (terms)
   "2*a + b - 2*c as b + 2*(a - c): one multiplication for terms of like magnitude."
@@ -148,8 +135,7 @@
         terms
         (let ((grouped (remove-if #'(lambda (term) (member (magnitude term) magnitudes)) terms)))
           (dolist (m magnitudes (collect-like-terms grouped))
-            (push (sum-of (remove-if-not #'(lambda (term) (eql (magnitude term) m)) terms))
-                  grouped))))))
+            (push (sum-of (remove-if-not #'(lambda (term) (eql (magnitude term) m)) terms)) grouped))))))
 
 (defun shared-magnitudes (terms)
   "The magnitudes other than 1 that more than one coefficient has."
@@ -184,8 +170,7 @@
   (let ((collected (collect-like-factors factors)))
     (cond ((and collected (null (cdr collected)) (eql (factor-exponent (car collected)) 1))
            (node-term (factor-node (car collected))))
-          ((some #'openable-p collected)
-           (product-of (mapcar #'opened collected)))
+          ((some #'openable-p collected) (product-of (mapcar #'opened collected)))
           (t (node-term (product-node collected))))))
 
 (defun product-node (factors)
@@ -199,8 +184,7 @@
     (dolist (factor (sort (copy-list factors) #'> :key #'factor-order) collected)
       (if (and collected (eq (factor-node factor) (factor-node (car collected))))
           (push (make-factor :node (factor-node factor)
-                             :exponent (+ (factor-exponent factor)
-                                          (factor-exponent (pop collected))))
+                             :exponent (+ (factor-exponent factor) (factor-exponent (pop collected))))
                 collected)
           (push factor collected))
       (if (zerop (factor-exponent (car collected))) (pop collected)))))
@@ -226,8 +210,7 @@
 
 (defun raised-factors (node exponent)
   (mapcar #'(lambda (factor)
-              (make-factor :node (factor-node factor)
-                           :exponent (* exponent (factor-exponent factor))))
+              (make-factor :node (factor-node factor) :exponent (* exponent (factor-exponent factor))))
           (factors-of node)))
 
 (defun power-of (term exponent)
@@ -257,11 +240,9 @@
         (and n d (expt (/ n d) (numerator exponent))))))
 
 (defun exact-root (integer root)
-  (let ((r ($inrt integer root)))
-    (and (integerp r) (= (expt r root) integer) r)))
+  (let ((r ($inrt integer root))) (and (integerp r) (= (expt r root) integer) r)))
 
-(defun quotient-of (a b)
-  (product-of (list a (power-of b -1))))
+(defun quotient-of (a b) (product-of (list a (power-of b -1))))
 
 ;;; ---- calls and held nodes --------------------------------------------------------------
 
@@ -338,8 +319,7 @@
   `(setf (get ',operator 'graph-derivative)
          #'(lambda (f ,@arguments) (declare (ignorable f ,@arguments)) (list ,@partials))))
 
-(defun one-plus (sign term)
-  (sum-of (list (number-term 1) (scaled-term sign (power-of term 2)))))
+(defun one-plus (sign term) (sum-of (list (number-term 1) (scaled-term sign (power-of term 2)))))
 
 (define-derivative %sin (x) (call-of '%cos x))
 (define-derivative %cos (x) (scaled-term -1 (call-of '%sin x)))
@@ -389,16 +369,13 @@
 (defun partial-by-factor (product factor)
   (scaled-term (factor-exponent factor)
                (product-of-factors
-                (cons (make-factor :node (factor-node factor) :exponent -1)
-                      (node-parts product)))))
+                (cons (make-factor :node (factor-node factor) :exponent -1) (node-parts product)))))
 
 (defun gradient-of (node)
   "Partial derivatives by the graph's variables: list of (position . term), zeros left out."
   (if (eq (node-gradient node) 'unknown)
       (setf (node-gradient node)
-            (if (eq (node-kind node) 'symbol)
-                (symbol-gradient node)
-                (gradient-by-parts node))))
+            (if (eq (node-kind node) 'symbol) (symbol-gradient node) (gradient-by-parts node))))
   (node-gradient node))
 
 (defun symbol-gradient (node)
@@ -466,8 +443,7 @@
 
 (defun computed-factor-p (factor)
   (let ((kind (node-kind (factor-node factor))))
-    (or (eq kind 'held)
-        (and (minusp (factor-exponent factor)) (not (eq kind 'symbol))))))
+    (or (eq kind 'held) (and (minusp (factor-exponent factor)) (not (eq kind 'symbol))))))
 
 (defun $graph_zerop (term) (zero-term-p (expression-term term)))
 (defun $graph_numberp (term) (number-term-p (expression-term term)))
@@ -484,8 +460,7 @@
   "List of  [position, derivative]  for the variables the term contains."
   (cons '(mlist)
         (mapcar #'(lambda (entry)
-                    (list '(mlist) (car entry)
-                          (scaled-term (term-coefficient term) (cdr entry))))
+                    (list '(mlist) (car entry) (scaled-term (term-coefficient term) (cdr entry))))
                 (gradient-of (term-node term)))))
 
 (defun $graph_rate (term direction)

@@ -3,21 +3,15 @@
 (in-package :maxima)
 
 (defun maxima-number (number)
-  (if (typep number 'ratio)
-      (list '(rat simp) (numerator number) (denominator number))
-      number))
+  (if (typep number 'ratio) (list '(rat simp) (numerator number) (denominator number)) number))
 
 (defun rational-of (e)
   "The Lisp rational of a Maxima fraction; what is none stays."
   (if (and (consp e) (eq (caar e) 'rat)) (/ (second e) (third e)) e))
 
-(defun rational-of-bigfloat (e)
-  (times-power-of-two (second e) (- (third e) (car (last (car e))))))
-
+(defun rational-of-bigfloat (e) (times-power-of-two (second e) (- (third e) (car (last (car e))))))
 (defun digits-in-bits (digits) (ceiling (* digits (log 10d0 2d0))))
-
-(defun binary-magnitude (x)
-  (- (integer-length (numerator x)) (integer-length (denominator x))))
+(defun binary-magnitude (x) (- (integer-length (numerator x)) (integer-length (denominator x))))
 
 (defun nearest-integer (value exponent)
   "value/2^exponent, rounded."

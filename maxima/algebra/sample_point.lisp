@@ -135,11 +135,9 @@
         (if (not (zerop value)) (push (cons (second e) value) entries))))))
 
 (defun maxima-row (row)
-  (cons '(mlist)
-        (mapcar #'(lambda (e) (list '(mlist) (car e) (maxima-number (cdr e)))) row)))
+  (cons '(mlist) (mapcar #'(lambda (e) (list '(mlist) (car e) (maxima-number (cdr e)))) row)))
 
-(defun row-from-maxima (row)
-  (mapcar #'(lambda (e) (cons (second e) (rational-of (third e)))) (cdr row)))
+(defun row-from-maxima (row) (mapcar #'(lambda (e) (cons (second e) (rational-of (third e)))) (cdr row)))
 
 ;;; ---- elimination -------------------------------------------------------------------------
 
@@ -150,8 +148,7 @@
 (defun echelon-of (rows)
   "Elimination row by row. Column 0, if there is one, is a right-hand side."
   (let ((rows (coerce rows 'vector)) (holders (make-hash-table)) (found (make-echelon)))
-    (dotimes (i (length rows))
-      (dolist (e (aref rows i)) (push i (gethash (car e) holders))))
+    (dotimes (i (length rows)) (dolist (e (aref rows i)) (push i (gethash (car e) holders))))
     (dotimes (i (length rows) found)
       (let ((pivot (chosen-pivot (aref rows i) holders)))
         (cond ((null pivot) (push (1+ i) (echelon-dependent found)))
@@ -186,8 +183,7 @@
              (push (cons (caar other) (short-number (- (* multiple (cdr (pop other)))))) result))
             (t (let* ((e (pop row))
                       (value (sum-of-numbers (list (cdr e) (- (* multiple (cdr (pop other))))))))
-                 (if (and (/= (car e) column) (not (zerop value)))
-                     (push (cons (car e) value) result))))))))
+                 (if (and (/= (car e) column) (not (zerop value))) (push (cons (car e) value) result))))))))
 
 (defun substituted-back (echelon values)
   "Values of the pivots' columns, the others and that of the right-hand side, column 0, given."
@@ -199,8 +195,7 @@
             (incf sum (* (cdr e) (gethash (car e) values 0)))))
       (setf (gethash (car pivot) values) (short-number (/ (- sum) own))))))
 
-(defun $rank_of_rows (rows)
-  (length (echelon-pivots (echelon-of (mapcar #'row-from-maxima (cdr rows))))))
+(defun $rank_of_rows (rows) (length (echelon-pivots (echelon-of (mapcar #'row-from-maxima (cdr rows))))))
 
 (defun $independent_rows (rows)
   "Numbers of the rows that do not depend on those before them."
@@ -262,8 +257,7 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
                               (corrections-in-floats residuals size jacobian point))))
         (cond ((zerop size) (return point))
               ((null corrections) (return nil))
-              (t (setq before size
-                       point (corrected-point point corrections (cdr coordinates)))))))))
+              (t (setq before size point (corrected-point point corrections (cdr coordinates)))))))))
 
 (defun corrections-in-floats (residuals size jacobian point)
   "Newton's corrections of residuals that are at most so large; nil where floating point has none, or none is needed."
@@ -273,8 +267,7 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
                     (errset (catch 'irregular-point
                               (newton-corrections (mapcar #'(lambda (r) (float-of (/ r size))) residuals)
                                                   jacobian (converted-point point #'float-of)))))))
-    (if (car found)
-        (mapped-corrections #'(lambda (column value) (* size (rational value))) (car found)))))
+    (if (car found) (mapped-corrections #'(lambda (column value) (* size (rational value))) (car found)))))
 
 (defun float-of (number) (float number 1d0))
 
@@ -335,8 +328,7 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
       (let ((x (gethash (incf beta) unknowns 0)))
         (dolist (e row) (incf (gethash (car e) corrections 0) (* x (cdr e))))))))
 
-(defun numeric-rows (rows point)
-  (mapcar #'(lambda (row) (row-at-point row point)) (cdr rows)))
+(defun numeric-rows (rows point) (mapcar #'(lambda (row) (row-at-point row point)) (cdr rows)))
 
 (defun corrections-in-metric (residuals jacobian metric point size)
   "The change x that is shortest in the metric A: A x + J^T y = 0, J x = -f."
@@ -351,12 +343,10 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
                          (mapcar #'with-right-side residuals rows)))
      unknowns)
     (let ((corrections (make-hash-table)))
-      (dotimes (s size corrections)
-        (setf (gethash (1+ s) corrections) (gethash (1+ s) unknowns 0))))))
+      (dotimes (s size corrections) (setf (gethash (1+ s) corrections) (gethash (1+ s) unknowns 0))))))
 
 (defun multiplier-entries (column size)
-  (mapcar #'(lambda (e) (cons (+ size (car e)) (cdr e)))
-          (sort (copy-list column) #'< :key #'car)))
+  (mapcar #'(lambda (e) (cons (+ size (car e)) (cdr e))) (sort (copy-list column) #'< :key #'car)))
 
 (defun columns-of (rows)
   "column -> list of (row . number)"
@@ -377,8 +367,7 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
              products)
     (sort entries #'< :key #'car)))
 
-(defun with-right-side (residual row)
-  (if (zerop residual) row (acons 0 residual row)))
+(defun with-right-side (residual row) (if (zerop residual) row (acons 0 residual row)))
 
 (defun largest-coordinate (point coordinates)
   (reduce #'max (mapcar #'(lambda (q) (abs (gethash q (sample-point-symbols point)))) (cdr coordinates))))
@@ -397,8 +386,7 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
               (landed (short-number (+ (gethash q (sample-point-symbols point)) correction))))))))
 
 ;; A coordinate that gets so small is on its way to zero: the points are drawn nowhere near it.
-(defun landed (coordinate)
-  (if (< (abs coordinate) *small-coordinate*) 0 coordinate))
+(defun landed (coordinate) (if (< (abs coordinate) *small-coordinate*) 0 coordinate))
 
 (defun $moved_point (point shifts)
   "The point moved by  name = number, ..."
@@ -526,8 +514,7 @@ vanish; false where Newton's method does not get there."
   (let ((rest (abs number)) (p 1) (p-before 0) (q 0) (q-before 1) (size (abs number)))
     (do () ((> q (expt 10 (floor *kept-digits* 4))))
       (let ((whole (floor rest)))
-        (psetq p (+ (* whole p) p-before) p-before p
-               q (+ (* whole q) q-before) q-before q)
+        (psetq p (+ (* whole p) p-before) p-before p q (+ (* whole q) q-before) q-before q)
         (if (<= (abs (- size (/ p q))) (* size (expt 10 (- 10 *kept-digits*))))
             (return (* (signum number) (/ p q))))
         (if (= rest whole) (return nil))

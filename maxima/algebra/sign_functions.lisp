@@ -13,8 +13,7 @@
 (defvar *signs-met* nil "List of (symbol . switching function), last first.")
 (defvar *written-openly* nil "Whether signs stay signum(g).")
 
-(defun $written_openly (expression)
-  (let ((*written-openly* t)) (with-signs expression)))
+(defun $written_openly (expression) (let ((*written-openly* t)) (with-signs expression)))
 
 (defun $written_with_signs (expressions prefix)
   "[[[sign1, g1], ...], the expressions with the symbols prefix1, ... for the signs of g1, ...]."
@@ -53,13 +52,10 @@
 
 (defun extremum (side arguments)
   (reduce #'(lambda (a b)
-              (let ((difference (sub a b)))
-                (div (add a b (mul side (absolute-value difference))) 2)))
+              (let ((difference (sub a b))) (div (add a b (mul side (absolute-value difference))) 2)))
           arguments))
 
-(defun absolute-value (g)
-  (if *written-openly* (take '(mabs) g) (mul g (sign-of-function g))))
-
+(defun absolute-value (g) (if *written-openly* (take '(mabs) g) (mul g (sign-of-function g))))
 (defun weight-of-sign (sign) (div (add 1 sign) 2))
 
 ;; Of an if that it cannot decide Maxima evaluates the first condition alone: what is called behind it is not called
@@ -93,8 +89,7 @@
     (if (null value) ($refuse '$if_without_else))
     (if (eql weight 1)
         value
-        (add (mul weight value)
-             (mul (sub 1 weight) (conditional-with-signs (cddr clauses)))))))
+        (add (mul weight value) (mul (sub 1 weight) (conditional-with-signs (cddr clauses)))))))
 
 (defun condition-weight (condition)
   "1 where the condition holds, 0 where it does not."
@@ -110,16 +105,12 @@
                (mnot (sub 1 (condition-weight (first parts))))
                (t (refuse-condition condition)))))))
 
-(defun comparison-weight (greater less)
-  (weight-of-sign (sign-of-function (with-signs (sub greater less)))))
-
-(defun refuse-condition (condition)
-  ($refuse '$condition_without_comparison condition))
+(defun comparison-weight (greater less) (weight-of-sign (sign-of-function (with-signs (sub greater less)))))
+(defun refuse-condition (condition) ($refuse '$condition_without_comparison condition))
 
 (defun sign-of-function (g)
   "The sign of g, by a number and the symbols of the functions that it is a product of."
-  (let ((sign (simplifya (list '(%signum) g) nil)))
-    (if *written-openly* sign (with-sign-symbols sign))))
+  (let ((sign (simplifya (list '(%signum) g) nil))) (if *written-openly* sign (with-sign-symbols sign))))
 
 (defun with-sign-symbols (sign)
   (cond ((atom sign) sign)
@@ -147,5 +138,4 @@
         (t (simplifya (cons (list (caar e)) (mapcar #'$decaying (cdr e))) nil))))
 
 (defun decaying-sech (x)
-  (let ((decay (power '$%e (neg (take '(mabs) x)))))
-    (div (mul 2 decay) (add 1 (power decay 2)))))
+  (let ((decay (power '$%e (neg (take '(mabs) x))))) (div (mul 2 decay) (add 1 (power decay 2)))))

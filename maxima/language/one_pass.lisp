@@ -55,8 +55,7 @@
         (($mapatom x) (list (list dots 'simp) x)) ; as it is written, in index notation
         (t ($refuse '$dot_of_expression (letters-of-name dots) x))))
 
-(defun $contains_floats (e)
-  (some-part-p #'(lambda (part) (or (floatp part) (bigfloatp part))) e))
+(defun $contains_floats (e) (some-part-p #'(lambda (part) (or (floatp part) (bigfloatp part))) e))
 
 (defun $contains_root (e)
   "Whether a power in it has a fraction for its exponent."
@@ -89,8 +88,7 @@
                    ((eq (caar e) 'mplus) (sum-of-many parts))
                    (t (simplifya (cons (remove 'simp (car e)) parts) t)))))))
 
-(defun sum-of-many (terms)
-  (simplifya (cons '(mplus) (sort (copy-list terms) #'great)) t))
+(defun sum-of-many (terms) (simplifya (cons '(mplus) (sort (copy-list terms) #'great)) t))
 
 ;;; ---- of many, most are zero --------------------------------------------------------------
 ;;;

@@ -25,8 +25,7 @@
 
 (defun constant-by-default-p (e)
   "Whether a symbol of e is taken for a constant because  depends  says nothing about it."
-  (some #'(lambda (symbol) (not (or (eq symbol '$t) (mget symbol 'depends))))
-        (cdr ($listofvars e))))
+  (some #'(lambda (symbol) (not (or (eq symbol '$t) (mget symbol 'depends)))) (cdr ($listofvars e))))
 
 (defun scene-text-p ()
   "Whether no function of the library is being called: each call leaves its name on Maxima's stack."
@@ -35,5 +34,4 @@
 
 (defun $partial_rates ()
   "The list of what scene text has differentiated by t since it was last asked for."
-  (prog1 (cons '(mlist) (reverse *partial-rates*))
-    (setq *partial-rates* nil)))
+  (prog1 (cons '(mlist) (reverse *partial-rates*)) (setq *partial-rates* nil)))

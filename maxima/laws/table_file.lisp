@@ -23,8 +23,7 @@
 
 (defun lines-of-table (name)
   (let ((path (beside-the-scene name)) (lines nil))
-    (unless (and (probe-file path) (pathname-name (probe-file path)))
-      ($refuse '$missing_table_file name))
+    (unless (and (probe-file path) (pathname-name (probe-file path))) ($refuse '$missing_table_file name))
     (with-open-file (in path)
       (do ((text (read-line in nil) (read-line in nil))) ((null text))
         (dolist (line (split-at #\Return (string-right-trim '(#\Return) text))) (push line lines))))
@@ -33,8 +32,7 @@
 
 (defun cells-of (line name number)
   "Nil for a line without any, empty or behind a #."
-  (if (find (code-char 0) line)
-      ($refuse '$null_in_table_file name number))
+  (if (find (code-char 0) line) ($refuse '$null_in_table_file name number))
   (let ((text (trimmed line)))
     (unless (or (string= text "") (char= (char text 0) #\#))
       (mapcar #'unquoted (split-at #\, text)))))
@@ -44,8 +42,7 @@
     (cond ((some #'separated-otherwise-p cells)
            ($refuse '$line_without_comma name line (shortened-text (trimmed text))))
           (bad ($refuse '$number_in_table_file name line (shortened-text (nth bad cells))))
-          ((/= (length numbers) 2)
-           ($refuse '$columns_of_table_file name line (length numbers))))))
+          ((/= (length numbers) 2) ($refuse '$columns_of_table_file name line (length numbers))))))
 
 (defun require-later (before cells numbers name line)
   "BEFORE is the time of the row before, with its text; nil for the first row."
@@ -83,8 +80,7 @@
   (let* ((e (position-if #'(lambda (c) (find c "eE")) text))
          (mantissa (signed-parts (subseq text 0 e)))
          (exponent (if e (ignore-errors (parse-integer text :start (1+ e))) 0)))
-    (when (and mantissa exponent (<= (abs exponent) *largest-exponent*))
-      (* mantissa (expt 10 exponent)))))
+    (when (and mantissa exponent (<= (abs exponent) *largest-exponent*)) (* mantissa (expt 10 exponent)))))
 
 (defun signed-parts (text)
   "The fraction that digits with a sign and a point say; nil where they do not."

@@ -13,8 +13,7 @@
     ($exp . "Exp") (%exp . "Exp") ($det . "Determinant")
     ($dot . "Dot") ($ddot . "Ddot") ($dddot . "Dddot") ($rate . "Rate") ($partial . "Partial")))
 
-(defun $equation_tree (text)
-  (printed-tree ($parse_string text)))
+(defun $equation_tree (text) (printed-tree ($parse_string text)))
 
 (defun printed-tree (e)
   (cond ((integerp e) e)
@@ -25,11 +24,8 @@
         ((printed-head e) (printed-application (printed-head e) (cdr e)))
         (t ($refuse '$not_printed_language e))))
 
-(defun printed-head (e)
-  (cdr (assoc (caar e) *printed-heads*)))
-
-(defun printed-application (head arguments)
-  `(($json_array) ,head ,@(mapcar #'printed-tree arguments)))
+(defun printed-head (e) (cdr (assoc (caar e) *printed-heads*)))
+(defun printed-application (head arguments) `(($json_array) ,head ,@(mapcar #'printed-tree arguments)))
 
 ;;; Maxima reads  -a*b  as  (-a)*b; on paper the sign is that of the whole term.
 (defun sign-first (product)

@@ -28,8 +28,7 @@
   "The same, but seen through those that are held."
   (mapcar #'unheld (own-parts (unheld node))))
 
-(defun unheld (node)
-  (if (eq (node-kind node) 'held) (node-parts node) node))
+(defun unheld (node) (if (eq (node-kind node) 'held) (node-parts node) node))
 
 (defstruct census
   nodes                                    ; all live nodes, in order of birth
@@ -39,13 +38,11 @@
   "The nodes that the given terms need, and how often each is used."
   (let ((census (make-census)) (waiting nil) (live nil))
     (dolist (root roots)
-      (let ((node (unheld (term-node root))))
-        (if (first-use-p node census) (push node waiting))))
+      (let ((node (unheld (term-node root)))) (if (first-use-p node census) (push node waiting))))
     (do () ((null waiting))
       (let ((node (pop waiting)))
         (push node live)
-        (dolist (part (nodes-in node))
-          (if (first-use-p part census) (push part waiting)))))
+        (dolist (part (nodes-in node)) (if (first-use-p part census) (push part waiting)))))
     (setf (census-nodes census) (in-order-of-birth live))
     census))
 
@@ -54,9 +51,7 @@
     (dolist (node nodes) (setf (aref places (node-number node)) node))
     (delete nil (coerce places 'list))))
 
-(defun first-use-p (node census)
-  (eql 1 (incf (gethash (node-number node) (census-uses census) 0))))
-
+(defun first-use-p (node census) (eql 1 (incf (gethash (node-number node) (census-uses census) 0))))
 (defun uses-of (node census) (gethash (node-number (unheld node)) (census-uses census) 0))
 (defun shared-p (node census) (> (uses-of node census) 1))
 
@@ -84,8 +79,7 @@
                      (node-term node))
                     (t (node-again node (node-parts node) rewriting)))))))
 
-(defun unruled-p (node rewriting)
-  (not (and (eq (node-kind node) 'sum) (rewriting-sum-rule rewriting))))
+(defun unruled-p (node rewriting) (not (and (eq (node-kind node) 'sum) (rewriting-sum-rule rewriting))))
 
 (defun parts-as-they-were-p (node rewriting)
   (every #'(lambda (part)
@@ -105,8 +99,7 @@
                                      (power-of (rewritten-node (factor-node factor) rewriting)
                                                (factor-exponent factor)))
                                  parts)))
-    (call (call-again (car parts)
-                      (mapcar #'(lambda (term) (rewritten-term term rewriting)) (cdr parts))))
+    (call (call-again (car parts) (mapcar #'(lambda (term) (rewritten-term term rewriting)) (cdr parts))))
     (held (held-term (rewritten-node parts rewriting)))))
 
 (defun call-again (operator terms)
@@ -119,8 +112,7 @@
 (defun factor-sums (roots)
   (let ((census (census-of roots)))
     (rewritten-terms roots
-                     (make-rewriting
-                      :sum-rule #'(lambda (node terms) (factored-sum node terms census)))
+                     (make-rewriting :sum-rule #'(lambda (node terms) (factored-sum node terms census)))
                      (census-nodes census))))
 
 (defun factored-sum (node terms census)
@@ -145,15 +137,12 @@
 
 ;;; A letter is (node . 1) or (node . -1): a factor, or what is divided by.
 
-(defun letter-of-factor (factor)
-  (cons (factor-node factor) (signum (factor-exponent factor))))
-
+(defun letter-of-factor (factor) (cons (factor-node factor) (signum (factor-exponent factor))))
 (defun letter-term (letter) (power-of (node-term (car letter)) (cdr letter)))
 
 (defun contains-letter-p (term letter)
   (some #'(lambda (factor)
-            (and (eq (factor-node factor) (car letter))
-                 (plusp (* (cdr letter) (factor-exponent factor)))))
+            (and (eq (factor-node factor) (car letter)) (plusp (* (cdr letter) (factor-exponent factor)))))
         (factors-of (term-node term))))
 
 (defun divided-by-letter (term letter)
@@ -168,8 +157,7 @@
                (count (assoc letter counts :test #'equal)))
           (if count (incf (cdr count)) (push (cons letter 1) counts)))))
     (dolist (count counts)
-      (if (and (> (cdr count) 1) (or (null best) (> (cdr count) (cdr best))))
-          (setq best count)))
+      (if (and (> (cdr count) 1) (or (null best) (> (cdr count) (cdr best)))) (setq best count)))
     (car best)))
 
 ;;; ---- shared pairs ------------------------------------------------------------------------
@@ -237,8 +225,7 @@
         (dolist (other (cdr rest))
           (let ((standing (standing-of (car rest) other known)))
             (if (null (standing-bags standing)) (push standing found))
-            (if (not (eq bag (car (standing-bags standing))))
-                (push bag (standing-bags standing)))))))
+            (if (not (eq bag (car (standing-bags standing)))) (push bag (standing-bags standing)))))))
     (stable-sort (delete-if-not #'(lambda (standing) (cdr (standing-bags standing))) found)
                  #'> :key #'(lambda (standing) (length (standing-bags standing))))))
 
@@ -252,8 +239,7 @@
 
 (defun standing-of (a b known)
   (let ((key (list (node-number (cdr a)) (node-number (cdr b)) (/ (car b) (car a)))))
-    (or (gethash key known)
-        (setf (gethash key known) (make-standing :first a :second b)))))
+    (or (gethash key known) (setf (gethash key known) (make-standing :first a :second b)))))
 
 (defun share-pair (standing kind)
   (let* ((a (standing-first standing)) (b (standing-second standing))
@@ -261,16 +247,14 @@
     (when (cdr bags)
       (let* ((pair (pair-term a b kind))
              (others (remove (unheld (term-node pair)) bags :key #'bag-node)))
-        (dolist (bag others others)
-          (put-pair bag a b pair kind))))))
+        (dolist (bag others others) (put-pair bag a b pair kind))))))
 
 (defun multiple-of-pair (bag a b)
   "What the members a and b are both multiplied by to stand in the bag, if they do."
   (dolist (member (bag-members bag))
     (if (eq (cdr member) (cdr a))
         (let ((multiple (/ (car member) (car a))))
-          (if (find-member b multiple (remove member (bag-members bag) :count 1))
-              (return multiple))))))
+          (if (find-member b multiple (remove member (bag-members bag) :count 1)) (return multiple))))))
 
 (defun find-member (pattern multiple members)
   (find-if #'(lambda (member)

@@ -28,8 +28,7 @@ after n by that plus handicap; each waits for the neighbours in its set, and for
         (push (mlist-of (list k (mlist-of (aref (ordering-met ordering) k)))) steps)
         (leave-neighbours k ordering)))))
 
-(defun by-number (sets)
-  (coerce (cons nil (mapcar #'cdr (cdr sets))) 'vector))
+(defun by-number (sets) (coerce (cons nil (mapcar #'cdr (cdr sets))) 'vector))
 
 (defun stand-in-line (i ordering)
   (if (null (aref (ordering-awaited ordering) i))
@@ -42,8 +41,7 @@ after n by that plus handicap; each waits for the neighbours in its set, and for
 (defun first-in-line (ordering)
   (do () (nil)
     (let ((heap (ordering-heap ordering)))
-      (if (null heap)
-          ($refuse '$no_elimination_order))
+      (if (null heap) ($refuse '$no_elimination_order))
       (setf (ordering-heap ordering) (melded (heap-left heap) (heap-right heap)))
       (let ((k (mod (heap-least heap) (1+ (ordering-size ordering)))))
         (when (eql (aref (ordering-ranks ordering) k) (heap-least heap))

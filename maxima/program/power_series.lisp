@@ -39,8 +39,7 @@
 
 ;;; ---- one derivative --------------------------------------------------------------------
 
-(defun derivative (x order)
-  (car (descending (power-series-derivatives x) x order)))
+(defun derivative (x order) (car (descending (power-series-derivatives x) x order)))
 
 (defun descending (row x order)
   "The items of orders  order ... 0  in a row of the series x."
@@ -147,11 +146,8 @@
     (look-up-derivatives)
     *machine*))
 
-(defun remember-term (pair table)
-  (setf (gethash (second pair) table) (expression-term (third pair))))
-
-(defun look-up-rate (symbol rates)
-  (setf (gethash symbol rates) (series-of-term (gethash symbol rates))))
+(defun remember-term (pair table) (setf (gethash (second pair) table) (expression-term (third pair))))
+(defun look-up-rate (symbol rates) (setf (gethash symbol rates) (series-of-term (gethash symbol rates))))
 
 (defun new-series (rule)
   "A series that at each order does what rule, a function of the series and the order, says."
@@ -205,8 +201,7 @@
 
 (defun product-series (factors)
   (let ((above nil) (below nil))
-    (dolist (factor factors)
-      (if (plusp (factor-exponent factor)) (push factor above) (push factor below)))
+    (dolist (factor factors) (if (plusp (factor-exponent factor)) (push factor above) (push factor below)))
     (if below
         (quotient-of-series (product-of-powers above) (product-of-powers below))
         (product-of-powers above))))
@@ -246,8 +241,7 @@
          (append-derivative
           h (if (eql n 0)
                 (function-at-start operator arguments assignment)
-                (reduce #'+ (mapcar #'(lambda (g x) (function-derivative g x n))
-                                    gradient arguments))))))))
+                (reduce #'+ (mapcar #'(lambda (g x) (function-derivative g x n)) gradient arguments))))))))
 
 (defun look-up-derivatives ()
   "Partial derivatives of the functions found, whose own functions are found on the way."
@@ -260,8 +254,7 @@
 
 ;;; ---- values at t0 ------------------------------------------------------------------------
 
-(defun start-value (symbol)
-  (or (gethash symbol *start*) (number-at-start symbol symbol)))
+(defun start-value (symbol) (or (gethash symbol *start*) (number-at-start symbol symbol)))
 
 (defun function-at-start (operator arguments assignment)
   (let* ((call (maxima-call operator (mapcar #'(lambda (x) (maxima-value (derivative x 0))) arguments)))
@@ -272,8 +265,7 @@
         (obstacle '$singular call assignment))
     (number-at-start (car value) assignment)))
 
-(defun maxima-value (number)
-  (if *binary-digits* ($bfloat (maxima-number number)) (maxima-number number)))
+(defun maxima-value (number) (if *binary-digits* ($bfloat (maxima-number number)) (maxima-number number)))
 
 ;; exp(-10^7) as a fraction has millions of digits, and its sum with 1 takes minutes.
 (defvar *smallest-power* -40000 "Power of two below which rounded values at the start are zero.")
@@ -302,8 +294,7 @@
   (let ((*machine* machine) (*binary-digits* digits) (*defining* nil) (*scale* 1)
         (*start* (make-hash-table)))
     (catch 'obstacle
-      (dolist (e (cdr start))
-        (setf (gethash (second e) *start*) (number-at-start (third e) (second e))))
+      (dolist (e (cdr start)) (setf (gethash (second e) *start*) (number-at-start (third e) (second e))))
       (if (null digits) (setq *scale* (suitable-scale)))
       (run-machine order)
       (cons '(mlist)
@@ -366,14 +357,10 @@
                       #'(lambda (a b order) (if (rounded-zero-p a b added (svref rounding order)) 0 b)))))
 
 (defun rounded-zero-p (a b added levels)
-  (or (shrinks-p a b added)
-      (and (below-p a (car levels)) (below-p b (cdr levels)))))
+  (or (shrinks-p a b added) (and (below-p a (car levels)) (below-p b (cdr levels)))))
 
-(defun shrinks-p (a b added)
-  (<= (* (abs b) (expt 10 (- added *few-digits*))) (abs a)))
-
-(defun below-p (x level)
-  (or (eql x 0) (and level (<= (binary-magnitude x) level))))
+(defun shrinks-p (a b added) (<= (* (abs b) (expt 10 (- added *few-digits*))) (abs a)))
+(defun below-p (x level) (or (eql x 0) (and level (<= (binary-magnitude x) level))))
 
 (defun rounding-levels (coarse fine added)
   "For each order binary magnitudes of what is left of a zero at most, by the coarse and by the fine expansion."

@@ -29,9 +29,7 @@
                      (setq sign (* sign (sign-of (factor-node factor) signs)))))))
     (t 1)))
 
-(defun written-coefficient (term signs)
-  (* (term-coefficient term) (sign-of (term-node term) signs)))
-
+(defun written-coefficient (term signs) (* (term-coefficient term) (sign-of (term-node term) signs)))
 (defun lone-minus-p (term signs) (eql -1 (written-coefficient term signs)))
 
 (defun lone-minuses (place signs)
@@ -47,18 +45,15 @@
 (defun chosen-signs (roots census)
   "Signs for all live nodes: sums are turned, one after the other, where that leaves fewer minus signs alone."
   (let ((signs (signs-to-choose roots census)))
-    (dolist (node (census-nodes census) signs)
-      (if (eq (node-kind node) 'sum) (turn-to-save node signs)))))
+    (dolist (node (census-nodes census) signs) (if (eq (node-kind node) 'sum) (turn-to-save node signs)))))
 
 (defun place-p (node) (member (node-kind node) '(sum call)))
 
 (defun signs-to-choose (roots census)
   (let ((signs (make-signs)))
-    (dolist (root roots)
-      (push root (gethash (node-number (unheld (term-node root))) (signs-roots signs))))
+    (dolist (root roots) (push root (gethash (node-number (unheld (term-node root))) (signs-roots signs))))
     (dolist (node (census-nodes census) signs)
-      (dolist (part (nodes-in node))
-        (push node (gethash (node-number part) (signs-users signs)))))))
+      (dolist (part (nodes-in node)) (push node (gethash (node-number part) (signs-users signs)))))))
 
 (defun turn-to-save (sum signs)
   (let* ((places (remove-duplicates (cons sum (places-above sum signs))))
@@ -71,8 +66,7 @@
   (let ((number (node-number sum)))
     (setf (gethash number (signs-turned signs)) (not (gethash number (signs-turned signs))))))
 
-(defun minuses-at (places signs)
-  (reduce #'+ (mapcar #'(lambda (place) (lone-minuses place signs)) places)))
+(defun minuses-at (places signs) (reduce #'+ (mapcar #'(lambda (place) (lone-minuses place signs)) places)))
 
 (defun places-above (node signs)
   "The sums, calls and outputs whose terms change sign with the node."
@@ -108,8 +102,7 @@
                                    (cdr outputs) variables))
             (program-operations program)))))
 
-(defun output-variable (term program)
-  (writing-expression (named (writing-of-term term program) program)))
+(defun output-variable (term program) (writing-expression (named (writing-of-term term program) program)))
 
 (defun named-p (node program)
   (and (shared-p node (program-census program)) (not (eq (node-kind node) 'symbol))))
@@ -146,8 +139,7 @@
 (defun combined (operator operations writings)
   "The expression  operator(writings), itself so many operations; Maxima is to leave it as it is."
   (make-writing :expression (cons (list operator 'simp) (mapcar #'writing-expression writings))
-                :operations (reduce #'+ writings :key #'writing-operations
-                                    :initial-value operations)))
+                :operations (reduce #'+ writings :key #'writing-operations :initial-value operations)))
 
 (defun number-writing (number) (make-writing :expression (maxima-number number)))
 
@@ -195,9 +187,7 @@
 (defun power-writing (factor program)
   (let ((writing (writing-of (factor-node factor) program))
         (exponent (abs (factor-exponent factor))))
-    (if (eql exponent 1)
-        writing
-        (combined 'mexpt 1 (list writing (number-writing exponent))))))
+    (if (eql exponent 1) writing (combined 'mexpt 1 (list writing (number-writing exponent))))))
 
 (defun call-writing (parts program)
   (let ((writings (mapcar #'(lambda (term) (writing-of-term term program)) (cdr parts))))

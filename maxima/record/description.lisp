@@ -21,20 +21,13 @@
 
 ;;; Written by the process that ran the scene file
 
-(defun $write_described (tree file)
-  (let ((*is-description* t))
-    ($write_json tree file)))
-
-(defun $described_tables (tables)
-  (setq *tables-described* (cdr tables))
-  tables)
+(defun $write_described (tree file) (let ((*is-description* t)) ($write_json tree file)))
+(defun $described_tables (tables) (setq *tables-described* (cdr tables)) tables)
 
 (defun $json_described (entry e)
   "An expression; what no document can hold is refused where the entry that holds it is known."
   (let ((unknown (unknown-operator e)))
-    (if unknown
-        ($refuse '$function_not_described entry unknown)
-        (list '($json_expression) e))))
+    (if unknown ($refuse '$function_not_described entry unknown) (list '($json_expression) e))))
 
 (defun unknown-operator (e)
   (cond ((or (atom e) (eq (caar e) 'bigfloat)) nil)
@@ -113,8 +106,7 @@
 
 (defun bind-anew (name structure)
   (let ((symbol (described-symbol name)))
-    (when (boundp symbol)
-      ($refuse '$taken_name symbol))
+    (when (boundp symbol) ($refuse '$taken_name symbol))
     (mset symbol structure)))
 
 (defun system-entries (document)

@@ -25,8 +25,7 @@
 
 ;;; All at once: GCL hands each piece to the system as it comes, by two calls.
 (defun write-file (file text)
-  (with-open-file (out file :direction :output :if-exists :supersede)
-    (write-string text out))
+  (with-open-file (out file :direction :output :if-exists :supersede) (write-string text out))
   file)
 
 (defun write-json (tree out)
@@ -91,9 +90,7 @@
   (write-string "[\"" out)
   (write-string head out)
   (write-char #\" out)
-  (dolist (a arguments)
-    (write-char #\, out)
-    (write-mathjson a out))
+  (dolist (a arguments) (write-char #\, out) (write-mathjson a out))
   (write-char #\] out))
 
 (defun polygamma-p (e) (and (eq (caar e) 'mqapply) (eq (caar (second e)) '$psi)))
@@ -107,9 +104,7 @@
           (t (write-tree "Subtract" (list (sum-expression plus) (sum-expression minus)) out)))))
 
 (defun negated-p (e) (and (consp e) (eq (caar e) 'mminus)))
-
-(defun sum-expression (terms)
-  (if (cdr terms) (cons '(mplus) terms) (car terms)))
+(defun sum-expression (terms) (if (cdr terms) (cons '(mplus) terms) (car terms)))
 
 (defun write-power (base exponent out)
   (cond ((eq base '$%e) (write-tree "Exp" (list exponent) out))
@@ -128,6 +123,4 @@
   (let ((digits (ceiling (* (car (last (car e))) (log 2d0 10d0)))))
     (write-number (decimal-digits (rational-of-bigfloat e) (+ 2 digits)) out)))
 
-(defun mathjson-symbol (symbol)
-  (or (cdr (assoc symbol *mathjson-constants*))
-      (letters-of-name symbol)))
+(defun mathjson-symbol (symbol) (or (cdr (assoc symbol *mathjson-constants*)) (letters-of-name symbol)))
