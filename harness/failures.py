@@ -220,6 +220,10 @@ class Failure(Enum):
         "the motion is not analytic where {detail} changes its sign",
         "follow it with `holonom simulate`, which steps to such instants",
     )
+    NOT_LINEARIZED = (
+        "the constraints lose rank at t = {instant:.10g}: there is no tangent space to linearise in",
+        "choose another instant",
+    )
     METHOD_GAVE_UP = ("{detail}", "ask for a larger tolerance", "take another method")
     MASS_INDEFINITE = (
         "the kinetic energy is negative for some velocities, and it measures how far a state is from the constraints",

@@ -22,6 +22,7 @@ from .sandbox import Limits, warn_unconfined
 from .series.request import SeriesRequest
 from .simulation.derivations import Derivations
 from .simulation.request import SimulationRequest
+from .stability.request import LinearizationRequest
 from .source import Source
 from .sweeps.request import SweepRequest
 from .temporary import KeptDirectory
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     from .record import Record
     from .series.power_series import MotionSeries
     from .simulation.result import Simulation
+    from .stability.linearization import Linearization
     from .sweeps.run import Sweep
     from .typeset.notebook import Letter
 
@@ -314,6 +316,33 @@ class Scene:
         solve = options.pop("solve")
         request = SimulationRequest(**options)
         return simulate(self._problem(solve, read_precision(str(request.precision)).digits), request)
+
+    @naming_the_extra()
+    @takes_options(*options_of(LinearizationRequest))
+    def linearize(self, options: dict[str, Any]) -> "Linearization":
+        """Linearise the motion on the constraint manifold.
+
+        Parameters
+        ----------
+        {options}
+
+        Returns
+        -------
+        Linearization
+            ``lin.A``, ``lin.eigenvalues``, ``lin.modes``, ``lin.state_space("ddot")``.
+
+        Raises
+        ------
+        HolonomError
+            A control has no law, a parameter no value; the motion is not analytic or cannot be followed so far; the
+            constraints lose rank there.
+        """
+        from .program.motion_problem import DOUBLE_DIGITS
+        from .stability.linear_equations import linear_equations
+        from .stability.linearization import linearize
+
+        equations = linear_equations(self._source, self._request())
+        return linearize(self._problem("direct", DOUBLE_DIGITS), equations, **options)
 
     @naming_the_extra()
     @takes_options(*options_of(Request, "solve"))

@@ -3,7 +3,7 @@
 Modules are imported inside the commands: ``holonom --help`` waits for no SymPy.
 """
 
-from . import benchmark, companion, derivation, free_motion, installation, motion, programs, sweep
+from . import benchmark, companion, derivation, free_motion, installation, motion, programs, stability, sweep
 from .group import holonom, main, run
 
 __all__ = [
@@ -17,5 +17,6 @@ __all__ = [
     "motion",
     "programs",
     "run",
+    "stability",
     "sweep",
 ]

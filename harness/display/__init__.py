@@ -15,6 +15,8 @@ def show(console: "Console", result: Shown) -> None:
             from .derivation import show_verdicts as table
         case "FreeMotion":
             from .free_motion import show_free_motion as table
+        case "Linearization":
+            from .linearization import show_linearization as table
         case "MeasuredCosts":
             from .measurements import show_costs as table
         case "MotionSeries":

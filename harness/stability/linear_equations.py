@@ -1,0 +1,87 @@
+"""The linearised equations of a scene, in numbers at a state: `maxima/stability/linearization.mac` derives them.
+
+With r_s the left side of Lagrange's equations less the right one, deviations satisfy
+
+    A da + D dv + K dq + E du + ... - J^T dlambda = 0,        J dq + U du = 0,
+
+and the first and second rates of the latter.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..documents import Document, ask, read
+from ..program.motion_program import Program, program_of
+from ..program.numpy_function import NumpyFunction
+from ..program.request import Request
+from ..simulation.matrices import INDEXED, Matrix, Vector
+from ..source import Source
+
+ROWS = ("equation", "constraint", "rate", "acceleration")  # r, f, Df, DDf
+GROUPS = ("q", "v", "a", "u", "du", "ddu")
+
+
+@dataclass(frozen=True)
+class LinearEquations:
+    """The linearised equations of a scene.
+
+    Attributes
+    ----------
+    coordinates, multipliers, controls : tuple of str
+        Names: n, g and r of them.
+    program : Program
+        Of (t, q, dot q, ddot q, lambda).
+    """
+
+    coordinates: tuple[str, ...]
+    multipliers: tuple[str, ...]
+    controls: tuple[str, ...]
+    program: Program
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "_evaluate", NumpyFunction(self.program))
+
+    def at(self, t: float, state: Vector, accelerations: Vector, multipliers: Vector) -> Mapping[str, Matrix]:
+        """Evaluate the equations and their gradients.
+
+        Parameters
+        ----------
+        t : float
+        state : ndarray, shape (2n,)
+        accelerations : ndarray, shape (n,)
+        multipliers : ndarray, shape (g,)
+
+        Returns
+        -------
+        mapping of str to ndarray
+            ``equation``, shape (n,), ``constraint``, ``rate`` and ``acceleration``, shape (g,): r, f, Df, DDf. Their
+            gradients ``equation_by_q``, and so on by q, v, a, u, du, ddu; ``A_rate``, shape (n, n).
+        """
+        n, g, r = len(self.coordinates), len(self.multipliers), len(self.controls)
+        sizes = dict(zip(GROUPS, (n, n, n, r, r, r), strict=True))
+        found = {"A_rate": np.zeros((n, n))}
+        for row, size in zip(ROWS, (n, g, g, g), strict=True):
+            found[row] = np.zeros(size)
+            found |= {f"{row}_by_{group}": np.zeros((size, columns)) for group, columns in sizes.items()}
+        values = self._evaluate([t, *state, *accelerations, *multipliers])
+        for name, value in zip(self._evaluate.outputs, values, strict=True):
+            array, *places = INDEXED.fullmatch(name).groups()
+            found[array][tuple(int(place) - 1 for place in places if place)] = value
+        return found
+
+
+def linear_equations(source: Source, request: Request) -> LinearEquations:
+    """Ask Maxima for the linearised equations of a scene.
+
+    Raises
+    ------
+    HolonomError
+        As `holonom.documents.ask`; a control has no law, a parameter no value.
+    """
+    document = read(
+        Document.LINEARIZATION, ask(Document.LINEARIZATION, source, request.scene, settings=request.settings)
+    )
+    names = (tuple(document[kind]) for kind in ("coordinates", "multipliers", "controls"))
+    return LinearEquations(*names, program_of(document["program"]))

@@ -1,0 +1,311 @@
+"""Linearisation of a motion on the constraint manifold.
+
+Deviations that the constraints allow are dq = N xi + P du, dv = N eta + R xi + S du + P du', with J N = 0, N^T A N = 1,
+and P, R, S the solutions of
+
+    J P = -U,        J R = -J' N,        J S = -(J' P + U')
+
+that are orthogonal to N in the mass metric; ' is the rate along the motion. N moves along with the motion so that
+N^T A N' = -N^T A' N/2, as little as its lengths in the mass metric allow. Then xi = N^T A dq and eta = N^T A dv satisfy
+
+    xi'  = eta + N^T A' N xi/2 + (R^T A P + N^T A' P) du,
+    eta' = (N'^T A + N^T A') dv - N^T (D dv + K dq + E0 du + E1 du' + E2 du''),
+
+with A, D, K, E of `holonom.stability.linear_equations` (beyond the paper; Udwadia & Kalaba, Analytical Dynamics,
+chapter 8, for P; Kane & Levinson for the reduction at rest).
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import scipy.linalg
+
+from ..failures import Failure, HolonomError
+from ..program.motion_problem import MotionProblem, require_analytic
+from ..shown import Shown
+from ..simulation.constraints.directions import or_one
+from ..simulation.matrices import Matrix, Vector
+from ..simulation.nominal import nominal_of
+from ..simulation.request import SimulationRequest
+from ..simulation.simulate import simulate
+from .linear_equations import LinearEquations
+from .tangent import Tangent
+
+RATES = ("u", "du", "ddu")  # a control, its rate and its acceleration
+FEWEST_SAMPLES = 2
+AT_REST = 1e-9  # velocities and accelerations, in terms of their nominal sizes, that count as none
+UNREACHED = 1e-9  # directions of the state, relative to the others, that count as unreachable
+
+
+@dataclass(frozen=True)
+class Linearization(Shown):
+    """The linear system  x' = A x + B_u du + B_du du' + B_ddu du'',  y = C x + D_u du + ...,  x = (xi, eta).
+
+    Attributes
+    ----------
+    scene : str
+    at : float
+        The instant.
+    at_rest : bool
+        Whether velocities and accelerations vanish there. Of a motion that goes on, A is that of an instant, and its
+        eigenvalues say nothing about stability.
+    coordinates : tuple of str
+        Names of the n coordinates.
+    leading : tuple of str
+        Of those, the m to which the tangent coordinates belong.
+    controls, outputs : tuple of str
+        Names of the r inputs and of what y holds: coordinates, velocities, multipliers.
+    mass : ndarray, shape (n, n)
+        The mass matrix.
+    basis : ndarray, shape (n, m)
+        N: the coordinates deviate by N xi, N^T mass N = 1.
+    A : ndarray, shape (2m, 2m)
+    B : mapping of str to ndarray, shape (2m, r)
+        By ``u``, ``du`` and ``ddu``.
+    C : ndarray, shape (outputs, 2m)
+    D : mapping of str to ndarray, shape (outputs, r)
+
+    Examples
+    --------
+    >>> import holonom
+    >>> swing = holonom.load("examples/pendulum.mac", scene="swing_scene")  # doctest: +SKIP
+    >>> swing.linearize().eigenvalues  # doctest: +SKIP
+    """
+
+    scene: str
+    at: float
+    at_rest: bool
+    coordinates: tuple[str, ...]
+    leading: tuple[str, ...]
+    controls: tuple[str, ...]
+    outputs: tuple[str, ...]
+    mass: Matrix
+    basis: Matrix
+    A: Matrix
+    B: Mapping[str, Matrix]
+    C: Matrix
+    D: Mapping[str, Matrix]
+
+    @cached_property
+    def _modes(self) -> tuple[Vector, Matrix]:
+        values, vectors = np.linalg.eig(self.A)
+        order = np.lexsort((values.imag, -values.real, np.abs(values)))
+        return values[order], vectors[:, order]
+
+    @property
+    def eigenvalues(self) -> Vector:
+        """Of A, shape (2m,), the slowest first, complex."""
+        return self._modes[0]
+
+    @property
+    def modes(self) -> Matrix:
+        """Coordinates of the eigenvectors, shape (n, 2m), complex; the largest entry of each is 1."""
+        shapes = self.basis @ self._modes[1][: self.basis.shape[1]]
+        largest = np.argmax(np.abs(shapes), axis=0) if shapes.size else []
+        peaks = shapes[largest, np.arange(shapes.shape[1])]
+        return shapes / np.where(peaks == 0, 1.0, peaks)
+
+    @property
+    def frequencies(self) -> Vector:
+        """|eigenvalue|/(2 pi), shape (2m,): periods by the unit of time, without damping."""
+        return np.abs(self.eigenvalues) / (2 * np.pi)
+
+    @property
+    def damping(self) -> Vector:
+        """Damping ratios, -Re/|eigenvalue|, shape (2m,); zero where an eigenvalue is."""
+        sizes = np.abs(self.eigenvalues)
+        return -self.eigenvalues.real / np.where(sizes > 0, sizes, 1.0) + 0.0
+
+    @property
+    def controllable_rank(self) -> int:
+        """Kalman's rank of controllability, at most 2m, in floating-point numbers.
+
+        With z = x - (B_du + A B_ddu) du - B_ddu du' the controls enter by B_u + A B_du + A^2 B_ddu alone (Kailath,
+        Linear Systems, section 2.3).
+        """
+        b_u, b_du, b_ddu = (self.B[rate] for rate in RATES)
+        return _reachable(self.A, b_u + self.A @ (b_du + self.A @ b_ddu))
+
+    def observable_rank(self, outputs: Sequence[str] | None = None) -> int:
+        """Kalman's rank of observability, at most 2m, by these outputs; by all of them where none are named.
+
+        Raises
+        ------
+        ValueError
+            There is no such output.
+        """
+        return _reachable(self.A.T, self.C[self._rows(outputs)].T)
+
+    def state_space(self, input: str = "u", outputs: Sequence[str] | None = None) -> tuple[Matrix, ...]:
+        """Return A, B, C, D as `scipy.signal.StateSpace` and python-control take them.
+
+        Parameters
+        ----------
+        input : str
+            ``u``, the controls' deviations, where their rates do not enter; ``ddot``, the controls' accelerations: u
+            and du/dt are states then, behind xi and eta.
+        outputs : sequence of str or None
+            None for all.
+
+        Raises
+        ------
+        ValueError
+            The rates of the controls enter; there is no such input or output.
+        """
+        rows = self._rows(outputs)
+        parts = [[self.B[rate], self.D[rate][rows]] for rate in RATES]
+        if input == "u":
+            if any(part.any() for pair in parts[1:] for part in pair):
+                raise ValueError("the rates of the controls enter; take the input 'ddot'")
+            return self.A, parts[0][0], self.C[rows], parts[0][1]
+        if input != "ddot":
+            raise ValueError(f"there is no input {input!r}; take 'u' or 'ddot'")
+        (b_u, d_u), (b_du, d_du), (b_ddu, d_ddu) = parts
+        r, size = len(self.controls), len(self.A)
+        one, none = np.eye(r), np.zeros((r, r))
+        a = np.block([[self.A, b_u, b_du], [np.zeros((r, size)), none, one], [np.zeros((r, size)), none, none]])
+        return a, np.concatenate([b_ddu, none, one]), np.concatenate([self.C[rows], d_u, d_du], axis=1), d_ddu
+
+    def document(self) -> dict[str, Any]:
+        """Return what ``holonom linearize --json`` writes, but for format and version."""
+
+        def pairs(numbers: Matrix) -> list[Any]:
+            return np.stack([numbers.real, numbers.imag], axis=-1).tolist()
+
+        return {
+            "scene": self.scene,
+            "at": self.at,
+            "at_rest": self.at_rest,
+            **{name: list(getattr(self, name)) for name in ("coordinates", "leading", "controls", "outputs")},
+            **{name: getattr(self, name).tolist() for name in ("mass", "basis", "A", "C")},
+            **{name: {rate: each.tolist() for rate, each in getattr(self, name).items()} for name in ("B", "D")},
+            "eigenvalues": pairs(self.eigenvalues),
+            "frequencies": self.frequencies.tolist(),
+            "damping": self.damping.tolist(),
+            "modes": pairs(self.modes),
+            "controllable_rank": self.controllable_rank,
+            "observable_rank": self.observable_rank(),
+        }
+
+    def _rows(self, outputs: Sequence[str] | None) -> list[int]:
+        wanted = self.outputs if outputs is None else outputs
+        if unknown := [name for name in wanted if name not in self.outputs]:
+            raise ValueError(f"there is no output {unknown[0]!r}; the outputs are {', '.join(self.outputs)}")
+        return [self.outputs.index(name) for name in wanted]
+
+
+def linearize(problem: MotionProblem, equations: LinearEquations, at: Fraction | None = None) -> Linearization:
+    """Linearise a motion at an instant.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    equations : LinearEquations
+        Of the same scene.
+    at : Fraction or None
+        The instant; None for the start.
+
+    Raises
+    ------
+    HolonomError
+        The motion is not analytic, or cannot be followed so far; the constraints are singular there.
+    """
+    require_analytic(problem)
+    t, state = _reached(problem, at)
+    names, kept, n = equations.coordinates, list(problem.independent), len(equations.coordinates)
+    accelerations, multipliers = _motion_at(equations, t, state, kept)
+    here = _with_constraints(equations.at(t, state, accelerations, multipliers), kept)
+    tangent = Tangent(here["equation_by_a"], here["constraint_by_q"])
+    if tangent.rank < len(kept) and problem.obstacle is None:
+        raise HolonomError(Failure.NOT_LINEARIZED, instant=t)
+    nominal = nominal_of(problem)
+    moving = np.abs([state[n:], accelerations]) > AT_REST * np.array([nominal.velocities, nominal.accelerations])
+    return Linearization(
+        problem.scene,
+        t,
+        not moving.any(),
+        names,
+        tuple(names[place] for place in tangent.leading),
+        equations.controls,
+        (*problem.state, *(equations.multipliers[beta] for beta in kept)),
+        here["equation_by_a"],
+        tangent.basis,
+        *_state_space(here, tangent),
+    )
+
+
+def _reached(problem: MotionProblem, at: Fraction | None) -> tuple[float, Vector]:
+    """The instant and the state there."""
+    start = float(problem.start["t"])
+    if at is None or at == start:
+        return start, np.array([float(problem.start[name]) for name in problem.state])
+    motion = simulate(problem, SimulationRequest(until=at, samples=FEWEST_SAMPLES))
+    numbers = [*motion.coordinates.values(), *motion.velocities.values()]
+    return float(motion.instants[-1]), np.array([values[-1] for values in numbers])
+
+
+def _motion_at(equations: LinearEquations, t: float, state: Vector, kept: Sequence[int]) -> tuple[Vector, Vector]:
+    """Accelerations and multipliers, zero but for the constraints that are kept."""
+    multipliers = np.zeros(len(equations.multipliers))
+    unmoved = equations.at(t, state, np.zeros(len(equations.coordinates)), multipliers)
+    here = _with_constraints(unmoved, kept)
+    tangent = Tangent(here["equation_by_a"], here["constraint_by_q"])
+    found, forces = tangent.solve(-here["equation"][:, None], -here["acceleration"][:, None])
+    multipliers[list(kept)] = forces[:, 0]
+    return found[:, 0], multipliers
+
+
+def _with_constraints(found: Mapping[str, Matrix], kept: Sequence[int]) -> Mapping[str, Matrix]:
+    """The same with the rows of these constraints alone."""
+    of_motion = ("equation", "A_rate")
+    return {name: each if name.startswith(of_motion) else each[list(kept)] for name, each in found.items()}
+
+
+def _state_space(here: Mapping[str, Matrix], tangent: Tangent) -> tuple[Matrix, dict[str, Matrix], Matrix, dict]:
+    """A, B, C, D. Deviations are matrices whose columns belong to xi, eta, du, du' and du''."""
+    mass, mass_rate, U = here["equation_by_a"], here["A_rate"], here["constraint_by_u"]
+    N, n, m, r = tangent.basis, *tangent.basis.shape, U.shape[1]
+    none = np.zeros((n, 0))
+
+    def moved(jacobian_deviation: Matrix) -> Matrix:
+        return tangent.solve(np.zeros((n, jacobian_deviation.shape[1])), -jacobian_deviation)[0]
+
+    P, R = moved(U), moved(here["rate_by_q"] @ N)
+    S = moved(here["rate_by_q"] @ P + here["rate_by_u"])
+    turned = N.T @ mass_rate @ N / 2
+    q = np.block([N, np.zeros((n, m)), P, np.zeros((n, 2 * r))])
+    v = np.block([R, N, S, P, np.zeros((n, r))])
+    controls = np.eye(3 * r, 2 * m + 3 * r, 2 * m)
+    unsolved = _by_deviations(here, "equation", q, v, controls)
+    basis_rate = R - N @ turned
+    xi_rate = np.block([turned, np.eye(m), R.T @ mass @ P + N.T @ mass_rate @ P, np.zeros((m, 2 * r))])
+    eta_rate = (basis_rate.T @ mass + N.T @ mass_rate) @ v - N.T @ unsolved
+    _, multipliers = tangent.solve(-unsolved, -_by_deviations(here, "acceleration", q, v, controls))
+    rows, outputs = np.concatenate([xi_rate, eta_rate]), np.concatenate([q, v, multipliers])
+    (A, *B), (C, *D) = (np.split(part, 2 * m + r * np.arange(3), axis=1) for part in (rows, outputs))
+    return A, dict(zip(RATES, B, strict=True)), C, dict(zip(RATES, D, strict=True))
+
+
+def _by_deviations(here: Mapping[str, Matrix], row: str, q: Matrix, v: Matrix, controls: Matrix) -> Matrix:
+    """What the deviations change an expression by, the accelerations and multipliers apart."""
+    by_controls = np.concatenate([here[f"{row}_by_{rate}"] for rate in RATES], axis=1)
+    return here[f"{row}_by_q"] @ q + here[f"{row}_by_v"] @ v + by_controls @ controls
+
+
+def _reachable(A: Matrix, B: Matrix) -> int:
+    """The dimension of the span of B, A B, A^2 B, ..., rounding apart."""
+    balanced, (scale, _) = scipy.linalg.matrix_balance(A, permute=False, separate=True)
+    A, B = balanced / or_one(np.linalg.norm(balanced)), B / scale[:, None]
+    B = B / or_one(np.linalg.norm(B, axis=0))
+    reached = np.zeros((len(A), 0))
+    while B.shape[1] and reached.shape[1] < len(A):
+        B = B - reached @ (reached.T @ B)
+        left, values, _ = np.linalg.svd(B, full_matrices=False)
+        new = left[:, values > UNREACHED]
+        reached, B = np.concatenate([reached, new], axis=1), A @ new
+    return reached.shape[1]

@@ -1,0 +1,85 @@
+"""The tangent space of the constraint manifold at a state, with coordinates orthonormal in the mass metric."""
+
+from functools import cached_property
+
+import numpy as np
+import scipy.linalg
+
+from ..simulation.constraints.directions import or_one, weighted_constraints
+from ..simulation.matrices import Matrix, Vector
+
+DEPENDENT = 1e-9  # singular values of the scaled constraints, relative to the largest, that count as zero
+
+
+class Tangent:
+    """Solutions of J x = 0, x = N xi with N^T A N = 1, and of linear equations of motion.
+
+    Of all such N the one is taken for which the m coordinates that are most independent, each in terms of the root of
+    its mass, are a symmetric positive definite matrix times xi: where these are masses on lines, N gives each of them
+    its own xi.
+
+    Parameters
+    ----------
+    mass : ndarray, shape (n, n)
+        A, which may be singular where the constraints make up for it.
+    jacobian : ndarray, shape (g, n)
+        J, whose rows may depend on one another.
+
+    Attributes
+    ----------
+    rank : int
+        Of J.
+    basis : ndarray, shape (n, m)
+        N.
+    leading : tuple of int
+        Places of the m coordinates.
+
+    Raises
+    ------
+    HolonomError
+        A is singular along a direction that the constraints leave free.
+
+    Examples
+    --------
+    >>> tangent = Tangent(np.diag([4.0, 1.0]), np.array([[0.0, 1.0]]))
+    >>> tangent.basis.tolist(), tangent.leading
+    ([[0.5], [0.0]], (0,))
+    """
+
+    def __init__(self, mass: Matrix, jacobian: Matrix) -> None:
+        self._mass, self._jacobian = mass, jacobian
+        weighted = weighted_constraints(mass, jacobian)
+        left, values, _ = np.linalg.svd(weighted.directions)
+        self.rank = int(np.count_nonzero(values > DEPENDENT * values.max(initial=0.0)))
+        free = scipy.linalg.solve_triangular(weighted.factor, left[:, self.rank :], lower=True, trans="T")
+        roots = np.sqrt(or_one(np.abs(mass.diagonal())))[:, None]
+        _, _, order = scipy.linalg.qr((roots * free).T, mode="economic", pivoting=True)
+        self.leading = tuple(sorted(map(int, order[: free.shape[1]])))
+        left, _, right = np.linalg.svd((roots * free)[list(self.leading)])
+        self.basis = free @ (left @ right).T
+
+    def solve(self, force: Matrix, constrained: Matrix) -> tuple[Matrix, Matrix]:
+        """Return x and mu of A x - J^T mu = F, J x = b, mu the shortest where the constraints depend on one another.
+
+        Parameters
+        ----------
+        force : ndarray, shape (n, k)
+            F.
+        constrained : ndarray, shape (g, k)
+            b.
+
+        Returns
+        -------
+        x : ndarray, shape (n, k)
+        mu : ndarray, shape (g, k)
+        """
+        x = self._inverse @ constrained
+        x = x + self.basis @ (self.basis.T @ (force - self._mass @ x))
+        return x, self._inverse.T @ (self._mass @ x - force)
+
+    @cached_property
+    def _inverse(self) -> Matrix:
+        """Of J, by lengths in terms of the roots of the masses."""
+        roots = np.sqrt(or_one(np.abs(self._mass.diagonal())))
+        lengths: Vector = or_one(np.linalg.norm(self._jacobian / roots, axis=1))
+        return np.linalg.pinv(self._jacobian / roots / lengths[:, None], rcond=DEPENDENT) / roots[:, None] / lengths

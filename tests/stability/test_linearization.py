@@ -1,0 +1,194 @@
+"""Linearisation against closed forms, SymPy's Linearizer, and small deviations of motions that are followed."""
+
+import numpy as np
+import pytest
+from sympy.physics.mechanics import LagrangesMethod, Point, ReferenceFrame, dynamicsymbols
+
+import holonom
+from holonom.failures import Failure, HolonomError
+
+# ---- textbook cases, at rest -----------------------------------------------------------------------------------------
+
+DOUBLE_PENDULUM = """system : holonomic_system(coordinates = [x1, y1, x2, y2], parameters = [g],
+  kinetic_energy = (dot(x1)^2 + dot(y1)^2 + dot(x2)^2 + dot(y2)^2)/2, potential_energy = [gravity = g*(y1 + y2)],
+  constraints = [x1^2 + y1^2 - 1, (x2 - x1)^2 + (y2 - y1)^2 - 1])$
+rest : holonomic_scene(system, parameter_values = [g = 10], time_span = [0, 1], initial_state =
+  [x1 = 0, y1 = -1, x2 = 0, y2 = -2, dot(x1) = 0, dot(y1) = 0, dot(x2) = 0, dot(y2) = 0])$
+"""
+HOOP = """system : holonomic_system(coordinates = [r, z], parameters = [Omega],
+  kinetic_energy = (dot(r)^2 + dot(z)^2 + r^2*Omega^2)/2, potential_energy = [gravity = 10*z],
+  constraints = [r^2 + z^2 - 1])$
+rest : holonomic_scene(system, parameter_values = [Omega = 5], time_span = [0, 1], initial_guess = [z = -1],
+  initial_state = [r = {r}, dot(r) = 0, dot(z) = 0])$
+"""
+FOUCAULT = """system : holonomic_system(coordinates = [x, y, z], parameters = [w],
+  kinetic_energy = ((dot(x) - w*y)^2 + (dot(y) + w*x)^2 + dot(z)^2)/2,
+  potential_energy = [gravity = 10*z], constraints = [x^2 + y^2 + z^2 - 4])$
+rest : holonomic_scene(system, parameter_values = [w = 3], time_span = [0, 1], initial_state =
+  [x = 0, y = 0, z = -2, dot(x) = 0, dot(y) = 0, dot(z) = 0])$
+"""
+
+
+def imaginary(frequencies):
+    return sorted(w * sign for w in frequencies for sign in (1, -1))
+
+
+@pytest.mark.parametrize(
+    ("text", "frequencies"),
+    [
+        (DOUBLE_PENDULUM, [np.sqrt(10 * (2 + np.sqrt(2))), np.sqrt(10 * (2 - np.sqrt(2)))]),
+        # the bead leaves the lowest point for cos(phi) = g/(R Omega^2), where it swings with Omega*sin(phi)
+        (HOOP.format(r="sqrt(1 - 4/25)"), [5 * np.sqrt(1 - 0.16)]),
+        (FOUCAULT, [3 + np.sqrt(5), 3 - np.sqrt(5)]),
+    ],
+    ids=["double pendulum", "bead on a turning hoop", "Foucault"],
+)
+def test_textbook_frequencies(text, frequencies):
+    found = holonom.system(text).linearize()
+    assert found.at_rest
+    assert np.abs(found.eigenvalues.real).max() < 1e-7
+    assert sorted(found.eigenvalues.imag) == pytest.approx(imaginary(frequencies), rel=1e-10)
+
+
+def test_a_bead_at_the_lowest_point_of_a_fast_hoop_leaves_it():
+    found = holonom.system(HOOP.format(r=0)).linearize()
+    assert sorted(found.eigenvalues.real) == pytest.approx([-np.sqrt(15), np.sqrt(15)], rel=1e-12)
+
+
+def test_modes_of_the_double_pendulum():
+    found = holonom.system(DOUBLE_PENDULUM).linearize()
+    shapes = {tuple(np.round(np.real(mode[[0, 2]] / mode[0]), 10)) for mode in found.modes.T}
+    assert shapes == {(1.0, round(1 + np.sqrt(2), 10)), (1.0, round(1 - np.sqrt(2), 10))}
+
+
+# ---- SymPy ---------------------------------------------------------------------------------------------------------------
+
+CART = """system : holonomic_system(coordinates = [s, x, y], controls = [F], parameters = [c],
+  kinetic_energy = dot(s)^2 + (dot(x)^2 + dot(y)^2)/2, potential_energy = [gravity = 10*y],
+  forces = [damping = [-c*dot(s), -dot(x)/3, 0], push = [F, 0, 0]], constraints = [(x - s)^2 + y^2 - 1])$
+rest : holonomic_scene(system, parameter_values = [c = 1/2], control_law = [F = 0], time_span = [0, 1],
+  initial_state = [s = 0, x = 0, y = {y}, dot(s) = 0, dot(x) = 0, dot(y) = 0])$
+"""
+
+
+def cart_by_sympy(y0):
+    s, x, y, force = dynamicsymbols("s x y F")
+    ds, dx, dy = dynamicsymbols("s x y", 1)
+    frame, cart, bob = ReferenceFrame("N"), Point("cart"), Point("bob")
+    cart.set_vel(frame, ds * frame.x)
+    bob.set_vel(frame, dx * frame.x + dy * frame.y)
+    forces = [(cart, (force - ds / 2) * frame.x), (bob, -dx / 3 * frame.x)]
+    lagrangian = ds**2 + (dx**2 + dy**2) / 2 - 10 * y
+    length = (x - s) ** 2 + y**2 - 1
+    method = LagrangesMethod(lagrangian, [s, x, y], hol_coneqs=[length], forcelist=forces, frame=frame)
+    method.form_lagranges_equations()
+    linearizer = method.to_linearizer(q_ind=[s, x], qd_ind=[ds, dx], q_dep=[y], qd_dep=[dy])
+    at = dict.fromkeys([s, x, ds, dx, dy, force, *dynamicsymbols("s x y", 2)], 0) | {y: y0, method.lam_vec[0]: -5 * y0}
+    return [np.array(part, dtype=float) for part in linearizer.linearize(op_point=at, A_and_B=True)]
+
+
+@pytest.mark.parametrize("y", [-1, 1])
+def test_a_cart_with_a_pendulum_against_sympys_linearizer(y):
+    found, (a, b) = holonom.system(CART.format(y=y)).linearize(), cart_by_sympy(y)
+    assert np.sort_complex(found.eigenvalues) == pytest.approx(np.sort_complex(np.linalg.eigvals(a)), abs=1e-8)
+    rate = 0.3 + 1.1j  # of which the transfer function from the force to s and x is the same
+    one = found.C[:2] @ np.linalg.solve(rate * np.eye(4) - found.A, found.B["u"])
+    other = np.linalg.solve(rate * np.eye(4) - a, b)[:2]
+    assert one == pytest.approx(other, rel=1e-8)
+    assert found.controllable_rank == 4
+    assert found.observable_rank(["x"]) == 4
+    assert found.observable_rank(["dot(x)"]) == 3
+
+
+# ---- motions that are followed ---------------------------------------------------------------------------------------
+
+PARTS = {
+    "pendulum": """system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [e],
+  kinetic_energy = (1 + x^2)*(dot(x)^2 + dot(y)^2)/2, potential_energy = [gravity = 10*y],
+  forces = [drag = [-dot(x)/5, u*dot(u)/7]], constraints = [x^2 + y^2 - u^2])$
+scene : holonomic_scene(system, control_law = [u = 1 + t/4 + e*(1 + sin(3*t))], time_span = [0, 2],
+  initial_state = [x = 3/5 + e/3, dot(x) = 1 - e], initial_guess = [y = -4/5, dot(y) = 0])$
+""",
+    "two bars": """system : holonomic_system(coordinates = [phi, x, y], controls = [u, w], parameters = [e],
+  kinetic_energy = dot(phi)^2/3 + (dot(x)^2 + dot(y)^2) + dot(w)*dot(x)/5, potential_energy = [gravity = 5*y],
+  forces = [push = [w, 0, 0]], constraints = [(x - cos(phi) - u)^2 + (y - sin(phi))^2 - 4])$
+scene : holonomic_scene(system, control_law = [u = t^2/3 + e*cos(t), w = 1 + e*t], time_span = [0, 2],
+  initial_state = [phi = 1/2 + e, x = 2, dot(phi) = -1, dot(x) = e/2], initial_guess = [y = 2, dot(y) = 0])$
+""",
+}
+LAWS = {  # by e: of u, dot(u) and ddot(u), a row for each control
+    "pendulum": lambda t: [[1 + np.sin(3 * t)], [3 * np.cos(3 * t)], [-9 * np.sin(3 * t)]],
+    "two bars": lambda t: [[np.cos(t), t], [-np.sin(t), 1], [-np.cos(t), 0]],
+}
+INSTANT, STEP, SMALL = 0.8, 2e-3, 1e-4
+STENCIL = {-2: 1 / 12, -1: -2 / 3, 1: 2 / 3, 2: -1 / 12}  # of a first derivative
+
+
+def deviations(scene, instants):
+    """Derivatives by e of coordinates, velocities and multipliers at instants."""
+
+    def numbers(instant, e):
+        motion = scene.simulate(until=instant, samples=2, tol=1e-14, e=e)
+        parts = motion.coordinates, motion.velocities, motion.multipliers
+        return np.array([samples[-1] for part in parts for samples in part.values()])
+
+    def derivative(instant, h):
+        return (numbers(instant, h) - numbers(instant, -h)) / (2 * h)
+
+    return {k: (4 * derivative(t, SMALL) - derivative(t, 2 * SMALL)) / 3 for k, t in instants.items()}
+
+
+@pytest.mark.parametrize("name", PARTS)
+def test_small_deviations_of_a_motion_follow_the_linear_system(name):
+    scene = holonom.system(PARTS[name])
+    instants = {k: INSTANT + k * STEP for k in (0, *STENCIL)}
+    deviating = deviations(scene, instants)
+    found = {k: scene.with_settings(e=0).linearize(t) for k, t in instants.items()}
+    here, n = found[0], len(found[0].coordinates)
+
+    def state(k):
+        """Deviations in tangent coordinates whose basis moves as little as the metric allows: its turn is symmetric."""
+        left, _, right = np.linalg.svd(here.basis.T @ here.mass @ found[k].basis)
+        tangent = (found[k].basis @ (left @ right).T).T @ found[k].mass
+        return np.concatenate([tangent @ deviating[k][:n], tangent @ deviating[k][n : 2 * n]])
+
+    law = dict(zip(("u", "du", "ddu"), np.array(LAWS[name](INSTANT)), strict=True))
+    outputs = here.C @ state(0) + sum(here.D[rate] @ law[rate] for rate in law)
+    assert outputs == pytest.approx(deviating[0], rel=1e-7, abs=1e-7)
+    rates = sum(weight * state(k) for k, weight in STENCIL.items()) / STEP
+    assert here.A @ state(0) + sum(here.B[rate] @ law[rate] for rate in law) == pytest.approx(rates, rel=1e-6, abs=1e-6)
+
+
+def test_state_space_with_accelerations_as_inputs():
+    found = holonom.system(PARTS["pendulum"]).with_settings(e=0).linearize(INSTANT)
+    a, b, c, d = found.state_space("ddot", ["x", "lambda1"])
+    assert [part.shape for part in (a, b, c, d)] == [(4, 4), (4, 1), (2, 4), (2, 1)]
+    rate = 0.7 + 0.4j
+    inner = np.linalg.solve(rate * np.eye(2) - found.A, sum(rate**k * each for k, each in enumerate(found.B.values())))
+    whole = found.C @ inner + sum(rate**k * each for k, each in enumerate(found.D.values()))
+    rows = [found.outputs.index(name) for name in ("x", "lambda1")]
+    assert rate**2 * (c @ np.linalg.solve(rate * np.eye(4) - a, b) + d) == pytest.approx(whole[rows], rel=1e-12)
+    with pytest.raises(ValueError, match="rates of the controls"):
+        found.state_space("u")
+
+
+# ---- refusals --------------------------------------------------------------------------------------------------------
+
+DEAD_CENTRE = """system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  constraints = [x*y])$
+scene : holonomic_scene(system, initial_state = [x = {x}, y = 0, dot(x) = 1, dot(y) = 0], time_span = [0, 1])$
+"""
+
+
+def test_a_singular_configuration_is_refused():
+    with pytest.raises(HolonomError) as refused:
+        holonom.system(DEAD_CENTRE.format(x=0)).linearize()
+    assert refused.value.failure is Failure.NOT_LINEARIZED
+
+
+def test_a_motion_that_switches_is_refused():
+    text = "system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [-signum(dot(x))])$"
+    scene = "s : holonomic_scene(system, initial_state = [x = 0, dot(x) = 1], time_span = [0, 1])$"
+    with pytest.raises(HolonomError) as refused:
+        holonom.system(text + scene).linearize()
+    assert refused.value.failure is Failure.NOT_ANALYTIC
