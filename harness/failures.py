@@ -220,6 +220,7 @@ class Failure(Enum):
         "the motion is not analytic where {detail} changes its sign",
         "follow it with `holonom simulate`, which steps to such instants",
     )
+    NO_LAW = ("a control has no law", "give every control a control_law")
     NOT_LINEARIZED = (
         "the constraints lose rank at t = {instant:.10g}: there is no tangent space to linearise in",
         "choose another instant",

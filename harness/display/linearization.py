@@ -32,7 +32,7 @@ def show_linearization(console: "Console", found: "Linearization") -> None:
     console.print(table)
     m = len(found.leading)
     console.print(f"{m} degrees of freedom, by {', '.join(found.leading) or 'none'}; {2 * m} eigenvalues.")
-    if found.controls:
+    if found.at_rest and found.controls:
         console.print(f"The controls reach {found.controllable_rank} of {2 * m} directions of the state.")
     if not found.at_rest:
         console.print(MOVING)

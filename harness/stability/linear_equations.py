@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..documents import Document, ask, read
-from ..program.motion_program import Program, program_of
+from ..failures import Failure, HolonomError
+from ..program.motion_program import Program, names_used, program_of
 from ..program.numpy_function import NumpyFunction
 from ..program.request import Request
 from ..simulation.matrices import INDEXED, Matrix, Vector
@@ -31,19 +32,46 @@ class LinearEquations:
     ----------
     coordinates, multipliers, controls : tuple of str
         Names: n, g and r of them.
+    forced : bool
+        Whether forces without a potential act.
+    law : Program or None
+        Of t: u, dot u, ddot u; None where a control has no law.
     program : Program
-        Of (t, q, dot q, ddot q, lambda).
+        Of (t, q, dot q, ddot q, lambda, u, dot u, ddot u).
     """
 
     coordinates: tuple[str, ...]
     multipliers: tuple[str, ...]
     controls: tuple[str, ...]
+    forced: bool
+    law: Program | None
     program: Program
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "_evaluate", NumpyFunction(self.program))
 
-    def at(self, t: float, state: Vector, accelerations: Vector, multipliers: Vector) -> Mapping[str, Matrix]:
+    @property
+    def changes_with_time(self) -> bool:
+        """Whether the equations contain the time, controls apart."""
+        return "t" in names_used(self.program)
+
+    def controls_at(self, t: float) -> Vector:
+        """u, dot u and ddot u under the law, shape (3r,).
+
+        Raises
+        ------
+        HolonomError
+            A control has no law.
+        """
+        if not self.controls:
+            return np.empty(0)
+        if self.law is None:
+            raise HolonomError(Failure.NO_LAW)
+        return NumpyFunction(self.law)([t])
+
+    def at(
+        self, t: float, state: Vector, accelerations: Vector, multipliers: Vector, controls: Vector
+    ) -> Mapping[str, Matrix]:
         """Evaluate the equations and their gradients.
 
         Parameters
@@ -52,6 +80,8 @@ class LinearEquations:
         state : ndarray, shape (2n,)
         accelerations : ndarray, shape (n,)
         multipliers : ndarray, shape (g,)
+        controls : ndarray, shape (3r,)
+            u, dot u, ddot u.
 
         Returns
         -------
@@ -65,7 +95,7 @@ class LinearEquations:
         for row, size in zip(ROWS, (n, g, g, g), strict=True):
             found[row] = np.zeros(size)
             found |= {f"{row}_by_{group}": np.zeros((size, columns)) for group, columns in sizes.items()}
-        values = self._evaluate([t, *state, *accelerations, *multipliers])
+        values = self._evaluate([t, *state, *accelerations, *multipliers, *controls])
         for name, value in zip(self._evaluate.outputs, values, strict=True):
             array, *places = INDEXED.fullmatch(name).groups()
             found[array][tuple(int(place) - 1 for place in places if place)] = value
@@ -78,10 +108,10 @@ def linear_equations(source: Source, request: Request) -> LinearEquations:
     Raises
     ------
     HolonomError
-        As `holonom.documents.ask`; a control has no law, a parameter no value.
+        As `holonom.documents.ask`; a parameter has no value.
     """
-    document = read(
-        Document.LINEARIZATION, ask(Document.LINEARIZATION, source, request.scene, settings=request.settings)
-    )
+    text = ask(Document.LINEARIZATION, source, request.scene, settings=request.settings)
+    document = read(Document.LINEARIZATION, text)
     names = (tuple(document[kind]) for kind in ("coordinates", "multipliers", "controls"))
-    return LinearEquations(*names, program_of(document["program"]))
+    law = document["law"] and program_of(document["law"])
+    return LinearEquations(*names, document["forced"], law, program_of(document["program"]))

@@ -218,8 +218,9 @@ def linearize(problem: MotionProblem, equations: LinearEquations, at: Fraction |
     require_analytic(problem)
     t, state = _reached(problem, at)
     names, kept, n = equations.coordinates, list(problem.independent), len(equations.coordinates)
-    accelerations, multipliers = _motion_at(equations, t, state, kept)
-    here = _with_constraints(equations.at(t, state, accelerations, multipliers), kept)
+    controls = equations.controls_at(t)
+    accelerations, multipliers = _motion_at(equations, t, state, controls, kept)
+    here = _with_constraints(equations.at(t, state, accelerations, multipliers, controls), kept)
     tangent = Tangent(here["equation_by_a"], here["constraint_by_q"])
     if tangent.rank < len(kept) and problem.obstacle is None:
         raise HolonomError(Failure.NOT_LINEARIZED, instant=t)
@@ -249,10 +250,12 @@ def _reached(problem: MotionProblem, at: Fraction | None) -> tuple[float, Vector
     return float(motion.instants[-1]), np.array([values[-1] for values in numbers])
 
 
-def _motion_at(equations: LinearEquations, t: float, state: Vector, kept: Sequence[int]) -> tuple[Vector, Vector]:
+def _motion_at(
+    equations: LinearEquations, t: float, state: Vector, controls: Vector, kept: Sequence[int]
+) -> tuple[Vector, Vector]:
     """Accelerations and multipliers, zero but for the constraints that are kept."""
     multipliers = np.zeros(len(equations.multipliers))
-    unmoved = equations.at(t, state, np.zeros(len(equations.coordinates)), multipliers)
+    unmoved = equations.at(t, state, np.zeros(len(equations.coordinates)), multipliers, controls)
     here = _with_constraints(unmoved, kept)
     tangent = Tangent(here["equation_by_a"], here["constraint_by_q"])
     found, forces = tangent.solve(-here["equation"][:, None], -here["acceleration"][:, None])
@@ -270,7 +273,6 @@ def _state_space(here: Mapping[str, Matrix], tangent: Tangent) -> tuple[Matrix, 
     """A, B, C, D. Deviations are matrices whose columns belong to xi, eta, du, du' and du''."""
     mass, mass_rate, U = here["equation_by_a"], here["A_rate"], here["constraint_by_u"]
     N, n, m, r = tangent.basis, *tangent.basis.shape, U.shape[1]
-    none = np.zeros((n, 0))
 
     def moved(jacobian_deviation: Matrix) -> Matrix:
         return tangent.solve(np.zeros((n, jacobian_deviation.shape[1])), -jacobian_deviation)[0]

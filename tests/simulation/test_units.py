@@ -89,8 +89,9 @@ EXAMPLES = [
 # Motions of 3e-15 of a unit of time have Taylor coefficients beyond the range of doubles at order 20: heyoka's
 # integrator ends, and the robust one takes its place where the engine is open.
 TOO_FAST = {"andrews.mac", "heavy_top.mac", "hard/heavy_bob.mac", "hard/vanishing_length.mac"}
-# The multipliers of the linkage are large next to dead centres. The stiff spring is stretched by 1e-3 beside coordinates
-# of one, for 2,250 periods: in the same units, the last bit of x3 at the start changes the multipliers by 1e-10.
+# The multipliers of the linkage are large next to dead centres. The stiff spring is stretched by 1e-3 beside
+# coordinates of one, for 2,250 periods: in the same units, the last bit of x3 at the start changes the multipliers by
+# 1e-10.
 DIGIT_LOST = {"linkage.mac", "hard/stiff_spring.mac"}
 
 

@@ -61,7 +61,7 @@ def test_modes_of_the_double_pendulum():
     assert shapes == {(1.0, round(1 + np.sqrt(2), 10)), (1.0, round(1 - np.sqrt(2), 10))}
 
 
-# ---- SymPy ---------------------------------------------------------------------------------------------------------------
+# ---- SymPy ---------------------------------------------------------------------------------------------------------
 
 CART = """system : holonomic_system(coordinates = [s, x, y], controls = [F], parameters = [c],
   kinetic_energy = dot(s)^2 + (dot(x)^2 + dot(y)^2)/2, potential_energy = [gravity = 10*y],
