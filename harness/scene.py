@@ -22,8 +22,8 @@ from .sandbox import Limits, warn_unconfined
 from .series.request import SeriesRequest
 from .simulation.derivations import Derivations
 from .simulation.request import SimulationRequest
-from .stability.request import LinearizationRequest
 from .source import Source
+from .stability.request import LinearizationRequest
 from .sweeps.request import SweepRequest
 from .temporary import KeptDirectory
 

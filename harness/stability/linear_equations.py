@@ -14,11 +14,12 @@ import numpy as np
 
 from ..documents import Document, ask, read
 from ..failures import Failure, HolonomError
-from ..program.motion_program import Program, names_used, program_of
+from ..program.motion_program import Program, names_used
 from ..program.numpy_function import NumpyFunction
 from ..program.request import Request
 from ..simulation.matrices import INDEXED, Matrix, Vector
 from ..source import Source
+from ..structs import structured
 
 ROWS = ("equation", "constraint", "rate", "acceleration")  # r, f, Df, DDf
 GROUPS = ("q", "v", "a", "u", "du", "ddu")
@@ -111,7 +112,4 @@ def linear_equations(source: Source, request: Request) -> LinearEquations:
         As `holonom.documents.ask`; a parameter has no value.
     """
     text = ask(Document.LINEARIZATION, source, request.scene, settings=request.settings)
-    document = read(Document.LINEARIZATION, text)
-    names = (tuple(document[kind]) for kind in ("coordinates", "multipliers", "controls"))
-    law = document["law"] and program_of(document["law"])
-    return LinearEquations(*names, document["forced"], law, program_of(document["program"]))
+    return structured(LinearEquations, read(Document.LINEARIZATION, text))
