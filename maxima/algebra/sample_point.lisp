@@ -217,92 +217,89 @@
           (dotimes (i size (cons '(mlist) (nreverse x)))
             (push (maxima-number (gethash (1+ i) values 0)) x))))))
 
-;;; ---- a point on the manifold -------------------------------------------------------------
+;;; ---- Newton's method ---------------------------------------------------------------------
+
+(defvar *equations* nil "Terms that are to vanish.")
+(defvar *jacobian* nil "Their gradients by the unknowns, sparse.")
+(defvar *unknowns* nil "Symbols.")
+(defvar *metric* nil "Sparse rows; nil where corrections are as short as they can be.")
 
 (defun $point_on_manifold (point constraints jacobian coordinates)
   "The point, its coordinates changed until the constraints hold; false where Newton's method does
 not get there. constraints: list of terms; jacobian: their gradients by the coordinates, sparse."
-  (let ((*zero-share* *zero-share-of-constraints*))
+  (let ((*zero-share* *zero-share-of-constraints*)
+        (*equations* (cdr constraints)) (*jacobian* jacobian) (*unknowns* (cdr coordinates)) (*metric* nil))
     (catch 'irregular-point
-      (if (every #'zerop (residuals-at point constraints))
-          (converted-point point #'identity)
-          (let ((close (point-near-manifold point constraints jacobian coordinates)))
-            (if close (refined-point close constraints jacobian coordinates)))))))
+      (if (every #'zerop (residuals-at point))
+          (copied-point point)
+          (let ((close (point-near-manifold point)))
+            (if close (refined-point close)))))))
 
-(defun residuals-at (point constraints)
-  (mapcar #'(lambda (f) (value-at (expression-term f) point)) (cdr constraints)))
+(defun residuals-at (point) (mapcar #'(lambda (f) (value-at (expression-term f) point)) *equations*))
 
-(defun point-near-manifold (point constraints jacobian coordinates)
+(defun point-near-manifold (point)
   "The same in floating point, which is quicker; nil where that does not get there."
   (let* ((*floating* t)
          (*zero-share* *zero-share-of-floats*)
-         (found (errset (catch 'irregular-point
-                          (newton-iteration (converted-point point #'float-of) constraints
-                                            jacobian coordinates)))))
+         (found (errset (catch 'irregular-point (newton-iteration (converted-point point #'float-of))))))
     (if (car found) (converted-point (car found) #'rational))))
 
-(defun refined-point (close constraints jacobian coordinates)
+(defun refined-point (close)
   "To all digits: corrections in floating point add several each; Newton's method where they do not."
-  (let ((refined (corrected-in-floats close constraints jacobian coordinates)))
-    (if refined
-        (corrected-point refined (make-hash-table) (cdr coordinates))
-        (newton-iteration close constraints jacobian coordinates))))
+  (let ((refined (corrected-in-floats close)))
+    (if refined (corrected-point refined (make-hash-table)) (newton-iteration close))))
 
-(defun corrected-in-floats (point constraints jacobian coordinates)
+(defun corrected-in-floats (point)
   (let ((*small-coordinate* *smallest-coordinate*) (before nil)) ; what lands too soon cannot be corrected
     (dotimes (attempt *most-refinements* nil)
-      (let* ((residuals (residuals-at point constraints))
+      (let* ((residuals (residuals-at point))
              (size (reduce #'max (mapcar #'abs residuals) :initial-value 0))
              (corrections (if (or (null before) (< (* *least-gain* size) before))
-                              (corrections-in-floats residuals size jacobian point))))
+                              (corrections-in-floats residuals size point))))
         (cond ((zerop size) (return point))
               ((null corrections) (return nil))
-              (t (setq before size point (corrected-point point corrections (cdr coordinates)))))))))
+              (t (setq before size point (corrected-point point corrections))))))))
 
-(defun corrections-in-floats (residuals size jacobian point)
+(defun corrections-in-floats (residuals size point)
   "Newton's corrections of residuals that are at most so large; nil where floating point has none, or none is needed."
   (let* ((*floating* t)
          (*zero-share* *zero-share-of-floats*)
          (found (if (plusp size)
                     (errset (catch 'irregular-point
-                              (newton-corrections (mapcar #'(lambda (r) (float-of (/ r size))) residuals)
-                                                  jacobian (converted-point point #'float-of)))))))
+                              (corrections-of (mapcar #'(lambda (r) (float-of (/ r size))) residuals)
+                                              (converted-point point #'float-of)))))))
     (if (car found) (mapped-corrections #'(lambda (column value) (* size (rational value))) (car found)))))
 
 (defun float-of (number) (float number 1d0))
 
 ;; In floating point a residual whose terms all vanish, as y where y = 0, may stay: whoever has a point that no
 ;; correction changes any more goes on from there with more digits.
-(defun newton-iteration (point constraints jacobian coordinates &optional metric damped)
+(defun newton-iteration (point &optional damped)
   (let ((last-size nil))
     (dotimes (attempt *most-corrections* nil)
-      (let ((residuals (residuals-at point constraints)))
-        (if (every #'zerop residuals) (return (converted-point point #'identity)))
-        (let* ((corrections (if metric
-                                (corrections-in-metric residuals jacobian metric point (length (cdr coordinates)))
-                                (newton-corrections residuals jacobian point)))
-               (size (largest-correction corrections)))
-          (if (and *floating* (< size (* double-float-epsilon (largest-coordinate point coordinates))))
-              (return point))
+      (let ((residuals (residuals-at point)))
+        (if (every #'zerop residuals) (return (copied-point point)))
+        (let* ((corrections (corrections-of residuals point)) (size (largest-correction corrections)))
+          (if (and *floating* (< size (* double-float-epsilon (largest-coordinate point)))) (return point))
           (if (and (> attempt *impatience*) last-size (>= size last-size)) (return nil))
           (setq last-size size
                 point (if damped
-                          (point-of-line-search point corrections size constraints jacobian metric coordinates)
-                          (corrected-point point corrections (cdr coordinates))))
+                          (point-of-line-search point corrections size)
+                          (corrected-point point corrections)))
           (if (null point) (return nil)))))))
 
-(defun point-of-line-search (point corrections size constraints jacobian metric coordinates)
+(defun iterated-from (point) (catch 'irregular-point (newton-iteration point)))
+
+(defun point-of-line-search (point corrections size)
   "A point along the corrections, of this size, where the next with the same matrix are shorter; nil where none is."
   (do ((share 1 (/ share 2)) (halvings 0 (1+ halvings)))
       ((> halvings *most-halvings*) nil)
-    (let* ((trial (corrected-point point (shortened corrections share) (cdr coordinates)))
-           (residuals (catch 'irregular-point (residuals-at trial constraints))))
+    (let* ((trial (corrected-point point (shortened corrections share)))
+           (residuals (catch 'irregular-point (residuals-at trial))))
       (if (and residuals
                (or (every #'zerop residuals)
-                   (< size (* *small-correction* (largest-coordinate point coordinates)))
-                   (<= (largest-correction
-                        (corrections-in-metric residuals jacobian metric point (length (cdr coordinates))))
-                       (* (- 1 (/ share 4)) size))))
+                   (< size (* *small-correction* (largest-coordinate point)))
+                   (<= (largest-correction (corrections-of residuals point)) (* (- 1 (/ share 4)) size))))
           (return trial)))))
 
 (defun shortened (corrections share) (mapped-corrections #'(lambda (column value) (* share value)) corrections))
@@ -312,38 +309,42 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
     (maphash #'(lambda (column value) (setf (gethash column result) (funcall function column value))) corrections)
     result))
 
-(defun newton-corrections (residuals jacobian point)
-  "The shortest change of the coordinates, column -> number: J^T x with J J^T x = -f."
-  (let* ((rows (numeric-rows jacobian point))
+(defun corrections-of (residuals point)
+  "Newton's changes of the unknowns, column -> number."
+  (if *metric* (corrections-in-metric residuals point) (shortest-corrections residuals point)))
+
+(defun shortest-corrections (residuals point)
+  "J^T x with J J^T x = -f."
+  (let* ((rows (numeric-rows *jacobian* point))
          (columns (columns-of rows))
-         (unknowns (make-hash-table))
+         (multiples (solution-of (mapcar #'(lambda (residual row) (with-right-side residual (gram-row row columns)))
+                                         residuals rows)))
          (corrections (make-hash-table))
          (beta 0))
-    (setf (gethash 0 unknowns) 1)
-    (substituted-back
-     (echelon-of (mapcar #'(lambda (residual row) (with-right-side residual (gram-row row columns)))
-                         residuals rows))
-     unknowns)
     (dolist (row rows corrections)
-      (let ((x (gethash (incf beta) unknowns 0)))
+      (let ((x (gethash (incf beta) multiples 0)))
         (dolist (e row) (incf (gethash (car e) corrections 0) (* x (cdr e))))))))
 
 (defun numeric-rows (rows point) (mapcar #'(lambda (row) (row-at-point row point)) (cdr rows)))
 
-(defun corrections-in-metric (residuals jacobian metric point size)
+(defun solution-of (rows)
+  "Values of the columns; column 0 is the negative of the right-hand side."
+  (let ((values (make-hash-table)))
+    (setf (gethash 0 values) 1)
+    (substituted-back (echelon-of rows) values)))
+
+(defun corrections-in-metric (residuals point)
   "The change x that is shortest in the metric A: A x + J^T y = 0, J x = -f."
-  (let* ((rows (numeric-rows jacobian point))
-         (unknowns (make-hash-table))
+  (let* ((rows (numeric-rows *jacobian* point))
+         (size (length *unknowns*))
          (columns (columns-of rows))
-         (s 0))
-    (setf (gethash 0 unknowns) 1)
-    (substituted-back
-     (echelon-of (append (mapcar #'(lambda (row) (append row (multiplier-entries (gethash (incf s) columns) size)))
-                                 (numeric-rows metric point))
-                         (mapcar #'with-right-side residuals rows)))
-     unknowns)
-    (let ((corrections (make-hash-table)))
-      (dotimes (s size corrections) (setf (gethash (1+ s) corrections) (gethash (1+ s) unknowns 0))))))
+         (s 0)
+         (solution (solution-of
+                    (append (mapcar #'(lambda (row) (append row (multiplier-entries (gethash (incf s) columns) size)))
+                                    (numeric-rows *metric* point))
+                            (mapcar #'with-right-side residuals rows))))
+         (corrections (make-hash-table)))
+    (dotimes (s size corrections) (setf (gethash (1+ s) corrections) (gethash (1+ s) solution 0)))))
 
 (defun multiplier-entries (column size)
   (mapcar #'(lambda (e) (cons (+ size (car e)) (cdr e))) (sort (copy-list column) #'< :key #'car)))
@@ -369,8 +370,8 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
 
 (defun with-right-side (residual row) (if (zerop residual) row (acons 0 residual row)))
 
-(defun largest-coordinate (point coordinates)
-  (reduce #'max (mapcar #'(lambda (q) (abs (gethash q (sample-point-symbols point)))) (cdr coordinates))))
+(defun coordinate (symbol point) (gethash symbol (sample-point-symbols point)))
+(defun largest-coordinate (point) (reduce #'max (mapcar #'(lambda (q) (abs (coordinate q point))) *unknowns*)))
 
 (defun largest-correction (corrections)
   (let ((largest 0))
@@ -378,21 +379,22 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
              corrections)
     largest))
 
-(defun corrected-point (point corrections coordinates)
-  (let ((corrected (converted-point point #'identity)) (column 0))
-    (dolist (q coordinates corrected)
-      (let ((correction (gethash (incf column) corrections 0)))
-        (setf (gethash q (sample-point-symbols corrected))
-              (landed (short-number (+ (gethash q (sample-point-symbols point)) correction))))))))
+(defun corrected-point (point corrections)
+  (let ((corrected (copied-point point)) (column 0))
+    (dolist (q *unknowns* corrected)
+      (setf (gethash q (sample-point-symbols corrected))
+            (landed (short-number (+ (coordinate q point) (gethash (incf column) corrections 0))))))))
 
 ;; A coordinate that gets so small is on its way to zero: the points are drawn nowhere near it.
 (defun landed (coordinate) (if (< (abs coordinate) *small-coordinate*) 0 coordinate))
 
 (defun $moved_point (point shifts)
   "The point moved by  name = number, ..."
-  (let ((moved (converted-point point #'identity)))
+  (let ((moved (copied-point point)))
     (dolist (shift (cdr shifts) moved)
       (incf (gethash (second shift) (sample-point-symbols moved)) (rational-of (third shift))))))
+
+(defun copied-point (point) (converted-point point #'identity))
 
 (defun converted-point (point conversion)
   "The point, its numbers converted, and nothing else known of it."
@@ -412,93 +414,82 @@ vanish; false where Newton's method does not get there."
   (let* ((*kept-digits* digits)
          (*digits-at-point* (+ digits 20))
          (*zero-share* (expt 10 (- 5 digits)))
-         (*small-coordinate* *zero-share*))
+         (*small-coordinate* *zero-share*)
+         (*equations* (cdr constraints)) (*jacobian* jacobian) (*unknowns* (cdr names)) (*metric* metric))
     (catch 'irregular-point
-      (let ((found (or (newton-iteration point constraints jacobian names metric t)
-                       (root-from-around point constraints jacobian metric names)
-                       (newton-iteration point constraints jacobian names metric))))
+      (let ((found (or (newton-iteration point t) (root-from-around point) (newton-iteration point))))
         (if found
-            (let ((nearer (nearer-root found point constraints jacobian metric names)))
-              (cons '(mlist)
-                    (mapcar #'(lambda (x) (maxima-number (plain-number (gethash x (sample-point-symbols nearer)))))
-                            (cdr names)))))))))
+            (let ((nearer (nearer-root found point)))
+              (cons '(mlist) (mapcar #'(lambda (x) (maxima-number (plain-number (coordinate x nearer))))
+                                     *unknowns*))))))))
 
-(defun nearer-root (found point constraints jacobian metric names)
+(defun nearer-root (found point)
   "The root nearest to the point, of those that Newton's method gets to from around it; found, if it is none of them."
-  (let ((close (if (and (<= (length (cdr names)) *most-unknowns-searched*)
-                        (not (contracts-at-once point constraints jacobian metric names)))
-                   (nearest-within nil found point constraints jacobian metric names))))
-    (or (if close (catch 'irregular-point (newton-iteration close constraints jacobian names metric)))
-        found)))
+  (let ((close (if (and (<= (length *unknowns*) *most-unknowns-searched*) (not (contracts-at-once point)))
+                   (nearest-within nil found point))))
+    (or (if close (iterated-from close)) found)))
 
-(defun root-from-around (point constraints jacobian metric names)
+(defun root-from-around (point)
   "The nearest root that Newton's method gets to from around the point, where it gets to none from there; or nil."
-  (if (<= (length (cdr names)) *most-unknowns-searched*)
-      (let ((size (let ((largest (largest-coordinate point names))) (if (zerop largest) 1 largest))))
+  (if (<= (length *unknowns*) *most-unknowns-searched*)
+      (let ((size (let ((largest (largest-coordinate point))) (if (zerop largest) 1 largest))))
         (some #'(lambda (distance)
-                  (let ((close (nearest-within distance nil point constraints jacobian metric names)))
-                    (if close (catch 'irregular-point (newton-iteration close constraints jacobian names metric)))))
+                  (let ((close (nearest-within distance nil point))) (if close (iterated-from close))))
               (list (/ size 4) size (* 4 size) (* 16 size))))))
 
-(defun contracts-at-once (point constraints jacobian metric names)
+(defun contracts-at-once (point)
   "Whether the constraints are nearly linear along the first correction, so that the point is next to its root."
-  (let* ((size (length (cdr names)))
-         (corrections (corrections-in-metric (residuals-at point constraints) jacobian metric point size)))
+  (let ((corrections (corrections-of (residuals-at point) point)))
     (every #'(lambda (share)
-               (let* ((next (corrected-point point (shortened corrections share) (cdr names)))
-                      (residuals (catch 'irregular-point (residuals-at next constraints))))
+               (let* ((next (corrected-point point (shortened corrections share)))
+                      (residuals (catch 'irregular-point (residuals-at next))))
                  (and residuals
-                      (<= (largest-difference (corrections-in-metric residuals jacobian metric point size)
-                                              (shortened corrections (- 1 share)))
+                      (<= (largest-difference (corrections-of residuals point) (shortened corrections (- 1 share)))
                           (* *contraction* (largest-correction corrections))))))
            '(1/3 5/7 1))))
 
 (defun largest-difference (corrections others)
   (largest-correction (mapped-corrections #'(lambda (column value) (- value (gethash column others 0))) corrections)))
 
-(defun nearest-within (distance found point constraints jacobian metric names)
+(defun nearest-within (distance found point)
   "The nearest root from starts within this distance of the point, or that of the one found; nil where none is nearer."
   (let* ((*floating* t)
          (*zero-share* *zero-share-of-floats*)
          (*most-corrections* *most-corrections-of-search*)
          (*most-halvings* *most-halvings-of-search*)
          (guess (converted-point point #'float-of))
-         (rows (catch 'irregular-point (numeric-rows metric (converted-point point #'float-of))))
-         (known (if found (distance-in-metric (converted-point found #'float-of) guess rows names)))
+         (rows (catch 'irregular-point (numeric-rows *metric* (converted-point point #'float-of))))
+         (known (if found (distance-in-metric (converted-point found #'float-of) guess rows)))
          (best nil))
     (do* ((reach (or known (float-of distance)) (second best))
-          (nearer (nearest-of-starts guess reach known rows constraints jacobian metric names)
-                  (nearest-of-starts guess reach reach rows constraints jacobian metric names)))
+          (nearer (nearest-of-starts guess reach known rows) (nearest-of-starts guess reach reach rows)))
          ((null nearer) (if best (converted-point (first best) #'rational)))
       (setq best nearer))))
 
-(defun nearest-of-starts (guess reach known rows constraints jacobian metric names)
+(defun nearest-of-starts (guess reach known rows)
   "Of the roots from starts at this distance the nearest, with its distance; nil where none is nearer than KNOWN."
-  (let ((share (if (< (length (cdr constraints)) (length (cdr names))) *nearer* (- 1 1/1000000))) (best nil))
+  (let ((share (if (< (length *equations*) (length *unknowns*)) *nearer* (- 1 1/1000000))) (best nil))
     (if (plusp reach)
-        (dolist (start (starts-around guess reach rows names) best)
-          (let* ((root (car (errset (catch 'irregular-point
-                                      (newton-iteration start constraints jacobian names metric t)))))
-                 (way (if root (distance-in-metric root guess rows names))))
+        (dolist (start (starts-around guess reach rows) best)
+          (let* ((root (car (errset (catch 'irregular-point (newton-iteration start t)))))
+                 (way (if root (distance-in-metric root guess rows))))
             (if (and way (or (null known) (< way (* share known))))
                 (setq known way best (list root way))))))))
 
-(defun starts-around (guess distance rows names)
+(defun starts-around (guess distance rows)
   "Points at shares of a distance from the guess, along each of the names."
   (let ((column 0) (starts nil))
-    (dolist (name (cdr names) (nreverse starts))
+    (dolist (name *unknowns* (nreverse starts))
       (incf column)
       (let ((mass (or (cdr (assoc column (nth (1- column) rows))) 0)))
         (if (plusp mass)
-            (dolist (share (if (cdr (cdr names)) *starts-around* *starts-on-a-line*))
-              (let ((start (converted-point guess #'identity)))
+            (dolist (share (if (cdr *unknowns*) *starts-around* *starts-on-a-line*))
+              (let ((start (copied-point guess)))
                 (incf (gethash name (sample-point-symbols start)) (* share (/ distance (sqrt mass))))
                 (push start starts))))))))
 
-(defun distance-in-metric (point guess rows names)
-  (let ((ways (mapcar #'(lambda (x) (- (gethash x (sample-point-symbols point))
-                                       (gethash x (sample-point-symbols guess))))
-                      (cdr names)))
+(defun distance-in-metric (point guess rows)
+  (let ((ways (mapcar #'(lambda (x) (- (coordinate x point) (coordinate x guess))) *unknowns*))
         (square 0))
     (mapc #'(lambda (row way) (dolist (e row) (incf square (* way (cdr e) (nth (1- (car e)) ways))))) rows ways)
     (sqrt (max square 0))))

@@ -340,91 +340,77 @@
 
 (defvar *few-digits* 5)
 
+(defun paired-coefficients (coarse fine)
+  "Of each series the list of its coefficients, (coarse . fine)."
+  (mapcar #'(lambda (x y)
+              (mapcar #'(lambda (a b) (cons (rational-of a) (rational-of b))) (cdr (third x)) (cdr (third y))))
+          (cdr coarse) (cdr fine)))
+
 (defun $agreeing_digits (coarse fine added)
   "Significant decimal digits that all coefficients of two expansions share."
-  (let ((digits most-positive-fixnum) (rounding (rounding-levels coarse fine added)))
-    (map-coefficients coarse fine
-                      #'(lambda (a b order)
-                          (if (not (rounded-zero-p a b added (svref rounding order)))
-                              (setq digits (min digits (shared-digits a b))))
-                          0))
-    digits))
+  (let* ((rows (paired-coefficients coarse fine)) (levels (rounding-levels rows added)) (digits most-positive-fixnum))
+    (dolist (row rows digits)
+      (mapc #'(lambda (pair level)
+                (unless (rounded-zero-p pair added level) (setq digits (min digits (shared-digits pair)))))
+            row levels))))
 
 (defun $without_rounded_zeros (coarse fine added)
   "The finer expansion, where rounding has left no zero."
-  (let ((rounding (rounding-levels coarse fine added)))
-    (map-coefficients coarse fine
-                      #'(lambda (a b order) (if (rounded-zero-p a b added (svref rounding order)) 0 b)))))
+  (let* ((rows (paired-coefficients coarse fine)) (levels (rounding-levels rows added)))
+    (flet ((kept (pair level) (if (rounded-zero-p pair added level) 0 (maxima-number (cdr pair)))))
+      (cons '(mlist)
+            (mapcar #'(lambda (x row) (list '(mlist) (second x) (cons '(mlist) (mapcar #'kept row levels))))
+                    (cdr fine) rows)))))
 
-(defun rounded-zero-p (a b added levels)
-  (or (shrinks-p a b added) (and (below-p a (car levels)) (below-p b (cdr levels)))))
+(defun rounded-zero-p (pair added levels)
+  (or (shrinks-p pair added) (and (below-p (car pair) (car levels)) (below-p (cdr pair) (cdr levels)))))
 
-(defun shrinks-p (a b added) (<= (* (abs b) (expt 10 (- added *few-digits*))) (abs a)))
+(defun shrinks-p (pair added) (<= (* (abs (cdr pair)) (expt 10 (- added *few-digits*))) (abs (car pair))))
 (defun below-p (x level) (or (eql x 0) (and level (<= (binary-magnitude x) level))))
 
-(defun rounding-levels (coarse fine added)
+(defun rounding-levels (rows added)
   "For each order binary magnitudes of what is left of a zero at most, by the coarse and by the fine expansion."
-  (let* ((sizes (sizes-by-order coarse fine)) (of-coarse nil) (of-fine nil)
-         (few (digits-in-bits *few-digits*)) (most (- (digits-in-bits added))))
-    (map-coefficients coarse fine
-                      #'(lambda (a b order)
-                          (if (and (not (eql a 0)) (not (eql b 0)) (shrinks-p a b added))
-                              (setq of-coarse (larger of-coarse (- (binary-magnitude a) (svref sizes order)))
-                                    of-fine (larger of-fine (- (binary-magnitude b) (svref sizes order)))))
-                          0))
-    (map 'vector
-         #'(lambda (size)
-             (if of-coarse
-                 (cons (+ (min (+ of-coarse few) most) size) (+ (min (+ of-fine few) most) size))
-                 (cons nil nil)))
-         sizes)))
+  (let ((sizes (sizes-by-order rows)) (of-coarse nil) (of-fine nil)
+        (few (digits-in-bits *few-digits*)) (most (- (digits-in-bits added))))
+    (dolist (row rows)
+      (mapc #'(lambda (pair size)
+                (when (and (not (eql (car pair) 0)) (not (eql (cdr pair) 0)) (shrinks-p pair added))
+                  (setq of-coarse (larger of-coarse (- (binary-magnitude (car pair)) size))
+                        of-fine (larger of-fine (- (binary-magnitude (cdr pair)) size)))))
+            row sizes))
+    (mapcar #'(lambda (size)
+                (if of-coarse (cons (+ (min (+ of-coarse few) most) size) (+ (min (+ of-fine few) most) size))))
+            sizes)))
 
-(defun larger (x y) (if x (max x y) y))
+(defun larger (x y) (if (and x y) (max x y) (or x y)))
 
-(defun sizes-by-order (coarse fine)
+(defun sizes-by-order (rows)
   "Binary magnitude of the largest coefficient that both expansions know of each order and the orders beside it;
 where there is none, of the nearest order before, or else after."
-  (let* ((orders (length (cdr (third (second coarse))))) (sizes (make-array orders :initial-element nil)) (last nil))
-    (map-coefficients coarse fine
-                      #'(lambda (a b order)
-                          (if (known-p a b)
-                              (loop for k from (max 0 (1- order)) to (min (1- orders) (1+ order))
-                                    do (setf (svref sizes k) (larger (svref sizes k) (binary-magnitude b)))))
-                          0))
-    (setq last (or (find-if #'identity sizes) 0))
-    (map 'vector #'(lambda (size) (setq last (or size last))) sizes)))
+  (let* ((known (reduce #'(lambda (some more) (mapcar #'larger some more))
+                        (mapcar #'(lambda (row) (mapcar #'known-magnitude row)) rows)))
+         (sizes (mapcar #'(lambda (before here after) (larger before (larger here after)))
+                        (cons nil known) known (append (cdr known) '(nil))))
+         (last (or (find-if #'identity sizes) 0)))
+    (mapcar #'(lambda (size) (setq last (or size last))) sizes)))
 
-(defun known-p (a b) (and (not (eql b 0)) (>= (shared-digits a b) *few-digits*)))
+(defun known-p (pair) (and (not (eql (cdr pair) 0)) (>= (shared-digits pair) *few-digits*)))
+(defun known-magnitude (pair) (if (known-p pair) (binary-magnitude (cdr pair))))
 
 (defun $fading (coarse fine)
   "Whether one of the series ends in what may be zeros of rounding, or coefficients that are smaller than rounding:
 more of them in a row than between coefficients that both expansions know."
-  (some #'(lambda (x y) (fading-p (mapcar #'rational-of (cdr (third x))) (mapcar #'rational-of (cdr (third y)))))
-        (cdr coarse) (cdr fine)))
+  (some #'fading-p (paired-coefficients coarse fine)))
 
-(defun fading-p (as bs)
+(defun fading-p (row)
   (let ((longest 0) (run 0) (begun nil) (rounded nil))
-    (mapc #'(lambda (a b)
-              (if (known-p a b)
-                  (setq longest (if begun (max longest run) 0) run 0 begun t rounded nil)
-                  (setq run (1+ run) rounded (or rounded (not (eql b 0))))))
-          as bs)
-    (and begun rounded (> run longest))))
+    (dolist (pair row (and begun rounded (> run longest)))
+      (if (known-p pair)
+          (setq longest (if begun (max longest run) 0) run 0 begun t rounded nil)
+          (setq run (1+ run) rounded (or rounded (not (eql (cdr pair) 0))))))))
 
-(defun map-coefficients (coarse fine function)
-  (cons '(mlist)
-        (mapcar #'(lambda (x y)
-                    (let ((order -1))
-                      (list '(mlist) (second x)
-                            (cons '(mlist)
-                                  (mapcar #'(lambda (a b)
-                                              (maxima-number (funcall function (rational-of a)
-                                                                      (rational-of b) (incf order))))
-                                          (cdr (third x)) (cdr (third y)))))))
-                (cdr coarse) (cdr fine))))
-
-(defun shared-digits (a b)
-  (let ((difference (abs (- a b))))
+(defun shared-digits (pair)
+  (let ((difference (abs (- (car pair) (cdr pair)))))
     (if (eql difference 0)
         most-positive-fixnum
-        (floor (* (log 2d0 10d0) (- (binary-magnitude b) (binary-magnitude difference)))))))
+        (floor (* (log 2d0 10d0) (- (binary-magnitude (cdr pair)) (binary-magnitude difference)))))))

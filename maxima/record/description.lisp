@@ -130,7 +130,6 @@
                 (if (eq value 'null) nil (list (list '(mequal simp) (car reader) (funcall (cdr reader) value))))))
           readers))
 
-(defun listed (items) (cons '(mlist simp) items))
 (defun described-names (names) (mlist-of (mapcar #'described-symbol names)))
 (defun described-list (trees) (mlist-of (mapcar #'described-expression trees)))
 
