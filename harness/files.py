@@ -2,7 +2,6 @@
 
 import errno
 import os
-import secrets
 import shutil
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping
@@ -266,7 +265,7 @@ def _opened(folder: Path) -> Iterator[int]:
 
 
 def _draft_name() -> str:
-    return f".holonom-{secrets.token_hex(8)}.new"
+    return f".holonom-{os.urandom(8).hex()}.new"
 
 
 def _give_name(file: BinaryIO, name: str, folder: int) -> None:

@@ -10,7 +10,6 @@ which never see the file and begin when the first is gone, derive from that desc
 
 import os
 import re
-import secrets
 import shlex
 import shutil
 import signal
@@ -273,7 +272,7 @@ def _new_run(
     left_behind: tuple[str, ...] = (OUTCOME, DOCUMENT),
 ) -> Iterator[Run]:
     with private_directory() as directory:
-        yield Run(file, directory, limits, settings, secrets.token_hex(16), reads_files, left_behind)
+        yield Run(file, directory, limits, settings, os.urandom(16).hex(), reads_files, left_behind)
 
 
 def _copy(run: Run) -> str:

@@ -12,7 +12,6 @@ import weakref
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from secrets import token_hex
 
 from .failures import Failure, HolonomError
 
@@ -81,7 +80,7 @@ def _remove_entry(name: str, top: int) -> bool:
             for each in os.listdir(folder):
                 if _is_directory(each, folder):
                     os.chmod(each, 0o700, dir_fd=folder)  # to move a directory takes the right to write to it
-                os.rename(each, token_hex(16), src_dir_fd=folder, dst_dir_fd=top)
+                os.rename(each, os.urandom(16).hex(), src_dir_fd=folder, dst_dir_fd=top)
         finally:
             os.close(folder)
         os.rmdir(name, dir_fd=top)

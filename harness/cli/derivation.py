@@ -10,7 +10,6 @@ import click
 from ..language import ENGLISH, LANGUAGES, speaking
 from ..sandbox import Limits
 from ..supervisor import doing, time_to_limit
-from .beside import beside, result_of
 from .group import holonom
 from .meanwhile import meanwhile
 from .options import DISAGREEMENT, present, publish, runs_scenes, takes_settings, writes_json
@@ -100,6 +99,7 @@ def check(
     from ..crosscheck.seed import fresh_seed
     from ..record import derived_record
     from ..source import Source
+    from .beside import beside, result_of
 
     seed = seed or fresh_seed()
     sources = [Source(scene, limits) for scene in scenes]
