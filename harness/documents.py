@@ -7,26 +7,10 @@ from re import compile as pattern
 from typing import NamedTuple
 
 from .failures import Failure, HolonomError
-from .formats import SCHEMAS, VERSION, Document, Publication, is_document, published, read, require, schema
+from .formats import Document
 from .maxima import DEFAULT_LIMITS, NO_SETTINGS, run_batch, run_description
 from .sandbox import Limits
 from .source import Source, describe
-
-__all__ = [
-    "SCHEMAS",
-    "VERSION",
-    "Document",
-    "Publication",
-    "Question",
-    "ask",
-    "ask_all",
-    "is_document",
-    "published",
-    "read",
-    "require",
-    "schema",
-    "written",
-]
 
 NAME = pattern(r"[^\W\d]\w*")
 NO_SCENE = frozenset({Document.ERRATA, Document.VERSIONS})  # the paper's file holds more than a system

@@ -5,8 +5,9 @@ Maxima does all of it, from `examples/paper/printed.mac`; this module runs that 
 
 from dataclasses import dataclass
 
-from .documents import Document, ask, read
+from .documents import ask
 from .files import shared
+from .formats import Document, read
 from .structs import structured
 from .trees import Tree
 

@@ -11,14 +11,19 @@ from .hidden import visible
 LIMITS = frozenset({"--time-limit", "--memory-limit", "--sandbox"})  # options that are one argument in Python
 
 
+INPUT, MACHINE = 2, 3  # exit statuses: bad input, and a machine that lacks something
+
+
 class Failure(Enum):
     """A way to fail: the sentence that names it, and its remedies. {detail} and other names stand for the case's own.
 
-    A remedy that takes an option of the command line has its name in braces, such as {--until}.
+    A remedy that takes an option of the command line has its name in braces, such as {--until}. The exit status of a
+    command that fails so is 2, or `MACHINE` where that comes first.
     """
 
-    def __init__(self, said: str, *remedies: str) -> None:
-        self.said, self.remedies = said, remedies
+    def __init__(self, first: str | int, *more: str) -> None:
+        self.status = first if isinstance(first, int) else INPUT
+        self.said, *self.remedies = more if isinstance(first, int) else (first, *more)
 
     FILE_MISSING = ("there is no such file{detail}", "give the path of a scene, for instance examples/paper/paper.mac")
     FILE_UNREADABLE = ("the file cannot be read: {detail}", "give the path of a readable Maxima file")
@@ -28,29 +33,38 @@ class Failure(Enum):
     )
     NOT_UTF8 = ("the file is not UTF-8 text: byte {detail}", "save it as UTF-8")
     NOT_MAXIMA = (
+        MACHINE,
         "this does not run as Maxima: {detail}",
         "put a Maxima that works first in PATH, free space for temporary files",
         "lift a limit on memory",
     )
-    TORN = ("what Maxima left behind is not whole: its {detail}", "free space for temporary files, and run it again")
-    KILLED = ("Maxima was ended by {detail}", "see what ends it, perhaps a lack of memory, and run it again")
+    TORN = (
+        MACHINE,
+        "what Maxima left behind is not whole: its {detail}",
+        "free space for temporary files, and run it again",
+    )
+    KILLED = (MACHINE, "Maxima was ended by {detail}", "see what ends it, perhaps a lack of memory, and run it again")
     NO_PRIVATE_DIRECTORY = (
+        MACHINE,
         "no directory for temporary files can be made: {detail}",
         "name one that can be written in the variable TMPDIR",
         "free space",
     )
     NO_SANDBOX = (
+        MACHINE,
         "bubblewrap is missing or forbidden here",
         "install the package `bubblewrap`",
         "allow it to make user namespaces",
         "run the scene without {--sandbox}",
     )
     SANDBOX_FAILED = (
+        MACHINE,
         "the sandbox failed: {detail}",
         "run it again when the machine is less busy or has more processes and descriptors",
         "run it with {--trust}",
     )
     MAXIMA_MISSING = (
+        MACHINE,
         "Maxima is not installed",
         "run `make`",
         "install the package `maxima` of your distribution",
@@ -87,8 +101,8 @@ class Failure(Enum):
     NOT_A_RECORD = ("this is not a derivation record: {detail}", "derive it anew with `holonom derive`")
     NOT_AN_EXPRESSION = "{detail} is not an expression that a derivation record can hold"
     UNWRITABLE = ("the output cannot be written: {detail}", "give a file in a directory that can be written")
-    DISK_FULL = ("the output cannot be written: {detail}", "free space, and run it again")
-    COMPILER_UNUSABLE = ("the C compiler cannot be run: {detail}", "name one that works in the variable CC")
+    DISK_FULL = (MACHINE, "the output cannot be written: {detail}", "free space, and run it again")
+    COMPILER_UNUSABLE = (MACHINE, "the C compiler cannot be run: {detail}", "name one that works in the variable CC")
     OUTPUT_TAKEN = ("this output would take the place of {detail}", "give it a name of its own")
     FOREIGN_FILE = (
         "there is a file of that name, which is not replaced unasked",
@@ -119,7 +133,7 @@ class Failure(Enum):
         "{detail} is no instant",
         "write a number such as 0.75 or 3/4, of a size that a double can have",
     )
-    NOT_IN_RANGE = "{detail}"
+    NOT_IN_RANGE = "the value is out of range: {detail}"
     NO_SUCH_SCENE = "there is no scene {detail}"
     TOO_MANY_SAMPLES = ("{detail}", "ask for fewer, for a file in CSV or Parquet alone", "raise {--memory-limit}")
     DISK_TOO_SMALL = ("{detail}", "ask for fewer", "write to another disk")
@@ -136,6 +150,7 @@ class Failure(Enum):
     NOT_AN_IDENTIFIER = ("{detail} cannot name a function in C and Python", "use letters, digits and underscores")
     INPUT_MISSING = ("nothing is given for {detail}", "give the controls a law and the parameters their values")
     COMPILER_MISSING = (
+        MACHINE,
         "no C compiler is installed",
         "install one, for instance the package `gcc` of your distribution",
         "name one in the variable CC",
@@ -146,7 +161,7 @@ class Failure(Enum):
     )
     NOT_PRINTED = "the browser did not print the book: {detail}"
     COMPILER_REFUSED = "the C compiler refused the motion program: {detail}"
-    EXTRA_MISSING = "this needs {detail}"
+    EXTRA_MISSING = (MACHINE, "this needs {detail}")
     BEYOND_RADIUS = ("{detail}", "ask for an earlier time", "continue the motion with {--until}")
     ORDER_TOO_HIGH = ("{detail}", "ask for a lower order", "ask for digits")
     NOT_A_PRECISION = ("{detail}", "take another one", "ask for {--digits}, which Maxima computes with")
@@ -164,12 +179,13 @@ class Failure(Enum):
     FOREIGN_FOLDER = ("the folder holds other things than a sweep", "give the name of a new folder")
     FOLDER_TAKEN = ("another command is at work in this folder", "wait until it ends")
     NOTHING_TO_RESUME = ("there is no sweep to resume", "leave {--resume} out to begin one")
-    WORKERS_LOST = ("the workers are gone: {detail}", "run the same command again; what is finished stays")
+    WORKERS_LOST = (MACHINE, "the workers are gone: {detail}", "run the same command again; what is finished stays")
     NOT_A_SCHEDULER = (
         "{detail} is no address of a Dask scheduler",
         "write for instance {--dask} tcp://127.0.0.1:8786",
     )
     WORKER_ENDED = (
+        MACHINE,
         "a process that computes was ended",
         "see what ends it, perhaps a lack of memory, and run the same command again",
     )
@@ -197,6 +213,7 @@ class Failure(Enum):
         "take `holonom series` without {--precision}: Maxima expands it to any digits",
     )
     GSL_MISSING = (
+        MACHINE,
         "the Runge-Kutta engine needs the GNU Scientific Library with its headers",
         "install it, for instance the package `libgsl-dev` of your distribution",
     )
@@ -249,31 +266,6 @@ class Failure(Enum):
     NO_WAY_ON = ("the motion cannot be followed beyond t = {detail}", "end the run before it")
     RTEST_UNPAIRED = "an input has no expected result"
     RTEST_FAILED = "not all of the {detail} tests passed"
-
-    @property
-    def status(self) -> int:
-        """The exit status of a command that fails so: 2, or 3 where the machine is at fault."""
-        return 3 if self.name in FAULTS_OF_THE_MACHINE else 2
-
-
-FAULTS_OF_THE_MACHINE = frozenset(
-    {
-        "MAXIMA_MISSING",
-        "NOT_MAXIMA",
-        "TORN",
-        "KILLED",
-        "NO_PRIVATE_DIRECTORY",
-        "NO_SANDBOX",
-        "SANDBOX_FAILED",
-        "DISK_FULL",
-        "COMPILER_MISSING",
-        "COMPILER_UNUSABLE",
-        "EXTRA_MISSING",
-        "GSL_MISSING",
-        "WORKERS_LOST",
-        "WORKER_ENDED",
-    }
-)
 
 
 class HolonomWarning(UserWarning):

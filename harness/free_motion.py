@@ -14,7 +14,8 @@ from sympy import Add, Expr, Mul, Symbol
 from .crosscheck.report import Judgement
 from .crosscheck.system import described_system
 from .described import System, Values, each
-from .documents import Document, ask, read
+from .documents import ask
+from .formats import Document, read
 from .free_verdicts import FreeMotionTrial
 from .mathjson import to_sympy
 from .sandbox import Limits

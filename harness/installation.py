@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
 
-from .documents import Document, ask, read
+from .documents import ask
 from .extras import REQUIREMENT
 from .failures import Failure, HolonomError
 from .files import shared, write_files, write_whole, written_before
+from .formats import Document, read
 from .maxima import LIBRARY
 from .reference.maxima_help import help_files
 from .sandbox import has_sandbox

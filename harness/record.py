@@ -12,8 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from .described import Correction, System, Values, expression
-from .documents import Document, ask, read
+from .documents import ask
 from .failures import Failure, HolonomError
+from .formats import Document, read
 from .maxima import DEFAULT_LIMITS, NO_SETTINGS
 from .sandbox import Limits
 from .source import Source

@@ -16,9 +16,10 @@ from hypothesis import HealthCheck, settings
 from particle import PARTICLE
 
 from holonom.cli import run
-from holonom.documents import Document, ask
+from holonom.documents import ask
 from holonom.errata import PrintedEquation, errata
 from holonom.failures import Failure, HolonomError
+from holonom.formats import Document
 
 # As the command line has it, and every process that the tests start: with threads of its own in each of the tests'
 # processes, BLAS takes ten times as long. NumPy reads this when it is first imported, which is later.

@@ -12,8 +12,9 @@ import holonom
 from holonom import source
 from holonom.described import expression
 from holonom.description import Description, read_description
-from holonom.documents import Document, ask, read
+from holonom.documents import ask
 from holonom.failures import Failure, HolonomError
+from holonom.formats import Document, read
 from holonom.source import Source, describe
 
 EXAMPLES = Path(__file__).parents[1] / "examples"

@@ -6,8 +6,9 @@ from pathlib import Path
 import pytest
 from jsonschema import Draft202012Validator
 
-from holonom.documents import SCHEMAS, Document, Publication, Question, ask, ask_all, is_document, read, schema
+from holonom.documents import Question, ask, ask_all
 from holonom.failures import Failure, HolonomError
+from holonom.formats import SCHEMAS, Document, Publication, is_document, read, schema
 from holonom.maxima import DEFAULT_LIMITS, run_description
 from holonom.source import Source
 

@@ -14,7 +14,8 @@ from pathlib import Path
 
 import pytest
 
-from holonom.documents import Document, ask
+from holonom.documents import ask
+from holonom.formats import Document
 from holonom.maxima import run_rtest
 from holonom.program.forms import MotionProgram
 from holonom.program.request import Request, Solve

@@ -8,8 +8,9 @@ import pytest
 from particle import PARTICLE
 from shell import SHELL
 
-from holonom.documents import Document, ask
+from holonom.documents import ask
 from holonom.failures import Failure, HolonomError
+from holonom.formats import Document
 from holonom.maxima import LIBRARY, count_statements, run_batch, run_rtest
 from holonom.sandbox import Limits
 

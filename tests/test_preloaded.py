@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from holonom import maxima, preloaded
-from holonom.documents import Document, ask
+from holonom.documents import ask
+from holonom.formats import Document
 from holonom.sandbox import Limits, Sandbox
 
 EXAMPLES = Path(__file__).parents[1] / "examples"

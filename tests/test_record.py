@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 from sympy import Rational, Symbol
 
-from holonom.documents import Document, ask
+from holonom.documents import ask
 from holonom.failures import Failure, HolonomError
+from holonom.formats import Document
 from holonom.record import read_record
 
 CHAIN = Path(__file__).parents[1] / "examples" / "chain.mac"

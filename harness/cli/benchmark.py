@@ -61,7 +61,7 @@ def stability(short: bool, plot_file: Path | None, json_file: Path | None) -> in
     from ..benchmark.hard_cases.register import REGISTER, examine_all
     from ..display.measurements import show_stability
     from ..display.progress import progress
-    from ..documents import Publication, published
+    from ..formats import Publication, published
 
     extent = Extent.SHORT if short else Extent.FULL
     with progress("Hard cases", len(REGISTER)) as done:

@@ -65,7 +65,8 @@ def derive(
 ) -> int:
     """Derive the equations of a SCENE, under the paper's numbers."""
     from ..display.derivation import show_record
-    from ..documents import Document, ask
+    from ..documents import ask
+    from ..formats import Document
     from ..record import read_record
     from .console import make_console
 
@@ -173,8 +174,8 @@ def _import_what_judges_motions() -> None:
 def errata(json_file: Path | None, svg_file: Path | None, language: str) -> int:
     """Compare every equation that the paper prints with the derived one."""
     from ..display.derivation import draw_errata, show_errata
-    from ..documents import Document, published
     from ..errata import errata as compare
+    from ..formats import Document, published
 
     equations = compare()
     content = {"equations": [asdict(equation) for equation in equations]}
@@ -195,7 +196,7 @@ def _publish_document(record: "Record", tex_file: Path | None) -> None:
 def _report_document(scene: str, report: "CheckReport") -> dict[str, Any]:
     from ..crosscheck.report import Verdict
     from ..display.derivation import why_left_out
-    from ..documents import Publication, published
+    from ..formats import Publication, published
 
     content = {
         "scene": scene,

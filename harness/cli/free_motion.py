@@ -38,7 +38,8 @@ def free(
 
     The exit status is 1 where SymPy's own evaluation contradicts a law that was found.
     """
-    from ..documents import Document, ask
+    from ..documents import ask
+    from ..formats import Document
 
     with meanwhile(scene_file, limits, _import_what_follows):
         text = ask(Document.FREE_MOTION, scene_file, request.scene, order, settings=request.settings, limits=limits)
@@ -61,7 +62,7 @@ def _import_what_follows() -> None:
 
 def _free_motion_document(found: "FreeMotion") -> dict[str, Any]:
     from ..display.free_motion import formula, power_series
-    from ..documents import Publication, published
+    from ..formats import Publication, published
 
     def law_text(law: Mapping[str, Any]) -> dict[str, str]:
         return {control: formula(value) for control, value in law.items()}

@@ -21,7 +21,7 @@ MISSING = 1
 @writes_json
 def doctor(json_file: Path | None) -> int:
     """Say what is installed, what is missing, and the command that installs it."""
-    from ..documents import Publication, published
+    from ..formats import Publication, published
     from ..installation import components
 
     found = list(components())

@@ -110,7 +110,7 @@ def require_replaceable(path: Path, json: bool) -> None:
     HolonomError
         There is a file with something else in it.
     """
-    from ..documents import is_document
+    from ..formats import is_document
 
     if path.is_file() and path.stat().st_size and not (json and is_document(path.read_bytes())):
         raise HolonomError(Failure.FOREIGN_FILE, path)

@@ -87,7 +87,7 @@ def effects(
 ) -> int:
     """Show which terms and effects a SCENE has and what each costs, in operations and in measured time."""
     from ..display.measurements import show_costs
-    from ..documents import Publication, published
+    from ..formats import Publication, published
     from ..program.effects import scene_costs
 
     costs = scene_costs(scene_file, request, limits)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import NamedTuple, TypeVar
+from typing import TypeVar
 
 from ..description import Description
-from ..record import Derivation, Equation, LeftOut, Record, Relation, Scene
+from ..record import Derivation, LeftOut, Record, Relation, Scene
 from . import derivation, initial_motion
 from .claims import NotComparable
 from .derivation import DerivationClaims
@@ -16,11 +16,10 @@ from .independent import IndependentEquations
 from .initial_motion import SceneClaims
 from .premises import Difference, Premises, differences, premises_of
 from .redundancy import judge_redundancy
-from .report import CheckReport, EquationVerdict, Judgement, Verdict
+from .report import CheckReport, EquationVerdict, Item, Judgement, Place, Verdict, verdict_on
 from .seed import fresh_seed
 from .skeleton import (
     CLOSED_NUMBERS,
-    Item,
     derivation_items,
     length_of,
     operations_of,
@@ -36,13 +35,6 @@ Claims = TypeVar("Claims", DerivationClaims, SceneClaims)
 Compare = Callable[[Claims, tuple[Relation, ...]], Comparison | tuple[Comparison, ...]]
 
 OUT_OF_TIME = Judgement(Verdict.UNDECIDED, None, None, "the time limit was reached before")
-
-
-class Place(NamedTuple):
-    """Where a verdict belongs: a derivation, by its place in the record, and a scene of it or none."""
-
-    derivation: int
-    scene: str | None = None
 
 
 def check_record(
@@ -148,7 +140,7 @@ class _Check:
             lambda: judge_redundancy(claims.system, kept, regular, starts, self._seed), OUT_OF_TIME
         )
         if names or found.verdict is not Verdict.AGREES:
-            yield _told(place, item, found)
+            yield verdict_on(place, item, found)
 
     def _on_scene(self, place: Place, claims: SceneClaims) -> Iterator[EquationVerdict]:
         size = claims.derivation.size
@@ -189,7 +181,7 @@ class _Check:
     def _judged(
         self,
         place: Place,
-        item: Item | Equation,
+        item: Item,
         compare: Callable[[], Comparison | tuple[Comparison, ...]],
         system: MechanicalSystem,
     ) -> EquationVerdict:
@@ -202,7 +194,7 @@ class _Check:
             comparisons = [replace(each, domain=system.terms) for each in compared]
             return judge_all(comparisons, f"{self._seed} {item.number} {item.name}")
 
-        return _told(place, item, self._time.result(work, OUT_OF_TIME))
+        return verdict_on(place, item, self._time.result(work, OUT_OF_TIME))
 
     def _on_left_out(
         self, place: Place, left_out: LeftOut | None, numbers: Sequence[str], size: int
@@ -224,17 +216,11 @@ def _redundant_in_words(redundant: Sequence[str]) -> str:
     )
 
 
-def _told(place: Place, item: Item | Equation, found: Judgement) -> EquationVerdict:
-    what = (item.id, item.number, item.name)
-    return EquationVerdict(*what, *place, found.verdict, found.digits, found.points, found.detail)
-
-
 def _refused(place: Place, item: Item, reason: str, held: bool = True) -> EquationVerdict:
-    return EquationVerdict(*item, *place, Verdict.DISAGREES, None, None, reason, held=held)
+    return verdict_on(place, item, Judgement(Verdict.DISAGREES, None, None, reason), held=held)
 
 
 def _left_out(place: Place, left_out: LeftOut | None) -> Iterator[EquationVerdict]:
-    if left_out is not None:
-        for number in left_out.numbers:
-            what = ("", number, "(not made)")
-            yield EquationVerdict(*what, *place, Verdict.LEFT_OUT, None, None, "", held=False, left_out=left_out)
+    nothing = Judgement(Verdict.LEFT_OUT, None, None)
+    for number in left_out.numbers if left_out else ():
+        yield verdict_on(place, Item("", number, "(not made)"), nothing, held=False, left_out=left_out)

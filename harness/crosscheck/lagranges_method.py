@@ -12,13 +12,13 @@ from collections.abc import Mapping
 import sympy as sp
 from sympy.physics.mechanics import LagrangesMethod, Point, ReferenceFrame, dynamicsymbols
 
-from ..record import Equation
 from .independent import IndependentEquations
 from .linear import LinearEquations
+from .report import Item
 from .system import MechanicalSystem, dotted
 from .verdict import Comparison, Pair
 
-OPINION = Equation("lagranges_method", "2", "Lagrange's equations (SymPy LagrangesMethod)", ())
+OPINION = Item("lagranges_method", "2", "Lagrange's equations (SymPy LagrangesMethod)")
 
 LARGEST_SYSTEM = 24
 """Most coordinates and constraints together: the method multiplies dense matrices in symbols."""

@@ -10,7 +10,7 @@ from ..description import Description
 from .motion_program import ProgramVerdict, ScenePrograms, judge_programs, read_programs
 from .motion_series import SceneSeries, judge_series, judge_servo, read_all_series
 from .questions import Answers
-from .report import EquationVerdict, Judgement, Verdict
+from .report import EquationVerdict, Item, Judgement, Place, Verdict, verdict_on
 from .time_limit import TimeLimit
 
 
@@ -67,6 +67,4 @@ def _out_of_time(scene: str | None) -> ProgramVerdict:
 
 
 def _told(verdict: ProgramVerdict) -> EquationVerdict:
-    it = verdict.found
-    what = ("motion", "", verdict.part, 0, verdict.scene)
-    return EquationVerdict(*what, it.verdict, it.digits, it.points, it.detail)
+    return verdict_on(Place(0, verdict.scene), Item("motion", "", verdict.part), verdict.found)

@@ -9,8 +9,9 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from ..description import DescribedScene, Description
-from ..documents import Document, Question, ask_all
+from ..documents import Question, ask_all
 from ..failures import HolonomError
+from ..formats import Document
 from ..program.request import Solve
 from ..source import Source
 from .digits import WORKING_DIGITS

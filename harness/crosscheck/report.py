@@ -41,6 +41,21 @@ class Judgement(NamedTuple):
     detail: str = ""
 
 
+class Item(NamedTuple):
+    """An equation: its id, the paper's number and its name."""
+
+    id: str
+    number: str
+    name: str
+
+
+class Place(NamedTuple):
+    """Where a verdict belongs: a derivation, by its place in the record, and a scene of it or none."""
+
+    derivation: int
+    scene: str | None = None
+
+
 @dataclass(frozen=True)
 class EquationVerdict:
     """The verdict on one equation of the record."""
@@ -60,6 +75,13 @@ class EquationVerdict:
     detail: str
     held: bool = True  # whether the record holds the equation
     left_out: LeftOut | None = None  # why the equation was not made
+
+
+def verdict_on(
+    place: Place, item: Item, found: Judgement, held: bool = True, left_out: LeftOut | None = None
+) -> EquationVerdict:
+    """Return what was found of an equation as a verdict of a report."""
+    return EquationVerdict(**item._asdict(), **place._asdict(), **found._asdict(), held=held, left_out=left_out)
 
 
 @dataclass(frozen=True, repr=False)

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from math import factorial
-from typing import NamedTuple
 
 import sympy as sp
 
@@ -17,18 +16,11 @@ from ..described import System
 from ..record import LARGEST_SIZE, Derivation, Equation, Scene
 from ..trees import Tree
 from .displayed import displayed, operations, roots, size
+from .report import Item
 from .system import MechanicalSystem, gradient
 
 CLOSED_NUMBERS = ("4", "5", "8", "9", "10", "11")
 """Numbers of the equations that are left out where closed forms would be too long."""
-
-
-class Item(NamedTuple):
-    """An equation: its id, the paper's number and its name."""
-
-    id: str
-    number: str
-    name: str
 
 
 ZEROS_LEFT_OUT = ", without the zeros off the diagonal of A"

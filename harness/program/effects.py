@@ -14,8 +14,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ..documents import Document, ask, read
+from ..documents import ask
 from ..failures import Failure, HolonomError
+from ..formats import Document, read
 from ..language import translatable
 from ..sandbox import Limits
 from ..shown import Shown

@@ -5,10 +5,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..documents import Document, ask
+from ..documents import ask
 from ..extras import naming_the_extra
 from ..failures import Failure, HolonomError
 from ..files import write_files, write_whole
+from ..formats import Document
 from ..sandbox import Limits
 from ..source import Source, source_of
 from .identifiers import default_name

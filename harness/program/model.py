@@ -7,8 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..documents import NAME, Document, ask, read
+from ..documents import NAME, ask
 from ..failures import Failure, HolonomError
+from ..formats import Document, read
 from ..sandbox import Limits
 from ..source import Source
 from ..structs import structured

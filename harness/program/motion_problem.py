@@ -12,8 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from ..described import Correction
-from ..documents import Document, ask, read
+from ..documents import ask
 from ..failures import Failure, HolonomError
+from ..formats import Document, read
 from ..sandbox import Limits
 from ..source import Source
 from ..structs import structured

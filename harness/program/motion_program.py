@@ -18,8 +18,8 @@ from enum import StrEnum
 from fractions import Fraction
 from typing import Any
 
-from ..documents import Document, read, require
 from ..failures import Failure, HolonomError
+from ..formats import Document, read, require
 from ..structs import structured
 from .request import Solve
 

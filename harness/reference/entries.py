@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from ..structs import structured
+
 TEXT = Path(__file__).with_name("entries.toml")
 FUNCTIONS = ("holonomic_system", "holonomic_scene")
 
@@ -30,8 +32,8 @@ class EntryText:
     default: str
     text: str
     example: str
-    also: tuple[str, ...]  # entries that the example needs beside it
     refused: tuple[Refusal, ...]
+    also: tuple[str, ...] = ()  # entries that the example needs beside it
     system: tuple[str, ...] = ()  # entries of the system that the example needs in the place of those of the same names
 
 
@@ -84,14 +86,11 @@ def step_texts() -> tuple[PartText, ...]:
 def _parts(kind: str) -> tuple[PartText, ...]:
     described = _described()
     context = described[f"{kind}_context"]
-    return tuple(
-        PartText(
-            context=tuple(f"{name} : {context[name]}$" for name in _names_used(part["example"], context)),
-            refused=tuple(Refusal(**refusal) for refusal in part.pop("refused")),
-            **part,
-        )
-        for part in described[kind]
-    )
+
+    def statements(example: str) -> tuple[str, ...]:
+        return tuple(f"{name} : {context[name]}$" for name in _names_used(example, context))
+
+    return tuple(structured(PartText, part, context=statements(part["example"])) for part in described[kind])
 
 
 def _names_used(text: str, context: Mapping[str, str]) -> list[str]:
@@ -113,17 +112,8 @@ def _described() -> dict:
 
 
 def _function(name: str, described: dict) -> FunctionText:
-    entries = tuple(
-        EntryText(
-            function=name,
-            also=tuple(entry.pop("also", ())),
-            system=tuple(entry.pop("system", ())),
-            refused=tuple(Refusal(r["given"], r["said"], tuple(r.get("also", ()))) for r in entry.pop("refused")),
-            **entry,
-        )
-        for entry in described["entry"]
-    )
-    return FunctionText(name, described["summary"], described["call"], tuple(described["context"]), entries)
+    entries = tuple(structured(EntryText, entry, function=name) for entry in described["entry"])
+    return structured(FunctionText, described, name=name, entries=entries)
 
 
 def _name_of(entry: str) -> str:

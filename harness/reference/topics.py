@@ -11,7 +11,7 @@ from typing import Any
 import click
 
 from ..cli import group
-from ..documents import SCHEMAS
+from ..formats import SCHEMAS
 from .entries import EntryText, PartText, Refusal, function_texts, part_texts, step_texts
 from .topic import Code, Table, Topic
 

@@ -2,7 +2,8 @@
 
 from pathlib import Path
 
-from ..documents import Document, ask
+from ..documents import ask
+from ..formats import Document
 from ..sandbox import Limits
 from ..source import Source
 from .power_series import MotionSeries, read_series

@@ -13,8 +13,8 @@ from typing import Any
 
 import mpmath
 
-from ..documents import Document, Publication, published, read
 from ..failures import Failure, HolonomError
+from ..formats import Document, Publication, published, read
 from ..number_texts import number, numbers
 from ..program.motion_program import Program
 from ..shown import Shown

@@ -16,11 +16,11 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from ..documents import Publication, published
 from ..explanations import engine_text, remarks
 from ..extras import missing_package
 from ..failures import Failure, HolonomError
 from ..files import whole_file
+from ..formats import Publication, published
 from ..hidden import visible_line
 from ..program.motion_problem import MotionProblem
 from ..sandbox import MIB

@@ -15,9 +15,9 @@ from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..documents import Publication, published, require
 from ..failures import Failure, HolonomError
 from ..files import DRAFTS, append_line, write_whole
+from ..formats import Publication, published, require
 
 if TYPE_CHECKING:
     import pyarrow

@@ -24,8 +24,9 @@ import pytest
 from confinement import needs_sandbox
 from shell import SHELL
 
-from holonom.documents import Document, ask
+from holonom.documents import ask
 from holonom.failures import Failure, HolonomError
+from holonom.formats import Document
 from holonom.sandbox import Limits, Sandbox
 
 REQUIRED = Limits(sandbox=Sandbox.REQUIRED)

@@ -15,8 +15,9 @@ from confinement import needs_sandbox
 from particle import PARTICLE
 from shell import SHELL
 
-from holonom.documents import Document, ask
+from holonom.documents import ask
 from holonom.failures import Failure, HolonomError
+from holonom.formats import Document
 from holonom.hidden import hidden_character
 from holonom.sandbox import UNCONFINED, Limits, Sandbox
 from holonom.source import Source

@@ -9,7 +9,7 @@ import pytest
 
 import holonom
 from holonom.cli import holonom as command_line
-from holonom.documents import SCHEMAS
+from holonom.formats import SCHEMAS
 from holonom.reference.entries import function_texts, part_texts, step_texts
 from holonom.reference.manual import manual_page
 from holonom.reference.topic import Table, Topic

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 import mpmath
 
-from ...documents import Document, ask, read
+from ...documents import ask
+from ...formats import Document, read
 from ...language import translatable
 from ...number_texts import number, numbers
 from ...program.motion_problem import MotionProblem

@@ -8,8 +8,8 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from ...documents import Publication, published
 from ...failures import Failure, HolonomError
+from ...formats import Publication, published
 from ...language import translatable
 from ...program.motion_problem import MotionProblem, motion_problem, require_analytic
 from ...program.precision import read_precision

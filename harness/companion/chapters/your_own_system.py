@@ -4,8 +4,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ...documents import Document, ask
+from ...documents import ask
 from ...failures import HolonomError
+from ...formats import Document
 from ...temporary import private_directory
 from ..chapter import Page, Run
 from ..excerpts import excerpt

@@ -9,8 +9,8 @@ from jsonschema import Draft202012Validator
 from holonom.benchmark.hard_cases import register
 from holonom.benchmark.hard_cases.case import Case, Extent, Sweep, examined, ours, required, theirs
 from holonom.cli import holonom
-from holonom.documents import schema
 from holonom.explanations import advice
+from holonom.formats import schema
 from holonom.simulation.diagnosis import HardCase
 
 

@@ -22,9 +22,9 @@ from holonom.benchmark.work_precision.reference import find_reference
 from holonom.benchmark.work_precision.series import double_series, expansion_of
 from holonom.benchmark.work_precision.solvers import SOLVERS, solver_ladder
 from holonom.benchmark.work_precision.study import Plan, study, study_document
-from holonom.documents import schema
 from holonom.failures import HolonomError
 from holonom.figures.benchmark import draw_study
+from holonom.formats import schema
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request, Solve
 from holonom.sandbox import Limits

@@ -23,8 +23,9 @@ from holonom.crosscheck.check import check_record
 from holonom.crosscheck.motions import motion_verdicts, read_motions
 from holonom.crosscheck.questions import ask_for_check
 from holonom.crosscheck.report import Verdict
-from holonom.documents import Document, ask
+from holonom.documents import ask
 from holonom.failures import HolonomError
+from holonom.formats import Document
 from holonom.record import read_record
 from holonom.source import Source
 
