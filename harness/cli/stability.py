@@ -21,7 +21,7 @@ def linearize(
 ) -> int:
     """Linearise the motion of a SCENE on the constraint manifold: eigenvalues, modes, state space."""
     from ..display.linearization import show_linearization
-    from ..documents import Publication, published
+    from ..formats import Publication, published
     from ..scene import Scene
 
     found = Scene(scene_file, request.scene, request.settings, limits).linearize(**options)

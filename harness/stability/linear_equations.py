@@ -12,8 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..documents import Document, ask, read
+from ..documents import ask
 from ..failures import Failure, HolonomError
+from ..formats import Document, read
 from ..program.motion_program import Program, names_used
 from ..program.numpy_function import NumpyFunction
 from ..program.request import Request
