@@ -232,8 +232,7 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
     (catch 'irregular-point
       (if (every #'zerop (residuals-at point))
           (copied-point point)
-          (let ((close (point-near-manifold point)))
-            (if close (refined-point close)))))))
+          (let ((close (point-near-manifold point))) (if close (refined-point close)))))))
 
 (defun residuals-at (point) (mapcar #'(lambda (f) (value-at (expression-term f) point)) *equations*))
 
@@ -369,7 +368,6 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
     (sort entries #'< :key #'car)))
 
 (defun with-right-side (residual row) (if (zerop residual) row (acons 0 residual row)))
-
 (defun coordinate (symbol point) (gethash symbol (sample-point-symbols point)))
 (defun largest-coordinate (point) (reduce #'max (mapcar #'(lambda (q) (abs (coordinate q point))) *unknowns*)))
 

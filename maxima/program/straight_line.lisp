@@ -44,35 +44,26 @@
 
 (defun chosen-signs (roots census)
   "Signs for all live nodes: sums are turned, one after the other, where that leaves fewer minus signs alone."
-  (let ((signs (signs-to-choose roots census)))
-    (dolist (node (census-nodes census) signs) (if (eq (node-kind node) 'sum) (turn-to-save node signs)))))
-
-(defun place-p (node) (member (node-kind node) '(sum call)))
-
-(defun signs-to-choose (roots census)
   (let ((signs (make-signs)))
     (dolist (root roots) (push root (gethash (node-number (unheld (term-node root))) (signs-roots signs))))
-    (dolist (node (census-nodes census) signs)
-      (dolist (part (nodes-in node)) (push node (gethash (node-number part) (signs-users signs)))))))
+    (dolist (node (census-nodes census))
+      (dolist (part (nodes-in node)) (push node (gethash (node-number part) (signs-users signs)))))
+    (dolist (node (census-nodes census) signs) (if (eq (node-kind node) 'sum) (turn-to-save node signs)))))
 
 (defun turn-to-save (sum signs)
-  (let* ((places (remove-duplicates (cons sum (places-above sum signs))))
-         (before (minuses-at places signs)))
-    (when (plusp before)
-      (turn sum signs)
-      (unless (< (minuses-at places signs) before) (turn sum signs)))))
-
-(defun turn (sum signs)
-  (let ((number (node-number sum)))
-    (setf (gethash number (signs-turned signs)) (not (gethash number (signs-turned signs))))))
-
-(defun minuses-at (places signs) (reduce #'+ (mapcar #'(lambda (place) (lone-minuses place signs)) places)))
+  (let ((places (remove-duplicates (cons sum (places-above sum signs)))) (turned (signs-turned signs)))
+    (flet ((minuses () (reduce #'+ (mapcar #'(lambda (place) (lone-minuses place signs)) places)))
+           (turn () (setf (gethash (node-number sum) turned) (not (gethash (node-number sum) turned)))))
+      (let ((before (minuses)))
+        (when (plusp before)
+          (turn)
+          (unless (< (minuses) before) (turn)))))))
 
 (defun places-above (node signs)
   "The sums, calls and outputs whose terms change sign with the node."
   (append (gethash (node-number node) (signs-roots signs))
           (mapcan #'(lambda (user)
-                      (if (place-p user) (list user) (places-above user signs)))
+                      (if (member (node-kind user) '(sum call)) (list user) (places-above user signs)))
                   (gethash (node-number node) (signs-users signs)))))
 
 ;;; ---- the program under way -------------------------------------------------------------------
