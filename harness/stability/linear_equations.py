@@ -7,8 +7,9 @@ With r_s the left side of Lagrange's equations less the right one, deviations sa
 and the first and second rates of the latter.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -71,19 +72,14 @@ class LinearEquations:
             raise HolonomError(Failure.NO_LAW)
         return NumpyFunction(self.law)([t])
 
-    def at(
-        self, t: float, state: Vector, accelerations: Vector, multipliers: Vector, controls: Vector
-    ) -> Mapping[str, Matrix]:
+    def at(self, point: "Point", kept: Sequence[int]) -> Mapping[str, Matrix]:
         """Evaluate the equations and their gradients.
 
         Parameters
         ----------
-        t : float
-        state : ndarray, shape (2n,)
-        accelerations : ndarray, shape (n,)
-        multipliers : ndarray, shape (g,)
-        controls : ndarray, shape (3r,)
-            u, dot u, ddot u.
+        point : Point
+        kept : sequence of int
+            The constraints that are looked at, g of them, counted from 0.
 
         Returns
         -------
@@ -97,11 +93,22 @@ class LinearEquations:
         for row, size in zip(ROWS, (n, g, g, g), strict=True):
             found[row] = np.zeros(size)
             found |= {f"{row}_by_{group}": np.zeros((size, columns)) for group, columns in sizes.items()}
-        values = self._evaluate([t, *state, *accelerations, *multipliers, *controls])
+        values = self._evaluate([point.t, *np.concatenate(point[1:])])
         for name, value in zip(self._evaluate.outputs, values, strict=True):
             array, *places = INDEXED.fullmatch(name).groups()
             found[array][tuple(int(place) - 1 for place in places if place)] = value
-        return found
+        of_motion = ("equation", "A_rate")
+        return {name: each if name.startswith(of_motion) else each[list(kept)] for name, each in found.items()}
+
+
+class Point(NamedTuple):
+    """What the linearised equations take."""
+
+    t: float
+    state: Vector  # shape (2n,)
+    accelerations: Vector  # shape (n,)
+    multipliers: Vector  # shape (g,), those of all constraints
+    controls: Vector  # shape (3r,): u, dot u, ddot u
 
 
 def linear_equations(source: Source, request: Request) -> LinearEquations:

@@ -32,7 +32,7 @@ from ..simulation.matrices import Matrix, Vector
 from ..simulation.nominal import nominal_of
 from ..simulation.request import SimulationRequest
 from ..simulation.simulate import simulate
-from .linear_equations import LinearEquations
+from .linear_equations import LinearEquations, Point
 from .tangent import Tangent
 
 RATES = ("u", "du", "ddu")  # a control, its rate and its acceleration
@@ -217,18 +217,27 @@ def linearize(problem: MotionProblem, equations: LinearEquations, at: Fraction |
     """
     require_analytic(problem)
     t, state = _reached(problem, at)
-    names, kept, n = equations.coordinates, list(problem.independent), len(equations.coordinates)
-    controls = equations.controls_at(t)
-    accelerations, multipliers = _motion_at(equations, t, state, controls, kept)
-    here = _with_constraints(equations.at(t, state, accelerations, multipliers, controls), kept)
+    return linearized(problem, equations, _moving(problem, equations, t, state))
+
+
+def linearized(problem: MotionProblem, equations: LinearEquations, point: Point) -> Linearization:
+    """Linearise about a point at which the equations of motion hold.
+
+    Raises
+    ------
+    HolonomError
+        The constraints are singular there.
+    """
+    names, kept = equations.coordinates, problem.independent
+    here = equations.at(point, kept)
     tangent = Tangent(here["equation_by_a"], here["constraint_by_q"])
     if tangent.rank < len(kept) and problem.obstacle is None:
-        raise HolonomError(Failure.NOT_LINEARIZED, instant=t)
-    nominal = nominal_of(problem)
-    moving = np.abs([state[n:], accelerations]) > AT_REST * np.array([nominal.velocities, nominal.accelerations])
+        raise HolonomError(Failure.NOT_LINEARIZED, instant=point.t)
+    nominal, velocities = nominal_of(problem), point.state[len(names) :]
+    moving = np.abs([velocities, point.accelerations]) > AT_REST * np.array([nominal.velocities, nominal.accelerations])
     return Linearization(
         problem.scene,
-        t,
+        point.t,
         not moving.any(),
         names,
         tuple(names[place] for place in tangent.leading),
@@ -250,23 +259,15 @@ def _reached(problem: MotionProblem, at: Fraction | None) -> tuple[float, Vector
     return float(motion.instants[-1]), np.array([values[-1] for values in numbers])
 
 
-def _motion_at(
-    equations: LinearEquations, t: float, state: Vector, controls: Vector, kept: Sequence[int]
-) -> tuple[Vector, Vector]:
-    """Accelerations and multipliers, zero but for the constraints that are kept."""
-    multipliers = np.zeros(len(equations.multipliers))
-    unmoved = equations.at(t, state, np.zeros(len(equations.coordinates)), multipliers, controls)
-    here = _with_constraints(unmoved, kept)
+def _moving(problem: MotionProblem, equations: LinearEquations, t: float, state: Vector) -> Point:
+    """The state with its accelerations and multipliers, which are zero where constraints follow from the others."""
+    n, kept, multipliers = len(equations.coordinates), list(problem.independent), np.zeros(len(equations.multipliers))
+    at_rest = Point(t, state, np.zeros(n), multipliers, equations.controls_at(t))
+    here = equations.at(at_rest, kept)
     tangent = Tangent(here["equation_by_a"], here["constraint_by_q"])
-    found, forces = tangent.solve(-here["equation"][:, None], -here["acceleration"][:, None])
-    multipliers[list(kept)] = forces[:, 0]
-    return found[:, 0], multipliers
-
-
-def _with_constraints(found: Mapping[str, Matrix], kept: Sequence[int]) -> Mapping[str, Matrix]:
-    """The same with the rows of these constraints alone."""
-    of_motion = ("equation", "A_rate")
-    return {name: each if name.startswith(of_motion) else each[list(kept)] for name, each in found.items()}
+    accelerations, forces = tangent.solve(-here["equation"][:, None], -here["acceleration"][:, None])
+    multipliers[kept] = forces[:, 0]
+    return at_rest._replace(accelerations=accelerations[:, 0])
 
 
 def _state_space(here: Mapping[str, Matrix], tangent: Tangent) -> tuple[Matrix, dict[str, Matrix], Matrix, dict]:
