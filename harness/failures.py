@@ -238,6 +238,11 @@ class Failure(Enum):
         "follow it with `holonom simulate`, which steps to such instants",
     )
     NO_LAW = ("a control has no law", "give every control a control_law")
+    NEVER_AT_REST = (
+        "the equations of motion contain the time, and equilibria are looked for where they do not",
+        "choose effects and constraints without it",
+    )
+    NOT_A_CONTROL = ("{detail} is no control of the system", "name one of its controls")
     NOT_LINEARIZED = (
         "the constraints lose rank at t = {instant:.10g}: there is no tangent space to linearise in",
         "choose another instant",

@@ -52,6 +52,7 @@ class Publication(StrEnum):
     DOCTOR = "doctor"
     SWEEP = "sweep"
     LINEARIZED = "linearized"
+    EQUILIBRIA = "equilibria"
     COSTS = "costs"
     HARD_CASES = "hard-cases"
     ACCURACY = "accuracy"

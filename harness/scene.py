@@ -23,7 +23,7 @@ from .series.request import SeriesRequest
 from .simulation.derivations import Derivations
 from .simulation.request import SimulationRequest
 from .source import Source
-from .stability.request import LinearizationRequest
+from .stability.request import EquilibriaRequest, LinearizationRequest
 from .sweeps.request import SweepRequest
 from .temporary import KeptDirectory
 
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from .record import Record
     from .series.power_series import MotionSeries
     from .simulation.result import Simulation
+    from .stability.equilibria import Equilibria
     from .stability.linearization import Linearization
     from .sweeps.run import Sweep
     from .typeset.notebook import Letter
@@ -343,6 +344,34 @@ class Scene:
 
         equations = linear_equations(self._source, self._request())
         return linearize(self._problem("direct", DOUBLE_DIGITS), equations, **options)
+
+    @naming_the_extra()
+    @takes_options(*options_of(EquilibriaRequest))
+    def equilibria(self, options: dict[str, Any], **controls: float) -> "Equilibria":
+        """Look for states at rest for constant controls; others than those found may exist.
+
+        Parameters
+        ----------
+        {options}
+        **controls : float
+            Values of controls; the others have those of their law at the first instant.
+
+        Returns
+        -------
+        Equilibria
+            ``found["e1"].stability``, ``found["e1"].linearization``.
+
+        Raises
+        ------
+        HolonomError
+            The equations contain the time; a control or a parameter has no value; the motion is not analytic.
+        """
+        from .program.motion_problem import DOUBLE_DIGITS
+        from .stability.equilibria import find_equilibria
+        from .stability.linear_equations import linear_equations
+
+        equations = linear_equations(self._source, self._request())
+        return find_equilibria(self._problem("direct", DOUBLE_DIGITS), equations, controls, **options)
 
     @naming_the_extra()
     @takes_options(*options_of(Request, "solve"))

@@ -1,12 +1,15 @@
-"""The command about motions near a motion: linearize."""
+"""The commands about states at rest and motions near a motion: equilibria, linearize."""
 
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
+
+import click
 
 from ..options import options_of
 from ..program.request import Request
 from ..sandbox import Limits
-from ..stability.request import LinearizationRequest
+from ..stability.request import EquilibriaRequest, LinearizationRequest
 from .group import holonom
 from .options import asks_one_scene, present, runs_scenes, takes, writes_json
 
@@ -26,4 +29,32 @@ def linearize(
 
     found = Scene(scene_file, request.scene, request.settings, limits).linearize(**options)
     present(published(Publication.LINEARIZED, found.document()), json_file, show_linearization, found)
+    return 0
+
+
+@holonom.command()
+@asks_one_scene()
+@click.option(
+    "--control", "controls", metavar="NAME=VALUE", multiple=True, help="A constant control, not as its law begins."
+)
+@takes(*options_of(EquilibriaRequest))
+@writes_json
+@runs_scenes
+def equilibria(
+    scene_file: Path,
+    request: Request,
+    controls: tuple[str, ...],
+    options: dict[str, Any],
+    json_file: Path | None,
+    limits: Limits,
+) -> int:
+    """Look for states at rest of a SCENE for constant controls, and say how stable they are."""
+    from ..display.linearization import show_equilibria
+    from ..documents import Publication, published
+    from ..program.request import read_settings
+    from ..scene import Scene
+
+    values = {name: float(Fraction(text)) for name, text in read_settings(controls).items()}
+    found = Scene(scene_file, request.scene, request.settings, limits).equilibria(**options, **values)
+    present(published(Publication.EQUILIBRIA, found.document()), json_file, show_equilibria, found)
     return 0

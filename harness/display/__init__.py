@@ -13,6 +13,8 @@ def show(console: "Console", result: Shown) -> None:
     match type(result).__name__:
         case "CheckReport":
             from .derivation import show_verdicts as table
+        case "Equilibria":
+            from .linearization import show_equilibria as table
         case "FreeMotion":
             from .free_motion import show_free_motion as table
         case "Linearization":

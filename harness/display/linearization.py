@@ -1,13 +1,17 @@
-"""A linearised motion on the console: its eigenvalues and modes."""
+"""Equilibria and linearised motions on the console."""
 
 from math import pi
 from typing import TYPE_CHECKING
 
+from rich.text import Text
+
 from ..hidden import visible_line
+from .text import styled
 
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from ..stability.equilibria import Equilibria
     from ..stability.linearization import Linearization
 
 ROUNDING = 1e-9  # share of a size that is shown as zero
@@ -36,6 +40,24 @@ def show_linearization(console: "Console", found: "Linearization") -> None:
         console.print(f"The controls reach {found.controllable_rank} of {2 * m} directions of the state.")
     if not found.at_rest:
         console.print(MOVING)
+
+
+def show_equilibria(console: "Console", equilibria: "Equilibria") -> None:
+    """Print where the equilibria are, how stable, and what is not known."""
+    from rich.table import Table
+
+    title = ", ".join([visible_line(equilibria.scene), *(f"{u} = {x:.10g}" for u, x in equilibria.controls.items())])
+    names = list(equilibria.found[0].coordinates)[:SHOWN_COORDINATES] if equilibria.found else []
+    table = Table("", *names, "stability", title=title, title_justify="left")
+    for each in equilibria:
+        kind = styled(each.stability) if each.isolated else styled(each.stability) + Text(", not isolated")
+        table.add_row(each.name, *(f"{each.coordinates[name]:.8g}" for name in names), kind)
+    console.print(table)
+    console.print(f"{len(equilibria)} found from {equilibria.starts} starts; there may be others.")
+    if equilibria.more:
+        console.print(f"{equilibria.more} more belong to the families of those that are not isolated.")
+    if equilibria.turns:
+        console.print(f"Whole turns of {', '.join(equilibria.turns)} are left out.")
 
 
 def _title(found: "Linearization") -> str:

@@ -28,6 +28,9 @@ STYLES = {
     "holds": "green",
     "loses it": "yellow",
     "fails": "bold red",
+    "asymptotically stable": "green",
+    "stable": "green",
+    "unstable": "bold red",
 }
 
 

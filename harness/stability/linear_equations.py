@@ -78,6 +78,7 @@ class LinearEquations:
         Parameters
         ----------
         point : Point
+            Or k of them, with a last axis more, which all results then have.
         kept : sequence of int
             The constraints that are looked at, g of them, counted from 0.
 
@@ -89,10 +90,11 @@ class LinearEquations:
         """
         n, g, r = len(self.coordinates), len(self.multipliers), len(self.controls)
         sizes = dict(zip(GROUPS, (n, n, n, r, r, r), strict=True))
-        found = {"A_rate": np.zeros((n, n))}
+        points = point.state.shape[1:]
+        found = {"A_rate": np.zeros((n, n, *points))}
         for row, size in zip(ROWS, (n, g, g, g), strict=True):
-            found[row] = np.zeros(size)
-            found |= {f"{row}_by_{group}": np.zeros((size, columns)) for group, columns in sizes.items()}
+            found[row] = np.zeros((size, *points))
+            found |= {f"{row}_by_{group}": np.zeros((size, columns, *points)) for group, columns in sizes.items()}
         values = self._evaluate([point.t, *np.concatenate(point[1:])])
         for name, value in zip(self._evaluate.outputs, values, strict=True):
             array, *places = INDEXED.fullmatch(name).groups()

@@ -1,4 +1,4 @@
-"""Which linearisation is asked for."""
+"""Which linearisation, and which equilibria, are asked for."""
 
 from dataclasses import dataclass
 from fractions import Fraction
@@ -11,3 +11,11 @@ class LinearizationRequest:
     """About which state."""
 
     at: Fraction | None = option(None, "The instant; without it, the start.", metavar="T")
+
+
+@dataclass(frozen=True)
+class EquilibriaRequest:
+    """How equilibria are looked for."""
+
+    starts: int = option(200, "Random starts of Newton's method.", metavar="N", least=1)
+    seed: int = option(1, "Of their random numbers.", metavar="N", least=0)

@@ -1,0 +1,366 @@
+"""States at rest for constant controls, and whether they are stable.
+
+At rest the equations of motion are  r(q, lambda) = 0, f(q) = 0.  Newton's method solves them from many random starts;
+whether more solutions exist stays open. What is said of stability follows from two theorems:
+
+- Where all forces have a potential, q is stable if the second variation of V - T0 on the constraint manifold is
+  positive definite: the energy has a strict minimum there (Lagrange and Dirichlet; Merkin, Introduction to the Theory
+  of Stability, section 3.2, for gyroscopic forces too).
+- It is asymptotically stable if all eigenvalues of the linearised motion have negative real parts, and unstable if one
+  has a positive one (Lyapunov; Merkin, section 4.2).
+
+Anything else is undecided.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any, NamedTuple
+
+import numpy as np
+import scipy.linalg
+
+from ..failures import Failure, HolonomError
+from ..language import translatable
+from ..program.motion_problem import MotionProblem, require_analytic
+from ..shown import Shown
+from ..simulation.constraints.directions import or_one
+from ..simulation.matrices import Matrix, Vector
+from ..simulation.nominal import nominal_of
+from .linear_equations import LinearEquations, Point
+from .linearization import Linearization, linearized
+from .tangent import Tangent
+
+SPREADS = (0.5, 1.0, 2.0, 4.0, 8.0)  # of random starts, in terms of the coordinates' nominal sizes
+ITERATIONS = 60
+CONVERGED = 1e-11  # step of Newton's method in terms of the sizes
+BALANCED = 1e-9  # forces and residuals left, in terms of the largest that was met
+LONGEST_STEP = 2.0  # in terms of the sizes
+DEPENDENT = 1e-12  # singular values of a step's equations, relative to the largest, that count as zero
+ROUNDING = 1e-12  # of a size
+SAME = 1e-6  # distance in terms of the sizes below which two solutions are one
+LEAST_STIFFNESS = 1e-7  # relative to the largest: what is smaller, or an eigenvalue with a smaller part, is not decided
+PERTURBED = 1e-9  # relative error of A that eigenvalues are certain against, to first order
+PERTURBED_FAMILY = 1e-6  # the same where Newton's method does not find the place to the last digits
+NEARLY_DEFECTIVE = 1e6  # condition of an eigenvalue beyond which first order says nothing
+TURN = 2 * np.pi
+PROBES = 5  # random states at which whole turns of a coordinate are tried
+
+
+class Stability(StrEnum):
+    """What is known of an equilibrium's stability."""
+
+    ASYMPTOTIC = translatable("asymptotically stable")
+    STABLE = translatable("stable")
+    UNSTABLE = translatable("unstable")
+    UNDECIDED = translatable("undecided")
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """A state at rest.
+
+    Attributes
+    ----------
+    name : str
+        ``e1``, ``e2``, and so on.
+    coordinates, multipliers : mapping of str to float
+    stability : Stability
+    isolated : bool
+        Whether no others are next to it; False where that is not known.
+    linearization : Linearization
+    """
+
+    name: str
+    coordinates: Mapping[str, float]
+    multipliers: Mapping[str, float]
+    stability: Stability
+    isolated: bool
+    linearization: Linearization
+
+
+@dataclass(frozen=True)
+class Equilibria(Shown):
+    """Equilibria that were found; there may be others.
+
+    Attributes
+    ----------
+    scene : str
+    controls : mapping of str to float
+        Their constant values.
+    starts : int
+        Random starts of Newton's method.
+    found : tuple of Equilibrium
+        Of each family of solutions that are not isolated, one.
+    more : int
+        Further solutions of these families.
+    turns : tuple of str
+        Coordinates that may be changed by whole turns.
+    """
+
+    scene: str
+    controls: Mapping[str, float]
+    starts: int
+    found: tuple[Equilibrium, ...]
+    more: int
+    turns: tuple[str, ...]
+
+    def __getitem__(self, name: str) -> Equilibrium:
+        return next(each for each in self.found if each.name == name)
+
+    def __len__(self) -> int:
+        return len(self.found)
+
+    def __iter__(self) -> Iterator[Equilibrium]:
+        return iter(self.found)
+
+    def document(self) -> dict[str, Any]:
+        """Return what ``holonom equilibria --json`` writes, but for format and version."""
+        return {
+            "scene": self.scene,
+            "controls": dict(self.controls),
+            "starts": self.starts,
+            "more": self.more,
+            "turns": list(self.turns),
+            "found": [
+                {
+                    "name": each.name,
+                    "coordinates": dict(each.coordinates),
+                    "multipliers": dict(each.multipliers),
+                    "stability": str(each.stability),
+                    "isolated": each.isolated,
+                    "eigenvalues": [[value.real, value.imag] for value in each.linearization.eigenvalues.tolist()],
+                }
+                for each in self.found
+            ],
+        }
+
+
+def find_equilibria(
+    problem: MotionProblem, equations: LinearEquations, controls: Mapping[str, float], starts: int, seed: int
+) -> Equilibria:
+    """Look for states at rest.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        A motion of the scene, whose nominal sizes the starts have.
+    equations : LinearEquations
+        Of the same scene.
+    controls : mapping of str to float
+        Constant values; those missing are of the law at the first instant.
+    starts : int
+        Random starts.
+    seed : int
+        Of their random numbers.
+
+    Raises
+    ------
+    HolonomError
+        The equations contain the time; a control has no value; the motion is not analytic.
+    """
+    require_analytic(problem)
+    if equations.changes_with_time:
+        raise HolonomError(Failure.NEVER_AT_REST)
+    values = _constant_controls(problem, equations, controls)
+    search = _Search(problem, equations, list(values.values()))
+    turns = search.turns(np.random.default_rng(seed))
+    found, more = search.equilibria(starts, np.random.default_rng(seed), turns)
+    return Equilibria(
+        problem.scene, values, starts, found, more, tuple(equations.coordinates[place] for place in turns)
+    )
+
+
+def _constant_controls(
+    problem: MotionProblem, equations: LinearEquations, given: Mapping[str, float]
+) -> Mapping[str, float]:
+    for name in given:
+        if name not in equations.controls:
+            raise HolonomError(Failure.NOT_A_CONTROL, detail=name)
+    if given.keys() >= set(equations.controls):
+        return {name: float(given[name]) for name in equations.controls}
+    law = equations.controls_at(float(problem.start["t"]))[: len(equations.controls)]
+    return {name: float(given.get(name, value)) for name, value in zip(equations.controls, law, strict=True)}
+
+
+class _Search:
+    """Newton's method for r = 0, f = 0, in terms of nominal sizes."""
+
+    def __init__(self, problem: MotionProblem, equations: LinearEquations, controls: Sequence[float]) -> None:
+        self._problem, self._equations, self._kept = problem, equations, list(problem.independent)
+        self._n, self._t = len(equations.coordinates), float(problem.start["t"])
+        self._sizes = nominal_of(problem).coordinates
+        self._controls = np.concatenate([controls, np.zeros(2 * len(controls))])
+        self._first = np.array([float(problem.start[name]) for name in equations.coordinates])
+
+    def turns(self, random: np.random.Generator) -> list[int]:
+        """Places of coordinates in which whole turns change nothing at random states."""
+        states = [self._first + self._sizes * random.normal(size=self._n) for _ in range(PROBES)]
+        forces = random.normal(size=len(self._equations.multipliers))
+
+        def same(q: Vector, turned: Vector) -> bool:
+            one, other = (self._at(state, forces) for state in (q, turned))
+            return all(np.allclose(one[name], other[name], rtol=1e-9, atol=1e-9) for name in ("equation", "constraint"))
+
+        steps = TURN * np.eye(self._n)
+        return [place for place, step in enumerate(steps) if all(same(q, q + step) for q in states)]
+
+    def equilibria(
+        self, starts: int, random: np.random.Generator, turns: Sequence[int]
+    ) -> tuple[tuple[Equilibrium, ...], int]:
+        """Return the equilibria that Newton's method finds, each once, and how many more of the same families.
+
+        Solutions that are not isolated and have the same multipliers count as one family.
+        """
+        known: list[_Solution] = []
+        more = 0
+        for q, multipliers in self._solved(self._starts(starts, random)):
+            q[turns] -= TURN * np.round(q[turns] / TURN)
+            if any(self._close(q, other.q, turns) for other in known):
+                continue
+            stiffness = self._stiffness(q, multipliers)
+            if stiffness is None:
+                continue
+            found = _Solution(q, multipliers, stiffness)
+            if any(found.same_family(other) for other in known):
+                more += 1
+            else:
+                known.append(found)
+        known.sort(key=lambda each: tuple(np.round(each.q / self._sizes, 6)))
+        return tuple(self._equilibrium(f"e{k}", each) for k, each in enumerate(known, start=1)), more
+
+    def _equilibrium(self, name: str, found: "_Solution") -> Equilibrium:
+        linear = linearized(self._problem, self._equations, self._point(found.q, found.multipliers))
+        return Equilibrium(
+            name,
+            dict(zip(self._equations.coordinates, map(float, found.q), strict=True)),
+            dict(zip(self._equations.multipliers, map(float, found.multipliers), strict=True)),
+            _stability(found, linear.A, self._equations.forced),
+            found.isolated,
+            linear,
+        )
+
+    def _stiffness(self, q: Vector, multipliers: Vector) -> Matrix | None:
+        """The change of the forces along the constraint manifold, shape (m, m); None in a singular configuration.
+
+        For forces with a potential it is the second variation.
+        """
+        here = self._at(q, multipliers)
+        try:
+            tangent = Tangent(here["equation_by_a"], here["constraint_by_q"])
+        except HolonomError:
+            return None
+        return tangent.basis.T @ here["equation_by_q"] @ tangent.basis if tangent.rank == len(self._kept) else None
+
+    def _starts(self, count: int, random: np.random.Generator) -> Matrix:
+        """The scene's own start and random ones around it and around zero, shape (n, count)."""
+        spreads = np.resize(SPREADS, count - 1) * self._sizes[:, None]
+        around = np.outer(self._first, np.arange(count - 1) % 2)
+        return np.column_stack([self._first, around + spreads * random.normal(size=(self._n, count - 1))])
+
+    def _solved(self, q: Matrix) -> Iterator[tuple[Vector, Vector]]:
+        """Solutions by Newton's method from k starts, shape (n, k), in their order."""
+        multipliers = np.zeros((len(self._equations.multipliers), q.shape[1]))
+        left, solved = np.arange(q.shape[1]), np.zeros(q.shape[1], dtype=bool)
+        with np.errstate(all="ignore"):
+            for _ in range(ITERATIONS):
+                steps, size, unbalanced = self._newton(q[:, left], multipliers[:, left])
+                q[:, left] += steps[: self._n]
+                multipliers[np.ix_(self._kept, left)] += steps[self._n :]
+                solved[left] = (size <= CONVERGED) & (unbalanced <= BALANCED)
+                left = left[~solved[left] & np.isfinite(size)]
+                if not left.size:
+                    break
+        for place in np.flatnonzero(solved):
+            yield self._zeroed(q[:, place]), multipliers[:, place]
+
+    def _newton(self, q: Matrix, multipliers: Matrix) -> tuple[Matrix, Vector, Vector]:
+        """Steps of k points, shape (n + g, k), their sizes, and what is out of balance; in terms of nominal sizes."""
+        here, k = self._at(q, multipliers), q.shape[1]
+        J, K = (np.moveaxis(here[name], -1, 0) for name in ("constraint_by_q", "equation_by_q"))
+        g, n = J.shape[1], self._n
+        rows = or_one(np.linalg.norm(J * self._sizes, axis=2))
+        unit = or_one(np.max(self._sizes * np.linalg.norm(K * self._sizes, axis=2), axis=1, initial=0.0))[:, None]
+        weights = np.concatenate([self._sizes / unit, 1 / rows], axis=1)
+        scale = np.concatenate([np.broadcast_to(self._sizes, (k, n)), unit / rows], axis=1)
+        matrix = np.concatenate(
+            [
+                np.concatenate([K, -np.swapaxes(J, 1, 2)], axis=2),
+                np.concatenate([J, np.zeros((k, g, g))], axis=2),
+            ],
+            axis=1,
+        )
+        matrix = weights[:, :, None] * matrix * scale[:, None, :]
+        out_of_balance = weights * np.concatenate([here["equation"], here["constraint"]]).T
+        finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(out_of_balance).all(axis=1)
+        step = np.full((k, n + g), np.nan)
+        inverse = np.linalg.pinv(matrix[finite], rcond=DEPENDENT)
+        step[finite] = -np.einsum("kij,kj->ki", inverse, out_of_balance[finite])
+        size = np.max(np.abs(step[:, :n]), axis=1, initial=0.0)
+        step *= scale * np.minimum(1.0, LONGEST_STEP / or_one(size))[:, None]
+        return step.T, np.where(finite, size, np.nan), np.max(np.abs(out_of_balance), axis=1, initial=0.0)
+
+    def _zeroed(self, q: Vector) -> Vector:
+        """Without what is rounding."""
+        return np.where(np.abs(q) <= ROUNDING * self._sizes, 0.0, q)
+
+    def _close(self, one: Vector, other: Vector, turns: Sequence[int]) -> bool:
+        apart = one - other
+        apart[turns] -= TURN * np.round(apart[turns] / TURN)
+        sizes = np.maximum(self._sizes, np.maximum(np.abs(one), np.abs(other)))
+        return bool(np.all(np.abs(apart) <= SAME * sizes))
+
+    def _at(self, q: Vector, multipliers: Vector) -> Mapping[str, Matrix]:
+        return self._equations.at(self._point(q, multipliers), self._kept)
+
+    def _point(self, q: Vector, multipliers: Vector) -> Point:
+        zeros = np.zeros_like(q)
+        controls = np.repeat(self._controls[:, None], q[0].size, axis=1).reshape(-1, *q.shape[1:])
+        return Point(self._t, np.concatenate([q, zeros]), zeros, multipliers, controls)
+
+
+class _Solution(NamedTuple):
+    q: Vector
+    multipliers: Vector
+    stiffness: Matrix
+
+    @property
+    def isolated(self) -> bool:
+        values = np.linalg.svd(self.stiffness, compute_uv=False)
+        return bool(values.min(initial=np.inf) > LEAST_STIFFNESS * values.max(initial=0.0))
+
+    def same_family(self, other: "_Solution") -> bool:
+        """Whether neither is isolated and the multipliers are the same."""
+        sizes = np.maximum(
+            np.max(np.abs(self.multipliers), initial=0.0), np.max(np.abs(other.multipliers), initial=0.0)
+        )
+        alike = np.all(np.abs(self.multipliers - other.multipliers) <= SAME * sizes)
+        return bool(alike) and not other.isolated
+
+
+def _stability(found: _Solution, A: Matrix, forced: bool) -> Stability:
+    """What the second variation, where there is one, and the eigenvalues of A say."""
+    if not forced:
+        values = np.linalg.eigvalsh((found.stiffness + found.stiffness.T) / 2)
+        if np.all(values > LEAST_STIFFNESS * np.max(np.abs(values), initial=0.0)):
+            return Stability.STABLE
+    parts, certain = _certain_real_parts(A, PERTURBED if found.isolated else PERTURBED_FAMILY)
+    if np.any(certain & (parts > 0)):
+        return Stability.UNSTABLE
+    return Stability.ASYMPTOTIC if np.all(certain & (parts < 0)) else Stability.UNDECIDED
+
+
+def _certain_real_parts(A: Matrix, error: float) -> tuple[Vector, np.ndarray]:
+    """Real parts of the eigenvalues, and of which the sign is certain under a relative error of A.
+
+    An eigenvalue moves by its condition number 1/|y^H x| times the perturbation, to first order (Golub & Van Loan,
+    section 7.2.2).
+    """
+    if not A.size:
+        return np.empty(0), np.empty(0, dtype=bool)
+    balanced = scipy.linalg.matrix_balance(A, permute=False)[0]
+    values, left, right = scipy.linalg.eig(balanced, left=True, right=True)
+    with np.errstate(divide="ignore"):
+        conditions = 1 / np.abs(np.einsum("ij,ij->j", left.conj(), right))
+    moved = error * np.linalg.norm(balanced, 2) * conditions
+    return values.real, (np.abs(values.real) > moved) & (conditions < NEARLY_DEFECTIVE)

@@ -1,0 +1,116 @@
+"""Equilibria against closed forms, and their stability against the theorems' textbook cases."""
+
+import json
+
+import numpy as np
+import pytest
+from test_linearization import DOUBLE_PENDULUM
+
+import holonom
+from holonom.failures import Failure, HolonomError
+from holonom.stability.equilibria import Stability
+
+START = "initial_state = [{start}], time_span = [0, 1])$\n"
+HOOP = """system : holonomic_system(coordinates = [phi], parameters = [Omega],
+  kinetic_energy = (dot(phi)^2 + sin(phi)^2*Omega^2)/2, potential_energy = [gravity = -10*cos(phi)])$
+s : holonomic_scene(system, parameter_values = [Omega = 1], """ + START.format(start="phi = 1/2, dot(phi) = 0")
+
+
+def of_particle(details, coordinates="x, y"):
+    names = coordinates.split(", ")
+    kinetic = " + ".join(f"dot({name})^2" for name in names)
+    start = ", ".join(f"{name} = 1/3, dot({name}) = 0" for name in names)
+    return holonom.system(
+        f"system : holonomic_system(coordinates = [{coordinates}], kinetic_energy = ({kinetic})/2, {details})$\n"
+        f"s : holonomic_scene(system, {START.format(start=start)}"
+    )
+
+
+def stabilities(found):
+    return [each.stability for each in found]
+
+
+@pytest.mark.parametrize("omega", [2, 4, 6])
+def test_a_bead_on_a_turning_hoop_has_a_fork(omega):
+    found = holonom.system(HOOP).with_settings(Omega=omega).equilibria()
+    tilted = [np.arccos(10 / omega**2)] if omega**2 > 10 else []
+    angles = sorted({0.0, *tilted, *(-phi for phi in tilted)})
+    by_angle = {each.coordinates["phi"]: each.stability for each in found}
+    top = [phi for phi in by_angle if abs(abs(phi) - np.pi) < 1e-9]
+    assert found.turns == ("phi",)
+    assert [by_angle.pop(phi) for phi in top] == [Stability.UNSTABLE]
+    assert sorted(by_angle) == pytest.approx(angles, abs=1e-10)
+    stable = set(map(abs, by_angle)) if not tilted else set(map(abs, by_angle)) - {0.0}
+    for phi, stability in by_angle.items():
+        assert stability is (Stability.STABLE if abs(phi) in stable else Stability.UNSTABLE)
+
+
+def test_a_double_pendulum_has_four():
+    found = holonom.system(DOUBLE_PENDULUM).equilibria()
+    places = {(round(each.coordinates["y1"]), round(each.coordinates["y2"])): each for each in found}
+    assert len(found) == len(places) == 4
+    assert [place for place, each in places.items() if each.stability is Stability.STABLE] == [(-1, -2)]
+    assert stabilities(found).count(Stability.UNSTABLE) == 3
+    assert places[-1, -2].multipliers == pytest.approx({"lambda1": -10, "lambda2": -5})
+    assert places[-1, -2].linearization.at_rest
+
+
+def test_controls_are_constant():
+    scene = holonom.load("examples/pendulum.mac")
+    found = scene.equilibria(u=3)
+    assert found.controls == {"u": 3.0}
+    assert sorted(each.coordinates["y"] for each in found) == pytest.approx([-3, 3])
+    with pytest.raises(HolonomError) as refused:
+        scene.equilibria(v=3)
+    assert refused.value.failure is Failure.NOT_A_CONTROL
+
+
+@pytest.mark.parametrize(
+    ("details", "stability"),
+    [
+        ("potential_energy = x^2 + y^2", Stability.STABLE),
+        ("potential_energy = x^2 - y^2", Stability.UNSTABLE),
+        ("potential_energy = x^2 + y^4", Stability.UNDECIDED),  # the second variation does not decide
+        ("potential_energy = x^2 - y^4", Stability.UNDECIDED),
+        # gyroscopic forces hold it on a hill: stable, but neither theorem says so
+        ("potential_energy = -(x^2 + y^2)/2 + 3*(x*dot(y) - y*dot(x))", Stability.UNDECIDED),
+        ("potential_energy = x^2 + y^2, forces = [-dot(x), -dot(y)]", Stability.ASYMPTOTIC),
+        ("potential_energy = x^2 + y^2, forces = [-dot(x), 0]", Stability.UNDECIDED),
+        ("potential_energy = x^2 + y^2, forces = [-dot(x), dot(y)/9]", Stability.UNSTABLE),
+        ("potential_energy = x^2 + y^2, forces = [y/3, -x/3]", Stability.UNSTABLE),  # circulatory
+    ],
+)
+def test_stability(details, stability):
+    found = of_particle(details).equilibria(starts=20)
+    assert stabilities(found) == [stability]
+    assert found.found[0].coordinates == pytest.approx({"x": 0, "y": 0}, abs=1e-3)
+
+
+@pytest.mark.parametrize(("load", "stability"), [(0.8, Stability.UNDECIDED), (3.2, Stability.UNSTABLE)])
+def test_a_follower_force_makes_a_double_pendulum_flutter(load, stability):
+    """Ziegler's pendulum with equal masses at the joint and the tip, m = l = k = 1: flutter from P = 7/2 - sqrt(2)."""
+    text = f"""system : holonomic_system(coordinates = [a, b],
+  kinetic_energy = dot(a)^2 + dot(b)^2/2 + cos(a - b)*dot(a)*dot(b), potential_energy = (a^2 + (b - a)^2)/2,
+  forces = [{load}*sin(a - b), 0])$
+s : holonomic_scene(system, {START.format(start="a = 1/9, b = 0, dot(a) = 0, dot(b) = 0")}"""
+    upright = [each for each in holonom.system(text).equilibria() if max(map(abs, each.coordinates.values())) < 1e-9]
+    assert stabilities(upright) == [stability]
+
+
+def test_a_family_is_one_equilibrium():
+    found = of_particle("potential_energy = y^2").equilibria(starts=20)
+    assert [(each.isolated, each.stability) for each in found] == [(False, Stability.UNDECIDED)]
+    assert found.more == 19
+
+
+def test_equations_with_the_time_are_refused():
+    with pytest.raises(HolonomError) as refused:
+        of_particle("forces = [-x, sin(t) - y]").equilibria()
+    assert refused.value.failure is Failure.NEVER_AT_REST
+
+
+def test_the_command(holonom_here):
+    answer = holonom_here("equilibria", "examples/pendulum.mac", "--control", "u=2", "--json", "-")
+    found = json.loads(answer.stdout)
+    assert (answer.returncode, found["format"], found["controls"]) == (0, "holonom-equilibria", {"u": 2.0})
+    assert [each["stability"] for each in found["found"]] == ["stable", "unstable"]
