@@ -342,8 +342,12 @@ class Scene:
         from .stability.linear_equations import linear_equations
         from .stability.linearization import linearize
 
+        if (name := options["equilibrium"]) is not None:
+            if options["at"] is not None:
+                raise HolonomError(Failure.TWO_STATES)
+            return self.equilibria()[name].linearization
         equations = linear_equations(self._source, self._request())
-        return linearize(self._problem("direct", DOUBLE_DIGITS), equations, **options)
+        return linearize(self._problem("direct", DOUBLE_DIGITS), equations, options["at"])
 
     @naming_the_extra()
     @takes_options(*options_of(EquilibriaRequest))

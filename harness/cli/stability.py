@@ -50,7 +50,7 @@ def equilibria(
 ) -> int:
     """Look for states at rest of a SCENE for constant controls, and say how stable they are."""
     from ..display.linearization import show_equilibria
-    from ..documents import Publication, published
+    from ..formats import Publication, published
     from ..program.request import read_settings
     from ..scene import Scene
 

@@ -106,7 +106,11 @@ class Equilibria(Shown):
     turns: tuple[str, ...]
 
     def __getitem__(self, name: str) -> Equilibrium:
-        return next(each for each in self.found if each.name == name)
+        """Return the equilibrium of a name; raise `HolonomError` if there is none."""
+        for each in self.found:
+            if each.name == name:
+                return each
+        raise HolonomError(Failure.NO_SUCH_EQUILIBRIUM, detail=name)
 
     def __len__(self) -> int:
         return len(self.found)

@@ -11,6 +11,7 @@ class LinearizationRequest:
     """About which state."""
 
     at: Fraction | None = option(None, "The instant; without it, the start.", metavar="T")
+    equilibrium: str | None = option(None, "Instead, one of those that equilibria finds.", metavar="NAME")
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from test_linearization import DOUBLE_PENDULUM
 
 import holonom
 from holonom.failures import Failure, HolonomError
+from holonom.formats import Publication, require
 from holonom.stability.equilibria import Stability
 
 START = "initial_state = [{start}], time_span = [0, 1])$\n"
@@ -53,6 +54,17 @@ def test_a_double_pendulum_has_four():
     assert stabilities(found).count(Stability.UNSTABLE) == 3
     assert places[-1, -2].multipliers == pytest.approx({"lambda1": -10, "lambda2": -5})
     assert places[-1, -2].linearization.at_rest
+
+
+def test_an_equilibrium_is_linearised_by_its_name():
+    scene = holonom.system(DOUBLE_PENDULUM)
+    name = next(each.name for each in scene.equilibria() if each.stability is Stability.STABLE)
+    found = scene.linearize(equilibrium=name)
+    assert sorted(found.eigenvalues.imag)[-1] == pytest.approx(np.sqrt(10 * (2 + np.sqrt(2))))
+    for wrong, failure in (({"equilibrium": "e99"}, Failure.NO_SUCH_EQUILIBRIUM), ({"at": 1}, Failure.TWO_STATES)):
+        with pytest.raises(HolonomError) as refused:
+            scene.linearize(**{"equilibrium": name, **wrong})
+        assert refused.value.failure is failure
 
 
 def test_controls_are_constant():
@@ -112,5 +124,6 @@ def test_equations_with_the_time_are_refused():
 def test_the_command(holonom_here):
     answer = holonom_here("equilibria", "examples/pendulum.mac", "--control", "u=2", "--json", "-")
     found = json.loads(answer.stdout)
+    require(Publication.EQUILIBRIA, found)
     assert (answer.returncode, found["format"], found["controls"]) == (0, "holonom-equilibria", {"u": 2.0})
     assert [each["stability"] for each in found["found"]] == ["stable", "unstable"]

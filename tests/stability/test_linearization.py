@@ -1,11 +1,14 @@
 """Linearisation against closed forms, SymPy's Linearizer, and small deviations of motions that are followed."""
 
+import json
+
 import numpy as np
 import pytest
 from sympy.physics.mechanics import LagrangesMethod, Point, ReferenceFrame, dynamicsymbols
 
 import holonom
 from holonom.failures import Failure, HolonomError
+from holonom.formats import Publication, require
 
 # ---- textbook cases, at rest -----------------------------------------------------------------------------------------
 
@@ -192,3 +195,15 @@ def test_a_motion_that_switches_is_refused():
     with pytest.raises(HolonomError) as refused:
         holonom.system(text + scene).linearize()
     assert refused.value.failure is Failure.NOT_ANALYTIC
+
+
+# ---- the command -----------------------------------------------------------------------------------------------------
+
+
+def test_the_command(holonom_here):
+    answer = holonom_here("linearize", "examples/pendulum.mac", "--at", "1/2", "--json", "-")
+    document = json.loads(answer.stdout)
+    require(Publication.LINEARIZED, document)
+    assert (answer.returncode, document["at"], document["at_rest"], document["leading"]) == (0, 0.5, False, ["x"])
+    table = holonom_here("linearize", "examples/linkage.mac", "--equilibrium", "e2")
+    assert (table.returncode, "± 3.43103 i" in table.stdout) == (0, True)
