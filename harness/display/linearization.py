@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from rich.text import Text
 
 from ..hidden import visible_line
-from .text import styled
+from .text import counted, styled
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -35,7 +35,7 @@ def show_linearization(console: "Console", found: "Linearization") -> None:
             table.add_row(_pair(seen), f"{abs(seen) / (2 * pi):.6g}", ratio, *map(_number, mode[: len(shown)]))
     console.print(table)
     m = len(found.leading)
-    console.print(f"{m} degrees of freedom, by {', '.join(found.leading) or 'none'}; {2 * m} eigenvalues.")
+    console.print(f"{counted(m, 'degree')} of freedom, by {', '.join(found.leading) or 'none'}; {2 * m} eigenvalues.")
     if found.at_rest and found.controls:
         console.print(f"The controls reach {found.controllable_rank} of {2 * m} directions of the state.")
     if not found.at_rest:
@@ -61,7 +61,8 @@ def show_equilibria(console: "Console", equilibria: "Equilibria") -> None:
 
 
 def _title(found: "Linearization") -> str:
-    return f"{visible_line(found.scene)}, linearised at t = {found.at:.10g}; modes by coordinates"
+    where = "at an equilibrium" if found.at is None else f"at t = {found.at:.10g}"
+    return f"{visible_line(found.scene)}, linearised {where}; modes by coordinates"
 
 
 def _rounded(value: complex, size: float) -> complex:

@@ -48,8 +48,8 @@ class Linearization(Shown):
     Attributes
     ----------
     scene : str
-    at : float
-        The instant.
+    at : float or None
+        The instant; None for an equilibrium.
     at_rest : bool
         Whether velocities and accelerations vanish there. Of a motion that goes on, A is that of an instant, and its
         eigenvalues say nothing about stability.
@@ -77,7 +77,7 @@ class Linearization(Shown):
     """
 
     scene: str
-    at: float
+    at: float | None
     at_rest: bool
     coordinates: tuple[str, ...]
     leading: tuple[str, ...]
@@ -216,12 +216,22 @@ def linearize(problem: MotionProblem, equations: LinearEquations, at: Fraction |
         The motion is not analytic, or cannot be followed so far; the constraints are singular there.
     """
     require_analytic(problem)
-    t, state = _reached(problem, at)
-    return linearized(problem, equations, _moving(problem, equations, t, state))
+    t, state = state_at(problem, at)
+    return linearized(problem, equations, _moving(problem, equations, t, state), t)
 
 
-def linearized(problem: MotionProblem, equations: LinearEquations, point: Point) -> Linearization:
+def linearized(
+    problem: MotionProblem, equations: LinearEquations, point: Point, at: float | None = None
+) -> Linearization:
     """Linearise about a point at which the equations of motion hold.
+
+    Parameters
+    ----------
+    problem, equations
+        As for `linearize`.
+    point : Point
+    at : float or None
+        The instant at which a motion is there; None for an equilibrium.
 
     Raises
     ------
@@ -237,7 +247,7 @@ def linearized(problem: MotionProblem, equations: LinearEquations, point: Point)
     moving = np.abs([velocities, point.accelerations]) > AT_REST * np.array([nominal.velocities, nominal.accelerations])
     return Linearization(
         problem.scene,
-        point.t,
+        at,
         not moving.any(),
         names,
         tuple(names[place] for place in tangent.leading),
@@ -249,7 +259,7 @@ def linearized(problem: MotionProblem, equations: LinearEquations, point: Point)
     )
 
 
-def _reached(problem: MotionProblem, at: Fraction | None) -> tuple[float, Vector]:
+def state_at(problem: MotionProblem, at: Fraction | None) -> tuple[float, Vector]:
     """The instant and the state there."""
     start = float(problem.start["t"])
     if at is None or at == start:

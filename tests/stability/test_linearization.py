@@ -1,14 +1,18 @@
 """Linearisation against closed forms, SymPy's Linearizer, and small deviations of motions that are followed."""
 
 import json
+from fractions import Fraction
 
 import numpy as np
 import pytest
+from problems import problem
 from sympy.physics.mechanics import LagrangesMethod, Point, ReferenceFrame, dynamicsymbols
 
 import holonom
 from holonom.failures import Failure, HolonomError
 from holonom.formats import Publication, require
+from holonom.program.numpy_function import NumpyFunction
+from holonom.stability.linearization import state_at
 
 # ---- textbook cases, at rest -----------------------------------------------------------------------------------------
 
@@ -139,6 +143,32 @@ def deviations(scene, instants):
         return (numbers(instant, h) - numbers(instant, -h)) / (2 * h)
 
     return {k: (4 * derivative(t, SMALL) - derivative(t, 2 * SMALL)) / 3 for k, t in instants.items()}
+
+
+NEIGHBOURS = {
+    "andrews.mac": (None, "1/100"),
+    "car_axis.mac": (None, "3/10"),
+    "heavy_top.mac": (None, "3/10"),
+    "ring.mac": (None, None),
+    "spherical_pendulum.mac": ("shaken_scene", "3/10"),
+}
+
+
+@pytest.mark.parametrize("file", NEIGHBOURS)
+def test_multipliers_of_neighbouring_states(file):
+    """States next to one on the manifold have, to first order, the multipliers that the motion program finds there."""
+    name, instant = NEIGHBOURS[file]
+    motion = problem(file, name)
+    found = holonom.load(f"examples/{file}", scene=name).linearize(instant)
+    t, state = state_at(motion, instant and Fraction(instant))
+    function, rows = NumpyFunction(motion.motion), slice(len(state), None)
+    places = [function.outputs.index(each) for each in found.outputs[rows]]
+    deviation = np.random.default_rng(1).normal(size=len(found.A))
+    moved = found.C[: len(state)] @ deviation
+    step = 1e-5 * np.max(np.abs(state)) / np.max(np.abs(moved))
+    beside = [0.0] * len(motion.multipliers)
+    ahead, behind = (function([t, *(state + k * step * moved), *beside])[places] for k in (1, -1))
+    assert found.C[rows] @ deviation == pytest.approx((ahead - behind) / (2 * step), rel=1e-6, abs=1e-6)
 
 
 @pytest.mark.parametrize("name", PARTS)
