@@ -17,7 +17,7 @@ from .failures import Failure, HolonomError
 from .files import near_file, scene_file
 from .options import Number, options_of, takes_options
 from .program.forms import MotionProgram
-from .program.request import Request, Solve, read_settings
+from .program.request import DaeRequest, Request, Solve, read_settings
 from .sandbox import Limits, warn_unconfined
 from .series.request import SeriesRequest
 from .simulation.derivations import Derivations
@@ -29,6 +29,7 @@ from .temporary import KeptDirectory
 
 if TYPE_CHECKING:
     from .crosscheck.report import CheckReport
+    from .dae import Dae
     from .described import System
     from .description import Description
     from .free_motion import FreeMotion
@@ -376,6 +377,32 @@ class Scene:
 
         equations = linear_equations(self._source, self._request())
         return find_equilibria(self._problem("direct", DOUBLE_DIGITS), equations, controls, **options)
+
+    @naming_the_extra()
+    @takes_options(*options_of(DaeRequest))
+    def dae(self, options: dict[str, Any]) -> "Dae":
+        """The equations of motion as F(t, y, y') = 0, with its Jacobian, for any solver of such systems.
+
+        Parameters
+        ----------
+        {options}
+
+        Returns
+        -------
+        Dae
+            ``dae.residual(t, y, yp)``, ``dae.jacobian(t, y, yp, factor)``, ``dae.y0``, ``dae.yp0``, ``dae.algebraic``.
+
+        Raises
+        ------
+        HolonomError
+            A control has no law, a parameter no value; the motion is not analytic.
+        """
+        from .dae import Dae
+        from .program.motion_problem import DOUBLE_DIGITS
+        from .stability.linear_equations import linear_equations
+
+        equations = linear_equations(self._source, self._request())
+        return Dae(self._problem("direct", DOUBLE_DIGITS), equations, **options)
 
     @naming_the_extra()
     @takes_options(*options_of(Request, "solve"))

@@ -48,3 +48,19 @@ def read_settings(texts: Iterable[str]) -> dict[str, str]:
             raise HolonomError(Failure.SETTING_TOO_LARGE, detail=text if len(text) < LONGEST else found[1])
         settings[found[1]] = found[2]
     return settings
+
+
+class Index(StrEnum):
+    """The form of the system, by its differentiation index."""
+
+    THREE = "3"
+    TWO = "2"
+    ONE = "1"
+    GGL = "ggl"
+
+
+@dataclass(frozen=True)
+class DaeRequest:
+    """Which form is asked for."""
+
+    index: Index = option(Index.GGL, "Differentiation index; ggl is 2 with the constraints themselves kept, too.")

@@ -9,6 +9,7 @@ and the first and second rates of the latter.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -50,8 +51,13 @@ class LinearEquations:
     law: Program | None
     program: Program
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "_evaluate", NumpyFunction(self.program))
+    @cached_property
+    def _evaluate(self) -> NumpyFunction:
+        return NumpyFunction(self.program)
+
+    @cached_property
+    def _law(self) -> NumpyFunction:
+        return NumpyFunction(self.law)
 
     @property
     def changes_with_time(self) -> bool:
@@ -70,7 +76,7 @@ class LinearEquations:
             return np.empty(0)
         if self.law is None:
             raise HolonomError(Failure.NO_LAW)
-        return NumpyFunction(self.law)([t])
+        return self._law([t])
 
     def at(self, point: "Point", kept: Sequence[int]) -> Mapping[str, Matrix]:
         """Evaluate the equations and their gradients.

@@ -217,7 +217,7 @@ def linearize(problem: MotionProblem, equations: LinearEquations, at: Fraction |
     """
     require_analytic(problem)
     t, state = state_at(problem, at)
-    return linearized(problem, equations, _moving(problem, equations, t, state), t)
+    return linearized(problem, equations, motion_at(problem, equations, t, state), t)
 
 
 def linearized(
@@ -269,7 +269,7 @@ def state_at(problem: MotionProblem, at: Fraction | None) -> tuple[float, Vector
     return float(motion.instants[-1]), np.array([values[-1] for values in numbers])
 
 
-def _moving(problem: MotionProblem, equations: LinearEquations, t: float, state: Vector) -> Point:
+def motion_at(problem: MotionProblem, equations: LinearEquations, t: float, state: Vector) -> Point:
     """The state with its accelerations and multipliers, which are zero where constraints follow from the others."""
     n, kept, multipliers = len(equations.coordinates), list(problem.independent), np.zeros(len(equations.multipliers))
     at_rest = Point(t, state, np.zeros(n), multipliers, equations.controls_at(t))
