@@ -36,7 +36,7 @@ build/book.pdf: $(PRINTED) $(SCENES) $(HARD) $(SOURCES) | setup have-chinese-let
 	$(BIN)/holonom companion --language en --language zh -o build/companion --pdf $@
 
 catalog: setup ## Collect the messages to be translated: harness/locale/, and say which have no translation yet
-	$(BIN)/python -m holonom.catalog
+	$(BIN)/python tests/catalog.py
 
 build/holonom.1: $(SOURCES) | setup
 	@mkdir -p $(@D)

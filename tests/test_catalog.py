@@ -2,8 +2,8 @@
 
 import pytest
 from babel.messages.catalog import Catalog
+from catalog import TEMPLATE, collected, faults, read_catalog, template_text
 
-from holonom.catalog import TEMPLATE, collected, faults, read_catalog, template_text
 from holonom.language import ENGLISH, LANGUAGES
 
 OTHERS = [language for language in LANGUAGES if language != ENGLISH]

@@ -15,11 +15,12 @@ from babel.messages.catalog import Catalog, Message
 from babel.messages.extract import extract
 from babel.messages.pofile import read_po, write_po
 
-from .companion.pages import WHITESPACE
-from .files import shared, write_whole
-from .language import DOMAIN, ENGLISH, LANGUAGES, LOCALE, catalog_file
+import holonom
+from holonom.companion.pages import WHITESPACE
+from holonom.files import shared, write_whole
+from holonom.language import DOMAIN, ENGLISH, LANGUAGES, LOCALE, catalog_file
 
-PACKAGE = Path(__file__).parent
+PACKAGE = Path(holonom.__file__).parent
 TEMPLATE = LOCALE / f"{DOMAIN}.pot"
 KEYWORDS = {"gettext": None, "ngettext": (1, 2), "translatable": None, "_": None}
 STRING = r'"((?:[^"\\]|\\.)*)"'
