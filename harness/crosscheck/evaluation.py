@@ -13,6 +13,7 @@ from typing import NamedTuple
 import sympy as sp
 from mpmath import mp
 
+from .irregular_point import IrregularPoint
 from .points import FUNCTIONS
 
 Number = mp.mpf | mp.mpc
@@ -55,12 +56,29 @@ class Steps:
         self._steps: list[Step | sp.Symbol] = []
         self._results = [self._place(expression) for expression in expressions]
 
-    def at(self, values: Values) -> Numbers:
-        """Evaluate the expressions in mpmath's working precision; None for each that has no value."""
+    def at(self, values: Values, real: bool = False) -> Numbers:
+        """Evaluate the expressions in mpmath's working precision; None for each that has no value.
+
+        With `real`, what is complex has none, and neither has what is made of it.
+        """
         found: Numbers = []
         for step in self._steps:
-            found.append(_taken(step, found) if isinstance(step, Step) else values.get(step))
+            value = _taken(step, found) if isinstance(step, Step) else values.get(step)
+            found.append(None if real and isinstance(value, mp.mpc) else value)
         return [found[place] for place in self._results]
+
+    def real_at(self, values: Values) -> list[mp.mpf]:
+        """Evaluate the expressions in real numbers.
+
+        Raises
+        ------
+        IrregularPoint
+            One of them has no value.
+        """
+        found = self.at(values, real=True)
+        if any(value is None for value in found):
+            raise IrregularPoint
+        return found
 
     def _place(self, expression: sp.Expr) -> int:
         """Find the place of an expression's value; what it is made of comes before it."""

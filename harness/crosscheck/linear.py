@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 
 import sympy as sp
 from mpmath import mp
+
+from .evaluation import Number, Steps, Values
 
 
 @dataclass(frozen=True)
@@ -28,16 +30,17 @@ class LinearEquations:
         nothing = dict.fromkeys(self.unknowns, sp.Integer(0))
         return [residual.xreplace(nothing) for residual in self.residuals]
 
-    def solution(self, value: Callable[[sp.Expr], mp.mpf]) -> dict[sp.Symbol, mp.mpf]:
-        """Solve for the unknowns at a point, where `value` evaluates an expression.
+    @cached_property
+    def _steps(self) -> Steps:
+        return Steps([*(entry for row in self.coefficients for entry in row), *self.constants])
 
-        Raises
-        ------
-        ZeroDivisionError
-            The coefficients are singular there.
-        """
-        if not self.unknowns:
-            return {}
-        matrix = mp.matrix([[value(entry) for entry in row] for row in self.coefficients])
-        right = mp.matrix([-value(constant) for constant in self.constants])
-        return dict(zip(self.unknowns, mp.lu_solve(matrix, right), strict=True))
+    def solution(self, values: Values, real: bool = False) -> dict[sp.Symbol, Number | None]:
+        """Solve for the unknowns at a point; None for each where there is no solution. `real` as for `Steps.at`."""
+        order = len(self.unknowns)
+        found = self._steps.at(values, real) if order else []
+        if order and None not in found:
+            rows = [found[i * order : (i + 1) * order] for i in range(order)]
+            with suppress(ZeroDivisionError, TypeError):  # which mpmath raises for a column of zeros
+                solution = mp.lu_solve(mp.matrix(rows), -mp.matrix(found[order * order :]))
+                return dict(zip(self.unknowns, solution, strict=True))
+        return dict.fromkeys(self.unknowns)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import sympy as sp
 from mpmath import mp
 
+from .evaluation import Steps
 from .irregular_point import IrregularPoint
-from .points import Valuation
 
 SPARE_DIGITS = 10
 """Of those that are carried, digits to which residuals need not vanish."""
@@ -19,9 +19,7 @@ NEWTON_STEPS = 60
 State = dict[sp.Symbol, mp.mpf]
 
 
-def moved_onto(
-    state: State, unknowns: Sequence[sp.Symbol], residuals: Sequence[sp.Expr], jacobian: Sequence[Sequence[sp.Expr]]
-) -> None:
+def moved_onto(state: State, unknowns: Sequence[sp.Symbol], residuals: Steps, jacobian: Steps) -> None:
     """Move the unknowns of a state, by the shortest steps, to where the residuals vanish.
 
     Parameters
@@ -29,35 +27,27 @@ def moved_onto(
     state : dict of Symbol to mpf
         Changed in place.
     unknowns : sequence of n Symbols
-    residuals : sequence of g Exprs
-    jacobian : g rows of n Exprs
-        Derivatives of the residuals with respect to the unknowns.
+    residuals : Steps
+        Of g expressions.
+    jacobian : Steps
+        Of g rows of n expressions: derivatives of the residuals with respect to the unknowns.
 
     Raises
     ------
     IrregularPoint
-        Newton's method does not get there.
+        Newton's method does not get there, or a value is not real.
     ZeroDivisionError
         The residuals' gradients are dependent on the way.
     """
-    if not residuals:
-        return
+    n = len(unknowns)
     for _ in range(NEWTON_STEPS):
-        value = valuation(state)
-        right = mp.matrix([value(residual) for residual in residuals])
+        right = residuals.real_at(state)
         size = max(abs(number) for number in state.values())
-        if max(map(abs, right)) <= mp.mpf(10) ** (SPARE_DIGITS - mp.dps) * max(1, size):
+        if max(map(abs, right), default=mp.zero) <= mp.mpf(10) ** (SPARE_DIGITS - mp.dps) * max(1, size):
             return
-        rows = mp.matrix([[value(entry) for entry in row] for row in jacobian])
-        move = rows.T * mp.lu_solve(rows * rows.T, right)
+        entries = jacobian.real_at(state)
+        rows = mp.matrix([entries[k : k + n] for k in range(0, len(entries), n)])
+        move = rows.T * mp.lu_solve(rows * rows.T, mp.matrix(right))
         for unknown, by in zip(unknowns, move, strict=True):
             state[unknown] -= by
     raise IrregularPoint
-
-
-def valuation(state: Mapping[sp.Symbol, mp.mpf]) -> Valuation:
-    """Values of expressions at a state."""
-    value = Valuation({})
-    for symbol, number in state.items():
-        value.define(symbol, number)
-    return value

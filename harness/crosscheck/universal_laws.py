@@ -16,11 +16,12 @@ import sympy as sp
 from mpmath import mp
 
 from .digits import DIGITS, POINTS, WORKING_DIGITS
+from .evaluation import Steps
 from .independent import IndependentEquations
 from .irregular_point import IrregularPoint
 from .linear import LinearEquations
-from .manifold import moved_onto, valuation
-from .points import Valuation, random_point
+from .manifold import moved_onto
+from .points import random_point
 from .report import Judgement, Verdict
 from .seed import fresh_seed
 from .system import MechanicalSystem, dotted
@@ -101,28 +102,30 @@ class _MovedByLaw:
             return tuple(expression.xreplace(history).xreplace(values) for expression in expressions)
 
         self.coordinates, self.velocities = system.coordinates, system.velocities
-        self.constraints = under_law(system.constraints)
-        self.rates = under_law(equations.constraint_rates)
-        self.jacobian = [[f.diff(q) for q in self.coordinates] for f in self.constraints]
+        constraints, rates = under_law(system.constraints), under_law(equations.constraint_rates)
+        positive = under_law(law.positive)
+        laws = tuple(expression.xreplace(values) for expression in law.controls.values())
         self.multipliers = system.multipliers
         self.motion = LinearEquations(equations.bordered.unknowns, under_law(equations.bordered.residuals))
-        self.positive = under_law(law.positive)
-        self.law = tuple(expression.xreplace(values) for expression in law.controls.values())
-        everything = (*self.constraints, *self.rates, *self.motion.residuals, *self.positive, *self.law)
+        self.constraints, self.rates = Steps(constraints), Steps(rates)
+        self.jacobian = Steps([f.diff(q) for f in constraints for q in self.coordinates])
+        self.positive, self.law = Steps(positive), Steps(laws)
+        everything = (*constraints, *rates, *self.motion.residuals, *positive, *laws)
         symbols = set().union(*(expression.free_symbols for expression in everything))
         state = {*self.coordinates, *self.velocities}
         self.names = sorted(symbol.name for symbol in (symbols | state) - {*self.motion.unknowns})
 
     def residual(self, point: Mapping[sp.Symbol, sp.Rational]) -> str:
         """Tell the first multiplier that is not zero; empty where all are."""
-        if any(Valuation(point)(expression) <= 0 for expression in self.positive):
-            raise IrregularPoint
-        for expression in self.law:
-            Valuation(point)(expression)  # irregular if it is not real, though its square may be
         state: dict[sp.Symbol, mp.mpf] = {symbol: mp.mpf(number.p) / number.q for symbol, number in point.items()}
+        if any(value <= 0 for value in self.positive.real_at(state)):
+            raise IrregularPoint
+        self.law.real_at(state)  # irregular if it is not real, though its square may be
         moved_onto(state, self.coordinates, self.constraints, self.jacobian)
         moved_onto(state, self.velocities, self.rates, self.jacobian)
-        found = self.motion.solution(valuation(state))
+        found = self.motion.solution(state, real=True)
+        if None in found.values():
+            raise IrregularPoint
         scale = max(1, *(abs(number) for number in (*state.values(), *found.values()))) ** 2
         for multiplier in self.multipliers:
             if abs(left := found[multiplier]) > mp.mpf(10) ** -DIGITS * scale:

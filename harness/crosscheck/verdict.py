@@ -14,7 +14,6 @@ as exp have values independent of what their arguments are (`independent_functio
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
 from enum import Enum, auto
 from typing import NamedTuple
@@ -204,7 +203,7 @@ class Evaluation:
 
     def __init__(self, comparison: Comparison) -> None:
         self._given = [(symbol, Steps([meaning])) for symbol, meaning in comparison.given.items()]
-        self._solves = [_Solve(equations) for equations in comparison.solves]
+        self._solves = comparison.solves
         self._left = Steps([pair.claimed for pair in comparison.pairs])
         self._right = Steps([pair.independent for pair in comparison.pairs])
 
@@ -237,28 +236,9 @@ class Evaluation:
         values: dict[sp.Symbol, Number | None] = {x: mp.mpf(number.p) / number.q for x, number in point.items()}
         for symbol, meaning in self._given:
             values[symbol] = meaning.at(values)[0]
-        for solve in self._solves:
-            solve.put_into(values)
+        for equations in self._solves:
+            values |= equations.solution(values)
         return values
-
-
-class _Solve:
-    """Linear equations, solved at points."""
-
-    def __init__(self, equations: LinearEquations) -> None:
-        self._unknowns = equations.unknowns
-        self._steps = Steps([*(entry for row in equations.coefficients for entry in row), *equations.constants])
-
-    def put_into(self, values: dict[sp.Symbol, Number | None]) -> None:
-        """Put the solution beside the values; None for each unknown where there is no solution."""
-        order = len(self._unknowns)
-        found = self._steps.at(values)
-        solution: Iterable[Number | None] = [None] * order
-        if order and None not in found:
-            rows = [found[i * order : (i + 1) * order] for i in range(order)]
-            with suppress(ZeroDivisionError, TypeError):  # which mpmath raises for a column of zeros
-                solution = list(mp.lu_solve(mp.matrix(rows), -mp.matrix(found[order * order :])))
-        values.update(zip(self._unknowns, solution, strict=True))
 
 
 def _finding(left: Sequence[Number | None], right: Sequence[Number | None], complex_too: bool) -> Found:

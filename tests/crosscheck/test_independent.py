@@ -5,8 +5,9 @@ import sympy as sp
 from mpmath import mp
 from systems import paper_example, pendulum, symbols
 
+from holonom.crosscheck.evaluation import Steps
 from holonom.crosscheck.independent import IndependentEquations
-from holonom.crosscheck.points import Valuation, random_point
+from holonom.crosscheck.points import random_point
 from holonom.crosscheck.system import MechanicalSystem
 
 Q1, Q2, V1, V2, U, DU, DDU = symbols("q1 q2 dot(q1) dot(q2) u dot(u) ddot(u)")
@@ -29,16 +30,18 @@ def test_bordered_system_gives_the_multiplier_known_in_closed_form(
     equations = IndependentEquations(system)
     names = ["q1", "q2", "q3", "dot(q1)", "dot(q2)", "dot(q3)", "x", "y", "dot(x)", "dot(y)"]
     with mp.workdps(40):
-        value = Valuation(random_point([*names, "u", "dot(u)", "ddot(u)", "m", "g"], 1, "closed"))
-        solution = equations.bordered.solution(value)
-        assert mp.almosteq(solution[system.multipliers[0]], value(multiplier), mp.mpf(10) ** -35)
+        drawn = random_point([*names, "u", "dot(u)", "ddot(u)", "m", "g"], 1, "closed")
+        values = {symbol: mp.mpf(number.p) / number.q for symbol, number in drawn.items()}
+        (known,) = Steps([multiplier]).real_at(values)
+        solution = equations.bordered.solution(values)
+        assert mp.almosteq(solution[system.multipliers[0]], known, mp.mpf(10) ** -35)
 
 
 def test_multiplier_of_a_pendulum_at_rest_is_negative() -> None:
     """+ lambda grad f stands on the right: the string pulls up, against the gradient."""
     at_rest = {X: 0, Y: -1, VX: 0, VY: 0, U: 1, DU: 0, DDU: 0, M: 1, G: 10}
-    value = Valuation({symbol: sp.Integer(number) for symbol, number in at_rest.items()})
-    solution = IndependentEquations(pendulum()).bordered.solution(value)
+    values = {symbol: mp.mpf(number) for symbol, number in at_rest.items()}
+    solution = IndependentEquations(pendulum()).bordered.solution(values)
     assert solution[sp.Symbol("lambda1", real=True)] == -5
 
 
@@ -47,9 +50,7 @@ def test_jerk_of_a_bob_on_a_string_of_constant_length() -> None:
     equations = IndependentEquations(pendulum())
     unit_circle = {X: 0, Y: 1, VX: -3, VY: 0, U: 1, DU: 0, DDU: 0, M: 2, G: 0}
     steady = {**unit_circle, sp.Symbol("dddot(u)", real=True): 0}
-    value = Valuation({symbol: sp.Integer(number) for symbol, number in steady.items()})
-    for symbol, number in equations.bordered.solution(value).items():
-        value.define(symbol, number)
-    jerks = equations.bordered_rates.solution(value)
+    values = {symbol: mp.mpf(number) for symbol, number in steady.items()}
+    jerks = equations.bordered_rates.solution(values | equations.bordered.solution(values))
     assert jerks[sp.Symbol("dddot(x)", real=True)] == 27
     assert jerks[sp.Symbol("dddot(y)", real=True)] == 0

@@ -13,8 +13,9 @@ from programs import PENDULUM, document
 
 from holonom.cli import holonom
 from holonom.crosscheck.check import check_record
+from holonom.crosscheck.evaluation import Steps
 from holonom.crosscheck.independent import IndependentEquations
-from holonom.crosscheck.points import Valuation, random_point
+from holonom.crosscheck.points import random_point
 from holonom.crosscheck.system import described_system
 from holonom.failures import HolonomError
 from holonom.program.effects import Measure, Status, read_costs, scene_costs
@@ -168,8 +169,8 @@ def assert_solves_independent_equations(file, record):
     (scene,) = record.scenes
     known = IndependentEquations(described_system(record.system, scene.effects))
     point = random_point(program.inputs, 0, "effects")
-    value = Valuation(point | {symbol(name): number for name, number in scene.parameter_values.items()})
-    expected = known.bordered.solution(value)
+    point |= {symbol(name): number for name, number in scene.parameter_values.items()}
+    expected = known.bordered.solution(dict(zip(point, Steps(list(point.values())).real_at({}), strict=True)))
     computed = NumpyFunction(program)([float(point[symbol(name)]) for name in program.inputs])
     for name, number in zip(program.outputs, computed, strict=True):
         if name != "energy":
