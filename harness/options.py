@@ -94,8 +94,14 @@ def read(each: Field, value: Any) -> Any:
     if kind is str:
         return value
     if stated.least is not None and value < stated.least:
-        raise HolonomError(Failure.NOT_IN_RANGE, detail=f"{each.name} is {stated.least:g} or more, not {value}")
-    return value
+        bound = f"{stated.least:g} or more"
+    elif stated.above is not None and value <= stated.above:
+        bound = f"more than {stated.above:g}"
+    elif stated.most is not None and value > stated.most:
+        bound = f"at most {stated.most:g}"
+    else:
+        return value
+    raise HolonomError(Failure.NOT_IN_RANGE, detail=f"{each.name} is {bound}, not {value}")
 
 
 def read_instant(value: Any) -> Fraction:

@@ -1,6 +1,7 @@
 """The modules of the package import one another in layers, without a circle; imports inside functions count."""
 
 import ast
+import tomllib
 from collections.abc import Iterator
 from functools import cache
 from graphlib import TopologicalSorter
@@ -60,3 +61,9 @@ def test_results_import_nothing_that_shows_them(layer):
     above = {name for name in MODULES if name.split(".")[1:2] and name.split(".")[1] in EDGES}
     importing = {name for name in MODULES if any(each.split(".")[1:2] == [layer] for each in graph()[name])}
     assert importing - above <= {"holonom.__main__", "holonom.scene", "holonom.installation"}
+
+
+def test_every_package_is_installed():
+    project = tomllib.loads((PACKAGE.parent / "pyproject.toml").read_text(encoding="utf-8"))
+    listed = set(project["tool"]["setuptools"]["packages"])
+    assert {name for name, path in MODULES.items() if path.name == "__init__.py"} <= listed

@@ -26,6 +26,7 @@ class Toy:
     size: int | None = option(None, "Size of the toy.", metavar="N", least=2)
     bought: Fraction | None = option(None, "When it was bought.", spelt=("--when",), metavar="T")
     noisy: bool = option(False, "Make noise.")
+    price: float = option(1.5, "Price of the toy.", above=0, most=10)
     owner: str = "nobody"  # not an option
 
 
@@ -62,7 +63,7 @@ def test_field_of_request_is_option_of_command(arguments, made):
 def test_field_of_request_is_argument_in_python():
     assert Shop().toy() == (Toy(), {})
     assert Shop().toy("blue", 3, bought="0.75", m=2) == (Toy(Color.BLUE, 3, Fraction(3, 4)), {"m": 2})
-    assert list(inspect.signature(Shop.toy).parameters) == ["self", "color", "size", "bought", "noisy", "more"]
+    assert list(inspect.signature(Shop.toy).parameters) == ["self", "color", "size", "bought", "noisy", "price", "more"]
     assert "color : {'red', 'blue'}\n    Color of the toy.\nsize : int or None\n" in Shop.toy.__doc__
 
 
@@ -72,6 +73,7 @@ def test_field_of_request_is_row_of_reference():
         ("--size N", "Size of the toy.", ""),
         ("--when T", "When it was bought.", ""),
         ("--noisy", "Make noise.", ""),
+        ("--price FLOAT RANGE", "Price of the toy.", "1.5"),
     ]
 
 
@@ -80,6 +82,8 @@ def test_field_of_request_is_row_of_reference():
     [
         ({"color": "green"}, Failure.NOT_A_CHOICE),
         ({"size": 1}, Failure.NOT_IN_RANGE),
+        ({"price": 0}, Failure.NOT_IN_RANGE),
+        ({"price": 11}, Failure.NOT_IN_RANGE),
         ({"bought": "noon"}, Failure.NOT_AN_INSTANT),
         ({"bought": "1e999"}, Failure.NOT_AN_INSTANT),
     ],
