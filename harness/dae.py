@@ -94,7 +94,10 @@ class Dae:
 
     @property
     def algebraic(self) -> NDArray[np.bool_]:
-        """Which components are algebraic: their derivatives do not enter."""
+        """Which components are algebraic: their derivatives do not enter.
+
+        Beyond index 1 solvers are to leave them out of their error test.
+        """
         return np.arange(len(self.names)) >= 2 * self._n
 
     def residual(self, t: float, y: ArrayLike, yp: ArrayLike) -> Floats:

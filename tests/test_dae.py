@@ -68,3 +68,22 @@ def test_a_solver_of_such_systems_finds_the_motion(index):
     assert [found["x"], found["y"]] == pytest.approx([motion["x"][-1], motion["y"][-1]], abs=1e-8)
     # of index 3, three stages find multipliers to order 2 only (Hairer & Wanner II, table VII.4.1)
     assert found["lambda1"] == pytest.approx(motion["lambda1"][-1], rel=1e-3 if index is Index.THREE else 1e-5)
+
+
+@pytest.mark.parametrize("index", [Index.ONE, Index.GGL])
+def test_ida_finds_the_motion(index):
+    sundials = pytest.importorskip("sksundae.ida")
+    scene = holonom.load("examples/pendulum.mac")
+    dae, motion = scene.dae(index), scene.simulate(until=1, samples=2)
+
+    def residual(t, y, yp, out):
+        out[:] = dae.residual(t, y, yp)
+
+    def jacobian(t, y, yp, out, factor, matrix):
+        matrix[:] = dae.jacobian(t, y, yp, factor)
+
+    tested = np.where(dae.algebraic, 1e6, 1e-10)
+    solver = sundials.IDA(residual, jacfn=jacobian, rtol=1e-8, atol=tested, algebraic_idx=np.flatnonzero(dae.algebraic))
+    found = solver.solve(np.array([dae.t0, 1.0]), dae.y0, dae.yp0)
+    assert found.success
+    assert found.y[-1][:2] == pytest.approx([motion["x"][-1], motion["y"][-1]], abs=1e-7)
