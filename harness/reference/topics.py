@@ -226,11 +226,15 @@ def _kind(field: Any) -> str:
 def python_topics() -> Iterator[Topic]:
     """A page for each public name."""
     import holonom
+    from holonom.dae import Dae
     from holonom.program.right_hand_side import RightHandSide
     from holonom.simulation.result import Simulation
+    from holonom.stability.equilibria import Equilibria, Equilibrium
+    from holonom.stability.linearization import Linearization
 
     public = {name: getattr(holonom, name) for name in holonom.__all__}
-    for name, value in (public | {"Simulation": Simulation, "RightHandSide": RightHandSide}).items():
+    returned = (Simulation, Linearization, Equilibria, Equilibrium, RightHandSide, Dae)
+    for name, value in (public | {each.__name__: each for each in returned}).items():
         members = [] if inspect.isfunction(value) else list(_members(value))
         parts = (Code("", f"{_signature(name, value)}\n\n{inspect.getdoc(value)}"), *members)
         title = f"holonom.{name}" if name in public else name

@@ -96,6 +96,13 @@ class Equilibria(Shown):
         Further solutions of these families.
     turns : tuple of str
         Coordinates that may be changed by whole turns.
+
+    Examples
+    --------
+    >>> import holonom
+    >>> found = holonom.load("examples/pendulum.mac").equilibria(u=2)
+    >>> [(each.coordinates["y"], str(each.stability)) for each in found]
+    [(-2.0, 'stable'), (2.0, 'unstable')]
     """
 
     scene: str
