@@ -271,8 +271,6 @@ class Failure(Enum):
         "choose a law that keeps the length away from zero",
     )
     NO_WAY_ON = ("the motion cannot be followed beyond t = {detail}", "end the run before it")
-    RTEST_UNPAIRED = "an input has no expected result"
-    RTEST_FAILED = "not all of the {detail} tests passed"
 
 
 class HolonomWarning(UserWarning):

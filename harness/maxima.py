@@ -221,38 +221,6 @@ def run_batch(
         return _finished_document(run, _run(run, f"run-file {_copy(run)} {_call(writer, run)}"), writer)
 
 
-def run_rtest(rtest: Path) -> int:
-    """Run a file in Maxima's own test convention, pairs of input and expected result, with the library loaded.
-
-    Returns
-    -------
-    int
-        The number of tests, every one of them passed. It is counted in the file's text: where Maxima cannot read on
-        it prints no summary.
-
-    Raises
-    ------
-    HolonomError
-        A test failed or was not run; carries all that Maxima printed.
-    """
-    tests, unpaired = divmod(count_statements(rtest.read_text(encoding="utf-8")), 2)
-    if unpaired:
-        raise HolonomError(Failure.RTEST_UNPAIRED, rtest)
-    with _new_run(LIBRARY / "holonom.mac", DEFAULT_LIMITS, NO_SETTINGS) as run:
-        shutil.copy(rtest, run.directory)  # for Maxima leaves a list of errors beside the file it tests
-        test = quoted(f"(open_namespace(), batch({quoted(rtest.name)}, test))$")
-        ended = _run(run, f"run-file {_copy(run)} {test}")
-        ended.require_finished(run, test)
-    if re.findall(r"(\d+)/(\d+) tests passed", ended.printed) != [(str(tests), str(tests))]:
-        raise HolonomError(Failure.RTEST_FAILED, rtest, str(tests), last_lines=tuple(ended.printed.splitlines()))
-    return tests
-
-
-def count_statements(text: str) -> int:
-    """Count the statements in Maxima text: terminators, ``;`` or ``$``, outside comments and strings."""
-    return sum(1 for _ in statement_ends(text))
-
-
 def statement_ends(text: str, position: int = 0) -> Iterator[int]:
     """Yield where statements end in Maxima text: the positions just past a terminator, ``;`` or ``$``."""
     depth = 0

@@ -13,10 +13,10 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from rtests import run_rtest
 
 from holonom.documents import ask
 from holonom.formats import Document
-from holonom.maxima import run_rtest
 from holonom.program.forms import MotionProgram
 from holonom.program.request import Request, Solve
 from holonom.sandbox import Limits

@@ -3,9 +3,9 @@
 from pathlib import Path
 
 import pytest
+from rtests import RtestFailed, run_rtest
 
 from holonom.failures import HolonomError
-from holonom.maxima import run_rtest
 
 RTESTS = sorted(Path(__file__).with_name("maxima").glob("rtest_*.mac"))
 
@@ -16,5 +16,7 @@ def test_rtest(rtest: Path, record_property) -> None:
         tests = run_rtest(rtest)
     except HolonomError as error:
         pytest.fail("\n".join([str(error), *error.last_lines]), pytrace=False)
+    except RtestFailed as error:
+        pytest.fail(str(error), pytrace=False)
     record_property("maxima_tests", tests)
     assert tests > 0

@@ -13,7 +13,7 @@ from math import factorial
 import sympy as sp
 
 from ..described import System
-from ..record import LARGEST_SIZE, Derivation, Equation, Scene
+from ..record import LARGEST_SIZE, Derivation, Equation
 from ..trees import Tree
 from .displayed import displayed, operations, roots, size
 from .report import Item
@@ -126,8 +126,3 @@ def operations_of(equations: Iterable[Equation]) -> int:
     """Return the number of operations in the right sides of equations."""
     rights: list[Tree] = [relation.right_tree for equation in equations for relation in equation.relations]
     return sum(operations(displayed(right)) for right in rights)
-
-
-def equation_of(part: Derivation | Scene, wanted: str) -> Equation | None:
-    """The first equation with an id."""
-    return next((equation for equation in part.equations if equation.id == wanted), None)
