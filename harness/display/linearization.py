@@ -35,7 +35,8 @@ def show_linearization(console: "Console", found: "Linearization") -> None:
             table.add_row(_pair(seen), f"{abs(seen) / (2 * pi):.6g}", ratio, *map(_number, mode[: len(shown)]))
     console.print(table)
     m = len(found.leading)
-    console.print(f"{counted(m, 'degree')} of freedom, by {', '.join(found.leading) or 'none'}; {2 * m} eigenvalues.")
+    leading = ", ".join(found.leading[:SHOWN_COORDINATES]) + (", ..." if m > SHOWN_COORDINATES else "")
+    console.print(f"{counted(m, 'degree')} of freedom, by {leading or 'none'}; {2 * m} eigenvalues.")
     if found.at_rest and found.controls:
         console.print(f"The controls reach {found.controllable_rank} of {2 * m} directions of the state.")
     if not found.at_rest:
