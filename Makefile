@@ -60,7 +60,7 @@ mutants: setup ## Make wrong programs at random, one at a time, and count those 
 tampering: setup ## Make wrong records of twenty scenes, and tell how many of each class `holonom check` finds
 	nice $(BIN)/python tests/crosscheck/tampering/tamper.py $(SEED)
 
-setup: have-programs $(STAMP) ## Install what is missing: Maxima, a C compiler, GSL, bubblewrap, and the Python packages in .venv
+setup: have-programs $(STAMP) ## Install what is missing: Maxima, a C compiler, bubblewrap, and the Python packages in .venv
 
 install: setup ## Put Holonom into Maxima's user directory, where load(holonom) finds it
 	$(BIN)/holonom maxima-path
@@ -118,13 +118,11 @@ define install-missing
 	  echo "make goes on with what is there."; } >&2
 endef
 
-# Maxima, a C compiler, GSL for the Runge-Kutta engine, bubblewrap, which keeps scene files from your own, and Python's
-# venv.
+# Maxima, a C compiler, bubblewrap, which keeps scene files from your own, and Python's venv.
 have-programs:
 	@missing=; python="$(PYTHON)"; \
 	command -v maxima >/dev/null || missing="$$missing maxima"; \
 	command -v cc >/dev/null || missing="$$missing gcc libc6-dev"; \
-	command -v gsl-config >/dev/null || missing="$$missing libgsl-dev"; \
 	command -v bwrap >/dev/null || missing="$$missing bubblewrap"; \
 	if [ -z "$$python" ]; then missing="$$missing python3-venv"; \
 	elif ! $$python -c 'import ensurepip' 2>/dev/null; then missing="$$missing $${python##*/}-venv"; fi; \

@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 
 from .language import gettext, translatable, translated
 from .simulation.diagnosis import HardCase
-from .simulation.request import EngineName
+from .simulation.engines.registry import FALLBACK
 
 if TYPE_CHECKING:
-    from .simulation.engines.switching import Leg
+    from .simulation.engines.fallback import EngineSegment
     from .simulation.result import Report
 
 LISTED = 3  # legs of the robust engine that are told one by one
@@ -57,11 +57,11 @@ def advice(kind: HardCase) -> str:
     return ADVICE[kind]
 
 
-def engine_text(legs: "Sequence[Leg]") -> str:
+def engine_text(legs: "Sequence[EngineSegment]") -> str:
     """Who followed the motion when, in one line, for instance ``taylor`` or ``taylor, robust 0.31..0.35, taylor``."""
     if len(legs) == 1:
         return translated(legs[0].engine)
-    robust = [leg for leg in legs if leg.engine is EngineName.ROBUST]
+    robust = [leg for leg in legs if leg.engine == FALLBACK]
     if len(robust) > LISTED:
         return gettext(
             "%(engine)s, robust %(count)s times from %(start).6g to %(end).6g",
@@ -76,7 +76,7 @@ def engine_text(legs: "Sequence[Leg]") -> str:
 
 def remarks(report: "Report") -> Iterator[str]:
     """What happened on the way, and what to do about the hard cases that the motion is: one sentence each."""
-    called = [leg for leg in report.legs if leg.engine is EngineName.ROBUST and leg.case is not None]
+    called = [leg for leg in report.legs if leg.engine == FALLBACK and leg.case is not None]
     for leg in called[:LISTED]:
         yield gettext(
             "From t = %(start).6g to %(end).6g the robust engine takes over, because %(reason)s.",

@@ -212,11 +212,6 @@ class Failure(Enum):
         "{detail} is a special function, which programs hold as a polynomial with other derivatives of high order",
         "take `holonom series` without {--precision}: Maxima expands it to any digits",
     )
-    GSL_MISSING = (
-        MACHINE,
-        "the Runge-Kutta engine needs the GNU Scientific Library with its headers",
-        "install it, for instance the package `libgsl-dev` of your distribution",
-    )
     NO_PIVOTS = ("the motion program cannot be solved: {detail}", "take {--engine} auto or robust")
     RUNGE_KUTTA_IS_DOUBLE = (
         "the Runge-Kutta engine computes in double precision, not {detail}",

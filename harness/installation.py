@@ -19,15 +19,14 @@ from .sandbox import has_sandbox
 USERS_EXTRAS = ("motion", "sweep", "companion")  # the others are for those who develop Holonom
 # Names of the system's packages, by the command that installs them.
 INSTALLERS = {
-    "apt-get": ("apt-get install", {"maxima": "maxima", "cc": "gcc libc6-dev", "gsl-config": "libgsl-dev"}),
-    "dnf": ("dnf install", {"maxima": "maxima", "cc": "gcc", "gsl-config": "gsl-devel"}),
-    "pacman": ("pacman -S", {"maxima": "maxima", "cc": "gcc", "gsl-config": "gsl"}),
-    "brew": ("brew install", {"maxima": "maxima", "cc": "gcc", "gsl-config": "gsl"}),
+    "apt-get": ("apt-get install", {"maxima": "maxima", "cc": "gcc libc6-dev"}),
+    "dnf": ("dnf install", {"maxima": "maxima", "cc": "gcc"}),
+    "pacman": ("pacman -S", {"maxima": "maxima", "cc": "gcc"}),
+    "brew": ("brew install", {"maxima": "maxima", "cc": "gcc"}),
 }
 PROGRAMS = {
     "maxima": "everything: it derives the equations",
     "cc": "compiled programs, --to fmu, the Runge-Kutta engine",
-    "gsl-config": "the Runge-Kutta engine",
     "bwrap": "the sandbox of scene files",
 }
 ALLOW = "allow bubblewrap to make user namespaces, which this machine forbids"

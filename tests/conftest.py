@@ -64,8 +64,7 @@ def pytest_configure(config: pytest.Config) -> None:
         raise pytest.UsageError(HolonomError(Failure.MAXIMA_MISSING).sentence())
     from holonom.program.c_function import has_compiler
 
-    there = {Failure.COMPILER_MISSING: has_compiler(), Failure.GSL_MISSING: shutil.which("gsl-config") is not None}
-    config.stash[LACKING] = frozenset(failure for failure, found in there.items() if not found)
+    config.stash[LACKING] = frozenset() if has_compiler() else frozenset({Failure.COMPILER_MISSING})
 
 
 @pytest.hookimpl(wrapper=True)
@@ -81,18 +80,8 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo) -> Gener
 @pytest.fixture(scope="session")
 def c_compiler(pytestconfig: pytest.Config) -> None:
     """The system's C compiler."""
-    _require(pytestconfig, Failure.COMPILER_MISSING)
-
-
-@pytest.fixture(scope="session")
-def gsl(pytestconfig: pytest.Config, c_compiler: None) -> None:
-    """The GNU Scientific Library, and a C compiler: the Runge-Kutta engine needs them."""
-    _require(pytestconfig, Failure.GSL_MISSING)
-
-
-def _require(config: pytest.Config, failure: Failure) -> None:
-    if failure in config.stash[LACKING]:
-        raise HolonomError(failure)
+    if Failure.COMPILER_MISSING in pytestconfig.stash[LACKING]:
+        raise HolonomError(Failure.COMPILER_MISSING)
 
 
 @pytest.fixture

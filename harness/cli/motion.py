@@ -164,10 +164,6 @@ def _import_what_follows(own_process: bool) -> None:
         from ..display import motion, progress  # noqa: F401
         from ..simulation import output, simulate  # noqa: F401
         from ..simulation.engines import runge_kutta, taylor  # noqa: F401
-        from ..simulation.parts_of_scipy import lapack, superlu
-
-        lapack()
-        superlu()
 
 
 def _import_heyoka_alone() -> None:

@@ -20,7 +20,7 @@ from .motion_program import Program
 
 COMPILERS = ("cc", "gcc", "clang")
 # Not less than -O2: below it GCC leaves the upper halves of vector registers in use, and code without AVX that runs
-# afterwards waits for them again and again; GSL took 2 to 8 times as long.
+# afterwards waits for them again and again: it took 2 to 8 times as long.
 OPTIONS = ("-std=c99", "-O2", "-ffp-contract=fast", "-shared", "-fPIC")
 NATIVE = "-march=native"  # for the processor at hand; compilers for some kinds of processors know no such option
 COMPILER_LIMITS = Limits(sandbox=Sandbox.TRUSTED)

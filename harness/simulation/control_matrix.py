@@ -5,7 +5,6 @@ rows as there are controls is followed. If it changes its sign or touches zero, 
 """
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import names_in
@@ -14,7 +13,7 @@ from .engines.engine import Step
 from .evaluation import Numbers, as_floats, evaluation_once
 from .inputs import Inputs
 from .matrices import INDEXED, Vector
-from .surfaces import BETWEEN, CORRECTIONS, PLACES, TO_COEFFICIENTS, SignedFunctions
+from .zeros import BETWEEN, TO_COEFFICIENTS, SignedFunctions, minima
 
 TOUCHED = 1e-9  # of a determinant's largest size nearby: a minimum that is a zero
 ZERO = 1e-14  # of the same: a zero at a sample
@@ -143,12 +142,4 @@ def _minima(values: Vector) -> list[float]:
     if not np.isfinite(inner).all() or np.min(np.abs(inner)) > np.ptp(inner):
         return []
     coefficients = TO_COEFFICIENTS @ inner
-    sizes, slope = np.abs(BETWEEN @ coefficients), chebyshev.chebder(coefficients)
-    bend, found = chebyshev.chebder(slope), []
-    for least in 1 + np.flatnonzero((sizes[1:-1] <= sizes[:-2]) & (sizes[1:-1] <= sizes[2:])):
-        low, place, high = 2 * PLACES[least - 1 : least + 2] - 1
-        for _ in range(CORRECTIONS):
-            if curvature := chebyshev.chebval(place, bend):
-                place = min(max(place - chebyshev.chebval(place, slope) / curvature, low), high)
-        found.append((1 + place) / 2)
-    return found
+    return [(1 + place) / 2 for _, place in minima(coefficients, np.abs(BETWEEN @ coefficients), above_zero=False)]

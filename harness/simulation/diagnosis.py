@@ -14,7 +14,7 @@ import numpy as np
 from ..language import translatable
 from ..program.motion_problem import MotionProblem
 from .constraints.directions import Matrix, rank_of, weighted_constraints
-from .constraints.factorization import factored_constraints
+from .constraints.factorization import DependentConstraints
 from .diagnostics import condition
 from .matrices import Matrices, MotionMatrices, Vector
 
@@ -162,7 +162,7 @@ def _free_directions(at: Matrices) -> Matrix:
     """What the constraints leave free, in columns orthonormal in the mass metric."""
     weighted = weighted_constraints(at.mass, at.jacobian)
     left, values, _ = np.linalg.svd(weighted.directions)
-    return np.linalg.solve(weighted.factor.T, left[:, rank_of(values) :])
+    return weighted.unweighted(left[:, rank_of(values) :])
 
 
 def _change_of_accelerations(at: Instant, moves: Matrix) -> Matrix:
@@ -171,7 +171,8 @@ def _change_of_accelerations(at: Instant, moves: Matrix) -> Matrix:
     A a - J^T lambda = h, J a = -c, differentiated: one factorization solves for all of them.
     """
     here, matrices = at.here, at.matrices
-    factored = factored_constraints(here.mass, here.jacobian)
+    rank = rank_of(weighted_constraints(here.mass, here.jacobian).singular_values())
+    factored = DependentConstraints(here.mass, here.jacobian, rank)
     accelerations, multipliers = (
         solve(here.force, here.curvature) for solve in (factored.accelerations, factored.multipliers)
     )

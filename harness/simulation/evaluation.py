@@ -94,10 +94,6 @@ class CompiledIfItPays:
     ----------
     waiting, compiled : callable
         Make the function.
-    called : float
-        Seconds that a call takes while it waits, beside the operations.
-    carried_out : int or None
-        Operations that NumPy carries out then; None for all of them.
     """
 
     def __init__(
@@ -105,18 +101,15 @@ class CompiledIfItPays:
         waiting: Callable[[], Evaluation],
         compiled: Callable[[], Evaluation],
         operations: int,
-        called: float = CALLED,
-        carried_out: int | None = None,
     ) -> None:
-        self._evaluate, self._compiled, self._called = waiting(), compiled, called
-        self._carried_out = operations if carried_out is None else carried_out
+        self._evaluate, self._compiled, self._operations = waiting(), compiled, operations
         self._left = COMPILED + COMPILED_OPERATION * operations
 
     def __call__(self, inputs: Numbers) -> Numbers:
         """Evaluate the function at inputs of shape (inputs,) or (inputs, points)."""
         if self._left > 0:
             points = inputs.shape[1] if inputs.ndim > 1 else 1
-            self._left -= self._called + self._carried_out * (OPERATION + OPERATION_AT_POINT * points)
+            self._left -= CALLED + self._operations * (OPERATION + OPERATION_AT_POINT * points)
             if self._left <= 0:
                 self._evaluate = self._compiled()
         return self._evaluate(inputs)

@@ -1,6 +1,6 @@
 """The end of a motion at an event: the first instant at which one of the scene's expressions crosses zero.
 
-They are looked at part by part, as switching functions are (`surfaces.py`), through the engine's dense output. The
+They are looked at part by part, as switching functions are (`zeros.py`), through the engine's dense output. The
 motion is followed to its end once before it is recorded, so that the recording ends with a step of the engine.
 """
 
@@ -18,7 +18,7 @@ from .evaluation import Numbers, as_floats, evaluation_once
 from .hybrid_motion import HybridMotion
 from .inputs import Inputs
 from .mode import Mode
-from .surfaces import NODES, Crossing, SignedFunctions
+from .zeros import NODES, Crossing, SignedFunctions
 
 ZERO = 1e-12  # of an expression at the start, beside what it is in the first step: no sign
 POLE = 1e3  # times what an expression is nearby: at a change of its sign it has no zero

@@ -32,19 +32,18 @@ from ..program.precision import Precision
 from ..program.sign_pattern import HELD, Pattern, holdable, switching_function
 from .clock import ticks
 from .constraints.factorization import factored_constraints
-from .constraints.projection import project
+from .constraints.projection import settle
 from .control_matrix import controls_may_fail
 from .diagnostics import residuals
-from .engines.choice import Choice
 from .engines.engine import Step
-from .engines.switching import Leg
+from .engines.fallback import EngineSegment
 from .evaluation import Evaluation, Numbers, as_floats, evaluation
 from .inputs import Inputs
 from .matrices import Matrices, Vector
 from .mode import Mode
 from .nominal import nominal_of, with_nominal
 from .request import SimulationRequest
-from .surfaces import Crossing
+from .zeros import Crossing
 
 ZERO = 1e-12  # of what a switching function or its rate is at nominal sizes: no sign
 CONTINUOUS = 1e-9  # relative change at an instant that is rounding
@@ -88,7 +87,7 @@ class HybridMotion:
     Raises
     ------
     HolonomError
-        As `SwitchingEngine`; the motion starts where the equations leave open how it goes on.
+        As `FallbackEngine`; the motion starts where the equations leave open how it goes on.
     """
 
     def __init__(self, problem: MotionProblem, request: SimulationRequest, precision: Precision, end: Any) -> None:
@@ -134,21 +133,6 @@ class HybridMotion:
         return sum(mode.engine.steps for mode in self._modes.values())
 
     @property
-    def tol(self) -> float:
-        """Tolerance of the engine that began."""
-        return self.mode.engine.tol
-
-    @property
-    def code(self) -> str:
-        """How heyoka compiled the engine that began."""
-        return self.mode.engine.code
-
-    @property
-    def choice(self) -> Choice | None:
-        """Why the engine that began was taken; None where there was nothing to weigh."""
-        return self.intervals[0].mode.engine.choice
-
-    @property
     def compile_seconds(self) -> float:
         """Time that the compilation of the engines took."""
         return sum(mode.engine.compile_seconds for mode in self._modes.values())
@@ -160,10 +144,10 @@ class HybridMotion:
         return min((t for t in found if t is not None), default=None)
 
     @property
-    def legs(self) -> list[Leg]:
+    def legs(self) -> list[EngineSegment]:
         """Which engine followed the motion from when to when."""
         ends = [*(float(interval.start) for interval in self.intervals[1:]), float(self.time)]
-        found: list[Leg] = []
+        found: list[EngineSegment] = []
         for interval, end in zip(self.intervals, ends, strict=True):
             for leg in interval.mode.engine.legs:
                 cut = leg._replace(start=max(leg.start, float(interval.start)), end=min(leg.end, end))
@@ -307,7 +291,7 @@ class HybridMotion:
                 self._refuse(t, f"momenta jump as {sign.of} changes its sign, which takes double precision")
             moved[n:] += factored_constraints(new.mass, new.jacobian).accelerations(kick, new.residual_rate)
         if after.problem.projection is None:
-            moved = project(after.matrices, float(t), as_floats(moved))
+            moved = settle(after.matrices, float(t), as_floats(moved))[0]
         else:
             after.projection.project(t, moved)
         continuous = self.nominal.share(as_floats(moved - state), floats) <= CONTINUOUS

@@ -1,6 +1,6 @@
 """A mode of a motion: the smooth motion of one pattern of signs, and what belongs to it."""
 
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Collection, Hashable, Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -9,8 +9,17 @@ import numpy as np
 
 from ..failures import Failure, HolonomError
 from ..program.motion_problem import By, MotionProblem, computing
+from ..program.motion_program import Program
 from ..program.precision import Precision
-from ..program.sign_pattern import Pattern, in_numbers, problem_in, program_in, sharing_programs
+from ..program.sign_pattern import (
+    HELD,
+    Pattern,
+    in_numbers,
+    problem_in,
+    program_in,
+    sharing_programs,
+    switching_function,
+)
 from .clock import Tick
 from .constraints.program_projection import ProgramProjection
 from .constraints.singularity import no_controls, require_gradient, shortly_before, vanishing_instants
@@ -18,14 +27,48 @@ from .control_matrix import ControlMatrix, controls_may_fail
 from .diagnosis import Instant, dependence
 from .diagnostics import EnergyBalance
 from .engines.choice import Between
-from .engines.engine import Step
-from .engines.switching import SwitchingEngine
+from .engines.engine import Step, Task
+from .engines.fallback import FallbackEngine
 from .evaluation import Evaluation, Numbers, as_floats, evaluation, evaluation_once
 from .inputs import Inputs
 from .matrices import MotionMatrices, start_of
 from .request import SimulationRequest
-from .surfaces import Surfaces
 from .time_dependence import time_dependence
+from .zeros import SignedFunctions
+
+
+class Surfaces(SignedFunctions):
+    """The surfaces on which a pattern of signs ends, but for signs whose changes are known without looking."""
+
+    def __init__(
+        self, problem: MotionProblem, pattern: Pattern, precision: Precision, span: float, known: Collection[str] = ()
+    ) -> None:
+        super().__init__(precision, span)
+        self._inputs = Inputs(problem, precision)
+        for sign in problem.signs:
+            if sign.name not in known:
+                value = pattern[sign.name]
+                self._rows += [(sign.name, to, -to) for to in ((1, -1) if value == HELD else (-value,))]
+        what = "surfaces", precision.name, frozenset(pattern.items()), frozenset(known)
+        self._functions = problem.once(
+            what,
+            problem.switching,
+            lambda: [evaluation(_inside(problem, pattern, name, to), precision) for name, to, _ in self._rows],
+        )
+
+    def values(self, instants: Numbers, states: Numbers) -> Numbers:
+        """How far inside of its pattern the motion is, by each surface; negative outside."""
+        inputs = self._inputs(instants, states)
+        found = [as_floats(function(inputs)[0]) for function in self._functions]
+        inside = np.array([side for *_, side in self._rows], dtype=float)
+        return inside[:, None] * np.reshape(found, (len(self._rows), len(instants)))
+
+
+def _inside(problem: MotionProblem, pattern: Pattern, name: str, to: int) -> Program:
+    """The function whose sign tells on which side of a surface the motion is."""
+    if pattern[name] == HELD:
+        return switching_function(problem, "drive", name, {**pattern, name: to})
+    return switching_function(problem, "switch", name, pattern)
 
 
 class Mode:
@@ -62,7 +105,7 @@ class Mode:
         self.problem = replace(analytic, obstacle=obstacle)
         self.balance = EnergyBalance(self.problem, self._multipliers, precision)
         between = None if problem.signs or problem.tables else Between(request.samples or 0, self.balance.inner_states)
-        self.engine = SwitchingEngine(self.problem, request, precision, end, self.matrices, between)
+        self.engine = FallbackEngine(Task(self.problem, request, precision, end, self.matrices), between)
         self._start, self._end = float(problem.start["t"]), float(end)
         self._doubtful = vanishing_instants(self.problem, self.matrices, self._end)
         to_come = (float(tick.t) for name, tick in clock.items() if pattern[name] != tick.to)
@@ -117,7 +160,7 @@ class Mode:
     @cached_property
     def projection(self) -> ProgramProjection:
         """What projects states in the numbers of the run."""
-        return ProgramProjection(self.problem, self._precision, self.matrices)
+        return ProgramProjection(self.problem, self._precision)
 
     def integrate(self, until: Any) -> Iterator[Step]:
         """Follow the motion as its engine does, to where servo-constraints leave their controls without values."""

@@ -5,17 +5,13 @@ from enum import StrEnum
 from fractions import Fraction
 
 from ..options import option
+from .engines.registry import ENGINES
 
 FINAL_STATE_ALONE = 0
 
 
-class EngineName(StrEnum):
-    """What follows the motion."""
-
-    AUTO = "auto"
-    TAYLOR = "taylor"
-    RUNGE_KUTTA = "runge-kutta"
-    ROBUST = "robust"
+# ``AUTO``, and what the registry names
+EngineName = StrEnum("EngineName", {each.upper().replace("-", "_"): each for each in ("auto", *ENGINES)})
 
 
 class Stabilization(StrEnum):

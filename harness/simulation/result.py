@@ -11,7 +11,7 @@ from ..extras import missing_package
 from ..shown import Shown
 from .diagnosis import HardCase
 from .engines.choice import Choice
-from .engines.switching import Leg
+from .engines.fallback import EngineSegment
 from .events import Ending
 from .hybrid_motion import Switching
 from .trust import Doubt
@@ -43,7 +43,7 @@ class Report:
         Condition number of G = J A^-1 J^T at the end, each constraint scaled to unit length.
     moved : (str, str) or None
         The initial value that differs most from the scene's guess, and by how much; None without a guess.
-    legs : tuple of Leg
+    legs : tuple of EngineSegment
         Which engine followed the motion from when to when, and why.
     code : str
         How heyoka compiled the Taylor engine in the end (`Code`); empty where it did nothing.
@@ -77,7 +77,7 @@ class Report:
     energy_error: float
     condition: float
     steps: int
-    legs: tuple[Leg, ...]
+    legs: tuple[EngineSegment, ...]
     code: str
     precision: str
     digits: int

@@ -17,6 +17,7 @@ from ..supervisor import doing
 from .diagnosis import HardCase, Instant, hard_cases
 from .diagnostics import condition, residuals
 from .engines.engine import JUDGED_AFTER, Solutions, Step, require_reach
+from .engines.registry import engine_class
 from .evaluation import Numbers, as_floats, one_blas_thread
 from .events import Ending, first_event
 from .hybrid_motion import HybridMotion
@@ -107,7 +108,7 @@ def followable(problem: MotionProblem, request: SimulationRequest) -> MotionProb
     """
     open_ = (
         request.precision == "double"
-        and request.engine is not EngineName.RUNGE_KUTTA
+        and (request.engine == EngineName.AUTO or engine_class(request.engine).open_parameters)
         and request.drift in (Stabilization.PROJECTION, Stabilization.NONE)
     )
     return problem if open_ else with_values_in(problem)
@@ -264,10 +265,10 @@ class _Simulation:
             condition=condition(end.here.under(self.problem.independent)),
             steps=self.motion.steps,
             legs=tuple(self.motion.legs),
-            code=self.motion.code,
+            code=self.begun.engine.code,
             precision=self.precision.name,
             digits=self.precision.digits,
-            tol=self.motion.tol,
+            tol=self.begun.engine.tol,
             compile_seconds=self.compile_seconds + self.motion.compile_seconds,
             run_seconds=seconds,
             correction=self.problem.correction,
@@ -275,11 +276,11 @@ class _Simulation:
             cases=self._cases(start, end),
             switchings=tuple(self.motion.switchings),
             ending=self.ending,
-            choice=self.motion.choice,
+            choice=self.begun.engine.choice,
             controls={name: values[-1] for name, values in self.controls.items()},
             relative_degrees=self.problem.relative_degrees,
             unresolved=self.motion.unresolved,
-            doubts=tuple(doubts(self._missed(left, start, end), self.motion.tol, self.motion.steps)),
+            doubts=tuple(doubts(self._missed(left, start, end), self.begun.engine.tol, self.motion.steps)),
         )
 
     def _missed(self, left: Mapping[str, float], start: Instant, end: Instant) -> Mapping[str, float]:
@@ -290,7 +291,7 @@ class _Simulation:
             kept["multipliers"] = np.nan
         ends = (start.here, start.state), (end.here, end.state)
         exchanged = max(self.recording.largest_work, self.exchange.exchanged)
-        small = expected(self.motion.tol, self.motion.steps) * self.motion.nominal.velocities
+        small = expected(self.begun.engine.tol, self.motion.steps) * self.motion.nominal.velocities
         return {**kept, "energy": float(energy_missed(*ends, self.exchange.error, exchanged, small)), **within}
 
     def _cases(self, start: Instant, end: Instant) -> tuple[HardCase, ...]:

@@ -12,7 +12,7 @@ What is guaranteed: no feature of such an expression is passed over that lasts l
 is larger than `RESOLVED` of the expression's largest value. Shorter ones show if they come near one of the samples.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Sequence, Set
 from dataclasses import replace
 from itertools import pairwise
 from typing import NamedTuple
@@ -79,7 +79,7 @@ def time_expressions(program: Program, tables: Sequence[Table] = ()) -> Program:
             known.add(name)
             kept.append((name, expression))
         else:
-            used |= dict.fromkeys(_largest_parts(expression, known))
+            used |= dict.fromkeys(largest_parts(expression, known))
     outputs = {name: value for name, value in program.outputs.items() if names_in(value) & known}
     used |= dict.fromkeys(outputs.values())
     for name in inputs:
@@ -93,14 +93,14 @@ def time_expressions(program: Program, tables: Sequence[Table] = ()) -> Program:
     )
 
 
-def _largest_parts(expression: Expression, known: set[str]) -> Iterator[Expression]:
+def largest_parts(expression: Expression, known: Set[str]) -> Iterator[Expression]:
     """The largest parts of an expression that are of the time alone."""
     names = names_in(expression)
     if names and names <= known:
         yield expression
     elif isinstance(expression, Call) and not names.isdisjoint(known):
         for argument in expression.arguments:
-            yield from _largest_parts(argument, known)
+            yield from largest_parts(argument, known)
 
 
 class _Scan:

@@ -18,7 +18,7 @@ from ..program.motion_program import Call, Expression, Name, Operation, names_in
 from ..program.sign_pattern import with_numbers
 from ..simulation.constraints.singularity import zeros_of_controls
 from ..simulation.initial_state import with_values
-from ..simulation.time_dependence import TimeDependence, time_dependence
+from ..simulation.time_dependence import TimeDependence, largest_parts, time_dependence
 
 LOW = 2  # degree in the time up to which a polynomial rises or falls all over a time span as it does at its beginning
 
@@ -88,31 +88,18 @@ def _in_time(problem: MotionProblem) -> tuple[list[float], tuple[str, ...]]:
     known |= {name: (0, frozenset({name})) for name in problem.parameters}
     degrees, involved = [0.0], set()
     for name, expression in problem.matrices.assignments:
-        if names_in(expression) <= known.keys():
-            degree = _degree(expression, known)
-            inside = frozenset().union(*(known[each][1] for each in names_in(expression)))
-            known[name] = degree, inside
+        for part in largest_parts(expression, known.keys()):
+            degree = _degree(part, known)
             if degree:
                 degrees.append(degree)
-                involved |= inside
-        else:
-            for part in _largest(expression, known.keys()):
-                degree = _degree(part, known)
-                if degree:
-                    degrees.append(degree)
-                    involved |= frozenset().union(*(known[each][1] for each in names_in(part)))
+                involved |= _parameters_in(part, known)
+        if names_in(expression) <= known.keys():
+            known[name] = _degree(expression, known), _parameters_in(expression, known)
     return degrees, tuple(name for name in problem.parameters if name in involved)
 
 
-def _largest(expression: Expression, known: set[str]) -> list[Expression]:
-    """The largest parts of an expression that are made of known names alone."""
-    if names_in(expression) <= known:
-        return [expression]
-    return (
-        [part for argument in expression.arguments for part in _largest(argument, known)]
-        if isinstance(expression, Call)
-        else []
-    )
+def _parameters_in(expression: Expression, known: Mapping[str, tuple[float, frozenset[str]]]) -> frozenset[str]:
+    return frozenset().union(*(known[each][1] for each in names_in(expression)))
 
 
 def _degree(expression: Expression, known: Mapping[str, tuple[float, frozenset[str]]]) -> float:

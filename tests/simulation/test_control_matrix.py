@@ -6,7 +6,7 @@ import pytest
 from holonom.program.precision import read_precision
 from holonom.simulation.control_matrix import ControlMatrix
 from holonom.simulation.engines.engine import Step
-from holonom.simulation.surfaces import SignedFunctions
+from holonom.simulation.zeros import SignedFunctions
 
 
 class OneControl(ControlMatrix):

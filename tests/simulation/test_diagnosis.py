@@ -25,8 +25,8 @@ def test_stiffness_is_the_ratio_of_two_pendulums_lengths(write_scene, monkeypatc
     factored = []
     monkeypatch.setattr(
         diagnosis,
-        "factored_constraints",
-        lambda *of, known=diagnosis.factored_constraints: factored.append(1) or known(*of),
+        "DependentConstraints",
+        lambda *of, known=diagnosis.DependentConstraints: factored.append(1) or known(*of),
     )
     problem = motion_problem(write_scene(PENDULUMS), Request(), Limits())
     at = diagnosis.Instant(MotionMatrices(problem), *start_of(problem))

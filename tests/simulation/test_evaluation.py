@@ -12,14 +12,12 @@ from holonom.program.request import Request
 from holonom.sandbox import Limits
 from holonom.simulation.constraints.program_projection import (
     ProgramProjection,
-    _nearest_by_lapack,
     distance,
     nearest_state,
 )
 from holonom.simulation.engines.robust import RobustEngine
 from holonom.simulation.evaluation import CompiledIfItPays, evaluation, evaluation_once
 from holonom.simulation.hybrid_motion import HybridMotion
-from holonom.simulation.matrices import MotionMatrices
 from holonom.simulation.nominal import nominal_of
 from holonom.simulation.request import SimulationRequest
 
@@ -79,19 +77,13 @@ def test_numpy_and_heyoka_compute_the_same(problem, states, program):
     assert np.array_equal(function(np.ascontiguousarray(inputs[:, 3])), function(inputs)[:, 3])
 
 
-def test_the_projection_by_numpy_is_the_compiled_one(problem, states):
-    compiled, keeper = nearest_state(problem, DOUBLE), ProgramProjection(problem, DOUBLE, MotionMatrices(problem))
+def test_projection_moves_to_the_nearest_state_and_tells_the_way(problem, states):
+    compiled, keeper = nearest_state(problem, DOUBLE), ProgramProjection(problem, DOUBLE)
     for point in states.T:
         state, found = point[1:].copy(), compiled(np.ascontiguousarray(point))
         moved = keeper.project(point[0], state)
         assert np.allclose(state, found, rtol=1e-13, atol=1e-13)
         assert moved == pytest.approx(distance(point[1:], found, nominal_of(problem).state), rel=1e-12)
-
-
-def test_the_projection_by_lapack_is_the_compiled_one(problem, states):
-    compiled, solved = nearest_state(problem, DOUBLE), _nearest_by_lapack(MotionMatrices(problem))
-    for point in states.T:
-        assert np.allclose(solved(point), compiled(np.ascontiguousarray(point)), rtol=1e-13, atol=1e-13)
 
 
 def test_what_is_kept_for_all_values_of_a_parameter_is_compiled_at_once(tmp_path):
@@ -106,13 +98,6 @@ def test_what_is_kept_for_all_values_of_a_parameter_is_compiled_at_once(tmp_path
     problem = motion_problem(file, Request(), Limits(), open_parameters=("k",))
     assert problem.values == {"k": Fraction(1)}
     assert not isinstance(evaluation_once(problem, problem.matrices, DOUBLE), CompiledIfItPays)
-
-
-def test_a_long_projection_is_not_carried_out_by_numpy():
-    """It took three times as long as LAPACK's solve, and was compiled for some hundred states."""
-    long, short = example("linkage.mac", N="8"), example("pendulum.mac")
-    assert ProgramProjection(long, DOUBLE, MotionMatrices(long))._nearest._carried_out == 0
-    assert ProgramProjection(short, DOUBLE, MotionMatrices(short))._nearest._carried_out > 0
 
 
 def test_all_that_follow_a_motion_ask_the_same_matrices():

@@ -33,7 +33,7 @@ def thrown(until: str) -> holonom.Scene:
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_a_body_thrown_upward_is_back_after_2_v_over_g(engine, gsl):
+def test_a_body_thrown_upward_is_back_after_2_v_over_g(engine, c_compiler):
     motion = thrown("y, x = 100").simulate(samples=5, engine=engine)
     assert float(motion.report.t) == pytest.approx(FALL, rel=ENGINES[engine])
     assert motion.report.ending == Ending(("y", "x-100"), "y")
@@ -42,7 +42,7 @@ def test_a_body_thrown_upward_is_back_after_2_v_over_g(engine, gsl):
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_a_string_is_slack_at_two_thirds_of_its_length_above_the_centre(engine, gsl):
+def test_a_string_is_slack_at_two_thirds_of_its_length_above_the_centre(engine, c_compiler):
     """From below at 2 sqrt(g l): the tension vanishes where v^2 = g y, and v^2 = 4 g - 2 g (1 + y)."""
     report = holonom.system(STRING).simulate(samples=2, engine=engine).report
     assert float(report.coordinates["y"]) == pytest.approx(2 / 3, rel=10 * ENGINES[engine])

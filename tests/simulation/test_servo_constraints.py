@@ -51,7 +51,7 @@ def inverse_dynamics():
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_a_two_link_arm_whose_tip_follows_a_circle_needs_the_torques_of_inverse_dynamics(engine, gsl):
+def test_a_two_link_arm_whose_tip_follows_a_circle_needs_the_torques_of_inverse_dynamics(engine, c_compiler):
     motion = holonom.system(ARM.format(across="1 + cos(t)/4")).simulate(samples=7, engine=engine)
     truth = np.array(inverse_dynamics()(motion.instants))
     found = np.array([motion[name] for name in ("a", "b", "tau1", "tau2")])
@@ -88,7 +88,7 @@ def values(formulas, instants):
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_a_crane_whose_load_follows_a_line_is_flat(engine, gsl):
+def test_a_crane_whose_load_follows_a_line_is_flat(engine, c_compiler):
     """The rope points along the load's acceleration less gravity, which gives angle, tension and both forces."""
     motion = holonom.load(EXAMPLES / "overhead_crane.mac").simulate(samples=6, engine=engine)
     truth = values(flat_crane((1 - sp.cos(T)) / 2, 2 - T / 5), motion.instants)
@@ -201,7 +201,7 @@ flown : holonomic_scene(system, servo_constraints = [x = sin(t), y = cos(t){cour
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_a_pivot_that_vanishes_on_the_way_made_the_controls_no_numbers(engine, gsl):
+def test_a_pivot_that_vanishes_on_the_way_made_the_controls_no_numbers(engine, c_compiler):
     """M = [[1 - t, -t], [t, 1 - t]] is regular throughout, and its first entry zero at t = 1."""
     text = TURNING.format(more="", sought="", energy="", course="", forces="u1*(1 - t) - u2*t, u1*t + u2*(1 - t)")
     motion = holonom.system(text).simulate(samples=5, engine=engine)
@@ -508,7 +508,7 @@ def test_servo_constraint_ends_at_a_singular_control_under_every_option(options)
     assert end_of(SINGULAR.format(forces="F*(t - 1), 0", energy=0, end=2), **options) == pytest.approx(1, abs=1e-8)
 
 
-def test_servo_constraint_ends_at_a_singular_control_on_runge_kutta(gsl):
+def test_servo_constraint_ends_at_a_singular_control_on_runge_kutta(c_compiler):
     assert end_of(SINGULAR.format(forces="F*y, 0", energy=0, end=2), engine="runge-kutta") == pytest.approx(1, abs=1e-8)
 
 

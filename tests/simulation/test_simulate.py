@@ -254,7 +254,7 @@ def test_a_precision_that_the_robust_engine_lacks_is_not_feigned():
 
 @pytest.mark.parametrize("scene", [("chain.mac", "swing_scene"), ("andrews.mac", None), ("pendulum.mac", None)])
 @pytest.mark.parametrize("engine", [EngineName.RUNGE_KUTTA, EngineName.ROBUST])
-@pytest.mark.usefixtures("gsl")
+@pytest.mark.usefixtures("c_compiler")
 def test_all_engines_find_the_same_motion(scene, engine):
     ours, theirs = (final(problem(*scene), engine=each) for each in (EngineName.TAYLOR, engine))
     assert [leg.engine for leg in (*ours.legs, *theirs.legs)] == [EngineName.TAYLOR, engine]

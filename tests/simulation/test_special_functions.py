@@ -94,7 +94,7 @@ def pushed_problem(tmp_path_factory: pytest.TempPathFactory) -> MotionProblem:
     return asked(file)
 
 
-@pytest.mark.usefixtures("gsl")
+@pytest.mark.usefixtures("c_compiler")
 @pytest.mark.parametrize("engine", DIGITS)
 def test_all_engines_follow_a_push_and_a_law_by_bessel_functions(pushed_problem: MotionProblem, engine: EngineName):
     report = simulate(pushed_problem, SimulationRequest(samples=0, engine=engine)).report
@@ -103,7 +103,7 @@ def test_all_engines_follow_a_push_and_a_law_by_bessel_functions(pushed_problem:
 
 
 @pytest.mark.long
-@pytest.mark.usefixtures("gsl")
+@pytest.mark.usefixtures("c_compiler")
 @pytest.mark.parametrize("engine", DIGITS)
 def test_all_engines_follow_scipys_motion(problem: MotionProblem, engine: EngineName):
     truth = solve_ivp(by_scipy, (0, 2), [1, 0, 0, 1], method="DOP853", rtol=2.3e-14, atol=1e-15).y[:, -1]

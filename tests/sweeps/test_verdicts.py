@@ -8,7 +8,7 @@ import pytest
 
 from holonom.failures import HolonomError
 from holonom.program.c_function import load_c
-from holonom.simulation.engines import runge_kutta, switching
+from holonom.simulation.engines import fallback, runge_kutta
 from holonom.simulation.engines.choice import Choice
 from holonom.simulation.initial_state import at_values
 from holonom.simulation.request import EngineName, SimulationRequest
@@ -101,13 +101,13 @@ def test_rows_in_batches_single_rows_and_simulate_agree(verdicts, name):
     assert verdicts(text, grid) == [expected] * 3
 
 
-@pytest.mark.usefixtures("gsl")
+@pytest.mark.usefixtures("c_compiler")
 def test_rows_that_are_integrated_alone_left_their_libraries_open(rows_of, tmp_path, monkeypatch):
     """Truth: as many open libraries and functions after six rows, one of them broken off, as after one."""
     loaded = []
     monkeypatch.setattr(runge_kutta, "load_c", lambda *asked: loaded.append(asked) or load_c(*asked))
-    monkeypatch.setattr(switching, "quicker_engine", lambda *asked: Choice(EngineName.RUNGE_KUTTA, 0, 0, 1.0, 0.0))
-    monkeypatch.setattr(switching, "TRIAL", 1)
+    monkeypatch.setattr(fallback, "quicker_engine", lambda *asked: Choice(EngineName.RUNGE_KUTTA, 0, 0, 1.0, 0.0))
+    monkeypatch.setattr(fallback, "TRIAL", 1)
     file = tmp_path / "scene.mac"
     file.write_text(scene("x", "dot(x)^2/2", "exp(-x^2)/k", "x = 0, dot(x) = 1", "1"))
     maker, found = rows_of(file, "final", "k=-1:2:4"), []

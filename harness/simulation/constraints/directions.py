@@ -13,7 +13,6 @@ import numpy as np
 
 from ...failures import Failure, HolonomError
 from ..matrices import Matrix, Vector
-from ..parts_of_scipy import lapack
 
 EPSILON = float(np.finfo(float).eps)
 DEPENDENT = 1e-12  # singular values of the scaled constraints, relative to the largest, that count as rounding
@@ -27,6 +26,7 @@ class WeightedConstraints:
     """The constraints' directions in the mass metric."""
 
     factor: Matrix  # shape (n, n): L, the Cholesky factor of the metric
+    inverse: Matrix  # shape (n, n): L^-1
     scale: Vector  # shape (g,): D, the factors that bring the columns of W to length one
     directions: Matrix  # shape (n, g): W = L^-1 J^T D
     stiffening: Matrix | None  # shape (n, g): rho J^T where A is not positive definite
@@ -37,11 +37,11 @@ class WeightedConstraints:
 
     def per_root_mass(self, force: Vector) -> Vector:
         """L^-1 h."""
-        return lapack().dtrtrs(self.factor, force, lower=1)[0]
+        return self.inverse @ force
 
     def unweighted(self, z: Vector) -> Vector:
         """L^-T z."""
-        return lapack().dtrtrs(self.factor, z, lower=1, trans=1)[0]
+        return self.inverse.T @ z
 
 
 def weighted_constraints(mass: Matrix, jacobian: Matrix) -> WeightedConstraints:
@@ -62,17 +62,17 @@ def weighted_constraints(mass: Matrix, jacobian: Matrix) -> WeightedConstraints:
     """
     peaks = or_one(np.max(np.abs(jacobian), axis=1, initial=0.0))
     rows = jacobian / peaks[:, None]
-    factor, stiffening = _cholesky(mass), None
-    if factor is None:
+    factors, stiffening = _cholesky(mass), None
+    if factors is None:
         stiffening = np.abs(np.diag(mass)).sum() / max(1, len(rows)) * rows.T
-        factor, stiffening = _cholesky(mass + stiffening @ rows), stiffening / peaks
-    if factor is None:
+        factors, stiffening = _cholesky(mass + stiffening @ rows), stiffening / peaks
+    if factors is None:
         masses = np.linalg.eigvalsh(mass)
         indefinite = masses[0] < -NEGATIVE * np.max(np.abs(masses))
         raise HolonomError(Failure.MASS_INDEFINITE if indefinite else Failure.MASS_SINGULAR)
-    directions = lapack().dtrtrs(factor, rows.T, lower=1)[0] if rows.size else rows.T
+    directions = factors[1] @ rows.T
     lengths = or_one(np.sqrt(np.einsum("sb,sb->b", directions, directions)))
-    return WeightedConstraints(factor, 1 / (peaks * lengths), directions / lengths, stiffening)
+    return WeightedConstraints(*factors, 1 / (peaks * lengths), directions / lengths, stiffening)
 
 
 def dependent_constraints(weighted: WeightedConstraints, rank: int) -> tuple[int, ...]:
@@ -95,22 +95,20 @@ def rank_of(singular_values: Vector, negligible: float = DEPENDENT) -> int:
     return int(np.count_nonzero(singular_values > negligible * singular_values.max(initial=0.0)))
 
 
-def _cholesky(metric: Matrix) -> Matrix | None:
-    """L, lower triangular; None where the metric, its diagonal scaled to one, is singular.
+def _cholesky(metric: Matrix) -> tuple[Matrix, Matrix] | None:
+    """L, lower triangular, and its inverse; None where the metric, its diagonal scaled to one, is singular.
 
     What elimination leaves of the last entry alone does not tell: rounding there grows as the pivots before it shrink.
     """
     lengths = np.sqrt(or_one(metric.diagonal()))
     scaled = metric / np.outer(lengths, lengths)
-    factor, failed = lapack().dpotrf(scaled, lower=1, clean=1)
-    if failed or _reciprocal_condition(factor, scaled) < SINGULAR_MASS:
+    try:
+        factor = np.linalg.cholesky(scaled)
+        inverse = np.linalg.inv(factor)
+    except np.linalg.LinAlgError:
         return None
-    return lengths[:, None] * factor
-
-
-def _reciprocal_condition(factor: Matrix, metric: Matrix) -> float:
-    """1/(|A| |A^-1|) in the norm of the largest column."""
-    return lapack().dpocon(factor, np.abs(metric).sum(axis=0).max(initial=0.0), uplo="L")[0]
+    condition = np.prod([np.abs(each).sum(axis=0).max(initial=0.0) for each in (scaled, inverse.T @ inverse)])
+    return (lengths[:, None] * factor, inverse / lengths) if condition * SINGULAR_MASS <= 1 else None
 
 
 def or_one(lengths: Vector) -> Vector:

@@ -29,7 +29,6 @@ from typing import Any
 import numpy as np
 
 from ..matrices import Matrix, Vector
-from ..parts_of_scipy import superlu
 from .directions import EPSILON, or_one, rank_of, weighted_constraints
 
 ALPHA = 2.0**-10
@@ -117,12 +116,12 @@ class IndependentConstraints(FactoredConstraints):
         states = np.arange(k)[:, None]
         rows = (rows + size * states).ravel()
         starts = (np.searchsorted(columns, np.arange(size)) + len(order) * states).ravel()
+        from scipy.sparse import csc_array  # of all simulations only those that need it wait for SciPy
+        from scipy.sparse.linalg import splu
+
         compressed = entries.ravel(), rows.astype(np.intc), np.append(starts, entries.size).astype(np.intc)
-        options = {"DiagPivotThresh": 1.0, "ColPerm": "COLAMD"}
         try:
-            return superlu().gstrf(
-                k * size, entries.size, *compressed, csc_construct_func=None, ilu=False, options=options
-            )
+            return splu(csc_array(compressed, shape=(k * size, k * size)), permc_spec="COLAMD", diag_pivot_thresh=1.0)
         except RuntimeError:
             for each in zip(mass, self._jacobian.reshape(k, g, n), strict=True):
                 weighted_constraints(*each)  # refuses masses that make it so
@@ -195,34 +194,19 @@ class DependentConstraints(FactoredConstraints):
         return -(self._inverse @ (self._weighted.scale * curvature))
 
 
-class DependentConstraintsAtEach(FactoredConstraints):
+class DependentConstraintsAtEach:
     """The same at several states; arguments as for `factored_constraints`."""
 
     def __init__(self, mass: Matrix, jacobian: Matrix, rank: int) -> None:
         self._each = [DependentConstraints(*at, rank) for at in zip(mass, jacobian, strict=True)]
 
-    def length(self, change: Vector) -> Vector:
-        """In the mass metric."""
-        return self._mapped(DependentConstraints.length, change)
+    def __getattr__(self, method: str) -> Callable[..., Vector]:
+        """Return a method of `FactoredConstraints`, applied at each state."""
 
-    def distances(self, residual: Vector) -> Vector:
-        """In the mass metric."""
-        return self._mapped(DependentConstraints.distances, residual)
+        def at_each(*sides: Vector) -> Vector:
+            return np.array([getattr(each, method)(*parts) for each, *parts in zip(self._each, *sides, strict=True)])
 
-    def accelerations(self, force: Vector, curvature: Vector) -> Vector:
-        """Of each."""
-        return self._mapped(DependentConstraints.accelerations, force, curvature)
-
-    def correction(self, residual: Vector) -> Vector:
-        """Of each."""
-        return self._mapped(DependentConstraints.correction, residual)
-
-    def multipliers(self, force: Vector, curvature: Vector) -> Vector:
-        """Of each."""
-        return self._mapped(DependentConstraints.multipliers, force, curvature)
-
-    def _mapped(self, method: Callable[..., Vector], *sides: Vector) -> Vector:
-        return np.array([method(each, *parts) for each, *parts in zip(self._each, *sides, strict=True)])
+        return at_each
 
 
 def factored_constraints(mass: Matrix, jacobian: Matrix, rank: int | None = None) -> FactoredConstraints:

@@ -33,40 +33,23 @@ class InconsistentConstraints(HolonomError):
         self.residual = residual
 
 
-def project(matrices: MotionMatrices, t: float, state: Vector, rank: int | None = None) -> Vector:
-    """Nearest state that keeps the constraints.
-
-    Parameters
-    ----------
-    state : ndarray, shape (2n,)
-        Coordinates, then velocities.
-    rank : int or None
-        How many of the constraints are independent; None to find out at each position.
-
-    Returns
-    -------
-    ndarray, shape (2n,)
-
-    Raises
-    ------
-    InconsistentConstraints
-        No state does, or Newton's method finds none.
-    """
-    return settle(matrices, t, state, rank)[0]
-
-
 def settle(
     matrices: MotionMatrices, t: float | Vector, state: Vector, rank: int | None = None
 ) -> tuple[Vector, FactoredConstraints]:
     """Nearest state that keeps the constraints, and the constraints as factored there.
 
-    Arguments as for `project`; or instants, shape (k,), and states, shape (k, 2n), which are settled at once if the
-    rank is given.
+    Parameters
+    ----------
+    t : float or ndarray, shape (k,)
+    state : ndarray, shape (2n,) or (k, 2n)
+        Coordinates, then velocities. Several states are settled at once if the rank is given.
+    rank : int or None
+        How many of the constraints are independent; None to find out at each position.
 
     Raises
     ------
     InconsistentConstraints
-        As `project`.
+        No state keeps them, or Newton's method finds none.
     HolonomError
         The equations of motion are not finite there.
     """

@@ -9,18 +9,12 @@ Measured on the five motions of `tests/benchmarks/simulation.py`, 18 to 431 oper
 """
 
 from dataclasses import dataclass
-from shutil import which
 from typing import NamedTuple
 
 from ..request import EngineName
-from .code import REFERENCE, Code, compilation, running
+from .registry import ENGINES, engine_class
 
 TRIAL = 64  # steps of the Taylor engine
-# seconds a step of the other takes for an operation, in all its stages, and beside them
-STAGES, STEP = 7.5e-9, 2e-7
-STRIDE = 0.89  # steps of the other for one of the Taylor engine
-ORDER = 8  # of the other: what its steps shrink with
-COMPILER = 0.15, 5e-4  # seconds that the C compiler takes, and for an operation
 
 
 @dataclass(frozen=True)
@@ -34,14 +28,6 @@ class Choice:
     taylor: float
     runge_kutta: float
     refused: str = ""  # why the other could not be compiled, where it would have been quicker
-
-
-def comparable(tol: float | None) -> bool:
-    """Whether the Runge-Kutta engine holds the tolerance and can be compiled here."""
-    from ...program.c_function import has_compiler
-    from .runge_kutta import FINEST
-
-    return tol is not None and FINEST <= tol < 1 and has_compiler() and which("gsl-config") is not None
 
 
 class Between(NamedTuple):
@@ -64,19 +50,7 @@ def quicker_engine(steps: int, operations: int, tol: float, between: Between) ->
         Of a step.
     between : Between
     """
-    taylor = _taylor(steps, operations, tol)
-    runge_kutta = _runge_kutta(steps, operations, tol, between)
-    engine = EngineName.RUNGE_KUTTA if runge_kutta < taylor else EngineName.TAYLOR
-    return Choice(engine, steps, operations, taylor, runge_kutta)
-
-
-def _taylor(steps: int, operations: int, tol: float) -> float:
-    run = {code: running(code, operations, steps, tol) for code in Code}
-    compact, unrolled = (compilation(code, operations) for code in (Code.COMPACT, Code.UNROLLED))
-    return min(run[Code.QUICK], compact + run[Code.COMPACT], compact + unrolled + run[Code.UNROLLED])
-
-
-def _runge_kutta(steps: int, operations: int, tol: float, between: Between) -> float:
-    taken = STRIDE * steps * (REFERENCE / tol) ** (1 / ORDER) * (1 + between.in_each) + between.altogether
-    begun, each = COMPILER
-    return begun + each * operations + taken * (STEP + STAGES * operations)
+    kinds = [kind for kind in map(engine_class, ENGINES) if kind.fixed_pivots]
+    seconds = {kind.name: kind.expected_seconds(steps, operations, tol, between) for kind in kinds}
+    engine = min((kind.name for kind in kinds if kind.comparable(tol)), key=seconds.get)
+    return Choice(engine, steps, operations, seconds[EngineName.TAYLOR], seconds[EngineName.RUNGE_KUTTA])

@@ -1,23 +1,15 @@
 /* A motion by the explicit Runge-Kutta method of Dormand and Prince, 8(5,3) in 12 stages
 
-   Hairer, Norsett & Wanner I, section II.10; the GNU Scientific Library leads from step to step. Before this text
-   runge_kutta.py puts the number STATE of coordinates and velocities, and the functions of t and the state
+   Hairer, Norsett & Wanner I, section II.10; coefficients as in SciPy's DOP853. Before this text runge_kutta.py puts
+   the number STATE of coordinates and velocities, and the functions of t and the state
 
        accelerations                               and, where the constraints are to be kept,
        position_corrections, velocity_corrections  with the number PROJECTED of steps after which the state is
                                                    moved to them, or with Baumgarte's cure or Gear's (GGL), which
                                                    add to the rates so that what is missed dies out like
-                                                   exp(-GAMMA t);
-
-   and the method's coefficients, each sum over stages written out for component i:
-
-       STAGES        from t, h, y, k1 to k2 ... k12, by way of w, each by one call of evaluate
-       SOLUTION(i)   the weights of the solution
-       ERROR5(i), ERROR3(i)   those of its errors of order 5 and 3                                              */
+                                                   exp(-GAMMA t).                                                */
 
 #include <float.h>
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_odeiv2.h>
 
 #define MARGIN 0.8
 #define LEAST_GROWTH 0.333
@@ -41,9 +33,8 @@ static double tolerance;
 static double nominal_time, nominal[STATE];       /* sizes that the tolerance is relative to, too                   */
 static double estimated;                          /* error of the last step, one where it is all that is allowed  */
 static double reached = NAN, left[STATE], step;   /* where the last steps led, and how long the next would be */
-static gsl_odeiv2_step *method;
-static gsl_odeiv2_control *control;
-static gsl_odeiv2_evolve *evolution;
+static double slope[STATE];                       /* rates at the last state, where they are known                */
+static int slope_known;
 
 /* Comparisons, which a processor makes side by side. */
 static int are_finite(int count, const double *x)
@@ -80,14 +71,12 @@ static void evaluate(double t, const double *state, double *out)
     evaluations++;
 }
 
-static int rates(double t, const double *state, double *out, void *unused)
+/* Returns whether the rates are not finite. */
+static int rates(double t, const double *state, double *out)
 {
-    (void)unused;
     evaluate(t, state, out);
-    return are_finite(STATE, out) ? GSL_SUCCESS : GSL_FAILURE;
+    return !are_finite(STATE, out);
 }
-
-static const gsl_odeiv2_system motion = { rates, NULL, STATE, NULL };
 
 /* Quadratic mean of numbers, each against the tolerance of its place in the state. */
 static double size_of(const double *x, const double *state)
@@ -100,89 +89,98 @@ static double size_of(const double *x, const double *state)
     return sqrt(sum/STATE);
 }
 
-/* One step. A stage that is not finite makes the solution, and its rates, not finite either. */
-static int take_step(void *unused, size_t size, double t, double h, double *y, double *errors, const double *k1,
-                     double *k13, const gsl_odeiv2_system *system)
+#define STAGE(number, fraction, sum) \
+    for (int i = 0; i < STATE; i++) w[i] = y[i] + h*(sum); \
+    evaluate(t + fraction*h, w, k##number);
+
+/* One step, from rates k1 to rates k13. A stage that is not finite makes the solution, and its rates, not finite either:
+   returns whether they are. */
+static int take_step(double t, double h, double *y, const double *k1, double *k13)
 {
-    (void)unused, (void)size, (void)system;
     h = (t + h) - t;    /* as far as the time then is: far from zero it is rounded by much of a short step */
     double k2[STATE], k3[STATE], k4[STATE], k5[STATE], k6[STATE], k7[STATE], k8[STATE], k9[STATE], k10[STATE];
     double k11[STATE], k12[STATE], w[STATE], five = 0, three = 0;
-    STAGES
+    STAGE(2, 0.05260015195876773, 0.05260015195876773*k1[i])
+    STAGE(3, 0.0789002279381516, 0.0197250569845379*k1[i] + 0.0591751709536137*k2[i])
+    STAGE(4, 0.1183503419072274, 0.02958758547680685*k1[i] + 0.08876275643042054*k3[i])
+    STAGE(5, 0.2816496580927726, 0.2413651341592667*k1[i] - 0.8845494793282861*k3[i] + 0.924834003261792*k4[i])
+    STAGE(6, 0.3333333333333333, 0.037037037037037035*k1[i] + 0.17082860872947386*k4[i] + 0.12546768756682242*k5[i])
+    STAGE(7, 0.25, 0.037109375*k1[i] + 0.17025221101954405*k4[i] + 0.06021653898045596*k5[i] - 0.017578125*k6[i])
+    STAGE(8, 0.3076923076923077, 0.03709200011850479*k1[i] + 0.17038392571223998*k4[i] + 0.10726203044637328*k5[i]
+          - 0.015319437748624402*k6[i] + 0.008273789163814023*k7[i])
+    STAGE(9, 0.6512820512820513, 0.6241109587160757*k1[i] - 3.3608926294469414*k4[i] - 0.868219346841726*k5[i]
+          + 27.59209969944671*k6[i] + 20.154067550477894*k7[i] - 43.48988418106996*k8[i])
+    STAGE(10, 0.6, 0.47766253643826434*k1[i] - 2.4881146199716677*k4[i] - 0.590290826836843*k5[i]
+          + 21.230051448181193*k6[i] + 15.279233632882423*k7[i] - 33.28821096898486*k8[i] - 0.020331201708508627*k9[i])
+    STAGE(11, 0.8571428571428571, -0.9371424300859873*k1[i] + 5.186372428844064*k4[i] + 1.0914373489967295*k5[i]
+          - 8.149787010746927*k6[i] - 18.52006565999696*k7[i] + 22.739487099350505*k8[i] + 2.4936055526796523*k9[i]
+          - 3.0467644718982196*k10[i])
+    STAGE(12, 1.0, 2.273310147516538*k1[i] - 10.53449546673725*k4[i] - 2.0008720582248625*k5[i]
+          - 17.9589318631188*k6[i] + 27.94888452941996*k7[i] - 2.8589982771350235*k8[i] - 8.87285693353063*k9[i]
+          + 12.360567175794303*k10[i] + 0.6433927460157636*k11[i])
     for (int i = 0; i < STATE; i++) {
-        w[i] = y[i] + h*(SOLUTION(i));
+        w[i] = y[i] + h*(0.054293734116568765*k1[i] + 4.450312892752409*k6[i] + 1.8915178993145003*k7[i]
+            - 5.801203960010585*k8[i] + 0.3111643669578199*k9[i] - 0.1521609496625161*k10[i]
+            + 0.20136540080403034*k11[i] + 0.04471061572777259*k12[i]);
         const double scale = tolerance*(nominal[i] + fmax(fabs(y[i]), fabs(w[i])));
-        const double error5 = (ERROR5(i))/scale, error3 = (ERROR3(i))/scale;
+        const double error5 = (0.01312004499419488*k1[i] - 1.2251564463762044*k6[i] - 0.4957589496572502*k7[i]
+            + 1.6643771824549864*k8[i] - 0.35032884874997366*k9[i] + 0.3341791187130175*k10[i]
+            + 0.08192320648511571*k11[i] - 0.022355307863886294*k12[i])/scale;
+        const double error3 = (-0.18980075407240762*k1[i] + 4.450312892752409*k6[i] + 1.8915178993145003*k7[i]
+            - 5.801203960010585*k8[i] - 0.4226823213237919*k9[i] - 0.1521609496625161*k10[i]
+            + 0.20136540080403034*k11[i] + 0.02265179219836082*k12[i])/scale;
         five += error5*error5;
         three += error3*error3;
     }
     memcpy(y, w, sizeof w);
     estimated = five == 0 ? 0 : h*five/sqrt((five + 0.01*three)*STATE);
-    memset(errors, 0, sizeof w);    /* GSL has room for one estimate; adjust_step goes by what is made of both */
-    return rates(t + h, y, k13, NULL);
+    return rates(t + h, y, k13);
 }
 
-static void *no_room(size_t size) { (void)size; return &tolerance; }
-static int nothing_to_forget(void *unused, size_t size) { (void)unused, (void)size; return GSL_SUCCESS; }
-static unsigned order(void *unused) { (void)unused; return 8; }
-static void nothing_to_free(void *unused) { (void)unused; }
-
-static const gsl_odeiv2_step_type dormand_prince = {
-    "Dormand and Prince 8(5,3)", 1, 1, no_room, take_step, NULL, nothing_to_forget, order, nothing_to_free};
-
-/* Each step is as long as the error of the one before allows (Hairer, Norsett & Wanner I, section II.4), with a margin
-   that lets next to none fail. GSL's own control leaves a step alone while the error is between half the tolerance and
-   all of it; a seventh of the steps of a chain fail then. */
-static int adjust_step(void *unused, size_t size, unsigned order, const double *state, const double *errors,
-                       const double *slope, double *length)
+/* One step as long as the error of the one before allows (Hairer, Norsett & Wanner I, section II.4), with a margin that
+   lets next to none fail; shorter ones where it fails. Sets the length of the next one, unless the time ends this one.
+   Returns the length of the step, zero where none succeeds. */
+static double go_on(double *t, double until, double *length, double *y)
 {
-    (void)unused, (void)size, (void)state, (void)errors, (void)slope;
-    *length *= fmin(MOST_GROWTH, fmax(LEAST_GROWTH, MARGIN*pow(estimated, -1.0/order)));
-    return estimated <= 1 ? GSL_ODEIV_HADJ_NIL : GSL_ODEIV_HADJ_DEC;
+    const double begun = *t;
+    double h = *length, before[STATE], after[STATE];
+    memcpy(before, y, sizeof before);
+    if (!slope_known && rates(begun, y, slope)) return 0;
+    for (;;) {
+        const int last = h > until - begun;
+        if (last) h = until - begun;
+        const int failed = take_step(begun, h, y, slope, after);
+        const double next = failed ? 0.5*h : h*fmin(MOST_GROWTH, fmax(LEAST_GROWTH, MARGIN*pow(estimated, -1.0/8)));
+        if (!failed && estimated <= 1) {
+            *t = last ? until : begun + h;
+            if (!last) *length = next;
+            memcpy(slope, after, sizeof slope);
+            slope_known = 1;
+            return h;
+        }
+        if (!(next < h) || begun + next == begun) return 0;
+        memcpy(y, before, sizeof before);
+        h = next;
+    }
 }
 
-static void *what_it_knows(void) { return &tolerance; }
-
-static const gsl_odeiv2_control_type every_step = {
-    "every step", what_it_knows, NULL, adjust_step, NULL, NULL, nothing_to_free};
-
-/* Returns 0, or GSL's number for what went wrong. */
-int begin(double relative_tolerance, double time, const double *sizes)
+void begin(double relative_tolerance, double time, const double *sizes)
 {
-    gsl_set_error_handler_off();
     tolerance = relative_tolerance;
     nominal_time = time;
     memcpy(nominal, sizes, sizeof nominal);
-    method = gsl_odeiv2_step_alloc(&dormand_prince, STATE);
-    control = gsl_odeiv2_control_alloc(&every_step);
-    evolution = gsl_odeiv2_evolve_alloc(STATE);
-    return method && control && evolution ? GSL_SUCCESS : GSL_ENOMEM;
-}
-
-void end(void)
-{
-    gsl_odeiv2_evolve_free(evolution);
-    gsl_odeiv2_control_free(control);
-    gsl_odeiv2_step_free(method);
-}
-
-/* Forget the rates at the last state, which is another one now. */
-static void begin_anew(void)
-{
-    gsl_odeiv2_evolve_reset(evolution);
-    gsl_odeiv2_step_reset(method);
 }
 
 /* Hairer, Norsett & Wanner I, section II.4, for a method of order 8. */
 static double first_step(double t, const double *state)
 {
-    double slope[STATE], later[STATE], other[STATE];
-    if (rates(t, state, slope, NULL)) return DBL_EPSILON;
-    const double value = size_of(state, state), speed = size_of(slope, state);
+    double here[STATE], later[STATE], other[STATE];
+    if (rates(t, state, here)) return DBL_EPSILON;
+    const double value = size_of(state, state), speed = size_of(here, state);
     const double h = value < 1e-5 || speed*nominal_time < 1e-5 ? 1e-6*nominal_time : 0.01*value/speed;
-    for (int i = 0; i < STATE; i++) later[i] = state[i] + h*slope[i];
-    if (rates(t + h, later, other, NULL)) return h;
-    for (int i = 0; i < STATE; i++) other[i] -= slope[i];
+    for (int i = 0; i < STATE; i++) later[i] = state[i] + h*here[i];
+    if (rates(t + h, later, other)) return h;
+    for (int i = 0; i < STATE; i++) other[i] -= here[i];
     const double steep = nominal_time*fmax(speed, nominal_time*size_of(other, state)/h);
     return fmin(100*h, steep <= 1e-15 ? fmax(1e-6*nominal_time, 1e-3*h) : nominal_time*pow(0.01/steep, 1.0/9));
 }
@@ -200,14 +198,14 @@ static void keep_constraints(double t, double *state)
     (void)t, (void)state;
 }
 
-/* Takes the steps that are asked for; returns 0, or GSL's number for what ended them before. */
+/* Takes the steps that are asked for; returns whether one fails. */
 static int follow(struct follower *f)
 {
     const int moved = f->t != reached || memcmp(f->state, left, sizeof left) != 0;
     f->taken = 0;
     f->shortest = HUGE_VAL;
     f->longest = 0;
-    begin_anew();
+    slope_known = 0;
     if (moved) {
         step = first_step(f->t, f->state);
         f->last = 0;
@@ -218,11 +216,10 @@ static int follow(struct follower *f)
             memcpy(f->states + f->taken*STATE, f->state, sizeof left);
         }
         const double before = f->last;
-        const int failure = gsl_odeiv2_evolve_apply(
-            evolution, control, method, &motion, &f->t, f->until, &step, f->state);
-        if (failure) return failure;
+        const double taken = go_on(&f->t, f->until, &step, f->state);
+        if (!(taken > 0)) return 1;
         f->taken++;
-        f->last = evolution->last_step;
+        f->last = taken;
         if (f->t < f->until) {
             if (f->last < before) f->shortest = fmin(f->shortest, f->last);
             f->longest = fmax(f->longest, f->last);
@@ -230,7 +227,7 @@ static int follow(struct follower *f)
 #ifdef PROJECTED
         if (f->taken % PROJECTED == 0) {
             keep_constraints(f->t, f->state);
-            begin_anew();
+            slope_known = 0;
         }
 #endif
     }
@@ -238,9 +235,9 @@ static int follow(struct follower *f)
     if (tolerance*tolerance > DBL_EPSILON) keep_constraints(f->t, f->state);   /* what is left is of second order */
     reached = f->t;
     memcpy(left, f->state, sizeof left);
-    if (are_finite(STATE, left)) return GSL_SUCCESS;
+    if (are_finite(STATE, left)) return 0;
     f->t = NAN;
-    return GSL_FAILURE;
+    return 1;
 }
 
 /* The same for those outside; inside, the C library's old advance() could be called in its place. */
@@ -271,10 +268,8 @@ long advance_quietly(struct follower *f, double until, long most)
 int go_between(double t, double instant, double *state)
 {
     double stride = instant - t;
-    begin_anew();
-    while (t < instant) {
-        const int failure = gsl_odeiv2_evolve_apply(evolution, control, method, &motion, &t, instant, &stride, state);
-        if (failure) return failure;
-    }
-    return GSL_SUCCESS;
+    slope_known = 0;
+    while (t < instant)
+        if (!(go_on(&t, instant, &stride, state) > 0)) return 1;
+    return 0;
 }

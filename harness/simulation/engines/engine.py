@@ -7,9 +7,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 from numpy.typing import NDArray
 
 from ...failures import Failure, HolonomError
+from ...program.motion_problem import MotionProblem
+from ...program.precision import Precision
 from ..diagnosis import HardCase
 from ..evaluation import Numbers
-from ..request import EngineName
+from ..matrices import MotionMatrices
+from ..request import EngineName, SimulationRequest
+from .choice import Between
 
 if TYPE_CHECKING:
     from ..mode import Mode
@@ -71,10 +75,23 @@ class Obstacle(HolonomError):
         self.case, self.reason, self.passed = case, reason, passed
 
 
+class Task(NamedTuple):
+    """A motion that an engine is to follow."""
+
+    problem: MotionProblem
+    request: SimulationRequest
+    precision: Precision
+    end: Any  # the last instant
+    matrices: MotionMatrices  # of the same motion
+
+
 class Engine(Protocol):
     """What follows a motion."""
 
     name: EngineName
+    # fixed_pivots, open_parameters: whether it takes the motion program's pivots, and parameters without their values
+    fixed_pivots: bool
+    open_parameters: bool
     time: Any  # the instant that is reached
     state: Numbers  # shape (2n,): coordinates, then velocities, at that instant
     steps: int  # taken so far
@@ -82,6 +99,18 @@ class Engine(Protocol):
     code: str  # how heyoka compiled it; empty where it did not
     compile_seconds: float
     amid_passage: bool  # whether a singular configuration is so near that only this engine can go on
+
+    @classmethod
+    def for_motion(cls, task: Task) -> "Engine":
+        """Make the engine of a motion to its end; raises where it cannot follow it as the request asks."""
+
+    @classmethod
+    def comparable(cls, tol: float | None) -> bool:
+        """Whether it may begin a motion of that tolerance where no engine is asked for."""
+
+    @classmethod
+    def expected_seconds(cls, steps: int, operations: int, tol: float, between: Between) -> float:
+        """Seconds that it takes for a motion, arguments as for `quicker_engine`."""
 
     def restart(self, instant: Any, state: Numbers) -> None:
         """Go on from another instant and state, shape (2n,)."""

@@ -271,6 +271,11 @@ class ProgramEngine:
         self.state[:] = state
 
 
+def decay_until(end: Any, problem: MotionProblem, precision: Precision) -> float:
+    """The rate gamma of Baumgarte's cure and Gear's for a motion to an instant."""
+    return DECAYS_IN_A_RUN / float(end - precision.number(problem.start["t"]))
+
+
 def decay_in(problem: MotionProblem, decay: float | None) -> float:
     """The rate gamma of Baumgarte's cure and Gear's: what is asked for, or `DECAYS_IN_A_RUN` by the time span's length.
 

@@ -21,9 +21,10 @@ from ..constraints.directions import EPSILON, dependent_constraints, rank_of, we
 from ..constraints.factorization import factored_constraints
 from ..constraints.projection import InconsistentConstraints, settle
 from ..constraints.singularity import extrapolated_zero, least_of, probed, singular_values_at
+from ..diagnosis import HardCase
 from ..matrices import Matrix, MotionMatrices, Vector, start_of
 from ..request import EngineName
-from .engine import Solutions, Step, require_reach
+from .engine import Solutions, Step, Task, require_reach
 from .singular_passage import NODES, Arc, arc_over
 from .stiffness import StiffnessWatch
 
@@ -63,7 +64,7 @@ class RobustEngine:
         Whether the motion was found to be stiff.
     """
 
-    name = EngineName.ROBUST
+    name, fixed_pivots, open_parameters = EngineName.ROBUST, False, True
     code = ""
 
     def __init__(
@@ -77,6 +78,22 @@ class RobustEngine:
         self._multipliers, self._independent = problem.multipliers, problem.independent
         self._arcs: list[Arc] = []
         self.restart(*start_of(problem))
+
+    @classmethod
+    def for_motion(cls, task: Task) -> "RobustEngine":
+        """As `Engine.for_motion`."""
+        tol = task.request.tol
+        if task.precision.name != "double":
+            raise HolonomError(Failure.ROBUST_IS_DOUBLE, detail=task.problem.obstacle or "--engine asks for it")
+        if tol is not None and not TIGHTEST <= tol < 1:
+            holds = f"the robust engine holds tolerances from {TIGHTEST:.1e} to 1, not {tol:g}"
+            raise HolonomError(Failure.TOLERANCE_UNHELD, detail=holds)
+        return cls(task.problem, tol, task.matrices)
+
+    @property
+    def case(self) -> HardCase:
+        """Why no other engine begins the motion."""
+        return HardCase.REDUNDANT if self.rank < len(self._multipliers) else HardCase.SINGULAR_PASSAGE
 
     def restart(self, instant: float, state: Vector) -> None:
         """Go on from another instant and state, shape (2n,)."""

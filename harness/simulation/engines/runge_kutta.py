@@ -1,15 +1,11 @@
-"""The Runge-Kutta engine: the method of Dormand and Prince, of order 8, on the motion program in C, led by GSL.
+"""The Runge-Kutta engine: the method of Dormand and Prince, of order 8, on the motion program in C.
 
-Its coefficients are those that SciPy has, its steps are compiled for the motion (`dormand_prince.c`): GSL's own method
-of order 8 takes as long to add up its stages as to evaluate them. Its tolerance is that of a step, as the Taylor
-engine's is. It takes less time than the Taylor engine where a tolerance is not fine and the program long; and
-for short runs, since all of a run is one call.
+Its steps are compiled for the motion (`dormand_prince.c`). Its tolerance is that of a step, as the Taylor engine's is.
+It takes less time than the Taylor engine where a tolerance is not fine and the program long; and for short runs, since
+all of a run is one call.
 """
 
 import ctypes
-import shlex
-import shutil
-import subprocess
 import time
 import weakref
 from collections.abc import Iterator
@@ -23,20 +19,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...failures import Failure, HolonomError
-from ...program.c_function import load_c, unload
+from ...program.c_function import has_compiler, load_c, unload
 from ...program.c_source import HELPERS, scalar_statements
 from ...program.motion_problem import MotionProblem, computing
 from ...program.motion_program import Program
 from ...program.precision import read_precision
+from ...program.sign_pattern import with_values_in
 from ..inputs import named_inputs
 from ..matrices import MotionMatrices
 from ..nominal import Nominal
-from ..parts_of_scipy import dormand_prince
 from ..request import EngineName, Stabilization
-from .engine import Step
-from .program_engine import SHRUNK, ProgramEngine, Taken, decay_in
+from .choice import Between
+from .code import REFERENCE
+from .engine import Step, Task
+from .program_engine import SHRUNK, ProgramEngine, Taken, decay_in, decay_until
 
 FINEST, USUAL = 1e-14, 1e-12  # tolerances; below the first, rounding decides about the steps
+# seconds a step takes for an operation, in all its stages, and beside them
+STAGES, STEP = 7.5e-9, 2e-7
+STRIDE = 0.89  # steps for one of the Taylor engine
+ORDER = 8  # what its steps shrink with
+COMPILER = 0.15, 5e-4  # seconds that the C compiler takes, and for an operation
+
 PROJECTED = 16  # steps after which the state is projected: to project takes as long as a fifth of a step
 # Numbers that are written one by one are not yet there for those who read them as vectors: on few of them, vectors cost
 # a tenth to a fifth of the time, on 32 they save a fifth.
@@ -50,9 +54,6 @@ static inline void {name}(double t, const double *state, double *out)
 {body}
 }}
 """
-STAGE = """\
-for (int i = 0; i < STATE; i++) w[i] = y[i] + h*({sum}); \
-evaluate(t + {fraction!r}*h, w, k{stage});"""
 DRIVER = Path(__file__).with_name("dormand_prince.c")
 
 Floats = NDArray[np.float64]
@@ -74,10 +75,10 @@ class RungeKuttaEngine(ProgramEngine):
     Raises
     ------
     HolonomError
-        The tolerance is finer than the method holds; there is no C compiler or no GNU Scientific Library.
+        The tolerance is finer than the method holds; there is no C compiler.
     """
 
-    name = EngineName.RUNGE_KUTTA
+    name, fixed_pivots, open_parameters = EngineName.RUNGE_KUTTA, True, False
 
     def __init__(
         self,
@@ -98,6 +99,27 @@ class RungeKuttaEngine(ProgramEngine):
         self._integrator = DormandPrince(problem, self.tol, cure, decay_in(problem, decay), nominal)
         self.state = self._integrator.state
         self.compile_seconds = time.perf_counter() - begun
+
+    @classmethod
+    def for_motion(cls, task: Task) -> "RungeKuttaEngine":
+        """As `Engine.for_motion`."""
+        problem, request, precision, end, matrices = task
+        if precision.name != "double":
+            raise HolonomError(Failure.RUNGE_KUTTA_IS_DOUBLE, detail=precision.name)
+        decay = decay_until(end, problem, precision)
+        return cls(with_values_in(problem), request.tol, request.drift, decay, matrices)
+
+    @classmethod
+    def comparable(cls, tol: float | None) -> bool:
+        """Whether it holds the tolerance and can be compiled here."""
+        return tol is not None and FINEST <= tol < 1 and has_compiler()
+
+    @classmethod
+    def expected_seconds(cls, steps: int, operations: int, tol: float, between: Between) -> float:
+        """By the C compiler, and the steps."""
+        taken = STRIDE * steps * (REFERENCE / tol) ** (1 / ORDER) * (1 + between.in_each) + between.altogether
+        begun, each = COMPILER
+        return begun + each * operations + taken * (STEP + STAGES * operations)
 
     def advance(self, until: float) -> None:
         """Follow the motion to an instant, in one call of C where that is near and nothing is met on the way.
@@ -170,7 +192,7 @@ class DormandPrince(ctypes.Structure):
     Raises
     ------
     HolonomError
-        There is no C compiler; the GNU Scientific Library is not installed.
+        There is no C compiler.
     """
 
     _fields_ = (
@@ -188,7 +210,7 @@ class DormandPrince(ctypes.Structure):
         super().__init__(float(problem.start["t"]), self.state.ctypes.data)
         narrow = NO_VECTORS if len(problem.state) < WIDE else ()
         small = UNROLLED if problem.motion.operations < SMALL else ()
-        library = load_c("\n".join(_source(problem, drift, decay)), *narrow, *small, *_options_of_gsl())
+        library = load_c("\n".join(_source(problem, drift, decay)), *narrow, *small)
         self._advance, self._go_between = library.advance, library.go_between
         self._advance.argtypes = (ctypes.c_void_p,)
         library.advance_quietly.argtypes = (ctypes.c_void_p, ctypes.c_double, ctypes.c_long)
@@ -199,9 +221,8 @@ class DormandPrince(ctypes.Structure):
         self._evaluations = ctypes.c_long.in_dll(library, "evaluations")
         self.open_values = (ctypes.c_double * len(problem.open_inputs)).in_dll(library, "open_values")
         library.begin.argtypes = (ctypes.c_double, ctypes.c_double, ctypes.c_void_p)
-        if library.begin(tol, nominal.time, np.ascontiguousarray(nominal.state).ctypes.data) != 0:
-            raise MemoryError
-        self._closing = weakref.finalize(self, _closed, library)
+        library.begin(tol, nominal.time, np.ascontiguousarray(nominal.state).ctypes.data)
+        self._closing = weakref.finalize(self, unload, library)
         self._closing.atexit = False
 
     def close(self) -> None:
@@ -247,11 +268,6 @@ class DormandPrince(ctypes.Structure):
         return found.T.copy()
 
 
-def _closed(library: ctypes.CDLL) -> None:
-    library.end()
-    unload(library)
-
-
 def _source(problem: MotionProblem, drift: Stabilization, decay: float) -> Iterator[str]:
     places = range(1, len(problem.coordinates) + 1)
     yield from ("#include <math.h>", "#include <stddef.h>", "#include <string.h>", HELPERS)
@@ -264,24 +280,7 @@ def _source(problem: MotionProblem, drift: Stabilization, decay: float) -> Itera
         yield from _keeping(drift, decay)
     yield f"#define STATE {len(problem.state)}"
     yield f"#define SHRUNK {SHRUNK}"
-    yield from _method()
     yield DRIVER.read_text(encoding="utf-8")
-
-
-def _method() -> Iterator[str]:
-    """Stages, solution and errors of the method as macros."""
-    table, stages = dormand_prince(), len(dormand_prince().B)
-    calls = (
-        STAGE.format(sum=_sum(table.A[stage, :stage]), fraction=float(table.C[stage]), stage=stage + 1)
-        for stage in range(1, stages)
-    )
-    yield f"#define STAGES {' '.join(calls)}"
-    for name, row in (("SOLUTION", table.B), ("ERROR5", table.E5), ("ERROR3", table.E3)):
-        yield f"#define {name}(i) {_sum(row[:stages])}"
-
-
-def _sum(coefficients: Floats) -> str:
-    return " + ".join(f"{float(a)!r}*k{stage}[i]" for stage, a in enumerate(coefficients, start=1) if a != 0)
 
 
 def _keeping(drift: Stabilization, decay: float) -> Iterator[str]:
@@ -299,15 +298,3 @@ def _function(problem: MotionProblem, name: str, program: Program, outputs: set[
     inputs = named_inputs(problem, "t", state, "0.0", open_values)
     statements = scalar_statements(computing(program, outputs), list(inputs.values()))
     return FUNCTION.format(name=name, body=indent("\n".join(statements), " " * 4))
-
-
-def _options_of_gsl() -> list[str]:
-    """What the compiler is told about the library."""
-    if (configuration := shutil.which("gsl-config")) is None:
-        raise HolonomError(Failure.GSL_MISSING)
-    command = [configuration, "--cflags", "--libs"]
-    try:
-        said = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=True).stdout
-        return shlex.split(said)
-    except (OSError, ValueError, subprocess.CalledProcessError):  # it does not run, or says what no shell can read
-        raise HolonomError(Failure.GSL_MISSING) from None

@@ -8,24 +8,26 @@ import time
 from copy import copy
 from functools import partial
 from itertools import pairwise
-from math import ceil, inf
+from math import ceil, inf, log10
 from typing import Any
 
 import numpy as np
 
 from ...failures import Failure, HolonomError
-from ...program.expense import HIGH_ORDER
+from ...program.expense import HIGH_ORDER, order_for, require_means
 from ...program.heyoka_function import import_heyoka
 from ...program.motion_problem import MotionProblem, computing
-from ...program.precision import Precision, read_precision
+from ...program.precision import GUARD_DIGITS, Precision, read_precision
+from ...program.sign_pattern import at_start
 from ..constraints.program_projection import ProgramProjection
 from ..constraints.stabilization import Equations, equations_of_motion, stabilized_equations
 from ..evaluation import Numbers
 from ..matrices import MotionMatrices
 from ..request import EngineName, Stabilization
-from .code import Code, better_code, pays
-from .engine import Step
-from .program_engine import FIRST_BLOCK, ProgramEngine, Taken, decay_in
+from .choice import Between
+from .code import Code, better_code, compilation, pays, running
+from .engine import Step, Task
+from .program_engine import FIRST_BLOCK, ProgramEngine, Taken, decay_in, decay_until
 
 DRIFT = 100  # times what rounding does to a number: how far a state may leave the constraints inside a block
 FINE, FINE_BLOCK = 1e-7, 512  # a tolerance whose steps leave the constraints so slowly that a first block may be long
@@ -58,7 +60,7 @@ class TaylorEngine(ProgramEngine):
         The precision is none, or cannot hold the tolerance; heyoka is not installed.
     """
 
-    name = EngineName.TAYLOR
+    name, fixed_pivots, open_parameters = EngineName.TAYLOR, True, True
 
     def __init__(
         self,
@@ -87,7 +89,9 @@ class TaylorEngine(ProgramEngine):
         self._counted = number(problem.start["t"]), 0  # since this instant, and the steps until then
         self._set_up(code, self._counted[0], start)
         kept = drift is Stabilization.PROJECTION and problem.multipliers
-        self._keeper = ProgramProjection(problem, self.precision, self._matrices, not self._chosen) if kept else None
+        self._keeper = ProgramProjection(problem, self.precision) if kept else None
+        if kept and self._chosen:
+            self._keeper.nearest  # noqa: B018
         self.compile_seconds = time.perf_counter() - begun
         self.tol = float(self._integrator.tol) / self._finer
         longest = FINE_BLOCK if self.tol <= FINE else FIRST_BLOCK
@@ -96,6 +100,27 @@ class TaylorEngine(ProgramEngine):
         if self._integrator.order > HIGH_ORDER:  # one step is long enough to tell of
             self._first_block = self._longest_block = 1
         self._allowed = max(DRIFT * 10.0**-self.precision.sure_digits, self.tol)
+
+    @classmethod
+    def for_motion(cls, task: Task) -> "TaylorEngine":
+        """As `Engine.for_motion`."""
+        problem, request, precision, end, matrices = task
+        digits = precision.digits + GUARD_DIGITS if request.tol is None else -log10(held(request.tol, precision))
+        require_means(at_start(problem), precision, order_for(digits))
+        decay = decay_until(end, problem, precision)
+        return cls(problem, request.tol, precision, request.drift, request.compact, decay, matrices, end)
+
+    @classmethod
+    def comparable(cls, tol: float | None) -> bool:
+        """In any case."""
+        return True
+
+    @classmethod
+    def expected_seconds(cls, steps: int, operations: int, tol: float, between: Between) -> float:
+        """By the code that pays for so many steps."""
+        run = {code: running(code, operations, steps, tol) for code in Code}
+        compact, unrolled = (compilation(code, operations) for code in (Code.COMPACT, Code.UNROLLED))
+        return min(run[Code.QUICK], compact + run[Code.COMPACT], compact + unrolled + run[Code.UNROLLED])
 
     def steps_ahead(self, until: Any, trial: int) -> int | None:
         """About how many steps there are to an instant, by the length of the first ones.

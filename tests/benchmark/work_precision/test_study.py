@@ -83,7 +83,7 @@ def test_the_reference_is_confirmed_by_another_order_and_precision(reference):
     assert 0 < reference.difference < 1e-45
 
 
-@pytest.mark.usefixtures("gsl")
+@pytest.mark.usefixtures("c_compiler")
 def test_what_the_table_states_is_the_distance_from_the_closed_form(problems, reference):
     problem = problems[0]
     candidates = [
@@ -115,7 +115,7 @@ def test_maxima_sums_its_own_series_to_the_truncated_closed_form(done):
 
 
 @pytest.mark.long
-@pytest.mark.usefixtures("gsl")
+@pytest.mark.usefixtures("c_compiler")
 def test_every_group_is_measured(done):
     assert {m.group for m in done.measurements} == set(Group)
     assert {m.method for m in done.measurements if m.group is Group.SOLVER} == set(SOLVERS)

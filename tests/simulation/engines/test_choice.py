@@ -1,6 +1,5 @@
 """Which engine ``auto`` takes, and that either is relieved where the configuration is singular."""
 
-import os
 from dataclasses import replace
 from fractions import Fraction
 
@@ -8,9 +7,9 @@ import numpy as np
 import pytest
 from problems import problem
 
-from holonom.simulation.engines import choice, switching
+from holonom.simulation.engines import fallback, runge_kutta
 from holonom.simulation.engines.choice import Between, Choice, quicker_engine
-from holonom.simulation.engines.runge_kutta import FINEST
+from holonom.simulation.engines.runge_kutta import FINEST, RungeKuttaEngine
 from holonom.simulation.request import EngineName, SimulationRequest
 from holonom.simulation.simulate import simulate
 
@@ -23,7 +22,7 @@ def report(until, **request):
     return simulate(problem("pendulum.mac", "swing_scene"), wanted).report
 
 
-@pytest.mark.usefixtures("gsl")
+@pytest.mark.usefixtures("c_compiler")
 def test_a_long_motion_at_a_coarse_tolerance_goes_to_runge_kutta_and_a_short_one_does_not():
     long, short = report(LONG, tol=1e-6), report(SHORT, tol=1e-6)
     assert [leg.engine for leg in long.legs] == [EngineName.RUNGE_KUTTA] == [long.choice.engine]
@@ -31,7 +30,7 @@ def test_a_long_motion_at_a_coarse_tolerance_goes_to_runge_kutta_and_a_short_one
     assert [leg.engine for leg in short.legs] == [EngineName.TAYLOR]
 
 
-@pytest.mark.usefixtures("gsl")
+@pytest.mark.usefixtures("c_compiler")
 def test_the_steps_tried_to_choose_leave_no_trace():
     """Truth: the motion that the Taylor engine follows where it alone is asked, to the last bit."""
     weighed, asked = report(Fraction(40), tol=1e-9), report(Fraction(40), tol=1e-9, engine=EngineName.TAYLOR)
@@ -41,7 +40,7 @@ def test_the_steps_tried_to_choose_leave_no_trace():
     assert asked.choice is None
 
 
-@pytest.mark.usefixtures("gsl")
+@pytest.mark.usefixtures("c_compiler")
 def test_the_number_of_steps_ahead_is_that_of_the_motion():
     """Truth: the steps that the motion then takes, within a tenth: the pendulum's first steps are like the others."""
     done = report(Fraction(300), tol=1e-9)
@@ -53,34 +52,33 @@ def test_what_runge_kutta_cannot_hold_is_not_weighed(tol, precision):
     assert report(Fraction(1), tol=tol, precision=precision).choice is None
 
 
-@pytest.mark.usefixtures("gsl")
+@pytest.mark.usefixtures("c_compiler")
 @pytest.mark.parametrize(
     ("tol", "held"), [(FINEST, True), (np.nextafter(FINEST, 0), False), (np.nextafter(1, 0), True), (1.0, False)]
 )
 def test_runge_kutta_holds_tolerances_from_its_finest_to_one(tol, held):
-    assert choice.comparable(float(tol)) is held
+    assert RungeKuttaEngine.comparable(float(tol)) is held
 
 
 def test_without_a_compiler_there_is_no_choice(monkeypatch):
-    monkeypatch.setattr(choice, "which", lambda _: None)
-    assert not choice.comparable(1e-6)
+    monkeypatch.setattr(runge_kutta, "has_compiler", lambda: False)
+    assert not RungeKuttaEngine.comparable(1e-6)
 
 
-@pytest.mark.usefixtures("gsl")
-def test_where_the_library_is_named_and_missing_taylor_follows_the_motion_and_the_report_says_why(
-    monkeypatch, tmp_path
-):
+@pytest.mark.usefixtures("c_compiler")
+def test_a_compiler_that_fails_leaves_the_motion_to_taylor(monkeypatch, tmp_path):
     """Truth: the motion that the Taylor engine follows where it alone is asked, to the last bit."""
-    named = tmp_path / "gsl-config"
-    named.write_text("#!/bin/sh\necho -lno_such_library\n")
-    named.chmod(0o755)
-    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    compiler = tmp_path / "cc"
+    compiler.write_text("#!/bin/sh\necho no space for objects >&2\nexit 1\n")
+    compiler.chmod(0o755)
+    monkeypatch.setenv("CC", str(compiler))
     done, asked = report(LONG, tol=1e-6), report(LONG, tol=1e-6, engine=EngineName.TAYLOR)
     assert done.choice.engine is EngineName.TAYLOR
-    assert "no_such_library" in done.choice.refused
+    assert "no space for objects" in done.choice.refused
     assert done.coordinates == asked.coordinates
 
 
+@pytest.mark.usefixtures("c_compiler")
 def test_states_wanted_between_the_steps_count():
     """Truth: each takes the Runge-Kutta engine a step of its own, and the other next to nothing."""
     steps, operations, tol = 50_000, 210, 1e-6
@@ -89,7 +87,7 @@ def test_states_wanted_between_the_steps_count():
     assert quicker_engine(steps, operations, tol, Between(0, 10)).engine is EngineName.TAYLOR
 
 
-@pytest.mark.usefixtures("gsl")
+@pytest.mark.usefixtures("c_compiler")
 def test_runge_kutta_is_relieved_at_dead_centres_like_taylor(monkeypatch):
     """Truth: the linkage as the Taylor engine follows it through the same dead centres."""
 
@@ -97,7 +95,7 @@ def test_runge_kutta_is_relieved_at_dead_centres_like_taylor(monkeypatch):
         def chosen(steps, operations, tol, between):
             return Choice(engine, steps, operations, 0.0, 0.0)
 
-        monkeypatch.setattr(switching, "quicker_engine", chosen)
+        monkeypatch.setattr(fallback, "quicker_engine", chosen)
         wanted = SimulationRequest(tol=1e-11, samples=0)
         return simulate(replace(problem("linkage.mac")), wanted).report
 

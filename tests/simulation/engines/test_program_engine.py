@@ -28,7 +28,7 @@ burst : holonomic_scene(body, initial_state = [x = 1, dot(x) = 2], time_span = [
 @pytest.fixture(params=[TaylorEngine, RungeKuttaEngine])
 def engine(request):
     if request.param is RungeKuttaEngine:
-        request.getfixturevalue("gsl")
+        request.getfixturevalue("c_compiler")
     return request.param
 
 

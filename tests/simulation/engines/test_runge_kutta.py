@@ -1,7 +1,5 @@
 """What is particular to the Runge-Kutta engine: compiled steps, states between them, the constraints kept in C."""
 
-import ctypes
-import os
 import re
 from contextlib import suppress
 from dataclasses import replace
@@ -11,19 +9,16 @@ from pathlib import Path
 import mpmath
 import numpy as np
 import pytest
-import scipy.integrate
 from problems import problem
+from scipy.integrate import DOP853
 
-from holonom.failures import Failure, HolonomError
-from holonom.program.c_function import load_c
+from holonom.failures import HolonomError
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
 from holonom.sandbox import Limits
-from holonom.simulation.engines import runge_kutta
 from holonom.simulation.engines.program_engine import FIRST_BLOCK
-from holonom.simulation.engines.runge_kutta import RungeKuttaEngine
+from holonom.simulation.engines.runge_kutta import DRIVER, RungeKuttaEngine
 from holonom.simulation.engines.taylor import TaylorEngine
-from holonom.simulation.parts_of_scipy import dormand_prince
 from holonom.simulation.request import EngineName, SimulationRequest, Stabilization
 from holonom.simulation.simulate import simulate
 
@@ -34,7 +29,7 @@ body : holonomic_system(coordinates = [x, z], kinetic_energy = (dot(x)^2 + dot(z
 flight : holonomic_scene(body, initial_state = [x = 0, z = 0, dot(x) = 1, dot(z) = 5], time_span = [0, 1])$
 """
 
-pytestmark = pytest.mark.usefixtures("gsl")
+pytestmark = pytest.mark.usefixtures("c_compiler")
 
 
 def test_a_parabola_is_followed_to_rounding(write_scene):
@@ -58,6 +53,23 @@ def test_far_from_zero_a_step_was_longer_or_shorter_than_the_time_it_took(write_
     assert motion.state[1] == pytest.approx(float(truth), abs=2e-8)
 
 
+def test_coefficients_are_those_of_scipys_method():
+    """Truth: the tables of DOP853."""
+    text, table = DRIVER.read_text(encoding="utf-8"), DOP853
+
+    def row(terms: str) -> list[float]:
+        found = re.findall(r"(-? ?[\d.]+(?:e-\d+)?)\*k(\d+)\[i\]", terms)
+        numbers = {int(stage): float(number.replace(" ", "")) for number, stage in found}
+        return [numbers.get(stage, 0.0) for stage in range(1, table.n_stages + 1)]
+
+    for stage, fraction, terms in re.findall(r"STAGE\((\d+), ([\d.]+), (.*?)\)\n", text, re.DOTALL):
+        assert row(terms) == [*table.A[int(stage) - 1], *[0.0] * 12][:12]
+        assert float(fraction) == table.C[int(stage) - 1]
+    for name, numbers in (("w[i] = y[i] + h*(0", table.B), ("error5 = (", table.E5), ("error3 = (", table.E3)):
+        terms = text[text.index(name) + len(name.rstrip("0")) :]
+        assert row(terms[: terms.index(";")]) == list(numbers[:12])
+
+
 def test_the_error_follows_the_tolerance():
     """Truth: the pendulum of the Taylor engine at rounding; six powers of ten in the tolerance are six in the error."""
     true = TaylorEngine(problem("pendulum.mac"))
@@ -70,14 +82,6 @@ def test_the_error_follows_the_tolerance():
     assert errors[2] < 1e-9
     assert 1e2 < errors[0] / errors[1] < 1e5
     assert 1e2 < errors[1] / errors[2] < 1e5
-
-
-def test_the_coefficients_are_those_of_scipys_method():
-    alone, public = dormand_prince(), scipy.integrate.DOP853
-    stages = public.n_stages
-    assert np.array_equal(alone.A[:stages, :stages], public.A)
-    assert np.array_equal(alone.C[:stages], public.C)
-    assert all(np.array_equal(getattr(alone, row), getattr(public, row)) for row in ("B", "E3", "E5"))
 
 
 def test_a_motion_in_one_call_is_that_in_pieces_and_past_a_block():
@@ -151,24 +155,6 @@ def test_what_it_lacks_is_refused(request_, said):
         simulate(problem("pendulum.mac"), wanted)
 
 
-def test_a_missing_library_is_named(monkeypatch):
-    pendulum = problem("pendulum.mac")
-    monkeypatch.setattr(runge_kutta.shutil, "which", lambda _: None)
-    with pytest.raises(HolonomError, match="needs the GNU Scientific Library.*libgsl-dev") as refusal:
-        RungeKuttaEngine(pendulum)
-    assert refusal.value.failure is Failure.GSL_MISSING
-
-
-@pytest.mark.parametrize("script", ["#!/bin/sh\nexit 1\n", '#!/bin/sh\necho "-L\'here"\n', "#!/bin/nowhere\n"])
-def test_a_library_that_does_not_tell_where_it_is_ended_in_an_internal_error(script, monkeypatch, tmp_path):
-    pendulum = problem("pendulum.mac")
-    (tmp_path / "gsl-config").write_text(script)
-    (tmp_path / "gsl-config").chmod(0o755)
-    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
-    with pytest.raises(HolonomError, match="needs the GNU Scientific Library"):
-        RungeKuttaEngine(pendulum)
-
-
 def test_motions_left_their_libraries_open():
     """Each row of a sweep that is integrated alone may have one of its own."""
 
@@ -183,19 +169,3 @@ def test_motions_left_their_libraries_open():
         with suppress(HolonomError):
             simulate(swing, SimulationRequest(engine=EngineName.RUNGE_KUTTA, until=until))
     assert open_libraries() == before
-
-
-def test_what_gsl_holds_is_given_back(monkeypatch):
-    class Memory(ctypes.Structure):
-        _fields_ = tuple((name, ctypes.c_size_t) for name in (*"abcdefg", "used", "free", "top"))
-
-    used, libraries = ctypes.CDLL(None).mallinfo2, []
-    used.restype = Memory
-    monkeypatch.setattr(runge_kutta, "load_c", lambda *asked: libraries.append(load_c(*asked)) or libraries[-1])
-    engine, sizes = RungeKuttaEngine(problem("pendulum.mac", "swing_scene")), np.ones(4)
-    before = used().used
-    for _ in range(1000):
-        libraries[0].end()
-        libraries[0].begin(1e-9, 1.0, sizes.ctypes.data)
-    assert used().used < before + 10_000
-    engine.advance(0.1)

@@ -13,7 +13,6 @@ from holonom.simulation.constraints.program_projection import ProgramProjection
 from holonom.simulation.engines import code
 from holonom.simulation.engines.code import Code, better_code, pays, running
 from holonom.simulation.engines.taylor import TaylorEngine
-from holonom.simulation.matrices import MotionMatrices
 from holonom.simulation.request import SimulationRequest, Stabilization
 from holonom.simulation.simulate import simulate
 
@@ -69,7 +68,7 @@ def test_projection_is_quadratic_in_what_is_amiss(precision):
     motion = problem("pendulum.mac", "swing_scene", 50)
     state = np.array([numbers.number(motion.start[name]) for name in motion.state])
     state[1] += numbers.number("1e-6")
-    keeper, start = ProgramProjection(motion, numbers, MotionMatrices(motion)), numbers.number("0")
+    keeper, start = ProgramProjection(motion, numbers), numbers.number("0")
     keeper.project(start, state)
     assert 1e-15 < abs(float(state[0] ** 2 + state[1] ** 2 - numbers.number("1"))) < 1e-11
     for _ in range(3):

@@ -1,4 +1,4 @@
-"""Switching functions along a motion: where the first of them changes its sign within a step.
+"""Functions along a motion: where the first of them changes its sign within a step.
 
 A step is looked at in parts, each a small part of the time span, and shorter where a function is not resolved: it is
 sampled at Chebyshev's points of a part and interpolated between, by a polynomial of degree 32, whose last coefficients
@@ -8,7 +8,7 @@ is found by taking sections, to the last bit of its numbers.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from itertools import pairwise
 from math import ceil
@@ -17,13 +17,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from ..program.motion_problem import MotionProblem
-from ..program.motion_program import Program
 from ..program.precision import Precision
-from ..program.sign_pattern import HELD, Pattern, switching_function
 from .engines.engine import Step
-from .evaluation import Numbers, as_floats, evaluation
-from .inputs import Inputs
+from .evaluation import Numbers
 from .matrices import Vector
 
 DEGREE, FINE = 32, 256
@@ -164,40 +160,6 @@ class SignedFunctions(ABC):
             before, after = edges[first - 1], edges[first]
 
 
-class Surfaces(SignedFunctions):
-    """The surfaces on which a pattern of signs ends, but for signs whose changes are known without looking."""
-
-    def __init__(
-        self, problem: MotionProblem, pattern: Pattern, precision: Precision, span: float, known: Collection[str] = ()
-    ) -> None:
-        super().__init__(precision, span)
-        self._inputs = Inputs(problem, precision)
-        for sign in problem.signs:
-            if sign.name not in known:
-                value = pattern[sign.name]
-                self._rows += [(sign.name, to, -to) for to in ((1, -1) if value == HELD else (-value,))]
-        what = "surfaces", precision.name, frozenset(pattern.items()), frozenset(known)
-        self._functions = problem.once(
-            what,
-            problem.switching,
-            lambda: [evaluation(_inside(problem, pattern, name, to), precision) for name, to, _ in self._rows],
-        )
-
-    def values(self, instants: Numbers, states: Numbers) -> Numbers:
-        """How far inside of its pattern the motion is, by each surface; negative outside."""
-        inputs = self._inputs(instants, states)
-        found = [as_floats(function(inputs)[0]) for function in self._functions]
-        inside = np.array([side for *_, side in self._rows], dtype=float)
-        return inside[:, None] * np.reshape(found, (len(self._rows), len(instants)))
-
-
-def _inside(problem: MotionProblem, pattern: Pattern, name: str, to: int) -> Program:
-    """The function whose sign tells on which side of a surface the motion is."""
-    if pattern[name] == HELD:
-        return switching_function(problem, "drive", name, {**pattern, name: to})
-    return switching_function(problem, "switch", name, pattern)
-
-
 def _is_resolved(values: Numbers) -> bool:
     """Whether polynomials through the samples, shape (functions, samples), are near the functions everywhere."""
     inner = values[:, 1:-1]
@@ -209,14 +171,24 @@ def _is_resolved(values: Numbers) -> bool:
 
 def _narrow_dip(coefficients: Vector, between: Vector, end: float) -> Vector | None:
     """A place and a later one where a polynomial that no sample shows negative is so: the first minimum below zero."""
-    slope = chebyshev.chebder(coefficients)
-    bend = chebyshev.chebder(slope)
-    for least in 1 + np.flatnonzero((between[1:-1] <= between[:-2]) & (between[1:-1] <= between[2:])):
-        low, place, high = 2 * PLACES[least - 1 : least + 2] - 1
-        for _ in range(CORRECTIONS):
-            if (curvature := chebyshev.chebval(place, bend)) <= 0:
-                break
-            place = min(max(place - chebyshev.chebval(place, slope) / curvature, low), high)
+    for low, place in minima(coefficients, between, above_zero=True):
         if chebyshev.chebval(place, coefficients) < 0 and (1 + place) / 2 < end:
             return (1 + np.array([low, place])) / 2
     return None
+
+
+def minima(coefficients: Vector, sizes: Vector, above_zero: bool) -> Iterator[tuple[float, float]]:
+    """Places in [-1, 1] of the minima of a polynomial's sizes at `PLACES`, each after the place before it.
+
+    Newton's method for the slope sharpens them, where the size is the polynomial itself only while that bends upwards.
+    """
+    slope = chebyshev.chebder(coefficients)
+    bend = chebyshev.chebder(slope)
+    for least in 1 + np.flatnonzero((sizes[1:-1] <= sizes[:-2]) & (sizes[1:-1] <= sizes[2:])):
+        low, place, high = 2 * PLACES[least - 1 : least + 2] - 1
+        for _ in range(CORRECTIONS):
+            curvature = chebyshev.chebval(place, bend)
+            if curvature == 0 or (above_zero and curvature < 0):
+                break
+            place = min(max(place - chebyshev.chebval(place, slope) / curvature, low), high)
+        yield low, place

@@ -1,0 +1,47 @@
+"""An engine is added by its file and a line in the registry."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from problems import problem
+
+from holonom.cli.motion import simulate as command
+from holonom.failures import HolonomError
+from holonom.simulation.engines import registry
+from holonom.simulation.output import simulation_document
+from holonom.simulation.request import EngineName, SimulationRequest
+from holonom.simulation.simulate import simulate
+
+
+def followed(**asked):
+    wanted = SimulationRequest(until=Fraction(20), samples=21, tol=1e-8, **asked)
+    return simulate(problem("pendulum.mac", "swing_scene"), wanted)
+
+
+@pytest.fixture
+def toy(monkeypatch):
+    monkeypatch.setitem(registry.ENGINES, "toy", "toy_engine:ToyEngine")
+
+
+def test_names_and_choices_are_those_of_the_registry():
+    (option,) = (each for each in command.params if each.name == "engine")
+    assert list(option.type.choices) == list(EngineName) == ["auto", *registry.ENGINES]
+
+
+def test_added_engine_is_chosen_relieved_recorded_and_reported(toy):
+    """Truth: the Taylor engine."""
+    motion, truth = followed(), followed(engine=EngineName.TAYLOR)
+    report, document = motion.report, simulation_document(motion)
+    assert report.choice.engine == document["choice"]["engine"] == "toy"
+    assert [leg.engine for leg in report.legs] == ["toy", "robust", "toy"]
+    assert [leg.start for leg in report.legs] == pytest.approx([0, 1, 1.5], abs=0.1)
+    assert document["legs"][1]["reason"] == "the toy stops here"
+    assert document["engine"] == "toy, robust {:.6g}..{:.6g}, toy".format(*(leg.start for leg in report.legs[1:]))
+    for name, samples in truth.coordinates.items():
+        assert np.allclose(motion.coordinates[name], samples, atol=1e-4)
+
+
+def test_added_engine_that_is_asked_for_follows_alone(toy):
+    with pytest.raises(HolonomError, match="the toy stops here"):
+        followed(engine="toy")

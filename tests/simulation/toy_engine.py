@@ -1,0 +1,72 @@
+"""An engine of a few lines: the classical Runge-Kutta method on the motion program, its steps of one length."""
+
+from collections import deque
+from math import ceil
+
+import numpy as np
+
+from holonom.simulation.diagnosis import HardCase
+from holonom.simulation.engines.engine import Obstacle, Solutions, Step
+from holonom.simulation.evaluation import evaluation_once
+from holonom.simulation.inputs import Inputs
+from holonom.simulation.matrices import start_of
+
+STEP = 0.01
+STOPS_AT, GOES_ON_AT = 1.0, 1.5  # between these it needs another engine
+
+
+class ToyEngine:
+    """See `Engine`."""
+
+    name, fixed_pivots, open_parameters = "toy", True, True
+    code, compile_seconds, amid_passage, tol = "", 0.0, False, 1e-8
+
+    def __init__(self, problem, precision):
+        self.time, self.state = start_of(problem)
+        self.steps, self._n, self._g = 0, len(problem.coordinates), len(problem.multipliers)
+        self._inputs, self._solve = Inputs(problem), evaluation_once(problem, problem.motion, precision)
+
+    @classmethod
+    def for_motion(cls, task):
+        return cls(task.problem, task.precision)
+
+    @classmethod
+    def comparable(cls, tol):
+        return True
+
+    @classmethod
+    def expected_seconds(cls, steps, operations, tol, between):
+        return 0.0
+
+    def restart(self, instant, state):
+        self.time, self.state = instant, state.copy()
+
+    def advance(self, until):
+        deque(self.integrate(until), maxlen=0)
+
+    def integrate(self, until):
+        while self.time < until:
+            if STOPS_AT <= self.time < GOES_ON_AT:
+                reason = "the toy stops here"
+                raise Obstacle(self.time, HardCase.SINGULAR_PASSAGE, reason, lambda t, state: t >= GOES_ON_AT)
+            start, state, left = self.time, self.state, until - self.time
+            self.time = until if left <= STEP else start + left / ceil(left / STEP)
+            self.state = self._reached(start, state, self.time)
+            self.steps += 1
+            yield Step(start, self.time, lambda at, t=start, x=state: np.array([self._reached(t, x, s) for s in at]).T)
+
+    def solutions(self, instants, states):
+        return Solutions(*np.split(self._solve(self._inputs(instants, states)), [self._n, self._n + self._g]))
+
+    def close(self):
+        pass
+
+    def _reached(self, t, state, until):
+        h, rates = until - t, self._rates
+        first = rates(t, state)
+        second = rates(t + h / 2, state + h / 2 * first)
+        third = rates(t + h / 2, state + h / 2 * second)
+        return state + h / 6 * (first + 2 * (second + third) + rates(until, state + h * third))
+
+    def _rates(self, t, state):
+        return np.concatenate([state[self._n :], self._solve(self._inputs(t, state))[: self._n]])
