@@ -4,8 +4,8 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from .language import gettext, translatable, translated
-from .simulation.diagnosis import HardCase
 from .simulation.engines.registry import FALLBACK
+from .simulation.hard_cases import HardCase
 
 if TYPE_CHECKING:
     from .simulation.engines.fallback import EngineSegment

@@ -12,10 +12,10 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from ..series.power_series import Continuation, MotionSeries, Values
+    from ..simulation.accuracy_check import AccuracyViolation
     from ..simulation.engines.choice import Choice
     from ..simulation.hybrid_motion import Switching
     from ..simulation.result import Report, Simulation
-    from ..simulation.trust import Doubt
     from ..sweeps.run import Sweep
 
 
@@ -158,7 +158,7 @@ def _passed(passage: str) -> str:
     return {"held": "reached, and held on to", "released": "left again"}.get(passage, passage)
 
 
-def distrust(doubt: "Doubt") -> str:
+def distrust(doubt: "AccuracyViolation") -> str:
     """The sentence that says why a motion is no result."""
     if isnan(doubt.missed):
         return f"holonom: this is no result: {doubt.reason}; end the run before that."

@@ -14,7 +14,7 @@ from .motion_problem import MotionProblem, computing
 from .motion_program import Call, Constant, Expression, Name, Operation, Program, count_operations
 
 ZERO, ONE = Fraction(0), Fraction(1)
-HELD = "held"  # stands in a pattern for the sign that keeps the motion on its surface
+SLIDING = "held"  # stands in a pattern for the sign that keeps the motion on its surface
 Pattern = Mapping[str, int | str]
 
 
@@ -24,7 +24,7 @@ def problem_in(problem: MotionProblem, pattern: Pattern) -> MotionProblem:
     Parameters
     ----------
     pattern : mapping of str to int or str
-        1, -1 or `HELD` for each sign; one at most is held, of those that `holdable` names.
+        1, -1 or `SLIDING` for each sign; one at most is held, of those that `holdable` names.
     """
     if not problem.signs:
         return problem
@@ -42,9 +42,9 @@ def program_in(problem: MotionProblem, program: Program, pattern: Pattern) -> Pr
     Its inputs are those of the motion, but for the signs.
     """
     for name, sign in pattern.items():
-        if sign == HELD:
+        if sign == SLIDING:
             program = _preceded(_holding(problem, name), program)
-    return with_numbers(program, {name: Fraction(sign) for name, sign in pattern.items() if sign != HELD})
+    return with_numbers(program, {name: Fraction(sign) for name, sign in pattern.items() if sign != SLIDING})
 
 
 def drawing_at_any_time(problem: MotionProblem) -> Drawing:

@@ -29,12 +29,10 @@ from ..failures import Failure, HolonomError
 from ..program.motion_problem import By, MotionProblem, Sign, function_of_knot
 from ..program.motion_program import names_used
 from ..program.precision import Precision
-from ..program.sign_pattern import HELD, Pattern, holdable, switching_function
-from .clock import ticks
+from ..program.sign_pattern import SLIDING, Pattern, holdable, switching_function
 from .constraints.factorization import factored_constraints
 from .constraints.projection import settle
 from .control_matrix import controls_may_fail
-from .diagnostics import residuals
 from .engines.engine import Step
 from .engines.fallback import EngineSegment
 from .evaluation import Evaluation, Numbers, as_floats, evaluation
@@ -43,6 +41,8 @@ from .matrices import Matrices, Vector
 from .mode import Mode
 from .nominal import nominal_of, with_nominal
 from .request import SimulationRequest
+from .residuals import residuals
+from .time_events import time_events
 from .zeros import Crossing
 
 ZERO = 1e-12  # of what a switching function or its rate is at nominal sizes: no sign
@@ -56,7 +56,7 @@ class Passage(StrEnum):
     """How a motion passes a surface."""
 
     CROSSED = "crossed"
-    HELD = "held"
+    SLIDING = "held"
     RELEASED = "released"
     IMPULSE = "crossed with an impulse"
 
@@ -96,8 +96,8 @@ class HybridMotion:
         self._problem, self._request, self._precision, self._end = problem, request, precision, end
         self.nominal = nominal_of(problem)
         self._signs = {sign.name: sign for sign in problem.signs}
-        self._clock = ticks(problem)
-        self._to_come = deque(sorted({tick.t for tick in self._clock.values()}))
+        self._time_events = time_events(problem)
+        self._to_come = deque(sorted({event.t for event in self._time_events.values()}))
         self._knots = _knots_of(problem, precision)
         self._modes: dict[tuple[Any, ...], Mode] = {}
         self._known: dict[Hashable, MotionProblem] = problem.once("modes", problem.matrices, dict)
@@ -220,7 +220,7 @@ class HybridMotion:
                 return
         if self._to_come and self._precision.ratio(self._to_come[0]) == self.time != self._end:
             instant = self._to_come.popleft()
-            changes = {name: tick.to for name, tick in self._clock.items() if tick.t == instant}
+            changes = {name: event.to for name, event in self._time_events.items() if event.t == instant}
             self._switch({**mode.pattern, **changes}, list(changes), self.time, self.state.copy(), ())
 
     # ---- switching ----
@@ -232,7 +232,7 @@ class HybridMotion:
         if again or self._crowded(t):
             self._refuse(t, f"{self._signs[name].of} changes its sign again and again")
         pattern, sign = {**before, name: crossing.to}, self._signs[name]
-        if before[name] != HELD and sign.by is not By.TIME:
+        if before[name] != SLIDING and sign.by is not By.TIME:
             pattern[name] = self._sign_behind(sign, pattern, t, state, crossing.to)
         self._switch(pattern, [name], t, state, (name,))
 
@@ -244,10 +244,10 @@ class HybridMotion:
         self._left = (*self._left, *left) if t == self.intervals[-1].start else left
         self.intervals.append(ModeInterval(t, after))
         self._impulse = self._impulse + (after.energy_at(t, moved) - before.energy_at(t, state))
-        if before.pattern[names[0]] == HELD:
+        if before.pattern[names[0]] == SLIDING:
             passage = Passage.RELEASED
-        elif pattern[names[0]] == HELD:
-            passage = Passage.HELD
+        elif pattern[names[0]] == SLIDING:
+            passage = Passage.SLIDING
         else:
             change = self.nominal.share(as_floats(moved - state), as_floats(state))
             passage = Passage.CROSSED if change <= CONTINUOUS else Passage.IMPULSE
@@ -269,9 +269,9 @@ class HybridMotion:
         if above * below > 0:
             return 1 if above > 0 else -1
         if above < 0 < below:
-            if other := next((name for name, value in pattern.items() if value == HELD and name != sign.name), None):
+            if other := next((name for name, value in pattern.items() if value == SLIDING and name != sign.name), None):
                 self._refuse(t, f"{self._signs[other].of} and {sign.of} are both held at zero")
-            return HELD
+            return SLIDING
         if above > 0 > below:
             self._refuse(t, f"{sign.of} is zero, and the motion may leave to either side")
         return 1 if above >= 0 and below >= 0 else -1
@@ -316,12 +316,12 @@ class HybridMotion:
     def _first_pattern(self, t: Any, state: Numbers) -> Pattern:
         """Signs at the start, each function after those that it may contain."""
         pattern: dict[str, int | str] = dict.fromkeys(self._signs, 1)
-        for name, tick in self._clock.items():
-            pattern[name] = tick.to if self._precision.ratio(tick.t) <= t else -tick.to
+        for name, event in self._time_events.items():
+            pattern[name] = event.to if self._precision.ratio(event.t) <= t else -event.to
         while self._to_come and self._precision.ratio(self._to_come[0]) <= t:
             self._to_come.popleft()
         for sign in self._problem.signs:
-            if sign.name in self._clock:
+            if sign.name in self._time_events:
                 continue
             if self._vanishes("switch", sign, pattern, t, state):
                 pattern[sign.name] = self._leaving(sign, pattern, t, state)
@@ -378,7 +378,7 @@ class HybridMotion:
         key = tuple(pattern.values())
         if key not in self._modes:
             self._modes[key] = Mode(
-                problem, pattern, self._clock, self._request, self._precision, self._end, self._known
+                problem, pattern, self._time_events, self._request, self._precision, self._end, self._known
             )
         return self._modes[key]
 

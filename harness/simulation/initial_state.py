@@ -17,12 +17,12 @@ from numpy.typing import NDArray
 from ..failures import Failure, HolonomError
 from ..program.motion_problem import By, MotionProblem, Origin, computing
 from ..program.sign_pattern import at_start, problem_in
-from .diagnostics import constraint_residuals, scaled_residual
 from .evaluation import Numbers, lane_evaluation
 from .inputs import Inputs
 from .matrices import LaneMatrices
 from .nearest_root import ITERATIONS, ROUNDING, SETTLED, Linearized, NearestRoots
 from .nominal import nominal_of, share_of
+from .residuals import constraint_residuals, scaled_residual
 
 LIMITED_DIGITS = 1e-9  # share of the largest datum by which data may be corrected, and of coordinates a residual
 SOON = 1e-9  # of the first instant, or of the nominal time: after it, for functions that vanish there

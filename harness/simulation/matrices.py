@@ -46,16 +46,13 @@ class MotionMatrices:
 
     Attributes
     ----------
-    coordinates : int
-        How many there are: n.
     nominal : Nominal
         Sizes of the motion's quantities.
     """
 
     def __init__(self, problem: MotionProblem) -> None:
         require_signs_known(problem)
-        self.coordinates, self._kept = len(problem.coordinates), problem.independent
-        self._problem = problem
+        self._problem, self._kept = problem, problem.independent
         self._layout = _Layout(problem)
         self._evaluate = evaluation_once(problem, problem.matrices, read_precision("double"))
         self._inputs = Inputs(problem)

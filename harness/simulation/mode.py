@@ -12,7 +12,7 @@ from ..program.motion_problem import By, MotionProblem, computing
 from ..program.motion_program import Program
 from ..program.precision import Precision
 from ..program.sign_pattern import (
-    HELD,
+    SLIDING,
     Pattern,
     in_numbers,
     problem_in,
@@ -20,20 +20,20 @@ from ..program.sign_pattern import (
     sharing_programs,
     switching_function,
 )
-from .clock import Tick
 from .constraints.program_projection import ProgramProjection
 from .constraints.singularity import no_controls, require_gradient, shortly_before, vanishing_instants
 from .control_matrix import ControlMatrix, controls_may_fail
-from .diagnosis import Instant, dependence
-from .diagnostics import EnergyBalance
+from .energy import EnergyBalance
 from .engines.choice import Between
 from .engines.engine import Step, Task
 from .engines.fallback import FallbackEngine
 from .evaluation import Evaluation, Numbers, as_floats, evaluation, evaluation_once
+from .hard_cases import Instant, dependence
 from .inputs import Inputs
 from .matrices import MotionMatrices, start_of
 from .request import SimulationRequest
 from .time_dependence import time_dependence
+from .time_events import TimeEvent
 from .zeros import SignedFunctions
 
 
@@ -48,7 +48,7 @@ class Surfaces(SignedFunctions):
         for sign in problem.signs:
             if sign.name not in known:
                 value = pattern[sign.name]
-                self._rows += [(sign.name, to, -to) for to in ((1, -1) if value == HELD else (-value,))]
+                self._rows += [(sign.name, to, -to) for to in ((1, -1) if value == SLIDING else (-value,))]
         what = "surfaces", precision.name, frozenset(pattern.items()), frozenset(known)
         self._functions = problem.once(
             what,
@@ -66,7 +66,7 @@ class Surfaces(SignedFunctions):
 
 def _inside(problem: MotionProblem, pattern: Pattern, name: str, to: int) -> Program:
     """The function whose sign tells on which side of a surface the motion is."""
-    if pattern[name] == HELD:
+    if pattern[name] == SLIDING:
         return switching_function(problem, "drive", name, {**pattern, name: to})
     return switching_function(problem, "switch", name, pattern)
 
@@ -78,7 +78,7 @@ class Mode:
     ----------
     problem : MotionProblem
         Its start is where the motion first has this pattern.
-    clock : mapping of str to Tick
+    time_events : mapping of str to TimeEvent
         The signs that the time alone decides.
     request, precision, end
         As for `HybridMotion`.
@@ -90,13 +90,13 @@ class Mode:
         self,
         problem: MotionProblem,
         pattern: Pattern,
-        clock: Mapping[str, Tick],
+        time_events: Mapping[str, TimeEvent],
         request: SimulationRequest,
         precision: Precision,
         end: Any,
         known: dict[Hashable, MotionProblem],
     ) -> None:
-        self._whole, self.pattern, self._precision, self._clock = problem, pattern, precision, clock
+        self._whole, self.pattern, self._precision, self._time_events = problem, pattern, precision, time_events
         analytic = problem_in(problem, pattern)
         if any(sign.by is By.TIME for sign in problem.signs):
             analytic = sharing_programs(analytic, known)
@@ -108,7 +108,7 @@ class Mode:
         self.engine = FallbackEngine(Task(self.problem, request, precision, end, self.matrices), between)
         self._start, self._end = float(problem.start["t"]), float(end)
         self._doubtful = vanishing_instants(self.problem, self.matrices, self._end)
-        to_come = (float(tick.t) for name, tick in clock.items() if pattern[name] != tick.to)
+        to_come = (float(event.t) for name, event in time_events.items() if pattern[name] != event.to)
         self.by_time = time_dependence(
             in_numbers(self.problem, self.problem.matrices),
             self._start,
@@ -122,7 +122,7 @@ class Mode:
     @cached_property
     def surfaces(self) -> Surfaces:
         """The surfaces on which the pattern ends."""
-        return Surfaces(self._whole, self.pattern, self._precision, self._end - self._start, self._clock)
+        return Surfaces(self._whole, self.pattern, self._precision, self._end - self._start, self._time_events)
 
     @cached_property
     def momenta(self) -> Any:

@@ -13,7 +13,7 @@ from .engines.engine import Step
 from .evaluation import Numbers, as_floats
 from .mode import Mode
 
-STRETCH = 2**14
+BLOCK = 2**14
 """Samples that are handed on together: enough for arrays to pay, little beside what a process takes anyway."""
 
 PORTION = 2**10
@@ -23,7 +23,7 @@ TOGETHER = 2**8
 """Intervals over which the power is integrated together: between two points of a table there may be one alone."""
 
 
-class Stretch(NamedTuple):
+class SampleBlock(NamedTuple):
     """Consecutive samples of a motion."""
 
     instants: Numbers  # shape (k,)
@@ -58,7 +58,7 @@ class Recording:
     instants : iterable of numbers, or None
         In order, before the last; None for the ends of the steps.
     hand_on : callable
-        Takes each `Stretch`.
+        Takes each `SampleBlock`.
 
     Attributes
     ----------
@@ -71,7 +71,7 @@ class Recording:
     """
 
     def __init__(
-        self, mode: Mode, instants: Iterable[Any] | None, zero: Any, hand_on: Callable[[Stretch], None]
+        self, mode: Mode, instants: Iterable[Any] | None, zero: Any, hand_on: Callable[[SampleBlock], None]
     ) -> None:
         self.mode, self._hand_on = mode, hand_on
         self._steps = instants is None
@@ -139,11 +139,11 @@ class Recording:
         """Hand on what has been kept since the last time."""
         if self._instants:
             arrays = np.array(self._instants), np.array(self._states).T, np.array(self._works)
-            self._hand_on(Stretch(*arrays, self._modes))
+            self._hand_on(SampleBlock(*arrays, self._modes))
         self._instants, self._states, self._works, self._modes = [], [], [], []
 
     def _keep(self, instant: Any, state: Numbers) -> None:
-        if len(self._instants) == STRETCH:  # the last one stays, for `end` may change it
+        if len(self._instants) == BLOCK:  # the last one stays, for `end` may change it
             self.hand_on()
         self._instants.append(instant)
         self._states.append(state)

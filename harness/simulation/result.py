@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 
 from ..extras import missing_package
 from ..shown import Shown
-from .diagnosis import HardCase
+from .accuracy_check import AccuracyViolation
 from .engines.choice import Choice
 from .engines.fallback import EngineSegment
 from .events import Ending
+from .hard_cases import HardCase
 from .hybrid_motion import Switching
-from .trust import Doubt
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -36,9 +36,9 @@ class Report:
         Empty where the scene does not observe them.
     residuals : mapping of str to float
         ``position``, ``velocity`` and ``acceleration``: how far the final state is from the constraints, as
-        `holonom.simulation.diagnostics` defines it.
+        `holonom.simulation.residuals` defines it.
     energy_error : float
-        Energy gained beyond what the forces and the controls did as work, see `holonom.simulation.diagnostics`.
+        Energy gained beyond what the forces and the controls did as work, see `holonom.simulation.energy`.
     condition : float
         Condition number of G = J A^-1 J^T at the end, each constraint scaled to unit length.
     moved : (str, str) or None
@@ -55,7 +55,7 @@ class Report:
         Kinds of hard case that the motion is.
     switchings : tuple of Switching
         Instants at which the motion is not analytic, and how it passed them.
-    doubts : tuple of Doubt
+    doubts : tuple of AccuracyViolation
         What is out of proportion to the tolerance; a motion with any is no result.
     ending : Ending or None
         Whether an event ended the motion; None where the scene names none.
@@ -87,7 +87,7 @@ class Report:
     correction: tuple[str, str] | None
     cases: tuple[HardCase, ...]
     switchings: tuple[Switching, ...]
-    doubts: tuple[Doubt, ...]
+    doubts: tuple[AccuracyViolation, ...]
     ending: Ending | None = None
     choice: Choice | None = None
     controls: Mapping[str, Any] = field(default_factory=dict)

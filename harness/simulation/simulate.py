@@ -14,18 +14,18 @@ from ..program.motion_problem import MotionProblem
 from ..program.precision import Precision, read_precision
 from ..program.sign_pattern import with_values_in
 from ..supervisor import doing
-from .diagnosis import HardCase, Instant, hard_cases
-from .diagnostics import condition, residuals
+from .accuracy_check import doubts, energy_missed, expected, may_hide
+from .defect import DefectControl
 from .engines.engine import JUDGED_AFTER, Solutions, Step, require_reach
 from .engines.registry import engine_class
 from .evaluation import Numbers, as_floats, one_blas_thread
 from .events import Ending, first_event
+from .hard_cases import HardCase, Instant, hard_cases
 from .hybrid_motion import HybridMotion
-from .passed_over import StepsHeldAgainstTheEquations
-from .recording import Recording, Stretch, largest
+from .recording import Recording, SampleBlock, largest
 from .request import FINAL_STATE_ALONE, EngineName, SimulationRequest, Stabilization
+from .residuals import condition, residuals
 from .result import Report, Sampled, Samples, Simulation, joined
-from .trust import doubts, energy_missed, expected, may_hide
 
 Progress = Callable[[float], None]
 TakeSamples = Callable[[Sampled], None]
@@ -69,7 +69,7 @@ def follow(
         _require_steps(problem, request)
         end, ending = end_of(problem, request)
         with doing("compiling the motion"):
-            prepared = _Simulation(followable(problem, request), request, take, end, ending)
+            prepared = _Simulation(parametrized_problem(problem, request), request, take, end, ending)
         with doing("following the motion"), closing(prepared.motion):
             return prepared.run(progress, watch)
 
@@ -93,7 +93,7 @@ def end_of(problem: MotionProblem, request: SimulationRequest) -> tuple[Any, End
         return end, None
     with (
         doing("looking for the end of the motion"),
-        closing(HybridMotion(followable(problem, request), request, precision, end)) as motion,
+        closing(HybridMotion(parametrized_problem(problem, request), request, precision, end)) as motion,
     ):
         event = first_event(motion, precision, end)
     if event is None:
@@ -101,7 +101,7 @@ def end_of(problem: MotionProblem, request: SimulationRequest) -> tuple[Any, End
     return event.t, Ending(problem.until, event.name)
 
 
-def followable(problem: MotionProblem, request: SimulationRequest) -> MotionProblem:
+def parametrized_problem(problem: MotionProblem, request: SimulationRequest) -> MotionProblem:
     """The motion with its parameters open where the engines take them so, else with their values put in.
 
     What follows a motion in double precision, as it is or projected, is compiled once for all values.
@@ -147,10 +147,10 @@ class _Simulation:
         self.compile_seconds = time.perf_counter() - begun - self.motion.compile_seconds
         zero = self.precision.number("0")
         self.recording = Recording(self.begun, self._wanted_instants(), zero, self._hand_on)
-        self.exchange = Exchange()
+        self.exchange = EnergyStatistics()
         self.reactions = np.zeros(len(problem.multipliers))  # the largest multipliers so far
         self.steps = (
-            StepsHeldAgainstTheEquations(self.end - self.start, self.precision)
+            DefectControl(self.end - self.start, self.precision)
             if may_hide(problem.matrices, ("t", *problem.parameters))
             else None
         )
@@ -164,7 +164,7 @@ class _Simulation:
         self.recording.hand_on()
         return self._report(seconds)
 
-    def _hand_on(self, stretch: Stretch) -> None:
+    def _hand_on(self, stretch: SampleBlock) -> None:
         """Work out what is observed at samples, and what the report needs of them."""
         found = (mode.engine.solutions(t, states) for mode, t, states in stretch.by_mode())
         self.solutions = Solutions(*map(_side_by_side, zip(*found, strict=True)))
@@ -215,12 +215,12 @@ class _Simulation:
 
         return take
 
-    def _energies(self, stretch: Stretch) -> Samples:
+    def _energies(self, stretch: SampleBlock) -> Samples:
         """Energies at the samples, and what they differ by from the energy at the start and the work done since."""
         energy = np.concatenate([mode.balance.energy(t, states) for mode, t, states in stretch.by_mode()])
         return {"energy": energy, "energy_error": energy - self.begun.energy_at(self.start, self.first) - stretch.works}
 
-    def _controls(self, stretch: Stretch) -> Samples:
+    def _controls(self, stretch: SampleBlock) -> Samples:
         found = [mode.controls(t, states) for mode, t, states in stretch.by_mode()]
         names = () if self.problem.controls is None else self.problem.controls.outputs
         return dict(zip(names, np.concatenate(found, axis=1), strict=True))
@@ -238,7 +238,7 @@ class _Simulation:
             "constraint_forces": {f"Lambda[{s}]": row for s, row in enumerate(forces, start=1)},
         }
 
-    def _residual_samples(self, stretch: Stretch, solutions: Solutions) -> Samples:
+    def _residual_samples(self, stretch: SampleBlock, solutions: Solutions) -> Samples:
         if "residuals" not in self.problem.observe:
             return {}
         columns = zip(stretch.modes, stretch.instants, stretch.states.T, solutions.accelerations.T, strict=True)
@@ -313,7 +313,7 @@ def _side_by_side(parts: Sequence[Numbers]) -> Numbers:
     return np.concatenate([rows[:shared] for rows in parts], axis=1)
 
 
-class Exchange:
+class EnergyStatistics:
     """What energy did on the way: the largest change and the largest error, stretch by stretch."""
 
     def __init__(self) -> None:

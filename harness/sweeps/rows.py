@@ -19,15 +19,15 @@ from ..program.heyoka_function import import_heyoka
 from ..program.motion_problem import MotionProblem, require_analytic
 from ..program.motion_program import Expression, Name, Operation, Program, calls_in
 from ..program.precision import read_precision
+from ..simulation.accuracy_check import MARGIN, energy_missed, expected, may_hide, trusted
 from ..simulation.control_matrix import controls_may_fail
-from ..simulation.diagnostics import constraint_residuals
 from ..simulation.evaluation import in_full_vectors
 from ..simulation.initial_state import initial_states_of, started
 from ..simulation.matrices import LaneMatrices
 from ..simulation.nominal import nominal_at_each
 from ..simulation.request import SimulationRequest, Stabilization
+from ..simulation.residuals import constraint_residuals
 from ..simulation.simulate import last_instant
-from ..simulation.trust import MARGIN, energy_missed, expected, may_hide, trusted
 from .axes import Axes
 from .extremes import Steps, first_zero, largest, largest_size
 from .kept import ALONG, Kept, Kind

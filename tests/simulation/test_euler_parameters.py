@@ -9,7 +9,7 @@ import holonom
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request, Solve
 from holonom.sandbox import Limits
-from holonom.simulation.diagnosis import HardCase
+from holonom.simulation.hard_cases import HardCase
 from holonom.simulation.request import EngineName, SimulationRequest
 from holonom.simulation.simulate import simulate
 

@@ -14,7 +14,7 @@ from holonom.failures import Failure, HolonomError, HolonomWarning
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request
 from holonom.sandbox import Limits
-from holonom.simulation.diagnosis import HardCase, Instant, fastest_decay
+from holonom.simulation.hard_cases import HardCase, Instant, fastest_decay
 from holonom.simulation.matrices import MotionMatrices
 from holonom.simulation.request import EngineName, SimulationRequest, Stabilization
 from holonom.simulation.result import Report, Simulation

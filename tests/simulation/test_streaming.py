@@ -15,7 +15,7 @@ from holonom.simulation import output, recording
 from holonom.simulation.output import require_disk, sample_file, write_samples
 from holonom.simulation.request import SimulationRequest
 from holonom.simulation.result import Sampled
-from holonom.simulation.simulate import Exchange, follow, simulate
+from holonom.simulation.simulate import EnergyStatistics, follow, simulate
 
 SAMPLES = 50
 LARGER = 20e6
@@ -30,7 +30,7 @@ def lengthening() -> MotionProblem:
 
 @pytest.fixture
 def short_stretches(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(recording, "STRETCH", 7)
+    monkeypatch.setattr(recording, "BLOCK", 7)
     monkeypatch.setattr(recording, "PORTION", 3)
 
 
@@ -44,7 +44,7 @@ def followed(asked: MotionProblem, **wanted) -> list[Sampled]:
 def test_stretches_are_the_motion_and_none_is_longer_than_it_may_be(lengthening, short_stretches, wanted):
     parts = followed(lengthening, **wanted)
     together = np.concatenate([part.instants for part in parts])
-    assert max(len(part.instants) for part in parts) <= recording.STRETCH < len(together)
+    assert max(len(part.instants) for part in parts) <= recording.BLOCK < len(together)
     assert together[0] == 0
     assert together[-1] == 3
     assert (np.diff(together) > 0).all()
@@ -54,7 +54,7 @@ def test_stretches_are_the_motion_and_none_is_longer_than_it_may_be(lengthening,
 
 def test_the_report_does_not_depend_on_the_stretches(lengthening, monkeypatch):
     whole = simulate(lengthening, SimulationRequest(until=3, samples=SAMPLES))
-    monkeypatch.setattr(recording, "STRETCH", 7)
+    monkeypatch.setattr(recording, "BLOCK", 7)
     monkeypatch.setattr(recording, "PORTION", 3)
     parts = simulate(lengthening, SimulationRequest(until=3, samples=SAMPLES))
     for (name, samples), (_, others) in zip(whole.columns(), parts.columns(), strict=True):
@@ -106,7 +106,7 @@ def test_a_sample_takes_no_more_of_the_disk_than_is_said(lengthening, tmp_path, 
 
 def test_an_energy_that_is_no_number_is_not_passed_over():
     """Of a larger number and none, max() in Python takes the first."""
-    exchange = Exchange()
+    exchange = EnergyStatistics()
     exchange.add(np.array([2.0]), np.array([0.5]))
     exchange.add(np.array([np.nan]), np.array([np.nan]))
     exchange.add(np.array([2.0]), np.array([0.5]))

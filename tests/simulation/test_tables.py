@@ -16,7 +16,7 @@ from holonom.program.model import scene_model
 from holonom.program.request import Request
 from holonom.program.table_numbers import OfTime
 from holonom.series.power_series import values_at
-from holonom.simulation.clock import ticks
+from holonom.simulation.time_events import time_events
 
 POINTS = [(0, 0), (1, 2), (1.3, 0.5), (3.5, 1), (4, -1)]
 ENDS = {"natural": "natural", "clamped": "clamped", "[3, -1/2]": ((1, 3.0), (1, -0.5))}
@@ -118,7 +118,7 @@ def test_the_check_takes_the_law_around_the_start(driven):
 
 def test_signs_of_the_time_alone_change_at_known_instants(driven):
     problem = driven("if 3*t < 7 then t else sin(t) + max(t^2 - 9, 0) - 2", span="0, 4")._problem("direct", 17)
-    known = ticks(problem)
+    known = time_events(problem)
     assert [(sign.of, known[sign.name].to) for sign in problem.signs if sign.name in known] == [("3*t-7", 1)]
     assert float(next(iter(known.values())).t) == pytest.approx(7 / 3)
 

@@ -20,7 +20,7 @@ from holonom.failures import HolonomError
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request
 from holonom.sandbox import Limits
-from holonom.simulation.diagnosis import HardCase
+from holonom.simulation.hard_cases import HardCase
 from holonom.simulation.nominal import nominal_of
 from holonom.simulation.request import EngineName, SimulationRequest
 from holonom.simulation.simulate import simulate

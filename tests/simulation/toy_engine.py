@@ -5,9 +5,9 @@ from math import ceil
 
 import numpy as np
 
-from holonom.simulation.diagnosis import HardCase
 from holonom.simulation.engines.engine import Obstacle, Solutions, Step
 from holonom.simulation.evaluation import evaluation_once
+from holonom.simulation.hard_cases import HardCase
 from holonom.simulation.inputs import Inputs
 from holonom.simulation.matrices import start_of
 

@@ -8,7 +8,7 @@ import mpmath
 from mpmath import mp, mpf
 
 from ...language import translatable
-from ...simulation.diagnosis import HardCase
+from ...simulation.hard_cases import HardCase
 
 MOST = 16.0  # digits of a double
 TRUTH_DIGITS = 40  # that a truth is computed with

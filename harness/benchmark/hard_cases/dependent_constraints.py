@@ -10,7 +10,7 @@ import numpy as np
 from mpmath import asin, cos, findroot, mpf, quad, sin, sqrt
 
 from ...language import translatable
-from ...simulation.diagnosis import HardCase
+from ...simulation.hard_cases import HardCase
 from ...simulation.matrices import MotionMatrices, Vector
 from .case import Extent, Findings, Sweep, certified, digits_kept, ours, required
 from .runs import places_kept, plain_motion, problem, simulated

@@ -8,7 +8,7 @@ Whittaker, Analytical Dynamics, section 44.
 from mpmath import ellipfun, ellipk, mpf, pi, sin, sqrt
 
 from ...language import translatable
-from ...simulation.diagnosis import HardCase
+from ...simulation.hard_cases import HardCase
 from .case import Extent, Findings, certified, digits_kept, digits_of_error, ours, required, theirs
 from .runs import PLAIN, places_kept, plain_motion, problem, simulated
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from ...language import translatable
-from ...simulation.diagnosis import HardCase
+from ...simulation.hard_cases import HardCase
 from .case import Case, CaseReport, Extent, examined
 from .dependent_constraints import parallel_constraints, sarrus_linkage
 from .mass_ratio import mass_ratio

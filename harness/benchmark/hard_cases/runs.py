@@ -18,7 +18,7 @@ from ...language import translatable
 from ...program.motion_problem import MotionProblem, motion_problem
 from ...program.request import Request, Solve
 from ...sandbox import Limits
-from ...simulation.diagnosis import HardCase
+from ...simulation.hard_cases import HardCase
 from ...simulation.matrices import Matrix, MotionMatrices, Vector
 from ...simulation.request import FINAL_STATE_ALONE, SimulationRequest
 from ...simulation.simulate import simulate

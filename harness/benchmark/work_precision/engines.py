@@ -50,8 +50,8 @@ def solve_name(solve: Solve) -> str:
     return translatable("solve: %(solve)s", solve=solve)
 
 
-def drift_cures(problem: MotionProblem, until: Fraction, tol: float) -> Iterator[Candidate]:
-    """The cures of drift at one tolerance, in double precision; arguments as of `taylor_ladder`."""
+def stabilizations(problem: MotionProblem, until: Fraction, tol: float) -> Iterator[Candidate]:
+    """The stabilizations at one tolerance, in double precision; arguments as of `taylor_ladder`."""
     for drift in Stabilization:
         prepare = partial(prepare_taylor, problem, until, "double", tol, drift)
         yield Candidate(Group.DRIFT, translatable("drift: %(cure)s", cure=drift), f"tol {tol:g}", until, prepare)
@@ -92,7 +92,7 @@ class Repeated:
 
 
 def operations_of_a_step(problem: MotionProblem, tol: float) -> int:
-    """Operations of the expansion that a step takes; the cures of drift are not counted."""
+    """Operations of the expansion that a step takes; stabilizations are not counted."""
     return expansion_operations(acceleration_program(problem), order_for(-math.log10(tol)))
 
 

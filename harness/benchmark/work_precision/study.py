@@ -23,10 +23,10 @@ from ..machine import Machine, this_machine
 from .advice import Advice, Price, cheapest_methods, prices
 from .contest import measure, without_caches
 from .engines import (
-    drift_cures,
     operations_of_a_step,
     runge_kutta_ladder,
     solve_name,
+    stabilizations,
     taylor_ladder,
     taylor_name,
     the_two_solves,
@@ -55,7 +55,7 @@ class Plan:
     solver_tolerances: Sequence[float] = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-13)  # of the Runge-Kutta engine, too
     orders: Sequence[int] = (10, 20, 30, 40, 60, 80)  # of a single series
     series_digits: int = 30  # of rounded coefficients
-    compared_tolerance: float = 1e-10  # at which cures of drift and solves are compared
+    compared_tolerance: float = 1e-10  # at which stabilizations and solves are compared
     longest_reference: float = 15.0  # seconds that a run for the reference may be expected to take
 
     @property
@@ -212,7 +212,7 @@ def _candidates(
         yield from taylor_ladder(problem, until, precision, tolerances)
     yield from runge_kutta_ladder(problem, until, plan.solver_tolerances)
     yield from solver_ladder(problem, until, plan.solver_tolerances)
-    yield from drift_cures(problem, until, plan.compared_tolerance)
+    yield from stabilizations(problem, until, plan.compared_tolerance)
     yield from the_two_solves(problems, until, plan.compared_tolerance)
 
 

@@ -20,8 +20,8 @@ from ...program.motion_problem import MotionProblem, computing
 from ...program.motion_program import Name
 from ...program.sign_pattern import in_numbers
 from ...program.table_numbers import OfTime
-from ..diagnosis import Instant
 from ..evaluation import Numbers, as_floats
+from ..hard_cases import Instant
 from ..matrices import Matrices, MotionMatrices, Vector, start_of
 from .directions import DEPENDENT, WeightedConstraints, rank_of, weighted_constraints
 from .projection import InconsistentConstraints, settle

@@ -1,4 +1,4 @@
-"""The equations of motion for heyoka's integrators, as they are or with a cure for drift in them.
+"""The equations of motion for heyoka's integrators, as they are or with a stabilization of the constraints in them.
 
 The projection program gives the least d and e, in the mass metric, with J d = -f and J e = -df/dt. With them
 
@@ -34,7 +34,7 @@ def equations_of_motion(problem: MotionProblem, program: Program, precision: Pre
 def stabilized_equations(
     problem: MotionProblem, program: Program, precision: Precision, drift: Stabilization, decay: float
 ) -> Equations:
-    """The first-order equations with Baumgarte's cure or Gear's, Gupta's and Leimkuhler's.
+    """The first-order equations with the stabilization of Baumgarte, or of Gear, Gupta and Leimkuhler.
 
     Parameters
     ----------
@@ -53,8 +53,8 @@ def stabilized_equations(
     velocity = [found[f"velocity_correction[{s}]"] for s in range(1, n + 1)]
     if drift is Stabilization.BAUMGARTE:
         pull = [two * gamma * e + gamma * gamma * d for d, e in zip(position, velocity, strict=True)]
-        cures = [import_heyoka().expression(precision.number("0"))] * n + pull
+        terms = [import_heyoka().expression(precision.number("0"))] * n + pull
     else:
-        cures = [gamma * d for d in (*position, *velocity)]
+        terms = [gamma * d for d in (*position, *velocity)]
     plain = equations_of_motion(problem, program, precision)
-    return [(variable, rate + cure) for (variable, rate), cure in zip(plain, cures, strict=True)]
+    return [(variable, rate + term) for (variable, rate), term in zip(plain, terms, strict=True)]

@@ -5,7 +5,7 @@
 
        accelerations                               and, where the constraints are to be kept,
        position_corrections, velocity_corrections  with the number PROJECTED of steps after which the state is
-                                                   moved to them, or with Baumgarte's cure or Gear's (GGL), which
+                                                   moved to them, or with Baumgarte's or Gear's (GGL) terms, which
                                                    add to the rates so that what is missed dies out like
                                                    exp(-GAMMA t).                                                */
 
@@ -45,7 +45,7 @@ static int are_finite(int count, const double *x)
 }
 
 /* d and e of stabilization.py, added to the rates. */
-static void cure_drift(double t, const double *state, double *out)
+static void stabilize(double t, const double *state, double *out)
 {
 #ifdef GAMMA
     double position[COORDINATES], velocity[COORDINATES];
@@ -67,7 +67,7 @@ static void evaluate(double t, const double *state, double *out)
 {
     memcpy(out, state + COORDINATES, COORDINATES*sizeof *out);
     accelerations(t, state, out + COORDINATES);
-    cure_drift(t, state, out);
+    stabilize(t, state, out);
     evaluations++;
 }
 

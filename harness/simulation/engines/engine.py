@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from ...failures import Failure, HolonomError
 from ...program.motion_problem import MotionProblem
 from ...program.precision import Precision
-from ..diagnosis import HardCase
 from ..evaluation import Numbers
+from ..hard_cases import HardCase
 from ..matrices import MotionMatrices
 from ..request import EngineName, SimulationRequest
 from .choice import Between

@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...failures import Failure, HolonomError
-from ..diagnosis import HardCase
 from ..evaluation import Numbers, as_floats
+from ..hard_cases import HardCase
 from ..request import EngineName
 from .choice import TRIAL, Between, Choice, quicker_engine
 from .engine import Engine, Obstacle, Solutions, Step, Task

@@ -20,8 +20,8 @@ from ...program.motion_problem import MotionProblem, require_signs_known
 from ...program.precision import Precision
 from ..constraints.factorization import factored_constraints
 from ..constraints.singularity import Watch, no_controls, no_gradient
-from ..diagnosis import HardCase
 from ..evaluation import Evaluation, Numbers, as_floats, evaluation_once
+from ..hard_cases import HardCase
 from ..inputs import Inputs
 from ..matrices import MotionMatrices
 from ..request import EngineName
@@ -30,7 +30,7 @@ from .engine import Obstacle, Solutions, Step, require_reach
 FIRST_BLOCK = 128  # steps; what surrounds a block, projection above all, takes as long as some small steps
 WATCHED = 32  # steps behind an obstacle
 SHRUNK = 32  # times shorter than the longest: a step that calls for a closer look; 16 occurs in quiet motions
-DECAYS_IN_A_RUN = 50.0  # gamma of Baumgarte's cure and Gear's, times the length of the time span
+DECAYS_IN_A_RUN = 50.0  # gamma of Baumgarte's and Gear's stabilization, times the length of the time span
 SHORTEST = 1e-10  # of the longest: a step that leads nowhere
 SHORTER = 1e-3  # of the longest: a step that makes the program's pivots suspect
 LOST, KEPT = 1e-11, 1e-12  # relative errors of its accelerations: a pivot vanishes; none does any more
@@ -272,14 +272,11 @@ class ProgramEngine:
 
 
 def decay_until(end: Any, problem: MotionProblem, precision: Precision) -> float:
-    """The rate gamma of Baumgarte's cure and Gear's for a motion to an instant."""
+    """The rate gamma of Baumgarte's and Gear's stabilization for a motion to an instant."""
     return DECAYS_IN_A_RUN / float(end - precision.number(problem.start["t"]))
 
 
 def decay_in(problem: MotionProblem, decay: float | None) -> float:
-    """The rate gamma of Baumgarte's cure and Gear's: what is asked for, or `DECAYS_IN_A_RUN` by the time span's length.
-
-    Where the scene names no time span, a unit of time takes its place.
-    """
+    """The rate gamma: what is asked for, or `DECAYS_IN_A_RUN` by the time span's length, one without a span."""
     first, last = map(float, problem.time_span or (0, 1))
     return DECAYS_IN_A_RUN / (last - first) if decay is None else decay

@@ -21,7 +21,7 @@ from ..constraints.directions import EPSILON, dependent_constraints, rank_of, we
 from ..constraints.factorization import factored_constraints
 from ..constraints.projection import InconsistentConstraints, settle
 from ..constraints.singularity import extrapolated_zero, least_of, probed, singular_values_at
-from ..diagnosis import HardCase
+from ..hard_cases import HardCase
 from ..matrices import Matrix, MotionMatrices, Vector, start_of
 from ..request import EngineName
 from .engine import Solutions, Step, Task, require_reach

@@ -68,7 +68,7 @@ class RungeKuttaEngine(ProgramEngine):
         Tolerance of a step, relative, and absolute in terms of nominal sizes; None for `USUAL`.
     drift : Stabilization
     decay : float or None
-        gamma of Baumgarte's cure and Gear's, as for `TaylorEngine`.
+        gamma of Baumgarte's and Gear's stabilization, as for `TaylorEngine`.
     matrices : MotionMatrices or None
         Of the same motion; None to make them.
 
@@ -94,9 +94,9 @@ class RungeKuttaEngine(ProgramEngine):
             raise HolonomError(Failure.TOLERANCE_UNHELD, detail=holds)
         self.tol = USUAL if tol is None else tol
         begun = time.perf_counter()
-        cure = drift if problem.multipliers else Stabilization.NONE
+        stabilization = drift if problem.multipliers else Stabilization.NONE
         nominal = self._matrices.nominal
-        self._integrator = DormandPrince(problem, self.tol, cure, decay_in(problem, decay), nominal)
+        self._integrator = DormandPrince(problem, self.tol, stabilization, decay_in(problem, decay), nominal)
         self.state = self._integrator.state
         self.compile_seconds = time.perf_counter() - begun
 

@@ -48,7 +48,7 @@ class TaylorEngine(ProgramEngine):
         Whether to compile in compact mode; None to begin with code that is quickly compiled, and to compile better
         code when what is left of a run earns that back.
     decay : float or None
-        gamma of Baumgarte's cure and Gear's; None for `DECAYS_IN_A_RUN` by the length of the scene's time span.
+        gamma of Baumgarte's and Gear's stabilization; None for `DECAYS_IN_A_RUN` by the scene's time span.
     matrices : MotionMatrices or None
         Of the same motion; None to make them.
     end : number or None

@@ -6,7 +6,7 @@ from holonom.explanations import ADVICE, advice, remarks
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
 from holonom.sandbox import Limits
-from holonom.simulation.diagnosis import HardCase, Instant, stiffness
+from holonom.simulation.hard_cases import HardCase, Instant, stiffness
 from holonom.simulation.matrices import MotionMatrices, start_of
 from holonom.simulation.request import FINAL_STATE_ALONE, SimulationRequest
 from holonom.simulation.simulate import simulate

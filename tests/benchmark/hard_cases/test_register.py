@@ -6,7 +6,7 @@ from holonom.benchmark.hard_cases.case import CaseReport, Extent, Outcome, exami
 from holonom.benchmark.hard_cases.register import REGISTER
 from holonom.benchmark.hard_cases.runs import PLAIN
 from holonom.benchmark.hard_cases.solves import DIRECT, ORTHOGONAL, PIVOTED, TEXTBOOK
-from holonom.simulation.diagnosis import HardCase
+from holonom.simulation.hard_cases import HardCase
 
 LOSING = {
     "parallel constraints": {TEXTBOOK, DIRECT},

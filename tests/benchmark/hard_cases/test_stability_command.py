@@ -11,7 +11,7 @@ from holonom.benchmark.hard_cases.case import Case, Extent, Sweep, examined, our
 from holonom.cli import holonom
 from holonom.explanations import advice
 from holonom.formats import schema
-from holonom.simulation.diagnosis import HardCase
+from holonom.simulation.hard_cases import HardCase
 
 
 def shown(name: str, *found) -> Case:

@@ -12,8 +12,8 @@ import pytest
 from holonom.benchmark.work_precision.contest import measure
 from holonom.benchmark.work_precision.engines import (
     RUNGE_KUTTA,
-    drift_cures,
     runge_kutta_ladder,
+    stabilizations,
     taylor_ladder,
     the_two_solves,
 )
@@ -92,7 +92,7 @@ def test_what_the_table_states_is_the_distance_from_the_closed_form(problems, re
         *taylor_ladder(problem, UNTIL, "30", (1e-20,)),
         *runge_kutta_ladder(problem, UNTIL, (1e-9,)),
         *solver_ladder(problem, UNTIL, (1e-6,)),
-        *drift_cures(problem, UNTIL, 1e-10),
+        *stabilizations(problem, UNTIL, 1e-10),
         *the_two_solves(problems, UNTIL, 1e-10),
     ]
     results = measure(candidates, reference, lambda: None)

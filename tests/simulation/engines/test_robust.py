@@ -10,9 +10,9 @@ from holonom.failures import Failure, HolonomError
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request
 from holonom.sandbox import Limits
-from holonom.simulation.diagnostics import condition
 from holonom.simulation.engines import robust
 from holonom.simulation.engines.robust import RobustEngine
+from holonom.simulation.residuals import condition
 
 FOUR_BAR_AT_10 = [0.47838505776097055901, 0.87815017879120930116]  # by its elliptic functions, to twenty digits
 

@@ -5,7 +5,7 @@ import pytest
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
 from holonom.sandbox import Limits
-from holonom.simulation import diagnosis
+from holonom.simulation import hard_cases
 from holonom.simulation.matrices import MotionMatrices, start_of
 
 # Two pendulums that hang at rest, each on a rod: small swings have the frequencies sqrt(g/l).
@@ -24,11 +24,11 @@ def test_stiffness_is_the_ratio_of_two_pendulums_lengths(write_scene, monkeypatc
     """The equations of motion were factored anew for each way to move, a thousand times for a tree of 60 bodies."""
     factored = []
     monkeypatch.setattr(
-        diagnosis,
+        hard_cases,
         "DependentConstraints",
-        lambda *of, known=diagnosis.DependentConstraints: factored.append(1) or known(*of),
+        lambda *of, known=hard_cases.DependentConstraints: factored.append(1) or known(*of),
     )
     problem = motion_problem(write_scene(PENDULUMS), Request(), Limits())
-    at = diagnosis.Instant(MotionMatrices(problem), *start_of(problem))
-    assert diagnosis.stiffness(at) == pytest.approx(100, rel=1e-6)
+    at = hard_cases.Instant(MotionMatrices(problem), *start_of(problem))
+    assert hard_cases.stiffness(at) == pytest.approx(100, rel=1e-6)
     assert len(factored) == 1

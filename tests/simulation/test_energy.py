@@ -8,10 +8,11 @@ import holonom
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
 from holonom.sandbox import Limits
-from holonom.simulation.diagnostics import EnergyBalance, condition, residuals
+from holonom.simulation.energy import EnergyBalance
 from holonom.simulation.engines.robust import RobustEngine
 from holonom.simulation.matrices import Matrices, MotionMatrices
 from holonom.simulation.nominal import Nominal
+from holonom.simulation.residuals import condition, residuals
 
 
 def balance_of(motion: RobustEngine, asked) -> EnergyBalance:

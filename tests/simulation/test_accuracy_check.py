@@ -9,7 +9,7 @@ import pytest
 
 from holonom.program.motion_program import Call, Name, Operation, Program
 from holonom.program.request import Solve
-from holonom.simulation.trust import doubts, expected, may_hide, trusted
+from holonom.simulation.accuracy_check import doubts, expected, may_hide, trusted
 
 KEPT = {"position": 1e-16, "velocity": 1e-15, "energy": 1e-13}
 

@@ -28,7 +28,7 @@ MISSED = {
 FINEST = 1e-15  # relative error of a step, however fine its tolerance: residuals are computed in double precision
 
 
-class Doubt(NamedTuple):
+class AccuracyViolation(NamedTuple):
     """A quantity that is out of proportion."""
 
     # ``position``, ``velocity``, ``energy``, ``multipliers``, or ``acceleration``: of the equations of motion within a
@@ -48,12 +48,12 @@ class Doubt(NamedTuple):
         return f"{what} {amount}, where the tolerance lets expect {self.expected:.1e} at most"
 
 
-def doubts(missed: Mapping[str, float], tol: float, steps: int) -> Iterator[Doubt]:
+def doubts(missed: Mapping[str, float], tol: float, steps: int) -> Iterator[AccuracyViolation]:
     """What is out of proportion to the tolerance, of what is missed by quantity, relative to its size."""
     most = float(expected(tol, steps))
     for quantity, value in missed.items():
         if not value <= most:
-            yield Doubt(quantity, value, most)
+            yield AccuracyViolation(quantity, value, most)
 
 
 def trusted(missed: Mapping[str, Vector], tol: float, steps: NDArray[np.int64]) -> NDArray[np.bool_]:

@@ -25,7 +25,7 @@ AT_ONCE = 64  # parts of a step
 NODES, WEIGHTS = leggauss(10)
 
 
-class StepsHeldAgainstTheEquations:
+class DefectControl:
     """The largest difference between what the velocities gain within the steps and what the equations say.
 
     Parameters

@@ -1,14 +1,10 @@
-"""How well a motion was followed: what is left of the constraints, the condition of G, and the balance of energy.
-
-A residual is measured along its constraint's gradient: |f_beta| / |df_beta/dq| is, to first order, how far the
-coordinates are from the constraint. The largest of them is taken relative to the largest coordinate where that is more
-than its nominal size; likewise for the velocities with df/dt, and for the accelerations with J a + c.
+"""The balance of energy.
 
 The energy function changes at the rate that `MotionProblem.energy` calls power. Energy that was gained beyond the
 integral of the power is an error of the motion (Goldstein, Poole & Safko, section 2.7).
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import cache, cached_property
 from typing import Any
 
@@ -19,58 +15,14 @@ from numpy.polynomial.legendre import leggauss
 from ..program.motion_problem import MotionProblem, computing
 from ..program.motion_program import names_in
 from ..program.precision import Precision, read_precision
-from .constraints.directions import weighted_constraints
+from .accuracy_check import may_hide
 from .evaluation import Numbers, as_floats, evaluation_once, zeros
 from .inputs import Inputs
-from .matrices import Matrices, Vector
-from .nominal import Nominal
-from .trust import may_hide
+from .matrices import Vector
 
 POINTS_PER_DIGIT = 10 / 17  # of the quadrature: exact over a piece to about the order of the Taylor engine
 MORE_DIGITS = 10  # in which they are found
 PROBES = (0.3127, -0.7411, 1.2713)  # seeds of states at which power that vanishes identically is told from other power
-
-
-def residuals(at: Matrices, state: Vector, accelerations: Vector, nominal: Nominal) -> Mapping[str, float]:
-    """What is left of the constraints at a state: ``position``, ``velocity``, ``acceleration``.
-
-    Parameters
-    ----------
-    at : Matrices
-        At the state.
-    state : ndarray, shape (2n,)
-    accelerations : ndarray, shape (n,)
-    nominal : Nominal
-        Sizes of the motion's quantities.
-    """
-    left = at.jacobian @ accelerations + at.curvature
-    acceleration = scaled_residual(left, at.jacobian, accelerations, nominal.accelerations)
-    found = {**constraint_residuals(at, state, nominal), "acceleration": acceleration}
-    return {name: float(residual) for name, residual in found.items()}
-
-
-def constraint_residuals(at: Matrices, state: Numbers, nominal: Nominal) -> dict[str, Numbers]:
-    """The first two of them, at one state or, with a last axis more, at k of them."""
-    coordinates, velocities = np.split(state, 2)
-    return {
-        "position": scaled_residual(at.residual, at.jacobian, coordinates, nominal.coordinates),
-        "velocity": scaled_residual(at.residual_rate, at.jacobian, velocities, nominal.velocities),
-    }
-
-
-def condition(at: Matrices) -> float:
-    """Condition number of G = J A^-1 J^T, each constraint scaled to length one in the mass metric.
-
-    Infinite where constraints depend on one another.
-
-    Raises
-    ------
-    HolonomError
-        A is singular along a direction that the constraints leave free.
-    """
-    values = weighted_constraints(at.mass, at.jacobian).singular_values()
-    with np.errstate(divide="ignore"):
-        return float((values.max(initial=1.0) / values.min(initial=np.inf)) ** 2) if values.size else 1.0
 
 
 class EnergyBalance:
@@ -201,30 +153,3 @@ def _constraints_move(problem: MotionProblem) -> bool:
     program = computing(problem.matrices, residuals_alone)
     parts = (*(expression for _, expression in program.assignments), *program.outputs.values())
     return any("t" in names_in(part) for part in parts)
-
-
-def scaled_residual(residual: Numbers, jacobian: Numbers, moved: Numbers, sizes: Numbers) -> Numbers:
-    """How far the coordinates, or their rates, are from the constraints, relative to the largest of them.
-
-    All of them are taken in terms of their nominal sizes, and none counts as smaller than that.
-
-    Parameters
-    ----------
-    residual : ndarray, shape (g, ...)
-    jacobian : ndarray, shape (g, n, ...)
-    moved : ndarray, shape (n, ...)
-        What the residual is one of: coordinates, velocities or accelerations.
-    sizes : ndarray, shape (n,) or (n, ...)
-        Nominal ones of these.
-
-    Returns
-    -------
-    ndarray, shape (...)
-    """
-    sizes = sizes if np.ndim(sizes) == moved.ndim else sizes[:, None]
-    jacobian, moved = jacobian * sizes, moved / sizes
-    gradients = np.max(np.abs(jacobian), axis=1, initial=0.0)
-    peaks = np.where(gradients > 0, gradients, 1.0)
-    lengths = np.maximum(1.0, np.linalg.norm(jacobian / peaks[:, None], axis=1))
-    left = np.max(np.abs(residual) / peaks / lengths, axis=0, initial=0.0)
-    return left / np.maximum(1.0, np.max(np.abs(moved), axis=0, initial=0.0))

@@ -16,7 +16,7 @@ from ..program.motion_program import Constant, Operation, Program, names_in
 from ..program.sign_pattern import in_numbers
 
 
-class Tick(NamedTuple):
+class TimeEvent(NamedTuple):
     """The zero of a switching function of the time."""
 
     t: Fraction
@@ -34,14 +34,14 @@ class _Otherwise(ArithmeticError):
     """The function is of another form."""
 
 
-def ticks(problem: MotionProblem) -> Mapping[str, Tick]:
+def time_events(problem: MotionProblem) -> Mapping[str, TimeEvent]:
     """When each sign changes that a function a + b t decides, by the sign's name."""
     found = {}
     for index, sign in enumerate(problem.signs, start=1):
         if sign.by is By.TIME:
             function = _affine(in_numbers(problem, computing(problem.switching, {f"switch[{index}]"})))
             if function is not None and function.b:
-                found[sign.name] = Tick(-function.a / function.b, 1 if function.b > 0 else -1)
+                found[sign.name] = TimeEvent(-function.a / function.b, 1 if function.b > 0 else -1)
     return found
 
 

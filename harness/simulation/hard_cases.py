@@ -15,8 +15,8 @@ from ..language import translatable
 from ..program.motion_problem import MotionProblem
 from .constraints.directions import Matrix, rank_of, weighted_constraints
 from .constraints.factorization import DependentConstraints
-from .diagnostics import condition
 from .matrices import Matrices, MotionMatrices, Vector
+from .residuals import condition
 
 ILL_CONDITIONED, DEPENDENT = 1e8, 1e20  # condition of G: half of a double's digits lost, and none left
 UNEQUAL_MASSES = 1e8  # ratio of the entries on A's diagonal: half of a double's digits
