@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ..request import EngineName
-from .registry import ENGINES, engine_class
+from .registry import compared_engines
 
 TRIAL = 64  # steps of the Taylor engine
 
@@ -50,7 +50,7 @@ def quicker_engine(steps: int, operations: int, tol: float, between: Between) ->
         Of a step.
     between : Between
     """
-    kinds = [kind for kind in map(engine_class, ENGINES) if kind.fixed_pivots]
+    kinds = compared_engines()
     seconds = {kind.name: kind.expected_seconds(steps, operations, tol, between) for kind in kinds}
     engine = min((kind.name for kind in kinds if kind.comparable(tol)), key=seconds.get)
     return Choice(engine, steps, operations, seconds[EngineName.TAYLOR], seconds[EngineName.RUNGE_KUTTA])

@@ -19,7 +19,7 @@ from ..hard_cases import HardCase
 from ..request import EngineName
 from .choice import TRIAL, Between, Choice, quicker_engine
 from .engine import Engine, Obstacle, Solutions, Step, Task
-from .registry import DEFAULT, ENGINES, FALLBACK, engine_class
+from .registry import DEFAULT, FALLBACK, compared_engines, engine_class
 
 UNCOMPILED = (Failure.COMPILER_UNUSABLE, Failure.COMPILER_REFUSED)
 FINE = 1e-13  # tolerance of the robust engine between two segments of a Taylor engine that nobody gave one
@@ -143,8 +143,7 @@ class FallbackEngine:
         first = engine_class(chosen).for_motion(self._task)
         weighs = self._automatic and obstacle is None and request.compact is None and self._in_doubles
         steps = first.steps_ahead(self._task.end, TRIAL) if weighs and between is not None else None
-        others = (engine_class(name) for name in ENGINES if name != DEFAULT)
-        if steps is None or not any(other.fixed_pivots and other.comparable(request.tol) for other in others):
+        if steps is None or not any(other.comparable(request.tol) for other in compared_engines()[1:]):
             return first
         self.choice = quicker_engine(steps, self._task.problem.motion.operations, first.tol, between)
         if self.choice.engine == DEFAULT:
