@@ -149,6 +149,10 @@ class Simulation(Sampled, Shown):
             raise KeyError(f"no samples of {name!r}; the scene observes {', '.join(columns)}")
         return columns[name]
 
+    def keys(self) -> tuple[str, ...]:
+        """Names of the quantities that have samples."""
+        return tuple(name for name, _ in self.columns())
+
     def to_pandas(self) -> "DataFrame":
         """All samples as a pandas DataFrame, a row an instant.
 
