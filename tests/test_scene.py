@@ -151,7 +151,7 @@ def test_the_motion_of_the_oscillator_is_the_cosine(released):
     motion = released.simulate(until=3, samples=31)
     assert motion["x"] == pytest.approx(np.cos(2 * motion["t"]), abs=1e-13)
     assert motion.to_pandas()["x"].iloc[-1] == motion["x"][-1]
-    assert motion.keys() == tuple(motion.to_pandas())
+    assert motion.keys() == ("t", *motion.to_pandas())
     assert "energy error" in motion._repr_html_()
     with pytest.raises(KeyError, match="the scene observes t, x"):
         motion["y"]
