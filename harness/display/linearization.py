@@ -57,6 +57,8 @@ def show_equilibria(console: "Console", equilibria: "Equilibria") -> None:
     console.print(f"{len(equilibria)} found from {equilibria.starts} starts; there may be others.")
     if equilibria.more:
         console.print(f"{equilibria.more} more belong to the families of those that are not isolated.")
+    if equilibria.singular:
+        console.print(f"{equilibria.singular} starts led to singular configurations, of which nothing is said.")
     if equilibria.turns:
         console.print(f"Whole turns of {', '.join(equilibria.turns)} are left out.")
 

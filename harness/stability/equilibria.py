@@ -15,6 +15,7 @@ Anything else is undecided.
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -38,6 +39,7 @@ BALANCED = 1e-9  # forces and residuals left, in terms of the largest that was m
 LONGEST_STEP = 2.0  # in terms of the sizes
 DEPENDENT = 1e-12  # singular values of a step's equations, relative to the largest, that count as zero
 ROUNDING = 1e-12  # of a size
+NEARLY_SINGULAR = 1e-4  # singular values of the constraints, where Newton's method finds places to half the digits
 SAME = 1e-6  # distance in terms of the sizes below which two solutions are one
 LEAST_STIFFNESS = 1e-7  # relative to the largest: what is smaller, or an eigenvalue with a smaller part, is not decided
 PERTURBED = 1e-9  # relative error of A that eigenvalues are certain against, to first order
@@ -94,6 +96,8 @@ class Equilibria(Shown):
         Of each family of solutions that are not isolated, one.
     more : int
         Further solutions of these families.
+    singular : int
+        Solutions in singular configurations, or next to one: nothing is said about them.
     turns : tuple of str
         Coordinates that may be changed by whole turns.
 
@@ -110,6 +114,7 @@ class Equilibria(Shown):
     starts: int
     found: tuple[Equilibrium, ...]
     more: int
+    singular: int
     turns: tuple[str, ...]
 
     def __getitem__(self, name: str) -> Equilibrium:
@@ -132,6 +137,7 @@ class Equilibria(Shown):
             "controls": dict(self.controls),
             "starts": self.starts,
             "more": self.more,
+            "singular": self.singular,
             "turns": list(self.turns),
             "found": [
                 {
@@ -176,9 +182,9 @@ def find_equilibria(
     values = _constant_controls(problem, equations, controls)
     search = _Search(problem, equations, list(values.values()))
     turns = search.turns(np.random.default_rng(seed))
-    found, more = search.equilibria(starts, np.random.default_rng(seed), turns)
+    found, *left_out = search.equilibria(starts, np.random.default_rng(seed), turns)
     return Equilibria(
-        problem.scene, values, starts, found, more, tuple(equations.coordinates[place] for place in turns)
+        problem.scene, values, starts, found, *left_out, tuple(equations.coordinates[place] for place in turns)
     )
 
 
@@ -204,6 +210,14 @@ class _Search:
         self._controls = np.concatenate([controls, np.zeros(2 * len(controls))])
         self._first = np.array([float(problem.start[name]) for name in equations.coordinates])
 
+    @cached_property
+    def _rank(self) -> int:
+        """Of the constraints' Jacobian: where redundant ones are not known, that at the start."""
+        if self._problem.obstacle is None:
+            return len(self._kept)
+        here = self._at(self._first, np.zeros(len(self._equations.multipliers)))
+        return Tangent(here["equation_by_a"], here["constraint_by_q"]).rank
+
     def turns(self, random: np.random.Generator) -> list[int]:
         """Places of coordinates in which whole turns change nothing at random states."""
         states = [self._first + self._sizes * random.normal(size=self._n) for _ in range(PROBES)]
@@ -218,19 +232,20 @@ class _Search:
 
     def equilibria(
         self, starts: int, random: np.random.Generator, turns: Sequence[int]
-    ) -> tuple[tuple[Equilibrium, ...], int]:
-        """Return the equilibria that Newton's method finds, each once, and how many more of the same families.
+    ) -> tuple[tuple[Equilibrium, ...], int, int]:
+        """Return the equilibria that Newton's method finds, and how many are left out: of families, and singular ones.
 
         Solutions that are not isolated and have the same multipliers count as one family.
         """
         known: list[_Solution] = []
-        more = 0
+        more = singular = 0
         for q, multipliers in self._solved(self._starts(starts, random)):
             q[turns] -= TURN * np.round(q[turns] / TURN)
             if any(self._close(q, other.q, turns) for other in known):
                 continue
             stiffness = self._stiffness(q, multipliers)
             if stiffness is None:
+                singular += 1
                 continue
             found = _Solution(q, multipliers, stiffness)
             if any(found.same_family(other) for other in known):
@@ -238,7 +253,7 @@ class _Search:
             else:
                 known.append(found)
         known.sort(key=lambda each: tuple(np.round(each.q / self._sizes, 6)))
-        return tuple(self._equilibrium(f"e{k}", each) for k, each in enumerate(known, start=1)), more
+        return tuple(self._equilibrium(f"e{k}", each) for k, each in enumerate(known, start=1)), more, singular
 
     def _equilibrium(self, name: str, found: "_Solution") -> Equilibrium:
         linear = linearized(self._problem, self._equations, self._point(found.q, found.multipliers))
@@ -261,7 +276,9 @@ class _Search:
             tangent = Tangent(here["equation_by_a"], here["constraint_by_q"])
         except HolonomError:
             return None
-        return tangent.basis.T @ here["equation_by_q"] @ tangent.basis if tangent.rank == len(self._kept) else None
+        if tangent.rank < self._rank or tangent.least < NEARLY_SINGULAR:
+            return None
+        return tangent.basis.T @ here["equation_by_q"] @ tangent.basis
 
     def _starts(self, count: int, random: np.random.Generator) -> Matrix:
         """The scene's own start and random ones around it and around zero, shape (n, count)."""

@@ -29,6 +29,8 @@ class Tangent:
     ----------
     rank : int
         Of J.
+    least : float
+        Of the singular values that count, in terms of the largest: how far a singular configuration is.
     basis : ndarray, shape (n, m)
         N.
     leading : tuple of int
@@ -51,6 +53,7 @@ class Tangent:
         weighted = weighted_constraints(mass, jacobian)
         left, values, _ = np.linalg.svd(weighted.directions)
         self.rank = int(np.count_nonzero(values > DEPENDENT * values.max(initial=0.0)))
+        self.least = float(values[self.rank - 1] / values[0]) if self.rank else 1.0
         free = scipy.linalg.solve_triangular(weighted.factor, left[:, self.rank :], lower=True, trans="T")
         roots = np.sqrt(or_one(np.abs(mass.diagonal())))[:, None]
         _, _, order = scipy.linalg.qr((roots * free).T, mode="economic", pivoting=True)

@@ -115,6 +115,23 @@ def test_a_family_is_one_equilibrium():
     assert found.more == 19
 
 
+def test_singular_configurations_are_left_out():
+    """On two lines that cross the least potential is where they cross, and the constraint has no gradient."""
+    scene = holonom.system(
+        """system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  potential_energy = x^2 + y^2, constraints = [x*y])$\n"""
+        + "s : holonomic_scene(system, "
+        + START.format(start="x = 1/3, y = 0, dot(x) = 0, dot(y) = 0")
+    )
+    found = scene.equilibria(starts=20)
+    assert (len(found), found.singular > 0) == (0, True)
+
+
+def test_redundant_constraints():
+    found = holonom.load("examples/hard/repeated_constraint.mac").equilibria()
+    assert stabilities(found) == [Stability.STABLE, Stability.UNSTABLE]
+
+
 def test_equations_with_the_time_are_refused():
     with pytest.raises(HolonomError) as refused:
         of_particle("forces = [-x, sin(t) - y]").equilibria()
