@@ -52,67 +52,40 @@ def evaluation(program: Program, precision: Precision) -> Evaluation:
 
 
 def evaluation_once(problem: MotionProblem, program: Program, precision: Precision) -> Evaluation:
-    """A program of a problem as a function, compiled once for all values of its open parameters.
+    """Compile a program of a problem, once for all values of its open parameters.
 
-    Where there are none, it is compiled when that pays.
-    """
-    what = ("evaluation", precision.name)
-    return problem.once(what, program, lambda: _evaluation_of(problem, program, precision))
-
-
-def _evaluation_of(problem: MotionProblem, program: Program, precision: Precision) -> Evaluation:
-    if not may_wait(problem, program, precision):
-        return evaluation(program, precision)
-    return CompiledIfItPays(lambda: _by_numpy(program), lambda: evaluation(program, precision), program.operations)
-
-
-def may_wait(problem: MotionProblem, program: Program, precision: Precision) -> bool:
-    """Whether NumPy can carry a program out until compiling it pays.
-
-    It has no numbers but doubles; and what is kept for motions to come would have them hang on those before, in their
-    last bits.
-    """
-    return precision.name == "double" and not problem.open_inputs and not needs_scipy(program)
-
-
-def _by_numpy(program: Program) -> Evaluation:
-    function = NumpyFunction(program)
-
-    def evaluate(inputs: Numbers) -> Numbers:
-        return function.at_points(inputs) if inputs.ndim > 1 else function.at_points(inputs[:, None])[:, 0]
-
-    return evaluate
-
-
-class CompiledIfItPays:
-    """A function in double precision that is compiled once carrying it out without has taken as long as that.
-
-    What takes how long is counted, not measured, so that the same calls have the same results everywhere: measured on
-    programs of 17 to 434 operations.
-
-    Parameters
-    ----------
-    waiting, compiled : callable
-        Make the function.
+    Where none is open, NumPy evaluates a program in double precision until compiling pays. What is kept for motions to
+    come is compiled at once: else their last bits would depend on the motions before.
     """
 
-    def __init__(
-        self,
-        waiting: Callable[[], Evaluation],
-        compiled: Callable[[], Evaluation],
-        operations: int,
-    ) -> None:
-        self._evaluate, self._compiled, self._operations = waiting(), compiled, operations
-        self._left = COMPILED + COMPILED_OPERATION * operations
+    def build() -> Evaluation:
+        lazy = precision.name == "double" and not problem.open_inputs and not needs_scipy(program)
+        return LazyCompiledFunction(program, precision) if lazy else evaluation(program, precision)
+
+    return problem.once(("evaluation", precision.name), program, build)
+
+
+class LazyCompiledFunction:
+    """A program in double precision that is compiled once NumPy has taken as long for it as that takes.
+
+    Times are counted, not measured, so that the same calls have the same results everywhere: measured on programs of 17
+    to 434 operations.
+    """
+
+    def __init__(self, program: Program, precision: Precision) -> None:
+        self._program, self._precision, self._by_numpy = program, precision, NumpyFunction(program)
+        self._compiled: Evaluation | None = None
+        self._left = COMPILED + COMPILED_OPERATION * program.operations
 
     def __call__(self, inputs: Numbers) -> Numbers:
         """Evaluate the function at inputs of shape (inputs,) or (inputs, points)."""
-        if self._left > 0:
-            points = inputs.shape[1] if inputs.ndim > 1 else 1
-            self._left -= CALLED + self._operations * (OPERATION + OPERATION_AT_POINT * points)
-            if self._left <= 0:
-                self._evaluate = self._compiled()
-        return self._evaluate(inputs)
+        if self._compiled is None:
+            points = inputs.reshape(len(inputs), -1)
+            self._left -= CALLED + self._program.operations * (OPERATION + OPERATION_AT_POINT * points.shape[1])
+            if self._left > 0:
+                return self._by_numpy.at_points(points).reshape(-1, *inputs.shape[1:])
+            self._compiled = evaluation(self._program, self._precision)
+        return self._compiled(inputs)
 
 
 def lane_evaluation(problem: MotionProblem, program: Program) -> Evaluation:

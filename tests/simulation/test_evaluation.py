@@ -16,7 +16,7 @@ from holonom.simulation.constraints.program_projection import (
     nearest_state,
 )
 from holonom.simulation.engines.robust import RobustEngine
-from holonom.simulation.evaluation import CompiledIfItPays, evaluation, evaluation_once
+from holonom.simulation.evaluation import LazyCompiledFunction, evaluation, evaluation_once
 from holonom.simulation.hybrid_motion import HybridMotion
 from holonom.simulation.nominal import nominal_of
 from holonom.simulation.request import SimulationRequest
@@ -72,7 +72,7 @@ def test_numpy_and_heyoka_compute_the_same(problem, states, program):
     asked = getattr(problem, program)
     function, compiled = evaluation_once(problem, asked, DOUBLE), evaluation(asked, DOUBLE)
     inputs = np.vstack([states, np.ones((1, states.shape[1]))])
-    assert isinstance(function, CompiledIfItPays)
+    assert isinstance(function, LazyCompiledFunction)
     assert np.allclose(function(inputs), compiled(inputs), rtol=1e-14, atol=1e-14)
     assert np.array_equal(function(np.ascontiguousarray(inputs[:, 3])), function(inputs)[:, 3])
 
@@ -97,7 +97,7 @@ def test_what_is_kept_for_all_values_of_a_parameter_is_compiled_at_once(tmp_path
     )
     problem = motion_problem(file, Request(), Limits(), open_parameters=("k",))
     assert problem.values == {"k": Fraction(1)}
-    assert not isinstance(evaluation_once(problem, problem.matrices, DOUBLE), CompiledIfItPays)
+    assert not isinstance(evaluation_once(problem, problem.matrices, DOUBLE), LazyCompiledFunction)
 
 
 def test_all_that_follow_a_motion_ask_the_same_matrices():

@@ -7,6 +7,7 @@ through it. Behind an obstacle the next one may be near, and the first steps are
 """
 
 import time
+from collections import deque
 from collections.abc import Iterator
 from functools import cached_property
 from math import isfinite
@@ -126,18 +127,17 @@ class ProgramEngine:
         HolonomError
             The motion itself ends.
         """
-        self._begin()
-        ended, steps, begun = False, self.steps, self.time
-        while not ended:
-            ended, _ = self._block(until, dense=False)
-            require_reach(self.steps - steps, self.time - begun, until - self.time)
+        deque(self._blocks(until, dense=False), maxlen=0)
 
     def integrate(self, until: Any) -> Iterator[Step]:
         """Follow the motion to an instant, with its states between the steps; raises as `advance`."""
+        return self._blocks(until, dense=True)
+
+    def _blocks(self, until: Any, dense: bool) -> Iterator[Step]:
         self._begin()
-        ended, steps, begun = self._integrator.time == until, self.steps, self.time
+        ended, steps, begun = self.time == until, self.steps, self.time
         while not ended:
-            ended, dense_steps = self._block(until, dense=True)
+            ended, dense_steps = self._block(until, dense)
             yield from dense_steps
             require_reach(self.steps - steps, self.time - begun, until - self.time)
 

@@ -5,8 +5,10 @@ keep the constraints and held between them, where rounding or a stage off the co
 configurations: the least singular value that counts is watched; where it runs to zero, one arc spans the place where
 it vanishes (`singular_passage`), and all steps before end at half of the way to it.
 
-DOP853 takes the steps, of order 8. Where they stay at the boundary of its stability (`stiffness`)
-Radau's method takes over, of order 5 and stable for stiff motions.
+DOP853 takes the steps, of order 8. Two of its stages fall on the end of a step: how much the rates differ between them,
+beside the states, estimates the stiffness (Hairer & Wanner, Solving Ordinary Differential Equations II, section IV.2).
+Where steps stay at the boundary of its stability Radau's method takes over, of order 5 and stable for stiff
+motions.
 """
 
 import time
@@ -26,7 +28,6 @@ from ..matrices import Matrix, MotionMatrices, Vector, start_of
 from ..request import EngineName
 from .engine import Solutions, Step, Task, require_reach
 from .singular_passage import NODES, Arc, arc_over
-from .stiffness import StiffnessWatch
 
 TOLERANCE = 1e-11
 TIGHTEST = 100 * EPSILON  # relative tolerance that SciPy's integrators hold
@@ -43,6 +44,8 @@ UNTRUSTED = 1e-6  # relative singular values in which no digits are left
 FIRST, LEAST_FIRST, UNFELT = 0.01, 1e-6, 1e-5  # of the estimate of a first step
 RADAU_ORDER = 4  # of its error estimate in terms of the step
 NEARLY_SINGULAR = 1e-3  # relative singular values that are left out where a motion starts from such a configuration
+BOUNDARY = 6.1  # of DOP853's stability on the negative real axis
+MOST_AT_BOUNDARY = 15  # steps there, one after the other, before a motion counts as stiff
 FIRST_ARCS = 1.0 / 2.0 ** np.arange(12)  # lengths of arcs away from a singular configuration, as nominal ways
 
 
@@ -74,7 +77,7 @@ class RobustEngine:
         self.matrices = matrices or MotionMatrices(problem)
         self.compile_seconds = time.perf_counter() - clock
         self.n, self.steps, self.tol = len(problem.coordinates), 0, max(tol or TOLERANCE, TIGHTEST)
-        self.stiff, self._stiffness = False, StiffnessWatch()
+        self.stiff, self._at_boundary = False, 0  # the steps at the boundary of stability, one after the other
         self._multipliers, self._independent = problem.multipliers, problem.independent
         self._arcs: list[Arc] = []
         self.restart(*start_of(problem))
@@ -190,7 +193,9 @@ class RobustEngine:
             raise HolonomError(Failure.NO_WAY_ON, detail=f"{start:.10g}, where steps become too short")
         if solver.status == "finished":
             solver.h_abs = max(solver.h_abs, length)
-        self.stiff = self.stiff or self._stiffness.stiff(solver)
+        if not self.stiff:
+            self._at_boundary = self._at_boundary + 1 if _is_at_boundary(solver) else 0
+            self.stiff = self._at_boundary >= MOST_AT_BOUNDARY
         self._move(solver.t, solver.y)
         if self.stiff and isinstance(solver, DOP853):
             self._begin(self.time, self.state)
@@ -354,3 +359,11 @@ class RobustEngine:
             self._arc = None
             self._begin(arc.end, arc.last)
         return Step(start, self.time, arc)
+
+
+def _is_at_boundary(solver: DOP853) -> bool:
+    """Whether the last step was as long as the method's stability allows."""
+    step, last = solver.t - solver.t_old, solver.n_stages - 1
+    before = solver.y_old + step * (solver.K[:last].T @ solver.A[last, :last])
+    states, rates = np.linalg.norm(solver.y - before), np.linalg.norm(solver.f - solver.K[last])
+    return bool(states > 0 and step * rates > BOUNDARY * states)
