@@ -211,6 +211,12 @@ class _Search:
         self._first = np.array([float(problem.start[name]) for name in equations.coordinates])
 
     @cached_property
+    def _gradients(self) -> Vector:
+        """Lengths of the constraints' gradients at the start."""
+        here = self._at(self._first, np.zeros(len(self._equations.multipliers)))
+        return np.linalg.norm(here["constraint_by_q"] * self._sizes, axis=1)
+
+    @cached_property
     def _rank(self) -> int:
         """Of the constraints' Jacobian: where redundant ones are not known, that at the start."""
         if self._problem.obstacle is None:
@@ -276,7 +282,9 @@ class _Search:
             tangent = Tangent(here["equation_by_a"], here["constraint_by_q"])
         except HolonomError:
             return None
-        if tangent.rank < self._rank or tangent.least < NEARLY_SINGULAR:
+        gradients = np.linalg.norm(here["constraint_by_q"] * self._sizes, axis=1)
+        shrunk = np.any(gradients < NEARLY_SINGULAR * self._gradients)
+        if shrunk or tangent.rank < self._rank or tangent.least < NEARLY_SINGULAR:
             return None
         return tangent.basis.T @ here["equation_by_q"] @ tangent.basis
 
