@@ -103,7 +103,7 @@ def test_maxima_loads_the_library_of_the_wheel(commands, tmp_path):
     ("package", "extra", "command"),
     [
         ("heyoka", "motion", ("simulate", "examples/pendulum.mac")),
-        ("scipy", "motion", ("simulate", "examples/pendulum.mac")),
+        ("scipy", "motion", ("simulate", "examples/pendulum.mac", "--engine", "robust")),
         ("numpy", "motion", ("series", "examples/pendulum.mac", "--order", "4")),
         ("pyarrow", "sweep", ("simulate", "examples/pendulum.mac", "-o", "motion.parquet")),
         ("matplotlib", "companion", ("simulate", "examples/pendulum.mac", "--plot", "motion.svg")),
