@@ -211,18 +211,20 @@ class _Search:
         self._first = np.array([float(problem.start[name]) for name in equations.coordinates])
 
     @cached_property
+    def _start(self) -> Mapping[str, Matrix]:
+        return self._at(self._first, np.zeros(len(self._equations.multipliers)))
+
+    @cached_property
     def _gradients(self) -> Vector:
         """Lengths of the constraints' gradients at the start."""
-        here = self._at(self._first, np.zeros(len(self._equations.multipliers)))
-        return np.linalg.norm(here["constraint_by_q"] * self._sizes, axis=1)
+        return np.linalg.norm(self._start["constraint_by_q"] * self._sizes, axis=1)
 
     @cached_property
     def _rank(self) -> int:
         """Of the constraints' Jacobian: where redundant ones are not known, that at the start."""
         if self._problem.obstacle is None:
             return len(self._kept)
-        here = self._at(self._first, np.zeros(len(self._equations.multipliers)))
-        return Tangent(here["equation_by_a"], here["constraint_by_q"]).rank
+        return Tangent(self._start["equation_by_a"], self._start["constraint_by_q"]).rank
 
     def turns(self, random: np.random.Generator) -> list[int]:
         """Places of coordinates in which whole turns change nothing at random states."""
@@ -241,7 +243,7 @@ class _Search:
     ) -> tuple[tuple[Equilibrium, ...], int, int]:
         """Return the equilibria that Newton's method finds, and how many are left out: of families, and singular ones.
 
-        Solutions that are not isolated and have the same multipliers count as one family.
+        Solutions that are not isolated, with the same multipliers and stiffnesses, count as one family.
         """
         known: list[_Solution] = []
         more = singular = 0
@@ -319,13 +321,7 @@ class _Search:
         unit = or_one(np.max(self._sizes * np.linalg.norm(K * self._sizes, axis=2), axis=1, initial=0.0))[:, None]
         weights = np.concatenate([self._sizes / unit, 1 / rows], axis=1)
         scale = np.concatenate([np.broadcast_to(self._sizes, (k, n)), unit / rows], axis=1)
-        matrix = np.concatenate(
-            [
-                np.concatenate([K, -np.swapaxes(J, 1, 2)], axis=2),
-                np.concatenate([J, np.zeros((k, g, g))], axis=2),
-            ],
-            axis=1,
-        )
+        matrix = np.block([[K, -np.swapaxes(J, 1, 2)], [J, np.zeros((k, g, g))]])
         matrix = weights[:, :, None] * matrix * scale[:, None, :]
         out_of_balance = weights * np.concatenate([here["equation"], here["constraint"]]).T
         finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(out_of_balance).all(axis=1)
@@ -361,17 +357,22 @@ class _Solution(NamedTuple):
     stiffness: Matrix
 
     @property
+    def _principal(self) -> Vector:
+        return np.linalg.svd(self.stiffness, compute_uv=False)
+
+    @property
     def isolated(self) -> bool:
-        values = np.linalg.svd(self.stiffness, compute_uv=False)
+        values = self._principal
         return bool(values.min(initial=np.inf) > LEAST_STIFFNESS * values.max(initial=0.0))
 
     def same_family(self, other: "_Solution") -> bool:
-        """Whether neither is isolated and the multipliers are the same."""
-        sizes = np.maximum(
-            np.max(np.abs(self.multipliers), initial=0.0), np.max(np.abs(other.multipliers), initial=0.0)
-        )
-        alike = np.all(np.abs(self.multipliers - other.multipliers) <= SAME * sizes)
-        return bool(alike) and not other.isolated
+        """Whether neither is isolated, and multipliers and principal stiffnesses are the same."""
+        alike = _same(self.multipliers, other.multipliers) and _same(self._principal, other._principal)
+        return alike and not self.isolated and not other.isolated
+
+
+def _same(one: Vector, other: Vector) -> bool:
+    return bool(np.all(np.abs(one - other) <= SAME * np.max(np.abs([one, other]), initial=0.0)))
 
 
 def _stability(found: _Solution, A: Matrix, forced: bool) -> Stability:

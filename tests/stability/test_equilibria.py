@@ -115,6 +115,19 @@ def test_a_family_is_one_equilibrium():
     assert found.more == 19
 
 
+def test_families_are_told_apart_from_each_other_and_from_what_is_isolated():
+    """V = F(r^2) with F' = (r^2 - 1)(r^2 - 4): two circles and the place between."""
+    found = of_particle("potential_energy = (x^2 + y^2)^3/3 - 5*(x^2 + y^2)^2/2 + 4*(x^2 + y^2)").equilibria()
+    radii = [np.hypot(each.coordinates["x"], each.coordinates["y"]) for each in found]
+    assert sorted(radii) == pytest.approx([0, 1, 2], abs=1e-9)
+    assert {round(radius): each.isolated for radius, each in zip(radii, found, strict=True)} == {
+        0: True,
+        1: False,
+        2: False,
+    }
+    assert found.more > 0
+
+
 def test_singular_configurations_are_left_out():
     """On two lines that cross the least potential is where they cross, and the constraint has no gradient."""
     scene = holonom.system(
