@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from .series.power_series import MotionSeries
     from .simulation.result import Simulation
     from .stability.equilibria import Equilibria
+    from .stability.linear_equations import LinearEquations
     from .stability.linearization import Linearization
     from .sweeps.run import Sweep
     from .typeset.notebook import Letter
@@ -340,15 +341,13 @@ class Scene:
             constraints lose rank there.
         """
         from .program.motion_problem import DOUBLE_DIGITS
-        from .stability.linear_equations import linear_equations
         from .stability.linearization import linearize
 
         if (name := options["equilibrium"]) is not None:
             if options["at"] is not None:
                 raise HolonomError(Failure.TWO_STATES)
             return self.equilibria()[name].linearization
-        equations = linear_equations(self._source, self._request())
-        return linearize(self._problem("direct", DOUBLE_DIGITS), equations, options["at"])
+        return linearize(self._problem("direct", DOUBLE_DIGITS), self._linear_equations, options["at"])
 
     @naming_the_extra()
     @takes_options(*options_of(EquilibriaRequest))
@@ -373,10 +372,8 @@ class Scene:
         """
         from .program.motion_problem import DOUBLE_DIGITS
         from .stability.equilibria import find_equilibria
-        from .stability.linear_equations import linear_equations
 
-        equations = linear_equations(self._source, self._request())
-        return find_equilibria(self._problem("direct", DOUBLE_DIGITS), equations, controls, **options)
+        return find_equilibria(self._problem("direct", DOUBLE_DIGITS), self._linear_equations, controls, **options)
 
     @naming_the_extra()
     @takes_options(*options_of(DaeRequest))
@@ -399,10 +396,8 @@ class Scene:
         """
         from .dae import Dae
         from .program.motion_problem import DOUBLE_DIGITS
-        from .stability.linear_equations import linear_equations
 
-        equations = linear_equations(self._source, self._request())
-        return Dae(self._problem("direct", DOUBLE_DIGITS), equations, **options)
+        return Dae(self._problem("direct", DOUBLE_DIGITS), self._linear_equations, **options)
 
     @naming_the_extra()
     @takes_options(*options_of(Request, "solve"))
@@ -427,6 +422,12 @@ class Scene:
     def program(self, options: dict[str, Any]) -> MotionProgram:
         """The motion program: accelerations and multipliers of (t, q, dot q, u, dot u, ddot u)."""
         return MotionProgram(self._source, self._request(**options), self.limits)
+
+    @cached_property
+    def _linear_equations(self) -> "LinearEquations":
+        from .stability.linear_equations import linear_equations
+
+        return linear_equations(self._source, self._request())
 
     def __repr__(self) -> str:
         scene = f", scene={self._name!r}" if self._name else ""

@@ -1,5 +1,7 @@
 """Differential-algebraic forms: residuals along motions, Jacobians by differences, and a solver of index 2."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from scipy.optimize import approx_fprime
@@ -7,6 +9,7 @@ from scipy.optimize import approx_fprime
 import holonom
 from holonom.program.request import Index
 
+scene_of = cache(holonom.load)
 SCENES = {"pendulum.mac": None, "andrews.mac": None, "spherical_pendulum.mac": "shaken_scene"}
 NODES = np.array([(4 - np.sqrt(6)) / 10, (4 + np.sqrt(6)) / 10, 1.0])  # of Radau IIA, order 5
 
@@ -42,7 +45,7 @@ def radau(dae, end, steps):
 @pytest.mark.parametrize("index", Index)
 @pytest.mark.parametrize("file", SCENES)
 def test_the_jacobian_is_that_of_the_residual(file, index):
-    dae = holonom.load(f"examples/{file}", scene=SCENES[file]).dae(index)
+    dae = scene_of(f"examples/{file}", SCENES[file]).dae(index)
     random = np.random.default_rng(3)
     y, yp = (each + random.normal(size=len(each)) / 9 for each in (dae.y0, dae.yp0))
     by_y = approx_fprime(y, lambda y: dae.residual(0.1, y, yp), 1e-7)
@@ -55,14 +58,14 @@ def test_the_jacobian_is_that_of_the_residual(file, index):
 @pytest.mark.parametrize("index", Index)
 @pytest.mark.parametrize("file", SCENES)
 def test_the_start_is_consistent(file, index):
-    dae = holonom.load(f"examples/{file}", scene=SCENES[file]).dae(index)
+    dae = scene_of(f"examples/{file}", SCENES[file]).dae(index)
     assert np.max(np.abs(dae.residual(dae.t0, dae.y0, dae.yp0))) < 1e-12
     assert len(dae.names) == len(dae.y0) == len(dae.algebraic)
 
 
 @pytest.mark.parametrize("index", Index)
 def test_a_solver_of_such_systems_finds_the_motion(index):
-    scene = holonom.load("examples/pendulum.mac")
+    scene = scene_of("examples/pendulum.mac")
     dae, motion = scene.dae(index), scene.simulate(until=1, samples=2, tol=1e-13)
     found = dict(zip(dae.names, radau(dae, 1.0, 40), strict=True))
     assert [found["x"], found["y"]] == pytest.approx([motion["x"][-1], motion["y"][-1]], abs=1e-8)
@@ -73,7 +76,7 @@ def test_a_solver_of_such_systems_finds_the_motion(index):
 @pytest.mark.parametrize("index", [Index.ONE, Index.GGL])
 def test_ida_finds_the_motion(index):
     sundials = pytest.importorskip("sksundae.ida")
-    scene = holonom.load("examples/pendulum.mac")
+    scene = scene_of("examples/pendulum.mac")
     dae, motion = scene.dae(index), scene.simulate(until=1, samples=2)
 
     def residual(t, y, yp, out):
