@@ -69,7 +69,7 @@ def test_a_solver_of_such_systems_finds_the_motion(index):
     dae, motion = scene.dae(index), scene.simulate(until=1, samples=2, tol=1e-13)
     found = dict(zip(dae.names, radau(dae, 1.0, 40), strict=True))
     assert [found["x"], found["y"]] == pytest.approx([motion["x"][-1], motion["y"][-1]], abs=1e-8)
-    # of index 3, three stages find multipliers to order 2 only (Hairer & Wanner II, table VII.4.1)
+    # of index 3, three stages find multipliers to order 2 only (Hairer & Wanner II, section VII.6)
     assert found["lambda1"] == pytest.approx(motion["lambda1"][-1], rel=1e-3 if index is Index.THREE else 1e-5)
 
 

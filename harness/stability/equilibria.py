@@ -5,9 +5,9 @@ whether more solutions exist stays open. What is said of stability follows from 
 
 - Where all forces have a potential, q is stable if the second variation of V - T0 on the constraint manifold is
   positive definite: the energy has a strict minimum there (Lagrange and Dirichlet; Merkin, Introduction to the Theory
-  of Stability, section 3.2, for gyroscopic forces too).
+  of Stability, chapter 3; gyroscopic forces change nothing about that).
 - It is asymptotically stable if all eigenvalues of the linearised motion have negative real parts, and unstable if one
-  has a positive one (Lyapunov; Merkin, section 4.2).
+  has a positive one (Lyapunov; Merkin, chapter 4).
 
 Anything else is undecided.
 """
@@ -391,7 +391,7 @@ def _certain_real_parts(A: Matrix, error: float) -> tuple[Vector, np.ndarray]:
     """Real parts of the eigenvalues, and of which the sign is certain under a relative error of A.
 
     An eigenvalue moves by its condition number 1/|y^H x| times the perturbation, to first order (Golub & Van Loan,
-    section 7.2.2).
+    section 7.2).
     """
     if not A.size:
         return np.empty(0), np.empty(0, dtype=bool)

@@ -11,8 +11,8 @@ N^T A N' = -N^T A' N/2, as little as its lengths in the mass metric allow. Then 
     xi'  = eta + N^T A' N xi/2 + (R^T A P + N^T A' P) du,
     eta' = (N'^T A + N^T A') dv - N^T (D dv + K dq + E0 du + E1 du' + E2 du''),
 
-with A, D, K, E of `holonom.stability.linear_equations` (beyond the paper; Udwadia & Kalaba, Analytical Dynamics,
-chapter 8, for P; Kane & Levinson for the reduction at rest).
+with A, D, K, E of `holonom.stability.linear_equations` (beyond the paper; with independent coordinates in place of xi:
+Peterson, Gede & Hubbard, Multibody System Dynamics 33 (2015) 143).
 """
 
 from collections.abc import Mapping, Sequence
@@ -126,7 +126,7 @@ class Linearization(Shown):
         """Kalman's rank of controllability, at most 2m, in floating-point numbers.
 
         With z = x - (B_du + A B_ddu) du - B_ddu du' the controls enter by B_u + A B_du + A^2 B_ddu alone (Kailath,
-        Linear Systems, section 2.3).
+        Linear Systems, chapter 2).
         """
         b_u, b_du, b_ddu = (self.B[rate] for rate in RATES)
         return _reachable(self.A, b_u + self.A @ (b_du + self.A @ b_ddu))
