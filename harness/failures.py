@@ -240,6 +240,7 @@ class Failure(Enum):
     NOT_A_CONTROL = ("{detail} is no control of the system", "name one of its controls")
     NO_SUCH_EQUILIBRIUM = ("no equilibrium {detail} was found", "take one that `holonom equilibria` names")
     TWO_STATES = ("an instant and an equilibrium exclude one another", "give one of {--at} and {--equilibrium}")
+    NOT_REACHED = ("the motion does not lead to t = {instant:.10g}: {detail}", "choose another instant")
     NOT_LINEARIZED = (
         "the constraints lose rank at t = {instant:.10g}: there is no tangent space to linearise in",
         "choose another instant",

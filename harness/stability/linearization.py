@@ -28,15 +28,14 @@ from ..failures import Failure, HolonomError
 from ..program.motion_problem import MotionProblem, require_analytic
 from ..shown import Shown
 from ..simulation.constraints.directions import or_one
-from ..simulation.matrices import Matrix, Vector
+from ..simulation.matrices import Matrix, Vector, start_of
 from ..simulation.nominal import nominal_of
-from ..simulation.request import SimulationRequest
+from ..simulation.request import FINAL_STATE_ALONE, SimulationRequest
 from ..simulation.simulate import simulate
 from .linear_equations import LinearEquations, Point
 from .tangent import Tangent
 
 RATES = ("u", "du", "ddu")  # a control, its rate and its acceleration
-FEWEST_SAMPLES = 2
 AT_REST = 1e-9  # velocities and accelerations, in terms of their nominal sizes, that count as none
 UNREACHED = 1e-9  # directions of the state, relative to the others, that count as unreachable
 
@@ -261,13 +260,22 @@ def linearized(
 
 
 def state_at(problem: MotionProblem, at: Fraction | None) -> tuple[float, Vector]:
-    """The instant and the state there."""
-    start = float(problem.start["t"])
-    if at is None or at == start:
-        return start, np.array([float(problem.start[name]) for name in problem.state])
-    motion = simulate(problem, SimulationRequest(until=at, samples=FEWEST_SAMPLES))
-    numbers = [*motion.coordinates.values(), *motion.velocities.values()]
-    return float(motion.instants[-1]), np.array([values[-1] for values in numbers])
+    """Return the instant, None for the start, and the state there.
+
+    Raises
+    ------
+    HolonomError
+        The motion cannot be followed so far, ends before, or misses something out of proportion to the tolerance.
+    """
+    start = start_of(problem)
+    if at is None or at == start[0]:
+        return start
+    report = simulate(problem, SimulationRequest(until=at, samples=FINAL_STATE_ALONE)).report
+    if report.ending is not None and report.t < at:
+        raise HolonomError(Failure.NOT_REACHED, instant=float(at), detail=f"it ends at t = {report.t:.10g}")
+    if report.doubts:
+        raise HolonomError(Failure.NOT_REACHED, instant=float(at), detail=report.doubts[0].reason)
+    return float(report.t), np.array([*report.coordinates.values(), *report.velocities.values()])
 
 
 def motion_at(problem: MotionProblem, equations: LinearEquations, t: float, state: Vector) -> Point:
@@ -306,7 +314,7 @@ def _state_space(here: Mapping[str, Matrix], tangent: Tangent) -> tuple[Matrix, 
 
 
 def _by_deviations(here: Mapping[str, Matrix], row: str, q: Matrix, v: Matrix, controls: Matrix) -> Matrix:
-    """What the deviations change an expression by, the accelerations and multipliers apart."""
+    """Return the change of an expression by the deviations, but for those of accelerations and multipliers."""
     by_controls = np.concatenate([here[f"{row}_by_{rate}"] for rate in RATES], axis=1)
     return here[f"{row}_by_q"] @ q + here[f"{row}_by_v"] @ v + by_controls @ controls
 

@@ -220,6 +220,17 @@ def test_a_singular_configuration_is_refused():
     assert refused.value.failure is Failure.NOT_LINEARIZED
 
 
+def test_a_motion_that_ends_before_is_refused():
+    ending = DOUBLE_PENDULUM.replace("x1 = 0, y1 = -1, x2 = 0", "x1 = 1, y1 = 0, x2 = 1").replace(
+        "y2 = -2,", "y2 = -1,"
+    )
+    scene = holonom.system(ending.replace("time_span = [0, 1]", "time_span = [0, 1], until = [y1 + 1/2]"))
+    assert scene.linearize("1/10").at == pytest.approx(0.1)
+    with pytest.raises(HolonomError) as refused:
+        scene.linearize(1)
+    assert refused.value.failure is Failure.NOT_REACHED
+
+
 def test_a_motion_that_switches_is_refused():
     text = "system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [-signum(dot(x))])$"
     scene = "s : holonomic_scene(system, initial_state = [x = 0, dot(x) = 1], time_span = [0, 1])$"
