@@ -23,7 +23,7 @@ def linearize(
     scene_file: Path, request: Request, options: dict[str, Any], json_file: Path | None, limits: Limits
 ) -> int:
     """Linearise the motion of a SCENE on the constraint manifold: eigenvalues, modes, state space."""
-    from ..display.linearization import show_linearization
+    from ..display.stability import show_linearization
     from ..formats import Publication, published
     from ..scene import Scene
 
@@ -49,7 +49,7 @@ def equilibria(
     limits: Limits,
 ) -> int:
     """Look for states at rest of a SCENE for constant controls, and say how stable they are."""
-    from ..display.linearization import show_equilibria
+    from ..display.stability import show_equilibria
     from ..formats import Publication, published
     from ..program.request import read_settings
     from ..scene import Scene

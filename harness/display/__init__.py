@@ -14,11 +14,11 @@ def show(console: "Console", result: Shown) -> None:
         case "CheckReport":
             from .derivation import show_verdicts as table
         case "Equilibria":
-            from .linearization import show_equilibria as table
+            from .stability import show_equilibria as table
         case "FreeMotion":
             from .free_motion import show_free_motion as table
         case "Linearization":
-            from .linearization import show_linearization as table
+            from .stability import show_linearization as table
         case "MeasuredCosts":
             from .measurements import show_costs as table
         case "MotionSeries":

@@ -75,7 +75,7 @@ def _rounded(value: complex, size: float) -> complex:
 
 
 def _pair(value: complex) -> str:
-    """An eigenvalue; one above the real axis stands for its conjugate, too."""
+    """An eigenvalue; one above the real axis is shown with its conjugate."""
     if not value.imag:
         return f"{value.real:.6g}"
     return f"{value.real:.6g} ± {value.imag:.6g} i" if value.real else f"± {value.imag:.6g} i"

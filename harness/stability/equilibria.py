@@ -1,7 +1,7 @@
 """States at rest for constant controls, and whether they are stable.
 
 At rest the equations of motion are  r(q, lambda) = 0, f(q) = 0.  Newton's method solves them from many random starts;
-whether more solutions exist stays open. What is said of stability follows from two theorems:
+whether more solutions exist stays open. Stability follows from two theorems:
 
 - Where all forces have a potential, q is stable if the second variation of V - T0 on the constraint manifold is
   positive definite: the energy has a strict minimum there (Lagrange and Dirichlet; Merkin, Introduction to the Theory
@@ -26,7 +26,7 @@ from ..language import translatable
 from ..program.motion_problem import MotionProblem, require_analytic
 from ..shown import Shown
 from ..simulation.constraints.directions import or_one
-from ..simulation.matrices import Matrix, Vector
+from ..simulation.matrices import Matrix, Vector, start_of
 from ..simulation.nominal import nominal_of
 from .linear_equations import LinearEquations, Point
 from .linearization import Linearization, linearized
@@ -50,7 +50,7 @@ PROBES = 5  # random states at which whole turns of a coordinate are tried
 
 
 class Stability(StrEnum):
-    """What is known of an equilibrium's stability."""
+    """Verdicts on the stability of an equilibrium."""
 
     ASYMPTOTIC = translatable("asymptotically stable")
     STABLE = translatable("stable")
@@ -205,10 +205,11 @@ class _Search:
 
     def __init__(self, problem: MotionProblem, equations: LinearEquations, controls: Sequence[float]) -> None:
         self._problem, self._equations, self._kept = problem, equations, list(problem.independent)
-        self._n, self._t = len(equations.coordinates), float(problem.start["t"])
+        self._n = len(equations.coordinates)
+        self._t, state = start_of(problem)
+        self._first = state[: self._n]
         self._sizes = nominal_of(problem).coordinates
         self._controls = np.concatenate([controls, np.zeros(2 * len(controls))])
-        self._first = np.array([float(problem.start[name]) for name in equations.coordinates])
 
     @cached_property
     def _start(self) -> Mapping[str, Matrix]:
@@ -376,7 +377,7 @@ def _same(one: Vector, other: Vector) -> bool:
 
 
 def _stability(found: _Solution, A: Matrix, forced: bool) -> Stability:
-    """What the second variation, where there is one, and the eigenvalues of A say."""
+    """Judge by the second variation, where there is one, and by the eigenvalues of A."""
     if not forced:
         values = np.linalg.eigvalsh((found.stiffness + found.stiffness.T) / 2)
         if np.all(values > LEAST_STIFFNESS * np.max(np.abs(values), initial=0.0)):

@@ -1,4 +1,4 @@
-"""The linearised equations of a scene, in numbers at a state: `maxima/stability/linearization.mac` derives them.
+"""The linearised equations of a scene, evaluated at a state: `maxima/stability/linearization.mac` derives them.
 
 With r_s the left side of Lagrange's equations less the right one, deviations satisfy
 
@@ -56,6 +56,12 @@ class LinearEquations:
         return NumpyFunction(self.program)
 
     @cached_property
+    def _places(self) -> list[tuple[str, tuple[int, ...]]]:
+        """Of each output, its array and its place there."""
+        parts = (INDEXED.fullmatch(name).groups() for name in self._evaluate.outputs)
+        return [(array, tuple(int(place) - 1 for place in places if place)) for array, *places in parts]
+
+    @cached_property
     def _law(self) -> NumpyFunction:
         return NumpyFunction(self.law)
 
@@ -102,15 +108,14 @@ class LinearEquations:
             found[row] = np.zeros((size, *points))
             found |= {f"{row}_by_{group}": np.zeros((size, columns, *points)) for group, columns in sizes.items()}
         values = self._evaluate([point.t, *np.concatenate(point[1:])])
-        for name, value in zip(self._evaluate.outputs, values, strict=True):
-            array, *places = INDEXED.fullmatch(name).groups()
-            found[array][tuple(int(place) - 1 for place in places if place)] = value
+        for (array, place), value in zip(self._places, values, strict=True):
+            found[array][place] = value
         of_motion = ("equation", "A_rate")
         return {name: each if name.startswith(of_motion) else each[list(kept)] for name, each in found.items()}
 
 
 class Point(NamedTuple):
-    """What the linearised equations take."""
+    """Inputs of the linearised equations."""
 
     t: float
     state: Vector  # shape (2n,)

@@ -168,7 +168,7 @@ class ProgramEngine:
         raise NotImplementedError
 
     def _block(self, until: Any, dense: bool) -> tuple[bool, list[Step]]:
-        """Take a block of steps; whether it was the last, and its dense_steps where they are asked for."""
+        """Take a block of steps; whether it was the last, and its steps with their states where they are asked for."""
         if self._obstacle is not None:
             raise self._obstacle
         if self._behind_obstacle:
