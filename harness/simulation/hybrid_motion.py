@@ -10,7 +10,7 @@ switching function leaves its sign, the step is cut, and what the equations say 
   the impulse that makes the new velocities keep the constraints (Pars, A Treatise on Analytical Dynamics, chapter 14).
 
 What mechanics does not decide is refused: a law that jumps in a constraint, an energy that does as a function of the
-state, an impulse of a surface whose law of impact nobody has given.
+state, an impulse of a surface whose law of impact is not given.
 """
 
 from bisect import bisect_right
@@ -48,7 +48,7 @@ from .zeros import Crossing
 ZERO = 1e-12  # of what a switching function or its rate is at nominal sizes: no sign
 CONTINUOUS = 1e-9  # relative change at an instant that is rounding
 LATER = (1 / 7, 3 / 7, 6 / 7)  # of the nominal time: instants at which a function of the time is looked at
-CROWD, CROWDED = 64, 1e-7  # so many switchings in such a part of the time span have no end
+CROWD, CROWDED = 64, 1e-7  # switchings in a part of the time span: more have no end
 SOON = 1e-9  # of the time span: how far ahead the sign of a function of the time is looked for where it vanishes
 
 

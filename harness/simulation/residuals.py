@@ -1,4 +1,4 @@
-"""What is left of the constraints, and the condition of G.
+"""Residuals of the constraints, and the condition of G.
 
 A residual is measured along its constraint's gradient: |f_beta| / |df_beta/dq| is, to first order, how far the
 coordinates are from the constraint. The largest of them is taken relative to the largest coordinate where that is more
@@ -16,7 +16,7 @@ from .nominal import Nominal
 
 
 def residuals(at: Matrices, state: Vector, accelerations: Vector, nominal: Nominal) -> Mapping[str, float]:
-    """What is left of the constraints at a state: ``position``, ``velocity``, ``acceleration``.
+    """Residuals of the constraints at a state: ``position``, ``velocity``, ``acceleration``.
 
     Parameters
     ----------

@@ -197,7 +197,7 @@ class _Simulation:
         return (self.start + (self.end - self.start) * i / (self.samples - 1) for i in inner)
 
     def _take(self, progress: Progress | None, watch: TakeStep | None) -> TakeStep | None:
-        """What is done with each step; None where nothing has to be."""
+        """Receiver of each step; None if there is none."""
         nothing_to_integrate = not self.problem.signs and self.begun.balance.conservative and self.steps is None
         if self.samples == FINAL_STATE_ALONE and nothing_to_integrate and progress is watch is None:
             return None

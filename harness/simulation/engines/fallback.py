@@ -22,7 +22,7 @@ from .engine import Engine, Obstacle, Solutions, Step, Task
 from .registry import DEFAULT, FALLBACK, compared_engines, engine_class
 
 UNCOMPILED = (Failure.COMPILER_UNUSABLE, Failure.COMPILER_REFUSED)
-FINE = 1e-13  # tolerance of the robust engine between two segments of a Taylor engine that nobody gave one
+FINE = 1e-13  # tolerance of the robust engine between two segments of a Taylor engine, where none is asked for
 
 
 class EngineSegment(NamedTuple):
@@ -31,7 +31,7 @@ class EngineSegment(NamedTuple):
     engine: EngineName
     start: float
     end: float
-    case: HardCase | None = None  # what the robust engine was called for; None where nobody called it
+    case: HardCase | None = None  # why the robust engine went on; None where it did not
     reason: str = ""  # why it was called, a clause
 
 
@@ -216,7 +216,7 @@ class FallbackEngine:
 
     @property
     def _why_first(self) -> tuple[HardCase | None, str]:
-        """Why the engine that began is the robust one, where nobody asked for it."""
+        """Why the engine that began is the robust one, where it was not asked for."""
         if self._task.problem.obstacle is None:
             return None, ""
         return self._first.case, self._task.problem.obstacle

@@ -117,7 +117,7 @@ class TaylorEngine(ProgramEngine):
 
     @classmethod
     def expected_seconds(cls, steps: int, operations: int, tol: float, between: Between) -> float:
-        """By the code that pays for so many steps."""
+        """By the code that pays for this number of steps."""
         run = {code: running(code, operations, steps, tol) for code in Code}
         compact, unrolled = (compilation(code, operations) for code in (Code.COMPACT, Code.UNROLLED))
         return min(run[Code.QUICK], compact + run[Code.COMPACT], compact + unrolled + run[Code.UNROLLED])
