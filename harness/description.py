@@ -64,6 +64,8 @@ class DescribedScene:
         Expressions whose zeros end the motion.
     observe : tuple of str
         What to compute.
+    outputs : mapping of str to Expr
+        What to compute under names of its own: of t, the state, accelerations, controls, multipliers and ``energy``.
     nominal : mapping of str to Expr
         Sizes of coordinates, velocities and the time ``t``.
     """
@@ -81,6 +83,7 @@ class DescribedScene:
     until_trees: tuple[Tree, ...] = key("until")
     observe: tuple[str, ...]
     nominal: Values = field(default_factory=lambda: Values({}))
+    outputs: Values = field(default_factory=lambda: Values({}))
 
     @cached_property
     def time_span(self) -> "tuple[Expr, Expr] | None":

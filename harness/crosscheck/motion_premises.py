@@ -1,4 +1,4 @@
-"""The premises of motions: their names, start, time span, laws, controls and events, held against the description."""
+"""The premises of motions: names, start, time span, laws, controls, events, outputs, held against the description."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from .program_values import outputs_of, run
 from .switches import law_instants
 from .taylor import Taylor
 
-PREMISES = "start, time span, laws, controls and events of the motion"
+PREMISES = "start, time span, laws, controls, events and outputs of the motion"
 LAW = Taylor(3)
 
 
@@ -49,6 +49,7 @@ def _stated(motion: DescribedMotion, problem: MotionProblem) -> dict[str, tuple[
         "time span": (["some"] * bool(problem.time_span), ["some"] * bool(motion.span)),
         "events": (list(problem.events.outputs) if problem.events else [], events),
         "until": (["one"] * len(problem.until), ["one"] * len(events)),
+        "outputs": (list(problem.outputs.outputs) if problem.outputs else [], list(scene.outputs)),
     }
 
 
@@ -102,9 +103,10 @@ def law_programs(motion: DescribedMotion, problem: MotionProblem) -> list[Progra
 def claims_of_inputs(
     motion: DescribedMotion, problems: Mapping[Solve, MotionProblem], seed: str
 ) -> Callable[[int], Parts]:
-    """Controls and events, at random states."""
+    """Controls, events and outputs, at random states; accelerations are random, and the energy is judged elsewhere."""
     drawn = {solve: States(motion, problem, seed) for solve, problem in problems.items()}
     until = Law({f"event[{i}]": tree for i, tree in enumerate(motion.scene.until_trees, 1)}, motion.splines)
+    outputs = Law(motion.scene.outputs.trees, motion.splines)
 
     def claims(attempt: int) -> Parts:
         for solve, own in drawn.items():
@@ -117,10 +119,18 @@ def claims_of_inputs(
                 computed = run(problem.controls, inputs)
                 for name, true in controls.items():
                     yield PREMISES, Claim(name, computed[name][0], true[0], abs(true[0]))
+            known = motion.parameters() | inputs | motion.with_rates(LAW, controls | inputs)
             if problem.events is not None:
-                known = motion.parameters() | inputs | motion.with_rates(LAW, controls | inputs)
                 computed = run(problem.events, inputs)
                 for name, true in until.at(STATE, state["t"][0], known).items():
+                    yield PREMISES, Claim(name, computed[name][0], true[0], abs(true[0]))
+            if problem.outputs is not None:
+                given = own.random_numbers(attempt, len(problem.coordinates))
+                inputs |= {f"ddot({q})": (x,) for q, x in zip(problem.coordinates, given, strict=True)}
+                rates = {f"ddot({u})": LAW.rate(LAW.rate(x)) for u, x in law.items()}
+                known |= rates | inputs | {"energy": run(problem.energy, inputs)["energy"]}
+                computed = run(problem.outputs, inputs)
+                for name, true in outputs.at(STATE, state["t"][0], known).items():
                     yield PREMISES, Claim(name, computed[name][0], true[0], abs(true[0]))
 
     return claims

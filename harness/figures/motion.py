@@ -49,6 +49,7 @@ def motion_figure(simulation: "Simulation") -> "Figure":
         gettext("multipliers"): simulation.multipliers,
         gettext("constraint forces"): simulation.constraint_forces,
         gettext("controls"): simulation.controls,
+        gettext("outputs"): simulation.outputs,
     }
     drawn = [(title, part) for title, curves in groups.items() for part in of_like_size(curves)]
     with figure_style():

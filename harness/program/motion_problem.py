@@ -73,7 +73,7 @@ class MotionProblem:
     """A motion to follow.
 
     Every program takes t, the coordinates, the velocities, the multipliers, the signs, the open parameters and what
-    the tables are at t, in this order.
+    the tables are at t, in this order; that of the outputs the accelerations, too.
     """
 
     # system, source: title of the system, and where it comes from
@@ -107,6 +107,8 @@ class MotionProblem:
     law_end: str | None = None
     written_out: tuple[str, ...] = ()  # special functions of the time, which programs hold as sums of polynomials
     controls: Program | None = None  # the controls, by name; None where the scene does not observe them
+    # what the scene observes under names of its own; ``ddot(q)`` are inputs, behind the multipliers. None without any
+    outputs: Program | None = None
     # ``servo_matrix[j,i]``: what the i-th control that servo-constraints find adds to the second rate of condition j
     servo_matrix: Program | None = None
     # how many of the constraints, the last ones, controls in forces keep, so that their multipliers are zero

@@ -216,6 +216,7 @@ def _with_programs(problem: MotionProblem, changed: Callable[[Program], Program]
         drawing=problem.drawing and replace(problem.drawing, program=changed(problem.drawing.program)),
         events=problem.events and changed(problem.events),
         controls=problem.controls and changed(problem.controls),
+        outputs=problem.outputs and changed(problem.outputs),
         servo_matrix=problem.servo_matrix and changed(problem.servo_matrix),
     )
 

@@ -44,6 +44,7 @@ class Inputs:
         multipliers: Numbers | None = None,
         signs: Sequence[Any] = (),
         values: Numbers | None = None,
+        accelerations: Numbers | None = None,
     ) -> Numbers:
         """Return the inputs at one state or at k of them.
 
@@ -57,11 +58,14 @@ class Inputs:
             One number, or k, for each sign that the program takes.
         values : ndarray, shape (p, k), or None
             Of the open parameters of k motions; None for those of the problem.
+        accelerations : ndarray, shape (n, k), or None
+            None for a program that takes none.
 
         Returns
         -------
         ndarray, shape (inputs,) or (inputs, k)
         """
+        signs = signs if accelerations is None else (*accelerations, *signs)
         behind = self._multipliers.stop + len(signs)
         found = zeros(self._precision, behind + self._open, *states.shape[1:])
         found[0], found[self._state] = instants, states

@@ -25,7 +25,7 @@ from .constraints.singularity import no_controls, require_gradient, shortly_befo
 from .control_matrix import ControlMatrix, controls_may_fail
 from .energy import EnergyBalance
 from .engines.choice import Between
-from .engines.engine import Step, Task
+from .engines.engine import Solutions, Step, Task
 from .engines.fallback import FallbackEngine
 from .evaluation import Evaluation, Numbers, as_floats, evaluation, evaluation_once
 from .hard_cases import Instant, dependence
@@ -146,16 +146,31 @@ class Mode:
         if self.problem.controls is None:
             return np.empty((0, len(instants)))
         found = self._controls(self._inputs(instants, states))
-        missing = np.argwhere(~np.isfinite(as_floats(found)).T)
-        if len(missing):
-            point, control = missing[0]
-            reason = f"the control {list(self.problem.controls.outputs)[control]} has no value"
-            raise HolonomError(Failure.NO_WAY_ON, detail=f"{float(instants[point]):.10g}, where {reason}")
+        _require_values("control", self.problem.controls, instants, found)
         return found
 
     @cached_property
     def _controls(self) -> Evaluation:
         return evaluation_once(self.problem, self.problem.controls, self._precision)
+
+    def outputs(self, instants: Numbers, states: Numbers, solutions: Solutions) -> Numbers:
+        """Return the outputs that the scene names, at instants, shape (k,), and states, shape (2n, k).
+
+        Raises
+        ------
+        HolonomError
+            One has no value at one of the instants.
+        """
+        if self.problem.outputs is None:
+            return np.empty((0, len(instants)))
+        inputs = self._inputs(instants, states, solutions.multipliers, accelerations=solutions.accelerations)
+        found = self._outputs(inputs)
+        _require_values("output", self.problem.outputs, instants, found)
+        return found
+
+    @cached_property
+    def _outputs(self) -> Evaluation:
+        return evaluation_once(self.problem, self.problem.outputs, self._precision)
 
     @cached_property
     def projection(self) -> ProgramProjection:
@@ -195,3 +210,12 @@ class Mode:
 
     def _multipliers(self, instants: Numbers, states: Numbers) -> Numbers:
         return self.engine.solutions(instants, states).multipliers
+
+
+def _require_values(what: str, program: Program, instants: Numbers, found: Numbers) -> None:
+    """Refuse values, shape (outputs, k), one of which is none."""
+    missing = np.argwhere(~np.isfinite(as_floats(found)).T)
+    if len(missing):
+        point, place = missing[0]
+        reason = f"the {what} {list(program.outputs)[place]} has no value"
+        raise HolonomError(Failure.NO_WAY_ON, detail=f"{float(instants[point]):.10g}, where {reason}")

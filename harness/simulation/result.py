@@ -61,6 +61,8 @@ class Report:
         Whether an event ended the motion; None where the scene names none.
     controls : mapping of str to number
         Empty where the scene does not observe them.
+    outputs : mapping of str to number
+        What the scene observes under names of its own.
     choice : Choice or None
         Why the engine that began was taken; None where one was asked for, or is the only one.
     relative_degrees : tuple of int
@@ -91,6 +93,7 @@ class Report:
     ending: Ending | None = None
     choice: Choice | None = None
     controls: Mapping[str, Any] = field(default_factory=dict)
+    outputs: Mapping[str, Any] = field(default_factory=dict)
     relative_degrees: tuple[int, ...] = ()
     moved: tuple[str, str] | None = None
     unresolved: float | None = None
@@ -117,12 +120,13 @@ class Sampled:
     energy: Samples
     residuals: Samples
     controls: Samples = field(default_factory=dict)
+    outputs: Samples = field(default_factory=dict)  # by their own names
 
     def columns(self) -> Iterator[tuple[str, NDArray[Any]]]:
         """The time, then every series of samples with its name; residuals are named ``residual.position`` and so on."""
         yield "t", self.instants
         forces = self.multipliers, self.constraint_forces, self.controls
-        for group in (self.coordinates, self.velocities, *forces, self.energy):
+        for group in (self.coordinates, self.velocities, *forces, self.outputs, self.energy):
             yield from group.items()
         for name, samples in self.residuals.items():
             yield f"residual.{name}", samples

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..failures import Failure, HolonomError
 from ..program.motion_problem import MotionProblem
+from ..program.motion_program import Program
 from ..program.precision import Precision, read_precision
 from ..program.sign_pattern import with_values_in
 from ..supervisor import doing
@@ -166,12 +167,14 @@ class _Simulation:
 
     def _hand_on(self, stretch: SampleBlock) -> None:
         """Work out what is observed at samples, and what the report needs of them."""
-        found = (mode.engine.solutions(t, states) for mode, t, states in stretch.by_mode())
+        found = [mode.engine.solutions(t, states) for mode, t, states in stretch.by_mode()]
         self.solutions = Solutions(*map(_side_by_side, zip(*found, strict=True)))
         self.reactions = np.array(
             [largest(row, known) for row, known in zip(self.solutions.multipliers, self.reactions, strict=True)]
         )
         energies, self.controls = self._energies(stretch), self._controls(stretch)
+        own = [mode.outputs(t, states, each) for (mode, t, states), each in zip(stretch.by_mode(), found, strict=True)]
+        self.outputs = _named(self.problem.outputs, own)
         self.exchange.add(energies["energy"], energies["energy_error"])
         self.take(
             Sampled(
@@ -180,6 +183,7 @@ class _Simulation:
                 energy=energies if "energy" in self.problem.observe else {},
                 residuals=self._residual_samples(stretch, self.solutions),
                 controls=self.controls,
+                outputs=self.outputs,
             )
         )
 
@@ -221,9 +225,7 @@ class _Simulation:
         return {"energy": energy, "energy_error": energy - self.begun.energy_at(self.start, self.first) - stretch.works}
 
     def _controls(self, stretch: SampleBlock) -> Samples:
-        found = [mode.controls(t, states) for mode, t, states in stretch.by_mode()]
-        names = () if self.problem.controls is None else self.problem.controls.outputs
-        return dict(zip(names, np.concatenate(found, axis=1), strict=True))
+        return _named(self.problem.controls, [mode.controls(t, states) for mode, t, states in stretch.by_mode()])
 
     def _motion(self, states: Numbers, solutions: Solutions) -> Mapping[str, Samples]:
         """Samples of what the scene observes."""
@@ -278,6 +280,7 @@ class _Simulation:
             ending=self.ending,
             choice=self.begun.engine.choice,
             controls={name: values[-1] for name, values in self.controls.items()},
+            outputs={name: values[-1] for name, values in self.outputs.items()},
             relative_degrees=self.problem.relative_degrees,
             unresolved=self.motion.unresolved,
             doubts=tuple(doubts(self._missed(left, start, end), self.begun.engine.tol, self.motion.steps)),
@@ -301,6 +304,11 @@ class _Simulation:
         answering = self.problem.reactions or not self.problem.servo  # servo-constraints have no reaction by themselves
         found = (case for case in found if answering or case is not HardCase.FREE_CANCELLATION)
         return tuple(dict.fromkeys([*called_for, *found]))
+
+
+def _named(program: Program | None, parts: Sequence[Numbers]) -> Samples:
+    """Samples by the names of a program's outputs."""
+    return dict(zip(() if program is None else program.outputs, np.concatenate(parts, axis=1), strict=True))
 
 
 def _residuals(at: Instant, accelerations: Numbers) -> Mapping[str, float]:

@@ -10,8 +10,8 @@
 
 The end is where the scene's `until` ends the motion, or else its time span; at an instant after it there is nothing.
 EXPR is made of t, coordinates, dot(x), ddot(x), multipliers, Lambda[s] and controls where the scene observes them,
-energy and the parameters. It becomes an
-expression of the motion program; nothing of it is run as code.
+outputs that it names, energy and the parameters. It becomes an expression of the motion program; nothing of it is run
+as code.
 """
 
 import ast

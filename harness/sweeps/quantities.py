@@ -13,13 +13,18 @@ Known = Mapping[str, Any]
 
 def require_known(problem: MotionProblem, quantities: Sequence[Expression]) -> None:
     """Refuse quantities that hold names which the motion does not have."""
-    controls = tuple(problem.controls.outputs) if problem.controls is not None else ()
-    there = ("t", *problem.state, *solved_names(problem), *controls, *problem.parameters, "energy")
+    there = ("t", *problem.state, *solved_names(problem), *observed_names(problem), *problem.parameters, "energy")
     for quantity in quantities:
         if unknown := sorted(names_in(quantity) - set(there)):
             raise HolonomError(
                 Failure.NOT_KEPT, detail=f"the motion has no {unknown[0]}; it has {', '.join(there)}, for each row"
             )
+
+
+def observed_names(problem: MotionProblem) -> tuple[str, ...]:
+    """Controls where the scene observes them, and outputs of its own."""
+    programs = (problem.controls, problem.outputs)
+    return tuple(name for program in programs if program is not None for name in program.outputs)
 
 
 def solved_names(problem: MotionProblem) -> tuple[str, ...]:
@@ -34,7 +39,7 @@ def along_motion(problem: MotionProblem, known: Known) -> dict[str, Any]:
     """Everything that quantities can be made of, from t, the state and the parameters."""
     inputs = {**known, **zero_multipliers(problem.multipliers, 0.0)}
     solved = {**known, **heyoka_expressions(problem.motion, inputs)}
-    others = (problem.energy, problem.matrices, problem.controls, problem.events)
+    others = (problem.energy, problem.matrices, problem.controls, problem.outputs, problem.events)
     found = [heyoka_expressions(program, solved) for program in others if program is not None]
     return solved | {name: value for results in found for name, value in results.items()}
 

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from ..explanations import unresolved
 from ..failures import Failure, HolonomError
 from ..program.heyoka_function import import_heyoka
-from ..program.motion_problem import MotionProblem, require_analytic
-from ..program.motion_program import Expression, Name, Operation, Program, calls_in
+from ..program.motion_problem import MotionProblem, computing, require_analytic
+from ..program.motion_program import Expression, Name, Operation, Program, calls_in, names_in
 from ..program.precision import read_precision
 from ..simulation.accuracy_check import MARGIN, energy_missed, expected, may_hide, trusted
 from ..simulation.control_matrix import controls_may_fail
@@ -85,6 +85,7 @@ class RowMaker:
         problem = self._problem = plan.problem
         self.plan = plan
         require_known(problem, [kept.quantity for kept in plan.kept if kept.quantity is not None])
+        _require_smooth(problem, plan.kept)
         self._starts, self._start = initial_states_of(problem), float(problem.start["t"])
         if any(kept.kind is Kind.RADIUS for kept in plan.kept):
             require_analytic(problem)
@@ -324,6 +325,18 @@ class RowMaker:
     @cached_property
     def _watch(self) -> TimeWatch:
         return TimeWatch(self._problem, self._end)
+
+
+def _require_smooth(problem: MotionProblem, kept: Sequence[Kept]) -> None:
+    """Refuse to look along the motion at outputs of the scene that polynomials of steps do not follow."""
+    for each in kept:
+        if each.kind not in ALONG or problem.outputs is None:
+            continue
+        for name in sorted(names_in(each.quantity) & set(problem.outputs.outputs)):
+            if _has_kinks(computing(problem.outputs, {name})):
+                raise HolonomError(
+                    Failure.NOT_KEPT, detail=f"{each.text} holds {name}, which is kept at instants only: it has a kink"
+                )
 
 
 def _has_kinks(program: Program) -> bool:

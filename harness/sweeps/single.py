@@ -22,7 +22,7 @@ from ..simulation.request import SimulationRequest
 from ..simulation.result import Report
 from ..simulation.simulate import follow
 from .extremes import Steps
-from .quantities import expressions_of, solved_names
+from .quantities import expressions_of, observed_names, solved_names
 
 PARTS, MOST_PARTS, FINER = 4, 4096, 4  # of a step, each with a polynomial of its own; that are tried next
 NODES = -np.cos(np.pi * (np.arange(9) + 0.5) / 9)  # of Chebyshev
@@ -53,8 +53,8 @@ class SingleMotions:
         self._solved = len(solved_names(problem))
         fields = [f"h[{s}]" for s in range(1, n + 1)]
         fields += [f"J[{beta},{s}]" for beta in range(1, g + 1) for s in range(1, n + 1)]
-        controls = problem.controls.outputs if problem.controls is not None else ()
-        names = ["t", *problem.state, *solved_names(problem), "energy", *controls, *fields, *problem.parameters]
+        solved, observed = solved_names(problem), observed_names(problem)
+        names = ["t", *problem.state, *solved, "energy", *observed, *fields, *problem.parameters]
         known = {name: heyoka.expression(name) for name in names}
         quantities = expressions_of([*along, *points], known) if along or points else []
         self._quantities = (
@@ -77,8 +77,10 @@ class SingleMotions:
         """All quantities at states of a mode, shape (quantities, k)."""
         if self._quantities is None:
             return np.empty((0, len(instants)))
-        solved = np.concatenate(mode.engine.solutions(instants, states))[: self._solved]
-        others = np.array([mode.balance.energy(instants, states), *mode.controls(instants, states)])
+        solutions = mode.engine.solutions(instants, states)
+        solved = np.concatenate(solutions)[: self._solved]
+        observed = mode.controls(instants, states), mode.outputs(instants, states, solutions)
+        others = np.array([mode.balance.energy(instants, states), *np.concatenate(observed)])
         at = mode.matrices(instants, states.T)
         fields = np.hstack([at.force, at.jacobian.reshape(len(at.force), -1)]).T
         parameters = np.repeat(np.array(problem.numbers)[:, None], len(instants), axis=1)

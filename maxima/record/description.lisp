@@ -116,12 +116,20 @@
       ($forces . described-forces) ($constraints . described-list) ($drawing . described-drawing))))
 
 (defun scene-entries (document)
-  (entries-anew document
+  (observing (described-values (member-of document "outputs")) (entries-anew document
     '(($title . identity) ($effects . described-names) ($control_law . described-values)
       ($prescribed_reactions . described-values) ($servo_constraints . described-list)
       ($parameter_values . described-values) ($initial_state . described-values) ($initial_guess . described-values)
       ($nominal . described-values) ($time_span . described-list) ($until . described-list)
-      ($observe . described-names))))
+      ($observe . described-names)))))
+
+(defun observing (outputs entries)
+  "The entries with outputs, name = expression, among what is observed."
+  (mapcar #'(lambda (entry)
+              (if (eq (second entry) '$observe)
+                  (list (first entry) '$observe (mlist-of (append (cdr (third entry)) (cdr outputs))))
+                  entry))
+          entries))
 
 (defun entries-anew (document readers)
   "entry = value for each member of DOCUMENT that is not null, read by the function that belongs to it."

@@ -24,7 +24,8 @@ system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [m]
   kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2, potential_energy = m*y, constraints = [x^2 + y^2 - u^2])$
 run : holonomic_scene(system, control_law = [u = if t < 3/2 then 2 else t + 1/2], parameter_values = [m = 1],
   initial_state = [x = 1, dot(x) = 1/2], initial_guess = [y = -1, dot(y) = 0], time_span = [0, 3],
-  until = [y - x, lambda1], observe = [trajectory, controls, constraint_forces])$
+  until = [y - x, lambda1],
+  observe = [trajectory, controls, constraint_forces, pull = -2*lambda1*u, a = [ddot(x), energy + ddot(u)]])$
 """
 
 
@@ -59,6 +60,8 @@ def changes_of(problem):
         "fewer events": {"until": problem.until[:1]},
         "another event": {"events": negated(problem.events, "event[1]")},
         "another control": {"controls": negated(problem.controls, "u")},
+        "another output": {"outputs": negated(problem.outputs, "a[2]")},
+        "fewer outputs": {"outputs": None},
         "observations": {"observe": problem.observe[:-1]},
         "coordinates": {"coordinates": problem.coordinates[::-1]},
         "a switch": {"switching": replace(problem.switching, assignments=moved(problem.switching))},

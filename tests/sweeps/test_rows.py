@@ -357,3 +357,21 @@ fall : holonomic_scene(system, parameter_values = [m = 1], initial_state = [x = 
     rows = holonom.sweep(scene, values={"m": [1, 2, 5]}, keep=["x", "radius"]).to_pandas()
     assert list(rows["x"]) == pytest.approx([-0.5] * 3)
     assert (rows["radius"] == np.inf).all()
+
+
+def test_outputs_of_the_scene_are_kept_in_lanes_and_singly(rows_of, scenes):
+    """The tension of a pendulum of length 1 is m v^2 - m g y; friction, followed singly, brakes with mu to the stop."""
+    file = scenes / "observed.mac"
+    file.write_text(HANGING.replace("[0, 2])", "[0, 2], observe = [trajectory, pull = -2*lambda1*u, side = abs(x)])"))
+    lacking = "max(abs(m*dot(x)^2+m*dot(y)^2-10*m*y-pull))"
+    found = columns(rows_of(file, f"pull,at(side,1),{lacking},final", "m=1:3:3").table(0, 3))
+    assert found[lacking] == pytest.approx(np.zeros(3), abs=1e-12)
+    tension = found["m"] * (found["dot(x)"] ** 2 + found["dot(y)"] ** 2 - 10 * found["y"])
+    assert found["pull"] == pytest.approx(tension, rel=1e-12)
+    assert (found["at(side,1)"] > 0).all()
+    (scenes / "braking.mac").write_text(FRICTION.replace("[0, 3]", "[0, 3], observe = [trajectory, F = m*ddot(x)]"))
+    braked = columns(rows_of(scenes / "braking.mac", "at(F,1/4),min(F)", "mu=1:2:2").table(0, 2))
+    assert braked["at(F,1/4)"] == pytest.approx([-1, -2])
+    assert braked["min(F)"] == pytest.approx([-1, -2])
+    with pytest.raises(HolonomError, match="side, which is kept at instants only"):
+        rows_of(file, "max(side)", "m=1:3:3")
