@@ -53,6 +53,29 @@ class DescribedMotion:
         self.outputs = [] if scene is None else [tape.place(tree) for tree in _plain(scene.servo_trees)]
 
     @cached_property
+    def moved(self) -> tuple[str, ...]:
+        """Controls that servo-constraints find and constraints contain: coordinates of the state."""
+        if self.scene is None or not self.scene.servo_trees:
+            return ()
+        return tuple(u for u in self._standing_in(self.constraints) if u not in self.freed)
+
+    @cached_property
+    def freed(self) -> tuple[str, ...]:
+        """Controls that prescribed reactions find: coordinates of the state."""
+        if self.scene is None or not self.scene.prescribed_reactions:
+            return ()
+        if not self.scene.servo_trees:
+            return tuple(u for u in self.system.controls if u not in self.scene.control_law)
+        places = zip(self.system.multipliers, self.constraints, strict=True)
+        return self._standing_in([place for name, place in places if name in self.scene.prescribed_reactions])
+
+    def _standing_in(self, places: Sequence[int]) -> tuple[str, ...]:
+        """Controls without a law that expressions contain."""
+        needed = self.tape.needed_for(places)
+        free = (u for u in self.system.controls if u not in self.scene.control_law)
+        return tuple(u for u in free if self.tape.names.get(u) in needed)
+
+    @cached_property
     def span(self) -> tuple[mp.mpf, mp.mpf] | None:
         """First and last instant of the scene; None if it states none."""
         if self.scene is None or self.scene.span_trees is None:

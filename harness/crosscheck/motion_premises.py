@@ -40,10 +40,9 @@ def other_premises(motion: DescribedMotion, problems: Mapping[Solve, MotionProbl
 def _stated(motion: DescribedMotion, problem: MotionProblem) -> dict[str, tuple[Sequence[str], Sequence[str]]]:
     """Names as a problem has them and as they are stated."""
     scene, system = motion.scene, motion.system
-    released = [name for name in system.controls if scene.prescribed_reactions and name not in scene.control_law]
     events = [f"event[{i}]" for i in range(1, len(scene.until_trees) + 1)]
     return {
-        "coordinates": (problem.coordinates, (*system.coordinates, *released)),
+        "coordinates": (problem.coordinates, (*system.coordinates, *motion.freed, *motion.moved)),
         "multipliers": (problem.multipliers[: len(problem.multipliers) - problem.servo], system.multipliers),
         "observe": (problem.observe, scene.observe),
         "time span": (["some"] * bool(problem.time_span), ["some"] * bool(motion.span)),
@@ -117,7 +116,9 @@ def claims_of_inputs(
             controls = {name: law.get(name) or found[name] for name in motion.system.controls if name in law | found}
             if problem.controls is not None:
                 computed = run(problem.controls, inputs)
-                for name, true in controls.items():
+                given = {name: true for name, true in controls.items() if name not in problem.coordinates}
+                given |= {name: found[name] for name in map("ddot({})".format, motion.moved) if name in found}
+                for name, true in given.items():
                     yield PREMISES, Claim(name, computed[name][0], true[0], abs(true[0]))
             known = motion.parameters() | inputs | motion.with_rates(LAW, controls | inputs)
             if problem.events is not None:

@@ -212,7 +212,7 @@ def _released_states(
     def claims(attempt: int) -> Parts:
         for solve, own in drawn.items():
             problem, part = problems[solve], f"motion program, {solve} solve"
-            state = own.state(attempt)
+            state = own.kept(own.state(attempt))
             found = run(problem.motion, own.inputs(state, own.random_numbers(attempt, len(problem.multipliers))))
             controls = own.controls(state, found)
             prescribed = motion.reactions.at(STATE, state["t"][0], motion.parameters())
@@ -221,7 +221,8 @@ def _released_states(
             accelerations = {q: found[f"ddot({q})"][0] for q in problem.coordinates}
             multipliers = [found[name][0] for name in motion.system.multipliers]
             curve = own.curve(state, accelerations, controls)
-            yield from ((part, each) for each in states.claims_by_substitution(motion, curve, multipliers))
+            kept = [*motion.constraints, *motion.outputs]
+            yield from ((part, each) for each in states.claims_by_substitution(motion, curve, multipliers, kept))
 
     return claims
 
@@ -229,7 +230,13 @@ def _released_states(
 def _open_states(motion: DescribedMotion, program: Program, seed: str) -> Callable[[int], Parts]:
     """Of a motion program whose controls, and some of whose parameters, are inputs."""
     system, part = motion.system, f"motion program, {program.solve} solve"
-    left_out = [place for place, name in enumerate(system.multipliers) if name in program.redundant]
+    kept = [
+        place
+        for place, name in zip(motion.constraints, system.multipliers, strict=True)
+        if name not in program.redundant
+    ]
+    if f"lambda{len(motion.constraints) + len(motion.outputs) + 1}" not in program.outputs:  # all of relative degree 2
+        kept += motion.outputs
 
     def claims(attempt: int) -> Parts:
         import random
@@ -242,12 +249,12 @@ def _open_states(motion: DescribedMotion, program: Program, seed: str) -> Callab
         curve: Values = {name: inputs[name] for name in system.parameters if name in inputs} | given
         curve["t"] = (inputs.get("t", (mp.zero,))[0], mp.one)
         for u in system.controls:
-            history = [inputs.get(name, (mp.zero,))[0] for name in (u, f"dot({u})", f"ddot({u})")]
+            history = [(inputs | found).get(name, (mp.zero,))[0] for name in (u, f"dot({u})", f"ddot({u})")]
             curve[u] = (history[0], history[1], history[2] / 2)
         for q in system.coordinates:
             curve[q] = (inputs[q][0], inputs[f"dot({q})"][0], found[f"ddot({q})"][0] / 2)
         multipliers = [found[name][0] for name in system.multipliers]
-        yield from ((part, each) for each in states.claims_by_substitution(motion, curve, multipliers, left_out))
+        yield from ((part, each) for each in states.claims_by_substitution(motion, curve, multipliers, kept))
 
     return claims
 

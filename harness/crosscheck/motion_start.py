@@ -72,8 +72,9 @@ def nearer_start(motion: DescribedMotion, start: State) -> str:
         return ""
     guessed = {name: motion.number_of(tree) for name, tree in motion.scene.initial_guess.trees.items()}
     guess = {name: value for name, value in guessed.items() if name not in motion.scene.initial_state}
-    places = {q: q for q in motion.system.coordinates}
-    rates = {f"dot({q})": q for q in motion.system.coordinates}
+    coordinates = (*motion.system.coordinates, *motion.moved)
+    places = {q: q for q in coordinates}
+    rates = {f"dot({q})": q for q in coordinates}
     for order, columns in enumerate((places, rates)):
         own = {name: guess[name] for name in columns if name in guess}
         if own and (found := _Search(motion, start, own, columns, order).nearer()):
@@ -119,7 +120,7 @@ class _Search:
         return f"initial value of {name}: {given}, where {true} is nearer to the guess"
 
     def _metric(self, state: State) -> list[Row]:
-        """Mass matrix of the names at a state; coordinates without mass get a faint one."""
+        """Mass matrix of the names at a state, 1 of controls that move, and a faint one of coordinates without mass."""
         motion, rates = self._motion, [f"dot({q})" for q in self._columns]
         at_rest = state | {f"dot({q})": mp.zero for q in motion.system.coordinates if q in state}
         momenta = [
@@ -129,7 +130,8 @@ class _Search:
         resting, *moving = ([each.get(rate, (mp.zero,))[0] for rate in rates] for each in momenta)
         rows = [{k: a - b for k, (a, b) in enumerate(zip(row, resting, strict=True)) if a != b} for row in moving]
         faint = FAINT * (max((abs(x) for row in rows for x in row.values()), default=mp.zero) or 1)
-        return [row | {i: row.get(i, mp.zero) + faint} for i, row in enumerate(rows)]
+        own = {i: mp.one for q, i in self._columns.items() if q in motion.moved}
+        return [row | {i: row.get(i, mp.zero) + own.get(i, faint)} for i, row in enumerate(rows)]
 
     def _root(self, state: State, metric: Sequence[Row]) -> tuple[State, bool]:
         """Return the root that the method arrives at, and whether it is one of a continuum.

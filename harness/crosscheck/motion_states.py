@@ -250,15 +250,15 @@ def _residuals(system: Bordered, computed: Values, which: str) -> list[mp.mpf]:
 
 
 def claims_by_substitution(
-    motion: DescribedMotion, curve: Values, multipliers: Sequence[mp.mpf], left_out: Sequence[int] = ()
+    motion: DescribedMotion, curve: Values, multipliers: Sequence[mp.mpf], kept: Sequence[int]
 ) -> Iterator[Claim]:
-    """That the equations of motion hold along a curve through a state."""
+    """That the equations of motion hold along a curve through a state, and the second rates of what is kept."""
     values = motion.values(SECOND, curve)
     for q, equation in zip(
         motion.system.coordinates, motion.equations(SECOND, values, [(x,) for x in multipliers]), strict=True
     ):
         yield Claim(f"equation of motion of {q}", equation.value[0], mp.zero, equation.size[0])
-    for beta, place in enumerate(motion.constraints):
-        if beta not in left_out:
+    for beta, place in enumerate([*motion.constraints, *motion.outputs]):
+        if place in kept:
             f = (*values[place], mp.zero, mp.zero)
             yield Claim(f"second rate of constraint {beta + 1}", 2 * f[2], mp.zero, mp.zero)

@@ -106,12 +106,13 @@ class MotionProblem:
     # the last instant at which the drives have values, where tables or special functions give them
     law_end: str | None = None
     written_out: tuple[str, ...] = ()  # special functions of the time, which programs hold as sums of polynomials
-    controls: Program | None = None  # the controls, by name; None where the scene does not observe them
+    # the controls, by name, ``ddot(u)`` of those that servo-constraints move; None if they are not observed
+    controls: Program | None = None
     # what the scene observes under names of its own; ``ddot(q)`` are inputs, behind the multipliers. None without any
     outputs: Program | None = None
     # ``servo_matrix[j,i]``: what the i-th control that servo-constraints find adds to the second rate of condition j
     servo_matrix: Program | None = None
-    # how many of the constraints, the last ones, controls in forces keep, so that their multipliers are zero
+    # how many of the constraints, the last ones, servo-constraints keep, so that their multipliers are zero
     servo: int = 0
     # of each output that servo-constraints prescribe: which of its rates the controls are in
     relative_degrees: tuple[int, ...] = ()

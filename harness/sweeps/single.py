@@ -55,11 +55,10 @@ class SingleMotions:
         fields += [f"J[{beta},{s}]" for beta in range(1, g + 1) for s in range(1, n + 1)]
         solved, observed = solved_names(problem), observed_names(problem)
         names = ["t", *problem.state, *solved, "energy", *observed, *fields, *problem.parameters]
-        known = {name: heyoka.expression(name) for name in names}
+        inputs = [heyoka.expression(f"x{place}") for place in range(len(names))]
+        known = dict(zip(names, inputs, strict=True))  # ddot(u) may be among the accelerations and the controls
         quantities = expressions_of([*along, *points], known) if along or points else []
-        self._quantities = (
-            in_full_vectors(heyoka.cfunc(quantities, vars=list(known.values()), opt_level=0)) if quantities else None
-        )
+        self._quantities = in_full_vectors(heyoka.cfunc(quantities, vars=inputs, opt_level=0)) if quantities else None
 
     def follow(self, problem: MotionProblem, stops: Sequence[float]) -> "SingleMotion":
         """Follow one motion.

@@ -366,10 +366,7 @@ REFUSED = {
         ARM.replace("tau1 - tau2", "tau1^2 - tau2"),
         "servo_control_not_linear",
     ),
-    "a control in the constraints": (
-        ROD.replace("+ q^2 - 1]", "+ q^2 - 1 - F]"),
-        "servo_control_in_energy",
-    ),
+    "a control in the potential energy": (ROD.replace("g*q,", "g*q + F*p,"), "servo_control_in_energy"),
     "the same output twice": (
         ARM.replace("l*sin(a) + l*sin(b) = sin(t)/4", "2*l*cos(a) + 2*l*cos(b) = 3"),
         "servo_condition_on_time",
