@@ -34,7 +34,15 @@ working directory; where no image can serve, do nothing."
 
 (defun write-functions (forms out)
   (dolist (form forms)
-    (if (and (eq (first form) 'defun) (fboundp (second form))) (format out "~S~%" form))))
+    (case (first form)
+      (defun (if (fboundp (second form)) (format out "~S~%" form)))
+      (defstruct (write-constructor (second form) out)))))
+
+(defun write-constructor (structure out)
+  "The function that makes a structure, which GCL interprets."
+  (let* ((name (intern (format nil "MAKE-~A" (if (consp structure) (first structure) structure))))
+         (known (and (fboundp name) (symbol-function name))))
+    (if (and (consp known) (eq (second known) name)) (format out "~S~%" (cons 'defun (cdr known))))))
 
 (defun load-compiled (text)
   (with-open-file (out "functions.lisp" :direction :output)

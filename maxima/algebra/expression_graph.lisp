@@ -384,7 +384,7 @@
 
 (defun gradient-by-parts (node)
   "Chain rule, with the products for each variable summed at once."
-  (let ((products (make-hash-table)) (positions nil) (gradient nil))
+  (let ((products (make-hash-table :size 16)) (positions nil) (gradient nil))
     (dolist (partial (local-partials node))
       (dolist (entry (gradient-of (car partial)))
         (if (null (gethash (car entry) products)) (push (car entry) positions))

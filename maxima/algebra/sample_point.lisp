@@ -357,7 +357,7 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
 
 (defun gram-row (row columns)
   "The row of J J^T that a row of J gives, in the order of its columns."
-  (let ((products (make-hash-table)) (entries nil))
+  (let ((products (make-hash-table :size 16)) (entries nil))
     (dolist (e row)
       (dolist (other (gethash (car e) columns))
         (push (* (cdr e) (cdr other)) (gethash (car other) products))))

@@ -18,7 +18,7 @@
 
 (defun $names_in (e)
   "The variables of an expression, as listofvars finds them, in the order in which they are met."
-  (let ((met (make-hash-table :test 'equal)) (names nil) (waiting (list e)))
+  (let ((met (make-hash-table :test 'equal :size 16)) (names nil) (waiting (list e)))
     (do () ((null waiting) (cons '(mlist simp) (nreverse names)))
       (let ((part (pop waiting)))
         (cond ((numberp part))
@@ -75,7 +75,7 @@
 
 (defun $substituted (values e)
   "The expression with  name = value  put in for its symbols, all at once."
-  (let ((table (make-hash-table)))
+  (let ((table (make-hash-table :size 16)))
     (dolist (item (cdr values)) (setf (gethash (second item) table) (third item)))
     (if (cdr values) (put-in table e) e)))
 
@@ -107,7 +107,7 @@
 
 (defun terms-by-name (e)
   "The terms of the sum that contain each name."
-  (let ((table (make-hash-table)) (e (if (specrepp e) (specdisrep e) e)))
+  (let ((table (make-hash-table :size 16)) (e (if (specrepp e) (specdisrep e) e)))
     (dolist (term (if (and (consp e) (eq (caar e) 'mplus)) (cdr e) (list e)) table)
       (dolist (name (cdr ($names_in term))) (push term (gethash name table))))))
 
