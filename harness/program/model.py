@@ -47,11 +47,18 @@ class Model:
     projection: Program  # ``position_correction[s]``, ``velocity_correction[s]``
     # the controls that servo-constraints find, by name, of the same inputs; None where they find none
     servo: Program | None = None
+    # what the scene observes under names of its own, of the same inputs; None without any
+    outputs: Program | None = None
 
     @property
     def found(self) -> tuple[str, ...]:
         """Names of the controls that servo-constraints find."""
         return () if self.servo is None else tuple(self.servo.outputs)
+
+    @property
+    def observed(self) -> tuple[str, ...]:
+        """Names of the scene's own outputs."""
+        return () if self.outputs is None else tuple(self.outputs.outputs)
 
     @property
     def under_law(self) -> tuple[str, ...]:

@@ -39,6 +39,7 @@ def write_model(model: Model, name: str) -> dict[str, str]:
             enumerations="\n".join(_enumerations(model, name.upper())),
             law=comment_text(", ".join(model.under_law) or "the scene has none"),
             found=comment_text(", ".join(model.found) or "the scene has none"),
+            outputs=comment_text(", ".join(model.observed) or "the scene has none"),
         ),
         f"{name}.c": _source(model, written),
         f"{name}_driver.c": filled("driver.c", **written),
@@ -67,6 +68,7 @@ def _enumerations(model: Model, prefix: str) -> Iterator[str]:
         "MULTIPLIER": model.multipliers,
         "CONTROL": model.controls,
         "FOUND_CONTROL": model.found,
+        "OUTPUT": model.observed,
         "PARAMETER": model.parameters,
     }
     for group, names in groups.items():
@@ -108,7 +110,8 @@ def _source(model: Model, written: Mapping[str, str]) -> str:
         g=len(model.multipliers),
         residual=_residual(model, one),
         jacobian=_jacobian(model, one),
-        servo=_servo(model, one),
+        servo=_found(model.servo, one, "found"),
+        outputs=_found(model.outputs, one, "y"),
         corrections=one(model.projection, [corrections[name] for name in model.projection.outputs], "t q v u p dq dv"),
     )
 
@@ -140,7 +143,7 @@ def _results(model: Model, item: str) -> list[str]:
 
 def _names(model: Model, name: str) -> Iterator[str]:
     groups = {group: getattr(model, group) for group in ("coordinates", "multipliers", "controls", "parameters")}
-    for group, members in {**groups, "found_controls": model.found}.items():
+    for group, members in {**groups, "found_controls": model.found, "outputs": model.observed}.items():
         listed = ", ".join([*map(c_string, members), "NULL"])
         yield f"const char *const {name}_{group}[] = {{{listed}}};"
 
@@ -200,11 +203,12 @@ def _residual(model: Model, function: Callable[..., str]) -> str:
     return function(program, [places[name] for name in program.outputs], parameters)
 
 
-def _servo(model: Model, function: Callable[..., str]) -> str:
-    parameters = "t q v u p found"
-    if model.servo is None:
+def _found(program: Program | None, function: Callable[..., str], array: str) -> str:
+    """Body of a function that computes all outputs of a program, if there is one, into an array."""
+    parameters = f"t q v u p {array}"
+    if program is None:
         return _body((), parameters)
-    return function(model.servo, [f"found[{place}]" for place in range(len(model.found))], parameters)
+    return function(program, [f"{array}[{place}]" for place in range(len(program.outputs))], parameters)
 
 
 def _jacobian(model: Model, function: Callable[..., str]) -> str:

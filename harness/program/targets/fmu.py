@@ -1,7 +1,7 @@
 """A scene's model as an FMI 3.0 unit for model exchange: the library in C, compiled, beside its sources.
 
 Controls, with their rates and second rates, are inputs, which start at the control law's values; open parameters can be
-tuned; coordinates and velocities are states and, like accelerations and multipliers, outputs.
+tuned; coordinates and velocities are states and, like accelerations, multipliers and what the scene names itself, outputs.
 """
 
 import hashlib
@@ -116,7 +116,7 @@ def _variables(model: Model) -> Iterator[dict[str, str]]:
     for s, name in enumerate((*model.coordinates, *velocities)):
         derivative = {"name": f"der({name})", "causality": "local", "initial": "calculated", "derivative": str(s + 1)}
         yield derivative if s < n else derivative | {"name": f"ddot({model.coordinates[s - n]})", "causality": "output"}
-    for name in (*model.multipliers, *model.found):
+    for name in (*model.multipliers, *model.found, *model.observed):
         yield {"name": name, "causality": "output", "initial": "calculated"}
 
 

@@ -9,6 +9,7 @@
        DQ, A        the states' derivatives
        LAMBDA       multipliers
        FOUND        controls that servo-constraints find
+       OBSERVED     outputs that the scene names
 
    What lies before STORED is held; the rest is computed when it is asked for, once for each state.    */
 
@@ -36,7 +37,7 @@ typedef void (*fmi3Callback)(void);
 typedef void (*fmi3LogMessageCallback)(fmi3Environment, fmi3Status, fmi3String category, fmi3String message);
 
 enum { Q = 1, V = Q + N, U = V + N, P = U + 3*M, STORED = P + K, DQ = STORED, A = DQ + N, LAMBDA = A + N,
-    FOUND = LAMBDA + G, ALL = FOUND + F };
+    FOUND = LAMBDA + G, OBSERVED = FOUND + F, ALL = OBSERVED + Y };
 
 typedef struct {
     double x[ALL];
@@ -58,6 +59,7 @@ static void compute(Unit *unit)
     memcpy(x + DQ, x + V, N*sizeof *x);
     MODEL(motion)(x[0], x + Q, x + V, x + U, x + P, x + A, x + LAMBDA);
     MODEL(servo)(x[0], x + Q, x + V, x + U, x + P, x + FOUND);
+    MODEL(observe)(x[0], x + Q, x + V, x + U, x + P, x + OBSERVED);
     unit->computed = true;
 }
 

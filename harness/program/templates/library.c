@@ -67,6 +67,11 @@ void @{name}_servo(double t, const double *q, const double *v, const double *u, 
 @{servo}
 }
 
+void @{name}_observe(double t, const double *q, const double *v, const double *u, const double *p, double *y)
+{
+@{outputs}
+}
+
 static void corrections(double t, const double *q, const double *v, const double *u, const double *p,
     double *dq, double *dv)
 {

@@ -20,6 +20,7 @@ extern const char *const @{name}_multipliers[];
 extern const char *const @{name}_controls[];
 extern const char *const @{name}_found_controls[];
 extern const char *const @{name}_parameters[];
+extern const char *const @{name}_outputs[];
 
 /* The scene's start: instant, coordinates, velocities; NAN where they depend on a parameter without value. */
 void @{name}_start(double *t, double *q, double *v);
@@ -47,6 +48,9 @@ void @{name}_jacobian(double t, const double *q, const double *v, const double *
 
 /* Controls that servo-constraints find, and the motion above has: @{found}. */
 void @{name}_servo(double t, const double *q, const double *v, const double *u, const double *p, double *found);
+
+/* Outputs y that the scene names: @{outputs}. */
+void @{name}_observe(double t, const double *q, const double *v, const double *u, const double *p, double *y);
 
 /* Project a state in place onto position and velocity constraints, in the mass metric. Returns 0; or 1 where Newton's
    method does not converge, and then the state is left as it was. */
