@@ -24,7 +24,7 @@ from ..simulation.matrices import INDEXED, Matrix, Vector
 from ..source import Source
 from ..structs import structured
 
-ROWS = ("equation", "constraint", "rate", "acceleration")  # r, f, Df, DDf
+ROWS = ("equation", "constraint", "rate", "acceleration", "output")  # r, f, Df, DDf, outputs
 GROUPS = ("q", "v", "a", "u", "du", "ddu")
 
 
@@ -42,6 +42,8 @@ class LinearEquations:
         Of t: u, dot u, ddot u; None where a control has no law.
     program : Program
         Of (t, q, dot q, ddot q, lambda, u, dot u, ddot u).
+    outputs : tuple of str
+        Names of what the scene observes itself.
     """
 
     coordinates: tuple[str, ...]
@@ -50,6 +52,7 @@ class LinearEquations:
     forced: bool
     law: Program | None
     program: Program
+    outputs: tuple[str, ...]
 
     @cached_property
     def _evaluate(self) -> NumpyFunction:
@@ -98,19 +101,22 @@ class LinearEquations:
         -------
         mapping of str to ndarray
             ``equation``, shape (n,), ``constraint``, ``rate`` and ``acceleration``, shape (g,): r, f, Df, DDf. Their
-            gradients ``equation_by_q``, and so on by q, v, a, u, du, ddu; ``A_rate``, shape (n, n).
+            gradients ``equation_by_q``, and so on by q, v, a, u, du, ddu; ``A_rate``, shape (n, n). ``output``, the
+            scene's own, with its gradients, also by the multipliers that are looked at.
         """
         n, g, r = len(self.coordinates), len(self.multipliers), len(self.controls)
         sizes = dict(zip(GROUPS, (n, n, n, r, r, r), strict=True))
         points = point.state.shape[1:]
-        found = {"A_rate": np.zeros((n, n, *points))}
-        for row, size in zip(ROWS, (n, g, g, g), strict=True):
+        own = len(self.outputs)
+        found = {"A_rate": np.zeros((n, n, *points)), "output_by_multipliers": np.zeros((own, g, *points))}
+        for row, size in zip(ROWS, (n, g, g, g, own), strict=True):
             found[row] = np.zeros((size, *points))
             found |= {f"{row}_by_{group}": np.zeros((size, columns, *points)) for group, columns in sizes.items()}
         values = self._evaluate([point.t, *np.concatenate(point[1:])])
         for (array, place), value in zip(self._places, values, strict=True):
             found[array][place] = value
-        of_motion = ("equation", "A_rate")
+        found["output_by_multipliers"] = found["output_by_multipliers"][:, list(kept)]
+        of_motion = ("equation", "A_rate", "output")
         return {name: each if name.startswith(of_motion) else each[list(kept)] for name, each in found.items()}
 
 

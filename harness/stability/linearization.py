@@ -57,7 +57,7 @@ class Linearization(Shown):
     leading : tuple of str
         Of those, the m to which the tangent coordinates belong.
     controls, outputs : tuple of str
-        Names of the r inputs and of what y holds: coordinates, velocities, multipliers.
+        Names of the r inputs and of what y holds: coordinates, velocities, multipliers, outputs of the scene.
     mass : ndarray, shape (n, n)
         The mass matrix.
     basis : ndarray, shape (n, m)
@@ -252,7 +252,7 @@ def linearized(
         names,
         tuple(names[place] for place in tangent.leading),
         equations.controls,
-        (*problem.state, *(equations.multipliers[beta] for beta in kept)),
+        (*problem.state, *(equations.multipliers[beta] for beta in kept), *equations.outputs),
         here["equation_by_a"],
         tangent.basis,
         *_state_space(here, tangent),
@@ -307,8 +307,10 @@ def _state_space(here: Mapping[str, Matrix], tangent: Tangent) -> tuple[Matrix, 
     basis_rate = R - N @ turned
     xi_rate = np.block([turned, np.eye(m), R.T @ mass @ P + N.T @ mass_rate @ P, np.zeros((m, 2 * r))])
     eta_rate = (basis_rate.T @ mass + N.T @ mass_rate) @ v - N.T @ unsolved
-    _, multipliers = tangent.solve(-unsolved, -_by_deviations(here, "acceleration", q, v, controls))
-    rows, outputs = np.concatenate([xi_rate, eta_rate]), np.concatenate([q, v, multipliers])
+    accelerations, multipliers = tangent.solve(-unsolved, -_by_deviations(here, "acceleration", q, v, controls))
+    own = _by_deviations(here, "output", q, v, controls) + here["output_by_a"] @ accelerations
+    own = own + here["output_by_multipliers"] @ multipliers
+    rows, outputs = np.concatenate([xi_rate, eta_rate]), np.concatenate([q, v, multipliers, own])
     (A, *B), (C, *D) = (np.split(part, 2 * m + r * np.arange(3), axis=1) for part in (rows, outputs))
     return A, dict(zip(RATES, B, strict=True)), C, dict(zip(RATES, D, strict=True))
 

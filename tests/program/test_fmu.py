@@ -96,3 +96,26 @@ def test_what_has_no_value_to_start_from_is_refused(write_scene):
     file = write_scene(text.replace("m = 1, ", ""))
     with pytest.raises(HolonomError, match="nothing is given for m"):
         fmu.write_model(scene_model(file, Request(), (), Limits()), "bob")
+
+
+OBSERVING = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [m], potential_energy = [gravity = 10*m*y],
+  kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2, constraints = [x^2 + y^2 - u^2])$
+swing : holonomic_scene(system, control_law = [u = 1], parameter_values = [m = 2], time_span = [0, 1],
+  initial_state = [x = 3/5, y = -4/5, dot(x) = 0], observe = [trajectory, pull = -2*lambda1*u, a = [ddot(x), ddot(y)]])$
+"""
+
+
+def test_outputs_of_the_scene_are_outputs_of_the_unit(tmp_path, c_compiler):
+    """The tension of a pendulum of length 1 is m v^2 - m g y, which accelerates it."""
+    (tmp_path / "scene.mac").write_text(OBSERVING)
+    model = scene_model(tmp_path / "scene.mac", Request(None), ["m"], Limits())
+    assert model.observed == ("pull", "a[1]", "a[2]")
+    unit = tmp_path / "unit.fmu"
+    unit.write_bytes(fmu.write_model(model, "unit"))
+    assert list(validate_fmu(str(unit))) == []
+    names = ["x", "y", "dot(x)", "dot(y)", "pull", "a[1]", "a[2]"]
+    rows = fmpy.simulate_fmu(str(unit), fmi_type="ModelExchange", stop_time=1, output=names)
+    x, y, v, w, *found = (rows[name] for name in names)
+    pull = 2 * (v**2 + w**2 - 10 * y) / (x**2 + y**2)
+    assert np.array(found) == pytest.approx(np.array([pull, -pull * x / 2, -pull * y / 2 - 10]), rel=1e-12)

@@ -249,3 +249,28 @@ def test_the_command(holonom_here):
     assert (answer.returncode, document["at"], document["at_rest"], document["leading"]) == (0, 0.5, False, ["x"])
     table = holonom_here("linearize", "examples/linkage.mac", "--equilibrium", "e2")
     assert (table.returncode, "± 3.43103 i" in table.stdout) == (0, True)
+
+
+# ---- outputs of the scene ------------------------------------------------------------------------------------------
+
+OBSERVED = """system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [m, g],
+  kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2, potential_energy = [gravity = m*g*y], constraints = [x^2 + y^2 - u^2])$
+swing : holonomic_scene(system, control_law = [u = 1 + t/10], parameter_values = [m = 3/2, g = 981/100],
+  initial_state = [x = 3/5, y = -4/5, dot(x) = 1/2], time_span = [0, 2], observe = [trajectory, pull = lambda1*x,
+    law = m*ddot(x) - 2*lambda1*x, length = dot(x)^2 + x*ddot(x) + dot(y)^2 + y*ddot(y) - dot(u)^2 - u*ddot(u),
+    E = energy, side = abs(x)])$
+"""
+
+
+def test_outputs_of_the_scene_deviate_with_what_they_are_made_of():
+    """Newton's law and the constraint hold for neighbouring motions, and the energy is that of the state."""
+    found = holonom.system(OBSERVED).linearize(at=0)
+    x, y, v, w = 0.6, -0.8, 0.5, 0.25  # x v + y w = u du/dt
+    multiplier = (0.01 - v**2 - w**2 + 9.81 * y) * 0.75  # of v^2 + w^2 + x ddot x + y ddot y = (u^2)''/2
+    for rows in (found.C, *found.D.values()):
+        row = dict(zip(found.outputs, rows, strict=True))
+        assert row["law"] == pytest.approx(0 * row["law"], abs=1e-13)
+        assert row["length"] == pytest.approx(0 * row["length"], abs=1e-13)
+        assert row["pull"] == pytest.approx(multiplier * row["x"] + x * row["lambda1"])
+        assert row["side"] == pytest.approx(row["x"])
+        assert row["E"] == pytest.approx(1.5 * (v * row["dot(x)"] + w * row["dot(y)"] + 9.81 * row["y"]))

@@ -1,7 +1,7 @@
 """A scene's model as an FMI 3.0 unit for model exchange: the library in C, compiled, beside its sources.
 
 Controls, with their rates and second rates, are inputs, which start at the control law's values; open parameters can be
-tuned; coordinates and velocities are states and, like accelerations, multipliers and what the scene names itself, outputs.
+tuned; coordinates and velocities are states; they, accelerations, multipliers and what the scene names are outputs.
 """
 
 import hashlib
