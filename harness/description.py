@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .described import System, Values, each, expression
 from .failures import Failure, HolonomError
@@ -36,6 +36,13 @@ class Table:
 
     points: tuple[tuple[Tree, Tree], ...]
     ends: tuple[Tree, Tree] | None
+
+
+class DescribedRelease(NamedTuple):
+    """Constraints, by their multipliers, that end where an expression first crosses zero."""
+
+    condition: Tree
+    multipliers: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -62,6 +69,8 @@ class DescribedScene:
         First and last instant.
     until_trees : tuple of trees
         Expressions whose zeros end the motion.
+    released : tuple of DescribedRelease
+        Constraints that end.
     observe : tuple of str
         What to compute.
     outputs : mapping of str to Expr
@@ -84,6 +93,7 @@ class DescribedScene:
     observe: tuple[str, ...]
     nominal: Values = field(default_factory=lambda: Values({}))
     outputs: Values = field(default_factory=lambda: Values({}))
+    released: tuple[DescribedRelease, ...] = ()
 
     @cached_property
     def time_span(self) -> "tuple[Expr, Expr] | None":

@@ -10,7 +10,8 @@ are polynomials in the time, too: on a motion they vanish. No matrix is made, an
 from __future__ import annotations
 
 from collections.abc import Container, Mapping, Sequence
-from dataclasses import dataclass
+from copy import copy
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from mpmath import mp
@@ -51,6 +52,22 @@ class DescribedMotion:
         ]
         self.constraints = [tape.place(tree) for tree in system.constraint_trees]
         self.outputs = [] if scene is None else [tape.place(tree) for tree in _plain(scene.servo_trees)]
+        self.ended: frozenset[str] = frozenset()  # multipliers of constraints that have ended
+
+    def after(self, k: int) -> DescribedMotion:
+        """The motion after the k-th release of the scene, counted from 0."""
+        found, scene, ended = copy(self), self.scene, self.scene.released[k].multipliers
+        kept = [beta for beta, name in enumerate(self.system.multipliers) if name not in ended]
+        found.scene = replace(scene, released=scene.released[:k] + scene.released[k + 1 :])
+        names, trees = self.system.multipliers, self.system.constraint_trees
+        found.system = replace(
+            self.system,
+            multipliers=tuple(names[beta] for beta in kept),
+            constraint_trees=tuple(trees[beta] for beta in kept),
+        )
+        found.constraints = [self.constraints[beta] for beta in kept]
+        found.ended = self.ended | set(ended)
+        return found
 
     @cached_property
     def moved(self) -> tuple[str, ...]:

@@ -33,6 +33,8 @@ def other_premises(motion: DescribedMotion, problems: Mapping[Solve, MotionProbl
                 return f"{what}: {_listed(found)}, where {_listed(belongs)} is stated"
         if wrong := differing(lambda problem=problem: _claims(motion, problem, seed), START_DIGITS):
             return wrong
+    if motion.ended:
+        return ""
     with mp.workdps(WORKING_DIGITS):
         return nearer_start(motion, _start(next(iter(problems.values()))))
 
@@ -49,6 +51,10 @@ def _stated(motion: DescribedMotion, problem: MotionProblem) -> dict[str, tuple[
         "events": (list(problem.events.outputs) if problem.events else [], events),
         "until": (["one"] * len(problem.until), ["one"] * len(events)),
         "outputs": (list(problem.outputs.outputs) if problem.outputs else [], list(scene.outputs)),
+        "released": (
+            [name for each in problem.released for name in (*each.multipliers, "then")],
+            [name for each in scene.released for name in (*each.multipliers, "then")],
+        ),
     }
 
 
@@ -62,7 +68,8 @@ def _start(problem: MotionProblem) -> dict[str, mp.mpf]:
 
 def _claims(motion: DescribedMotion, problem: MotionProblem, seed: str) -> Iterator[Claim]:
     """Compare the start, the time span, and the laws of all programs of a problem at the instants of `law_instants`."""
-    yield from claims_of_start(motion, _start(problem), problem.correction)
+    if not motion.ended:  # the start is that of the motion before any release
+        yield from claims_of_start(motion, _start(problem), problem.correction)
     for found, belongs in zip(problem.time_span or (), motion.span or (), strict=True):
         yield Claim("time span", mp.mpf(found), belongs, abs(belongs))
     own = States(motion, problem, seed)
@@ -104,7 +111,8 @@ def claims_of_inputs(
 ) -> Callable[[int], Parts]:
     """Controls, events and outputs, at random states; accelerations are random, and the energy is judged elsewhere."""
     drawn = {solve: States(motion, problem, seed) for solve, problem in problems.items()}
-    until = Law({f"event[{i}]": tree for i, tree in enumerate(motion.scene.until_trees, 1)}, motion.splines)
+    stated = motion.scene.until_trees, [each.condition for each in motion.scene.released]
+    expressions = [Law({f"event[{i}]": tree for i, tree in enumerate(trees, 1)}, motion.splines) for trees in stated]
     outputs = Law(motion.scene.outputs.trees, motion.splines)
 
     def claims(attempt: int) -> Parts:
@@ -121,9 +129,10 @@ def claims_of_inputs(
                 for name, true in given.items():
                     yield PREMISES, Claim(name, computed[name][0], true[0], abs(true[0]))
             known = motion.parameters() | inputs | motion.with_rates(LAW, controls | inputs)
-            if problem.events is not None:
-                computed = run(problem.events, inputs)
-                for name, true in until.at(STATE, state["t"][0], known).items():
+            known |= dict.fromkeys(motion.ended, (mp.zero,))
+            for program, conditions in zip((problem.events, problem.releases), expressions, strict=True):
+                computed = {} if program is None else run(program, inputs)
+                for name, true in conditions.at(STATE, state["t"][0], known).items():
                     yield PREMISES, Claim(name, computed[name][0], true[0], abs(true[0]))
             if problem.outputs is not None:
                 given = own.random_numbers(attempt, len(problem.coordinates))

@@ -7,7 +7,7 @@ the corrections of the state, residuals, energy and power are compared with what
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from mpmath import mp
 
@@ -101,10 +101,25 @@ def judge_programs(description: Description, programs: Iterable[ScenePrograms], 
         for solve, judged in each.missing.items():
             verdicts.append(ProgramVerdict(each.scene, f"motion program, {solve} solve", judged))
         if each.problems:
-            verdicts += _judge_problems(motion, each, seed)
+            verdicts += _judge_with_releases(motion, each, seed)
         for solve, program in each.programs.items():
             maker = _open_states(motion, program, seed)
             verdicts += _judged(each.scene, [f"motion program, {solve} solve"], maker)
+    return verdicts
+
+
+def _judge_with_releases(motion: DescribedMotion, programs: ScenePrograms, seed: str) -> list[ProgramVerdict]:
+    """Verdicts on the motion at the start, and on that after each release, in every order."""
+    verdicts = _judge_problems(motion, programs, seed)
+    problems = programs.problems
+    if any(len(each.released) != len(motion.scene.released) for each in problems.values()):
+        return verdicts
+    for k, release in enumerate(next(iter(problems.values())).released):
+        after = replace(programs, problems={solve: each.released[k].after for solve, each in problems.items()})
+        verdicts += [
+            replace(each, part=f"{each.part}; after {release.of} = 0")
+            for each in _judge_with_releases(motion.after(k), after, seed)
+        ]
     return verdicts
 
 

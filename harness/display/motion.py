@@ -149,6 +149,9 @@ def _ending(report: "Report") -> str:
 def _switchings(switchings: "Sequence[Switching]") -> Iterator[str]:
     """What happened where the motion is not analytic."""
     for switching in switchings[:LISTED]:
+        if switching.passage == "joint released":
+            yield f"At t = {switching.t:.10g}, where {switching.function} crosses zero, a joint is released."
+            continue
         yield f"At t = {switching.t:.10g} the surface {switching.function} = 0 is {_passed(switching.passage)}."
     if len(switchings) > LISTED:
         yield f"The motion switches {len(switchings)} times in all, the last time at t = {switchings[-1].t:.10g}."

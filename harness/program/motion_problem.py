@@ -69,6 +69,15 @@ class ParametricStart:
 
 
 @dataclass(frozen=True)
+class Release:
+    """Constraints that end where a condition first crosses zero."""
+
+    of: str  # the condition, as Maxima prints it
+    multipliers: tuple[str, ...]  # those of the constraints
+    after: "MotionProblem"  # the motion without them, at the start of the whole
+
+
+@dataclass(frozen=True)
 class MotionProblem:
     """A motion to follow.
 
@@ -121,6 +130,8 @@ class MotionProblem:
     # expressions whose first zero crossing ends the motion, as Maxima prints them; empty where the time span alone does
     until: tuple[str, ...] = ()
     events: Program | None = None  # ``event[i]``, their values; they may need the multipliers. None without `until`.
+    releases: Program | None = None  # ``event[i]``, the conditions of `released`, as `events`; None without any
+    released: tuple[Release, ...] = ()
     signs: tuple[Sign, ...] = ()  # of the functions whose changes of sign switch the motion; empty where it is analytic
     # ``switch[i]``, the functions, with what decides how the motion passes their zeros, ``switch_rate[i]``,
     # ``drive[i]`` and ``grip[i]``, and ``momentum[s]``; None without signs
@@ -191,6 +202,8 @@ def require_signs_known(problem: MotionProblem) -> None:
 def require_analytic(problem: MotionProblem) -> None:
     """Refuse a motion that is not analytic to whoever follows one analytic motion alone."""
     require_signs_known(problem)
+    if problem.released:
+        raise HolonomError(Failure.NOT_ANALYTIC, problem.scene, problem.released[0].of)
     if problem.tables:
         knot = min(table.knots[0] for table in problem.tables)
         raise HolonomError(Failure.NOT_ANALYTIC, problem.scene, function_of_knot(knot))
@@ -251,7 +264,10 @@ def read_problem(text: str) -> MotionProblem:
     HolonomError
         It is no such document, or one of its programs is no program.
     """
-    document = read(Document.MOTION_PROBLEM, text)
+    return _problem(read(Document.MOTION_PROBLEM, text))
+
+
+def _problem(document: Mapping[str, Any]) -> MotionProblem:
     system, span, drawing = document["system"], document["time_span"], document["drawing"]
     start = document["parametric_start"]
     problem = structured(
@@ -261,6 +277,10 @@ def read_problem(text: str) -> MotionProblem:
         source=system["source"],
         start=document["start"] or {"t": span[0] if span else "0"},
         parametric_start=start and structured(ParametricStart, start | {"origins": start["origins"] or {}}),
+        released=tuple(
+            Release(each["of"], tuple(each["multipliers"]), _problem(each["after"]))
+            for each in document.get("released", ())
+        ),
         drawing=None,
     )
     if drawing is None:

@@ -78,6 +78,9 @@ def with_values_in(problem: MotionProblem) -> MotionProblem:
     return replace(
         _with_programs(problem, lambda program: in_numbers(problem, program)),
         switching=problem.switching and in_numbers(problem, problem.switching),
+        released=tuple(
+            replace(each, after=with_values_in(replace(each.after, values=problem.values))) for each in problem.released
+        ),
         parameters=(),
         values={},
         parametric_start=None,
@@ -215,6 +218,7 @@ def _with_programs(problem: MotionProblem, changed: Callable[[Program], Program]
         energy=changed(problem.energy),
         drawing=problem.drawing and replace(problem.drawing, program=changed(problem.drawing.program)),
         events=problem.events and changed(problem.events),
+        releases=problem.releases and changed(problem.releases),
         controls=problem.controls and changed(problem.controls),
         outputs=problem.outputs and changed(problem.outputs),
         servo_matrix=problem.servo_matrix and changed(problem.servo_matrix),

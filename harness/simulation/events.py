@@ -4,21 +4,22 @@ They are looked at part by part, as switching functions are (`zeros.py`), throug
 motion is followed to its end once before it is recorded, so that the recording ends with a step of the engine.
 """
 
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ..failures import Failure, HolonomError
-from ..program.motion_problem import MotionProblem
-from ..program.motion_program import names_in
+from ..program.motion_program import Program, names_in
 from ..program.precision import Precision
-from .engines.engine import Solutions, Step
+from .engines.engine import Step
 from .evaluation import Numbers, as_floats, evaluation_once
-from .hybrid_motion import HybridMotion
 from .inputs import Inputs
-from .mode import Mode
 from .zeros import NODES, Crossing, SignedFunctions
+
+if TYPE_CHECKING:
+    from .hybrid_motion import HybridMotion
+    from .mode import Mode
 
 ZERO = 1e-12  # of an expression at the start, beside what it is in the first step: no sign
 POLE = 1e3  # times what an expression is nearby: at a change of its sign it has no zero
@@ -32,7 +33,7 @@ class Ending(NamedTuple):
     crossed: str | None
 
 
-def first_event(motion: HybridMotion, precision: Precision, end: Any) -> Crossing | None:
+def first_event(motion: "HybridMotion", precision: Precision, end: Any) -> Crossing | None:
     """Follow a motion, from its start, to the first zero crossing of one of its events; None where there is none.
 
     Raises
@@ -45,7 +46,8 @@ def first_event(motion: HybridMotion, precision: Precision, end: Any) -> Crossin
     span = float(end - motion.time)
     for step in motion.integrate(end):
         if step.mode not in events:
-            events[step.mode] = Events(step.mode.problem, precision, span, step.mode.engine.solutions)
+            problem = step.mode.problem
+            events[step.mode] = Events(problem.until, problem.events, step.mode, precision, span)
         found = events[step.mode].first_event(step, sides)
         if found is not None:
             return found
@@ -53,31 +55,27 @@ def first_event(motion: HybridMotion, precision: Precision, end: Any) -> Crossin
 
 
 class Events(SignedFunctions):
-    """The expressions of one mode of a motion.
+    """Expressions along one mode of a motion.
 
     Parameters
     ----------
-    problem : MotionProblem
-        Without signs.
+    names : sequence of str
+        The expressions, as Maxima prints them.
+    program : Program
+        Their values, in the order of the names.
+    mode : Mode
+        The mode.
     span : float
         The time span.
-    solutions : callable
-        As an engine's.
     """
 
-    def __init__(
-        self,
-        problem: MotionProblem,
-        precision: Precision,
-        span: float,
-        solutions: Callable[[Numbers, Numbers], Solutions],
-    ) -> None:
+    def __init__(self, names: Sequence[str], program: Program, mode: "Mode", precision: Precision, span: float) -> None:
         super().__init__(precision, span)
-        self._names, self._inputs = problem.until, Inputs(problem, precision)
-        program = problem.events
+        problem = mode.problem
+        self._names, self._inputs = names, Inputs(problem, precision)
         used = set().union(*(names_in(value) for _, value in program.assignments))
         used |= set().union(*map(names_in, program.outputs.values()))
-        self._solutions = solutions if used & set(problem.multipliers) else None
+        self._solutions = mode.engine.solutions if used & set(problem.multipliers) else None
         self._evaluate = evaluation_once(problem, program, precision)
 
     def first_event(self, step: Step, sides: dict[str, int]) -> Crossing | None:

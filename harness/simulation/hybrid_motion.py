@@ -6,6 +6,7 @@ switching function leaves its sign, the step is cut, and what the equations say 
 - where both sides lead across the surface, it is crossed;
 - where both lead back to it, the motion is held on it, as dry friction sticks, until one of them does not
   (Filippov, Differential Equations with Discontinuous Righthand Sides, section 4);
+- where a joint is released, its constraints end: the state goes on as it is, and the accelerations jump;
 - where a law's rate jumps, the velocities do: the momenta dL/d dot(q) change along the constraints' gradients alone, by
   the impulse that makes the new velocities keep the constraints (Pars, A Treatise on Analytical Dynamics, chapter 14).
 
@@ -36,6 +37,7 @@ from .control_matrix import controls_may_fail
 from .engines.engine import Step
 from .engines.fallback import EngineSegment
 from .evaluation import Evaluation, Numbers, as_floats, evaluation
+from .events import Events
 from .inputs import Inputs
 from .matrices import Matrices, Vector
 from .mode import Mode
@@ -59,6 +61,7 @@ class Passage(StrEnum):
     SLIDING = "held"
     RELEASED = "released"
     IMPULSE = "crossed with an impulse"
+    JOINT_RELEASED = "joint released"
 
 
 class Switching(NamedTuple):
@@ -92,25 +95,33 @@ class HybridMotion:
 
     def __init__(self, problem: MotionProblem, request: SimulationRequest, precision: Precision, end: Any) -> None:
         self._span = float(end) - float(problem.start["t"])
+        self._request, self._precision, self._end = request, precision, end
+        self._modes: dict[tuple[Any, ...], Mode] = {}
+        self._sides: dict[str, int] = {}  # signs of the conditions of releases, since they left zero
+        self._zero = self._impulse = precision.number("0")
+        self.switchings: list[Switching] = []
+        self.intervals: list[ModeInterval] = []
         problem = with_nominal(problem, self._span)
-        self._problem, self._request, self._precision, self._end = problem, request, precision, end
         self.nominal = nominal_of(problem)
+        self._begin(problem)
+
+    def _begin(self, problem: MotionProblem) -> None:
+        """Begin with the constraints of a problem, at its start."""
+        precision, self._problem = self._precision, problem
         self._signs = {sign.name: sign for sign in problem.signs}
         self._time_events = time_events(problem)
         self._to_come = deque(sorted({event.t for event in self._time_events.values()}))
         self._knots = _knots_of(problem, precision)
-        self._modes: dict[tuple[Any, ...], Mode] = {}
         self._known: dict[Hashable, MotionProblem] = problem.once("modes", problem.matrices, dict)
         self._functions: dict[Hashable, tuple[Evaluation, list[int]]] = problem.once(
             ("switching", precision.name), problem.matrices, dict
         )
         self._inputs = Inputs(problem, precision)
         self._left: tuple[str, ...] = ()
-        self._zero = self._impulse = precision.number("0")
-        self.switchings: list[Switching] = []
+        self._conditions: dict[Mode, Events] = {}
         start, *state = (precision.number(problem.start[name]) for name in ("t", *problem.state))
         pattern = self._first_pattern(start, np.array(state))
-        self.intervals = [ModeInterval(start, self._mode_of(pattern, problem))]
+        self.intervals.append(ModeInterval(start, self._mode_of(pattern, problem)))
 
     @property
     def mode(self) -> Mode:
@@ -170,7 +181,7 @@ class HybridMotion:
         HolonomError
             The motion cannot be followed so far.
         """
-        if self._problem.signs or controls_may_fail(self._problem):
+        if self._problem.signs or self._problem.released or controls_may_fail(self._problem):
             deque(self.integrate(until), maxlen=0)
             return
         while self.time != until:
@@ -182,8 +193,15 @@ class HybridMotion:
         """Follow the motion to an instant, step by step, each with its mode; raises as `advance`."""
         while self.time != until:
             for step in self._to_stop(self._next_stop(until)):
-                yield step._replace(impulse=self._impulse)
-                self._impulse = self._zero
+                release = self._first_release(step)
+                if release is not None:
+                    step = step._replace(end=release.t)
+                if step.start != step.end:
+                    yield step._replace(impulse=self._impulse)
+                    self._impulse = self._zero
+                if release is not None:
+                    self._release(release, step)
+                    break
             self._pass_knots()
             self.mode.require_way_on(until)
 
@@ -222,6 +240,27 @@ class HybridMotion:
             instant = self._to_come.popleft()
             changes = {name: event.to for name, event in self._time_events.items() if event.t == instant}
             self._switch({**mode.pattern, **changes}, list(changes), self.time, self.state.copy(), ())
+
+    # ---- releases ----
+
+    def _first_release(self, step: Step) -> Crossing | None:
+        """Where within a step the first condition of a release crosses zero."""
+        released, mode = self._problem.released, step.mode
+        if not released:
+            return None
+        if mode not in self._conditions:
+            names = [each.of for each in released]
+            self._conditions[mode] = Events(names, mode.problem.releases, mode, self._precision, self._span)
+        return self._conditions[mode].first_event(step, self._sides)
+
+    def _release(self, crossing: Crossing, step: Step) -> None:
+        """Go on without the constraints of a release: from the same state, for that needs no impulse."""
+        state = step.states(np.array([crossing.t]))[:, 0]
+        begun = self._started_at(crossing.t, state)
+        after = next(each.after for each in self._problem.released if each.of == crossing.name)
+        self._begin(replace(after, start=begun.start, values=begun.values, nominal=begun.nominal))
+        self.mode.engine.restart(crossing.t, state)
+        self.switchings.append(Switching(float(crossing.t), crossing.name, Passage.JOINT_RELEASED))
 
     # ---- switching ----
 
@@ -375,7 +414,7 @@ class HybridMotion:
     # ---- modes ----
 
     def _mode_of(self, pattern: Pattern, problem: MotionProblem) -> Mode:
-        key = tuple(pattern.values())
+        key = (problem.multipliers, *pattern.values())
         if key not in self._modes:
             self._modes[key] = Mode(
                 problem, pattern, self._time_events, self._request, self._precision, self._end, self._known

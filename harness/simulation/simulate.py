@@ -23,6 +23,7 @@ from .evaluation import Numbers, as_floats, one_blas_thread
 from .events import Ending, first_event
 from .hard_cases import HardCase, Instant, hard_cases
 from .hybrid_motion import HybridMotion
+from .mode import Mode
 from .recording import Recording, SampleBlock, largest
 from .request import FINAL_STATE_ALONE, EngineName, SimulationRequest, Stabilization
 from .residuals import condition, residuals
@@ -168,13 +169,15 @@ class _Simulation:
     def _hand_on(self, stretch: SampleBlock) -> None:
         """Work out what is observed at samples, and what the report needs of them."""
         found = [mode.engine.solutions(t, states) for mode, t, states in stretch.by_mode()]
+        parts = list(zip(stretch.by_mode(), found, strict=True))
+        own = [mode.outputs(t, states, each) for (mode, t, states), each in parts]
+        self.outputs = _named(self.problem.outputs, own)
+        found = [self._with_ended(each, mode) for (mode, *_), each in parts]
         self.solutions = Solutions(*map(_side_by_side, zip(*found, strict=True)))
         self.reactions = np.array(
             [largest(row, known) for row, known in zip(self.solutions.multipliers, self.reactions, strict=True)]
         )
         energies, self.controls = self._energies(stretch), self._controls(stretch)
-        own = [mode.outputs(t, states, each) for (mode, t, states), each in zip(stretch.by_mode(), found, strict=True)]
-        self.outputs = _named(self.problem.outputs, own)
         self.exchange.add(energies["energy"], energies["energy_error"])
         self.take(
             Sampled(
@@ -186,6 +189,13 @@ class _Simulation:
                 outputs=self.outputs,
             )
         )
+
+    def _with_ended(self, solutions: Solutions, mode: Mode) -> Solutions:
+        """Solutions in a mode with zeros for the multipliers of constraints that have ended."""
+        known = dict(zip(mode.problem.multipliers, solutions.multipliers, strict=True))
+        none = np.zeros_like(solutions.accelerations[0])
+        rows = [known.get(name, none) for name in self.problem.multipliers]
+        return solutions._replace(multipliers=np.array(rows).reshape(len(rows), len(none)))
 
     def _follow(self, take: TakeStep | None) -> None:
         if take is None:
@@ -264,7 +274,7 @@ class _Simulation:
             multipliers=dict(zip(observed, multipliers, strict=False)),
             residuals=left,
             energy_error=self.exchange.last_error,
-            condition=condition(end.here.under(self.problem.independent)),
+            condition=condition(end.here.under(mode.problem.independent)),
             steps=self.motion.steps,
             legs=tuple(self.motion.legs),
             code=self.begun.engine.code,
@@ -300,6 +310,8 @@ class _Simulation:
     def _cases(self, start: Instant, end: Instant) -> tuple[HardCase, ...]:
         """Those that the robust engine was called for, then those that the ends tell; each once."""
         called_for = [leg.case for leg in self.motion.legs if leg.case is not None]
+        if self.problem.released:
+            end = start  # other constraints may hold at the end
         found = hard_cases(self.problem.independent, start, end, self.reactions, self.motion.steps)
         answering = self.problem.reactions or not self.problem.servo  # servo-constraints have no reaction by themselves
         found = (case for case in found if answering or case is not HardCase.FREE_CANCELLATION)

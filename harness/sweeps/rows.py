@@ -87,7 +87,7 @@ class RowMaker:
         require_known(problem, [kept.quantity for kept in plan.kept if kept.quantity is not None])
         _require_smooth(problem, plan.kept)
         self._starts, self._start = initial_states_of(problem), float(problem.start["t"])
-        if any(kept.kind is Kind.RADIUS for kept in plan.kept):
+        if problem.released or any(kept.kind is Kind.RADIUS for kept in plan.kept):
             require_analytic(problem)
         self._moves = any(kept.kind is not Kind.RADIUS for kept in plan.kept)
         self._end = float(last_instant(problem, plan.until, read_precision("double"))) if self._moves else self._start

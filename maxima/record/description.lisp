@@ -121,7 +121,7 @@
       ($prescribed_reactions . described-values) ($servo_constraints . described-list)
       ($parameter_values . described-values) ($initial_state . described-values) ($initial_guess . described-values)
       ($nominal . described-values) ($time_span . described-list) ($until . described-list)
-      ($observe . described-names)))))
+      ($released . described-releases) ($observe . described-names)))))
 
 (defun observing (outputs entries)
   "The entries with outputs, name = expression, among what is observed."
@@ -145,6 +145,13 @@
   (mlist-of (mapcar #'(lambda (each)
                       (list '(mequal simp) (described-symbol (car each)) (described-expression (cdr each))))
                   (cdr members))))
+
+(defun described-releases (releases)
+  (mlist-of (mapcar #'(lambda (each)
+                      (list '(mequal simp)
+                            (described-names (member-of each "multipliers"))
+                            (described-expression (member-of each "condition"))))
+                  releases)))
 
 (defun described-effects (effects) (effects-anew effects #'described-expression))
 (defun described-forces (effects) (effects-anew effects #'described-list))

@@ -1,0 +1,143 @@
+"""Joints that are released: constraints end, the state goes on, and what follows has a closed form."""
+
+import json
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+import holonom
+from holonom.crosscheck.motion_program import ScenePrograms, judge_programs
+from holonom.crosscheck.report import Verdict
+from holonom.failures import HolonomError
+from holonom.program.motion_problem import problem_document, read_problem
+from holonom.program.request import Request, Solve
+from holonom.sandbox import Limits
+from holonom.simulation.hybrid_motion import Passage
+from holonom.simulation.result import Simulation
+
+# Released from rest where the thread is horizontal: at the depth d the tension is 3 m g d/l.
+CUT = """
+load("holonom.mac")$
+bob : particle(m, [x, y])$
+thread : distance_joint(bob, [0, 0], l)$
+system : holonomic_system(parameters = [m, g, l], assembly(bob, thread, uniform_gravity(g, bob)))$
+run : holonomic_scene(system, parameter_values = [m = 2, g = 10, l = 1], time_span = [0, 2],
+  initial_state = [x = 1, y = 0, dot(y) = 0], {ends},
+  observe = [trajectory, multipliers, energy, tension = -l*lambda1])$
+"""
+
+# Two masses on a rod turn about their mass centre, which moves, at the rate 2.
+THROWN = """
+load("holonom.mac")$
+a : particle(1, [x1, y1])$  b : particle(3, [x2, y2])$
+rod : distance_joint(a, b, 4)$
+system : holonomic_system(parameters = [c], assembly(a, b, rod))$
+run : holonomic_scene(system, parameter_values = [c = 1], time_span = [0, 3], released = [rod = t - c],
+  initial_state = [x1 = 3, y1 = 0, x2 = -1, y2 = 0, dot(x1) = 1, dot(y1) = 6, dot(x2) = 1, dot(y2) = -2])$
+"""
+
+# A chain of two threads; the lower one is cut at c, the upper one where the upper bob has reached the height h.
+CHAIN = """
+load("holonom.mac")$
+a : particle(1, [x1, y1])$  b : particle(1, [x2, y2])$
+upper : distance_joint(a, [0, 0], 1)$  lower : distance_joint(a, b, 1)$
+system : holonomic_system(parameters = [c, h, g], assembly(a, b, upper, lower, uniform_gravity(g, a, b)))$
+run : holonomic_scene(system, parameter_values = [c = 1/10, h = -1/2, g = 10], time_span = [0, 1],
+  released = [lower = t - c, upper = y1 - h],
+  initial_state = [x1 = 1, y1 = 0, x2 = 2, y2 = 0, dot(y1) = 0, dot(y2) = 0])$
+"""
+
+
+def released(motion: Simulation) -> list[tuple[float, str]]:
+    assert {each.passage for each in motion.report.switchings} == {Passage.JOINT_RELEASED}
+    return [(each.t, each.function) for each in motion.report.switchings]
+
+
+def test_cut_thread_lets_the_bob_fly_on_a_parabola():
+    motion = holonom.system(CUT.replace("{ends}", "released = [thread = t - 1/2]")).simulate(samples=9)
+    assert released(motion) == [(0.5, "t-1/2")]
+    since = motion["t"][2:] - 0.5
+    at = {name: motion[name][2] for name in ("x", "y", "dot(x)", "dot(y)")}
+    np.testing.assert_allclose(motion["x"][2:], at["x"] + at["dot(x)"] * since, atol=1e-12)
+    np.testing.assert_allclose(motion["y"][2:], at["y"] + at["dot(y)"] * since - 5 * since**2, atol=1e-12)
+    np.testing.assert_allclose(motion["x"][:3] ** 2 + motion["y"][:3] ** 2, 1, atol=1e-13)
+    assert (motion["lambda1"][1:3] < 0).all()
+    assert not motion["lambda1"][3:].any()
+    np.testing.assert_allclose(motion["energy"], 0, atol=1e-12)
+
+
+def test_thread_breaks_at_its_largest_tension():
+    """3 m g d/l = 30 at d = 1/2; the mean of vx is that there, sqrt(10)/2, from then on."""
+    motion = holonom.system(CUT.replace("{ends}", "released = [thread = tension - 30]")).simulate(samples=9)
+    ((t, _),) = released(motion)
+    np.testing.assert_allclose(motion["dot(x)"][motion["t"] > t], -np.sqrt(10) / 2, rtol=1e-11)
+    assert not motion["tension"][motion["t"] > t].any()
+
+
+def test_motion_ends_in_free_flight_where_until_says():
+    ends = "released = [thread = y + 1/2], until = [y + 3]"
+    motion = holonom.system(CUT.replace("{ends}", ends)).simulate(samples=5)
+    ((t, _),) = released(motion)
+    fall = Fraction(5, 2)  # y = -1/2 - v (T - t) - 5 (T - t)^2, v = sqrt(10) cos(pi/6)
+    v = np.sqrt(7.5)
+    assert float(motion.report.t) - t == pytest.approx((np.sqrt(v**2 + 20 * float(fall)) - v) / 10, abs=1e-11)
+
+
+@pytest.mark.parametrize("engine", ["taylor", "runge-kutta", "robust"])
+def test_two_bodies_fly_apart_along_straight_lines(engine):
+    motion = holonom.system(THROWN).simulate(samples=4, engine=engine, c=2)
+    t, turn = np.array([2.0, 3.0]), 4.0
+    np.testing.assert_allclose(motion["x1"][2:], t + 3 * np.cos(turn) - 6 * np.sin(turn) * (t - 2), atol=1e-9)
+    np.testing.assert_allclose(motion["y1"][2:], 3 * np.sin(turn) + 6 * np.cos(turn) * (t - 2), atol=1e-9)
+    np.testing.assert_allclose(motion["x1"] + 3 * motion["x2"], 4 * motion["t"], atol=1e-9)
+
+
+def test_releases_keep_the_digits_of_a_longer_precision():
+    motion = holonom.system(THROWN).simulate(samples=4, precision="quadruple")
+    ends = motion["y1"][-1] + 3 * motion["y2"][-1]
+    assert abs(float(ends)) < 1e-28
+
+
+@pytest.mark.parametrize(("h", "first"), [("-1/1000", "y1-h"), ("-1/2", "t-c")])
+def test_joints_are_released_in_the_order_of_their_events(h, first):
+    motion = holonom.system(CHAIN.replace("h = -1/2", f"h = {h}")).simulate(samples=11)
+    order = released(motion)
+    assert order[0][1] == first
+    assert len(order) == 2
+    last = motion["t"] > order[1][0]
+    for name in ("x1", "x2"):
+        rates = motion[f"dot({name})"][last]
+        np.testing.assert_allclose(rates, rates[0], rtol=1e-12, atol=1e-12)
+    rates = motion["dot(y2)"] + 10 * motion["t"]
+    np.testing.assert_allclose(rates[last], rates[-1], rtol=1e-12, atol=1e-12)
+    assert not motion["lambda1"][last].any()
+    assert not motion["lambda2"][last].any()
+
+
+def test_who_follows_one_analytic_motion_refuses_released_joints():
+    scene = holonom.system(THROWN)
+    asked = (scene.rhs, scene.dae, scene.equilibria, scene.free, lambda: scene.linearize(at=0))
+    sweep = holonom.sweep
+    for ask in (*asked, lambda: scene.program().inputs, lambda: sweep(scene, grid={"c": (1, 2, 2)}, keep=["final"])):
+        with pytest.raises(HolonomError, match="t-c"):
+            ask()
+
+
+def test_check_judges_the_motion_after_each_release():
+    report = holonom.system(CHAIN).check()
+    after = [verdict for verdict in report.verdicts if "; after " in verdict.name]
+    assert {verdict.verdict for verdict in after} == {Verdict.AGREES}
+    assert sum("direct solve; after" in verdict.name for verdict in after) == 4  # of two joints in both orders
+
+
+def test_check_finds_constraints_that_do_not_end(write_scene):
+    file = write_scene(THROWN)
+    description = holonom.load(file).description
+    answer = {solve: problem_document(file, Request(solve=solve), Limits()) for solve in Solve}
+    wrong = {solve: json.loads(text) for solve, text in answer.items()}
+    for document in wrong.values():
+        document["released"][0]["after"] = document | {"released": []}
+    programs = [ScenePrograms("run", {solve: read_problem(json.dumps(each)) for solve, each in wrong.items()})]
+    found = judge_programs(description, programs, "seed")
+    assert [each.found.verdict for each in found if "; after t-c = 0" in each.part] == [Verdict.DISAGREES]
