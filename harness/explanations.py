@@ -18,8 +18,8 @@ ADVICE = {
         "and trust the constraint forces rather than single multipliers."
     ),
     HardCase.REDUNDANT: translatable(
-        "The constraints are redundant: the motion and the constraint forces are unique, single multipliers are not; "
-        "remove constraints to give them a meaning."
+        "The constraints are redundant: the motion and the constraint forces are unique, single multipliers and "
+        "reactions are not; remove constraints to give them a meaning."
     ),
     HardCase.SINGULAR_PASSAGE: translatable(
         "The motion passes a singular configuration: keep the default engine, which hands over to the robust one, "
