@@ -266,6 +266,11 @@ class Failure(Enum):
         "end the run before it",
         "choose a law that keeps the length away from zero",
     )
+    NO_SENSITIVITY = (
+        "these derivatives of the motion cannot be found: {detail}",
+        "name parameters, coordinates or velocities with {--sensitivity}",
+        "leave it out",
+    )
     NO_WAY_ON = ("the motion cannot be followed beyond t = {detail}", "end the run before it")
 
 

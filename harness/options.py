@@ -1,7 +1,7 @@
 """Options of requests: the command line, the arguments in Python and the reference are made of a request's fields.
 
-An option is a field of a dataclass. Its type is an enumeration, ``Fraction`` (an instant), ``bool``, ``int``, ``float``
-or ``str``; ``| None`` where it may be left out.
+An option is a field of a dataclass. Its type is an enumeration, ``Fraction`` (an instant), ``bool``, ``int``,
+``float``, ``str`` or a tuple of names, written with commas between; ``| None`` where it may be left out.
 """
 
 import inspect
@@ -13,14 +13,22 @@ from enum import StrEnum
 from fractions import Fraction
 from functools import wraps
 from types import NoneType
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_origin
 
 from .failures import Failure, HolonomError
 
 LONGEST = 200  # digits of a number that an option gives
 LARGEST_EXPONENT = 307  # of a double
 SHOWN = 40  # letters of an instant that is refused
-NAMES = {bool: "bool", int: "int", float: "float", str: "str", Fraction: "number", NoneType: "None"}
+NAMES = {
+    bool: "bool",
+    int: "int",
+    float: "float",
+    str: "str",
+    tuple: "sequence of str",
+    Fraction: "number",
+    NoneType: "None",
+}
 Number = int | float | Fraction | Decimal | str
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -65,7 +73,7 @@ def kind_of(each: Field) -> type:
 
 
 def _types(each: Field) -> tuple[type, ...]:
-    return getattr(each.type, "__args__", (each.type,))
+    return (tuple,) if get_origin(each.type) is tuple else getattr(each.type, "__args__", (each.type,))
 
 
 def choices_of(each: Field) -> tuple[str, ...]:
@@ -84,7 +92,7 @@ def read(each: Field, value: Any) -> Any:
     """
     kind, stated = kind_of(each), each.metadata["option"]
     if value is None:
-        return None
+        return () if kind is tuple else None
     if choices := choices_of(each):
         if str(value) not in choices:
             raise HolonomError(Failure.NOT_A_CHOICE, detail=f"{value}; there are {', '.join(choices)}")
@@ -93,6 +101,9 @@ def read(each: Field, value: Any) -> Any:
         return read_instant(value)
     if kind is str:
         return value
+    if kind is tuple:
+        names = value.split(",") if isinstance(value, str) else value
+        return tuple(dict.fromkeys(name.strip() for name in names if name.strip()))
     if stated.least is not None and value < stated.least:
         bound = f"{stated.least:g} or more"
     elif stated.above is not None and value <= stated.above:

@@ -304,7 +304,8 @@ class Scene:
         Returns
         -------
         Simulation
-            ``motion["x"]`` is a series of samples, ``motion.to_pandas()`` all of them.
+            ``motion["x"]`` is a series of samples, ``motion["d(x, m)"]`` its derivative where ``sensitivities=["m"]``
+            asks for it, ``motion.to_pandas()`` all of them.
 
         Raises
         ------
@@ -318,7 +319,8 @@ class Scene:
 
         solve = options.pop("solve")
         request = SimulationRequest(**options)
-        return simulate(self._problem(solve, read_precision(str(request.precision)).digits), request)
+        digits = read_precision(str(request.precision)).digits
+        return simulate(self._derived.motion(self._request(solve), digits, request.sensitivities), request)
 
     @naming_the_extra()
     @takes_options(*options_of(LinearizationRequest))

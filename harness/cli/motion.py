@@ -97,7 +97,7 @@ def simulate(
     source, digits = Source(scene_file, limits), _digits_of(wanted.precision)
     imports = partial(_import_what_follows, click.get_current_context().obj is OWN_PROCESS)
     with meanwhile(scene_file, limits, imports):
-        document = problem_document(source, request, limits, digits, open_names(request, digits))
+        document = problem_document(source, request, limits, digits, open_names(request, digits, wanted.sensitivities))
     problem = read_problem(document)
     if not stands(problem):
         problem = motion_problem(source, request, limits, digits)

@@ -86,7 +86,7 @@ def _click_option(each: Field) -> Callable[[Callable[..., int]], Callable[..., i
         details["type"] = bound(least, stated.most, min_open=is_open)
     elif kind in (int, float):
         details["type"] = kind
-    default = None if stated.required else each.default
+    default = None if stated.required or kind is tuple else each.default
     return click.option(
         *names,
         metavar=stated.metavar,

@@ -92,7 +92,7 @@ def show_report(console: "Console", scene: str, title: str, report: "Report") ->
     document = report_document(report)
     console.print(f"{visible_line(f'{scene}: {title}')}, at t = {document['t']}", soft_wrap=True)
     table = Table("", "", show_header=False)
-    for group in ("coordinates", "velocities", "multipliers", "controls", "outputs"):
+    for group in ("coordinates", "velocities", "multipliers", "controls", "outputs", "sensitivities"):
         for name, value in document[group].items():
             table.add_row(name, str(value))
         table.add_section()

@@ -141,6 +141,7 @@ class MotionProblem:
     # their values in this motion; some may be missing where none is followed
     values: Mapping[str, Fraction] = field(default_factory=dict)
     parametric_start: ParametricStart | None = None  # None without open parameters
+    given: tuple[str, ...] = ()  # of the state: what the scene gives at the start; the rest is found
     # sizes beside which quantities are large or small, by name, ``t`` for the time: those that the scene gives
     nominal: Mapping[str, float] = field(default_factory=dict)
     _compiled: dict[Hashable, tuple[object, Any]] = field(default_factory=dict, compare=False, repr=False)

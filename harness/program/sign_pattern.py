@@ -10,10 +10,10 @@ from dataclasses import replace
 from fractions import Fraction
 
 from .drawing import Drawing
+from .folding import ZERO, folded
 from .motion_problem import MotionProblem, computing
 from .motion_program import Call, Constant, Expression, Name, Operation, Program, count_operations
 
-ZERO, ONE = Fraction(0), Fraction(1)
 SLIDING = "held"  # stands in a pattern for the sign that keeps the motion on its surface
 Pattern = Mapping[str, int | str]
 
@@ -265,7 +265,7 @@ def _substituted(expression: Expression, known: Mapping[str, Expression]) -> Exp
         case Call(Operation.MULTIPLY, arguments) if _vanishing_weight(arguments, known):
             return ZERO
         case Call(operation, arguments) if any(name in known for name in _names_met(expression)):
-            return _folded(operation, [_substituted(argument, known) for argument in arguments])
+            return folded(operation, [_substituted(argument, known) for argument in arguments])
         case _:
             return expression
 
@@ -287,42 +287,3 @@ def _names_met(expression: Expression) -> Iterator[str]:
         case Call(_, arguments):
             for argument in arguments:
                 yield from _names_met(argument)
-
-
-def _folded(operation: Operation, arguments: list[Expression]) -> Expression:
-    """The operation on its arguments, done where it is arithmetic of numbers alone."""
-    match operation, arguments:
-        case Operation.ADD, _:
-            return _collected(operation, arguments, ZERO)
-        case Operation.MULTIPLY, _:
-            return ZERO if ZERO in arguments else _collected(operation, arguments, ONE)
-        case Operation.NEGATE, [Fraction() as a]:
-            return -a
-        case Operation.SUBTRACT, [Fraction() as a, Fraction() as b]:
-            return a - b
-        case Operation.SUBTRACT, [a, Fraction(numerator=0)]:
-            return a
-        case Operation.SUBTRACT, [Fraction(numerator=0), b]:
-            return Call(Operation.NEGATE, (b,))
-        case Operation.DIVIDE, [Fraction() as a, Fraction() as b] if b:
-            return a / b
-        case Operation.DIVIDE, [Fraction(numerator=0), _]:
-            return ZERO
-        case Operation.POWER, [Fraction() as a, Fraction(denominator=1) as n] if a or n >= 0:
-            return a ** int(n)
-        case _:
-            return Call(operation, tuple(arguments))
-
-
-def _collected(operation: Operation, arguments: list[Expression], neutral: Fraction) -> Expression:
-    """A sum or product with its numbers taken together."""
-    number, rest = neutral, []
-    for argument in arguments:
-        if isinstance(argument, Fraction):
-            number = number + argument if operation is Operation.ADD else number * argument
-        else:
-            rest.append(argument)
-    if not rest:
-        return number
-    parts = rest if number == neutral else [number, *rest]
-    return parts[0] if len(parts) == 1 else Call(operation, tuple(parts))

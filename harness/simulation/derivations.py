@@ -5,9 +5,10 @@ of masses say, changes what is derived. Where numbers tell more than names do, a
 derived with the numbers in it.
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from fractions import Fraction
 
+from ..documents import NAME
 from ..failures import Failure, HolonomError
 from ..program.motion_problem import DOUBLE_DIGITS, MotionProblem, motion_problem
 from ..program.request import Request
@@ -22,12 +23,12 @@ class Derivations:
         self._opened: dict[tuple[object, ...], list[tuple[Mapping[str, str], MotionProblem]]] = {}
         self._closed: dict[tuple[object, ...], MotionProblem] = {}
 
-    def motion(self, request: Request, digits: int = DOUBLE_DIGITS) -> MotionProblem:
+    def motion(self, request: Request, digits: int = DOUBLE_DIGITS, also_open: Collection[str] = ()) -> MotionProblem:
         """The motion that a request asks for. Its open parameters, if it has any, have the values of the settings.
 
-        Raises as `motion_problem`.
+        `also_open` names more of them, with the scene's values. Raises as `motion_problem`.
         """
-        names = open_names(request, digits)
+        names = open_names(request, digits, also_open)
         opened = self._at_settings(request, names) if names else None
         return self._with_numbers(request, digits) if opened is None else opened
 
@@ -41,16 +42,19 @@ class Derivations:
         """The motion with its parameters open and their values set, or None where it takes numbers to derive it."""
         known = self._opened.setdefault((request.scene, request.solve, names), [])
         for settings, problem in known:
-            if all(settings[name] == request.settings[name] for name in names if name not in problem.parameters):
+            if all(
+                settings.get(name) == request.settings.get(name) for name in names if name not in problem.parameters
+            ):
                 return _moved(problem, request.settings)
         problem = motion_problem(self._source, request, self._source.limits, DOUBLE_DIGITS, names)
         known.append((request.settings, problem))
         return _moved(problem, request.settings)
 
 
-def open_names(request: Request, digits: int) -> tuple[str, ...]:
-    """Names of what stays open where it is a parameter: what is set, in double precision."""
-    return tuple(sorted(request.settings)) if digits == DOUBLE_DIGITS else ()
+def open_names(request: Request, digits: int, also_open: Collection[str] = ()) -> tuple[str, ...]:
+    """Names of what stays open where it is a parameter: what is set or named, in double precision."""
+    names = {name for name in (*request.settings, *also_open) if NAME.fullmatch(name)}
+    return tuple(sorted(names)) if digits == DOUBLE_DIGITS else ()
 
 
 def stands(problem: MotionProblem) -> bool:
@@ -82,7 +86,9 @@ def _moved(problem: MotionProblem, settings: Mapping[str, str]) -> MotionProblem
 
     if not problem.parameters:
         return problem  # what is set is no parameter, as the length of a chain is none
-    values = {name: Fraction(settings[name]) for name in problem.parameters}
+    values = {
+        name: Fraction(settings[name]) if name in settings else problem.values[name] for name in problem.parameters
+    }
     try:
         moved = at_values(problem, values)
     except HolonomError as error:

@@ -107,7 +107,7 @@ class HybridMotion:
 
     def _begin(self, problem: MotionProblem) -> None:
         """Begin with the constraints of a problem, at its start."""
-        precision, self._problem = self._precision, problem
+        precision, self.problem = self._precision, problem
         self._signs = {sign.name: sign for sign in problem.signs}
         self._time_events = time_events(problem)
         self._to_come = deque(sorted({event.t for event in self._time_events.values()}))
@@ -181,7 +181,7 @@ class HybridMotion:
         HolonomError
             The motion cannot be followed so far.
         """
-        if self._problem.signs or self._problem.released or controls_may_fail(self._problem):
+        if self.problem.signs or self.problem.released or controls_may_fail(self.problem):
             deque(self.integrate(until), maxlen=0)
             return
         while self.time != until:
@@ -223,7 +223,7 @@ class HybridMotion:
 
     def _to_stop(self, stop: Any) -> Iterator[Step]:
         mode = self.mode
-        if not self._problem.signs:
+        if not self.problem.signs:
             yield from mode.integrate(stop)
             return
         for step in mode.integrate(stop):
@@ -245,7 +245,7 @@ class HybridMotion:
 
     def _first_release(self, step: Step) -> Crossing | None:
         """Where within a step the first condition of a release crosses zero."""
-        released, mode = self._problem.released, step.mode
+        released, mode = self.problem.released, step.mode
         if not released:
             return None
         if mode not in self._conditions:
@@ -257,7 +257,7 @@ class HybridMotion:
         """Go on without the constraints of a release: from the same state, for that needs no impulse."""
         state = step.states(np.array([crossing.t]))[:, 0]
         begun = self._started_at(crossing.t, state)
-        after = next(each.after for each in self._problem.released if each.of == crossing.name)
+        after = next(each.after for each in self.problem.released if each.of == crossing.name)
         self._begin(replace(after, start=begun.start, values=begun.values, nominal=begun.nominal))
         self.mode.engine.restart(crossing.t, state)
         self.switchings.append(Switching(float(crossing.t), crossing.name, Passage.JOINT_RELEASED))
@@ -296,7 +296,7 @@ class HybridMotion:
         """The sign with which a motion goes on from a surface of the state; None for `to` where it starts on it."""
         if sign.by is By.CONFIGURATION and not self._vanishes("switch_rate", sign, pattern, t, state):
             return to or (1 if self._output("switch_rate", sign, pattern, t, state) > 0 else -1)
-        if holdable(self._problem, sign.name):
+        if holdable(self.problem, sign.name):
             return self._decided(sign, pattern, t, state)
         if to is None:
             self._refuse(t, f"{sign.of} is zero, and not in forces alone, which leaves open how the motion goes on")
@@ -334,7 +334,7 @@ class HybridMotion:
         else:
             after.projection.project(t, moved)
         continuous = self.nominal.share(as_floats(moved - state), floats) <= CONTINUOUS
-        if self._problem.servo and not continuous:
+        if self.problem.servo and not continuous:
             self._require_reactions(new, as_floats(moved - state)[n:], kick, sign, t)
         if sign.by is not By.TIME:
             jump = abs(float(after.energy_at(t, state) - before.energy_at(t, state)))
@@ -346,7 +346,7 @@ class HybridMotion:
 
     def _require_reactions(self, at: Matrices, change: Vector, kick: Vector, sign: Sign, t: Any) -> None:
         """Velocities may change by reactions alone: the controls that servo-constraints find are forces."""
-        reactions = at.jacobian[: len(self._problem.reactions)].T
+        reactions = at.jacobian[: len(self.problem.reactions)].T
         impulse = at.mass @ change - kick
         left = impulse - reactions @ np.linalg.lstsq(reactions, impulse)[0]
         if np.max(np.abs(left)) > CONTINUOUS * np.max(np.abs(impulse)):
@@ -359,7 +359,7 @@ class HybridMotion:
             pattern[name] = event.to if self._precision.ratio(event.t) <= t else -event.to
         while self._to_come and self._precision.ratio(self._to_come[0]) <= t:
             self._to_come.popleft()
-        for sign in self._problem.signs:
+        for sign in self.problem.signs:
             if sign.name in self._time_events:
                 continue
             if self._vanishes("switch", sign, pattern, t, state):
@@ -405,9 +405,9 @@ class HybridMotion:
         """A `switching_function`, and the places in the state of what it contains."""
         what = name, sign.name, frozenset(pattern.items())
         if what not in self._functions:
-            program = switching_function(self._problem, name, sign.name, pattern)
+            program = switching_function(self.problem, name, sign.name, pattern)
             used = names_used(program)
-            places = [place for place, each in enumerate(self._problem.state) if each in used]
+            places = [place for place, each in enumerate(self.problem.state) if each in used]
             self._functions[what] = evaluation(program, self._precision), places
         return self._functions[what]
 
@@ -423,7 +423,7 @@ class HybridMotion:
 
     def _started_at(self, t: Any, state: Numbers) -> MotionProblem:
         numbers = (self._precision.text(number) for number in (t, *state))
-        return replace(self._problem, start=dict(zip(("t", *self._problem.state), numbers, strict=True)))
+        return replace(self.problem, start=dict(zip(("t", *self.problem.state), numbers, strict=True)))
 
 
 def _knots_of(problem: MotionProblem, precision: Precision) -> list[tuple[Any, Fraction]]:

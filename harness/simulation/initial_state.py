@@ -141,7 +141,7 @@ class InitialStates:
             return Linearized(residual, at.jacobian[np.ix_(group.open, unknown)], at.mass[np.ix_(unknown, unknown)])
 
         def correct(at: Linearized) -> Numbers:
-            return _step(at.mass, at.jacobian, at.residual, self._redundant)
+            return least_step(at.mass, at.jacobian, at.residual, self._redundant)
 
         states[places], found = NearestRoots(linearize, correct, self._nominal.state[places])(states[places])
         return found
@@ -166,7 +166,7 @@ class InitialStates:
             residual = (at.residual_rate if group.half else at.residual)[rows]
             jacobian = at.jacobian[np.ix_(rows, unknown)]
             mass = None if only else at.mass[np.ix_(unknown, unknown)]
-            change = _step(mass, jacobian, residual, self._redundant)
+            change = least_step(mass, jacobian, residual, self._redundant)
             here = states[np.ix_(places, active)]
             states[np.ix_(places, active)] = here + change
             share = share_of(change, here, self._nominal.state[places])
@@ -301,7 +301,7 @@ def with_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> Motio
     return replace(problem, values=dict(values))
 
 
-def _step(mass: Numbers | None, jacobian: Numbers, residual: Numbers, redundant: bool) -> Numbers:
+def least_step(mass: Numbers | None, jacobian: Numbers, residual: Numbers, redundant: bool) -> Numbers:
     """The least correction in the metric, or the only one: shapes (u, u, k), (b, u, k), (b, k) to (u, k)."""
     b, u, lanes = jacobian.shape
     if mass is None:

@@ -47,4 +47,10 @@ class SimulationRequest:
         Stabilization.PROJECTION, "What keeps the constraints; the robust engine always projects."
     )
     max_step: float | None = option(None, "No step is to be longer.", metavar="H", above=0)
+    sensitivities: tuple[str, ...] = option(
+        (),
+        "Also find derivatives by these parameters and, for initial values, coordinates and velocities.",
+        metavar="NAME,...",
+        spelt=("--sensitivity",),
+    )
     compact: bool | None = option(None, "heyoka's compact mode; without it, what pays.")

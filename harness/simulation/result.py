@@ -67,6 +67,9 @@ class Report:
         Why the engine that began was taken; None where one was asked for, or is the only one.
     relative_degrees : tuple of int
         Of each output that servo-constraints prescribe: which of its rates the controls are in.
+    sensitivities : mapping of str to float
+        Derivatives at the end, ``d(t, m)`` among them where an event ends the motion: then the others are those of the
+        values at the event, not at a fixed instant.
     unresolved : float or None
         The first instant from which an expression of the time changes too fast to be looked at ahead.
     """
@@ -97,6 +100,7 @@ class Report:
     relative_degrees: tuple[int, ...] = ()
     moved: tuple[str, str] | None = None
     unresolved: float | None = None
+    sensitivities: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def trusted(self) -> bool:
@@ -121,12 +125,13 @@ class Sampled:
     residuals: Samples
     controls: Samples = field(default_factory=dict)
     outputs: Samples = field(default_factory=dict)  # by their own names
+    sensitivities: Samples = field(default_factory=dict)  # ``d(x, m)``: derivatives at the instants
 
     def columns(self) -> Iterator[tuple[str, NDArray[Any]]]:
         """The time, then every series of samples with its name; residuals are named ``residual.position`` and so on."""
         yield "t", self.instants
         forces = self.multipliers, self.constraint_forces, self.controls
-        for group in (self.coordinates, self.velocities, *forces, self.outputs, self.energy):
+        for group in (self.coordinates, self.velocities, *forces, self.outputs, self.energy, self.sensitivities):
             yield from group.items()
         for name, samples in self.residuals.items():
             yield f"residual.{name}", samples

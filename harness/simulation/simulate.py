@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..failures import Failure, HolonomError
+from ..program.differentiation import derivative_name
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Program
 from ..program.precision import Precision, read_precision
@@ -28,6 +29,7 @@ from .recording import Recording, SampleBlock, largest
 from .request import FINAL_STATE_ALONE, EngineName, SimulationRequest, Stabilization
 from .residuals import condition, residuals
 from .result import Report, Sampled, Samples, Simulation, joined
+from .sensitivities import Sensitivities
 
 Progress = Callable[[float], None]
 TakeSamples = Callable[[Sampled], None]
@@ -151,6 +153,11 @@ class _Simulation:
         self.recording = Recording(self.begun, self._wanted_instants(), zero, self._hand_on)
         self.exchange = EnergyStatistics()
         self.reactions = np.zeros(len(problem.multipliers))  # the largest multipliers so far
+        self.sensitivities = (
+            Sensitivities(self.motion.problem, request.sensitivities, self.begun, request.tol, float(self.end))
+            if request.sensitivities
+            else None
+        )
         self.steps = (
             DefectControl(self.end - self.start, self.precision)
             if may_hide(problem.matrices, ("t", *problem.parameters))
@@ -187,6 +194,7 @@ class _Simulation:
                 residuals=self._residual_samples(stretch, self.solutions),
                 controls=self.controls,
                 outputs=self.outputs,
+                sensitivities=self._sensitivity_samples(stretch),
             )
         )
 
@@ -213,9 +221,15 @@ class _Simulation:
     def _take(self, progress: Progress | None, watch: TakeStep | None) -> TakeStep | None:
         """Receiver of each step; None if there is none."""
         nothing_to_integrate = not self.problem.signs and self.begun.balance.conservative and self.steps is None
-        if self.samples == FINAL_STATE_ALONE and nothing_to_integrate and progress is watch is None:
+        if (
+            self.samples == FINAL_STATE_ALONE
+            and nothing_to_integrate
+            and progress is watch is self.sensitivities is None
+        ):
             return None
         takers = [self.recording.take]
+        if self.sensitivities is not None:
+            takers.insert(0, self.sensitivities.take)
         if self.steps is not None:
             takers.append(self.steps.take)
         if watch is not None:
@@ -249,6 +263,36 @@ class _Simulation:
             "multipliers": dict(zip(self.problem.reactions, reactions, strict=False)),
             "constraint_forces": {f"Lambda[{s}]": row for s, row in enumerate(forces, start=1)},
         }
+
+    def _sensitivity_samples(self, stretch: SampleBlock) -> Samples:
+        """Derivatives of what the scene observes."""
+        if self.sensitivities is None:
+            return {}
+        found = self._named_derivatives(np.concatenate(self.sensitivities.samples(stretch)))
+        self.last_derivatives = {name: float(row[-1]) for name, row in found.items()}
+        return found
+
+    def _named_derivatives(self, rows: Numbers) -> dict[str, Numbers]:
+        """Derivatives of the state and the multipliers, shape (2n + g, p, ...), as far as the scene observes them."""
+        observe, reactions = self.problem.observe, self.problem.reactions
+        observed = (*self.problem.state,) if "trajectory" in observe else ()
+        observed += reactions if "multipliers" in observe else ()
+        names = *self.problem.state, *self.problem.multipliers
+        return {
+            derivative_name(name, direction): row
+            for name, each in zip(names, rows, strict=True)
+            if name in observed
+            for direction, row in zip(self.sensitivities.directions, each, strict=True)
+        }
+
+    def _derivatives_at_end(self) -> Mapping[str, float]:
+        if self.sensitivities is None:
+            return {}
+        if self.ending is None or self.ending.crossed is None:
+            return self.last_derivatives
+        delays, moves = self.sensitivities.at_event(self.problem.until.index(self.ending.crossed))
+        instants = {derivative_name("t", k): d for k, d in zip(self.sensitivities.directions, delays, strict=True)}
+        return {name: float(number) for name, number in {**instants, **self._named_derivatives(moves)}.items()}
 
     def _residual_samples(self, stretch: SampleBlock, solutions: Solutions) -> Samples:
         if "residuals" not in self.problem.observe:
@@ -293,6 +337,7 @@ class _Simulation:
             outputs={name: values[-1] for name, values in self.outputs.items()},
             relative_degrees=self.problem.relative_degrees,
             unresolved=self.motion.unresolved,
+            sensitivities=self._derivatives_at_end(),
             doubts=tuple(doubts(self._missed(left, start, end), self.begun.engine.tol, self.motion.steps)),
         )
 

@@ -1,0 +1,249 @@
+"""Directional derivatives of a program, as a program that computes them beside its own outputs.
+
+Forward differentiation, assignment by assignment (Griewank & Walther, Evaluating Derivatives, 2nd ed., section 3.2).
+"""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+
+from .arithmetic import Arithmetic, run_program
+from .folding import ONE, ZERO, folded
+from .motion_program import Atom, Call, Constant, Expression, Name, Operation, Program, count_operations
+
+Seeds = Mapping[str, Mapping[str, Atom]]
+TWO = Fraction(2)
+
+
+def derivative_name(name: str, direction: str) -> str:
+    """Return the name of a derivative, ``d(x, m)``."""
+    return f"d({name}, {direction})"
+
+
+def differentiated(program: Program, seeds: Seeds) -> Program:
+    """Return a program that also computes derivatives of the outputs.
+
+    Parameters
+    ----------
+    program : Program
+    seeds : mapping
+        Input, then direction, to the derivative of this input in this direction; what is missing is zero. Names in it
+        are inputs of the new program, behind those of the old one.
+
+    Returns
+    -------
+    Program
+        Outputs as before, then ``d(output, direction)`` for each output and direction; zero is the number 0. A sign
+        counts as constant.
+
+    """
+    tape = _Tape({*program.inputs, *(name for name, _ in program.assignments)})
+    found = run_program(
+        program, {name: _Dual(Name(name), seeds.get(name, {})) for name in program.inputs}, _duals(tape)
+    )
+    directions = dict.fromkeys(direction for each in seeds.values() for direction in each)
+    named = (atom.text for each in seeds.values() for atom in each.values() if isinstance(atom, Name))
+    derivatives = {
+        derivative_name(output, direction): dual.rates.get(direction, ZERO)
+        for output, dual in found.items()
+        for direction in directions
+    }
+    new = replace(
+        program,
+        inputs=tuple(dict.fromkeys((*program.inputs, *named))),
+        assignments=tuple((name.text, call) for call, name in tape.known.items()),
+        outputs={output: dual.value for output, dual in found.items()} | derivatives,
+    )
+    return replace(new, operations=count_operations(new))
+
+
+@dataclass(frozen=True)
+class _Dual:
+    """A value, and its derivative in each direction in which it has one."""
+
+    value: Atom
+    rates: Mapping[str, Atom] = field(default_factory=dict)
+
+
+class _Tape:
+    """Assignments of the new program, each operation once."""
+
+    def __init__(self, taken: set[str]) -> None:
+        self.known: dict[Call, Name] = {}
+        self._letter = "v"
+        while any(name.startswith(self._letter) for name in taken):
+            self._letter += "v"
+
+    def __call__(self, operation: Operation, *arguments: Atom) -> Atom:
+        match folded(operation, list(arguments)):
+            case Call() as call:
+                return self.known.setdefault(call, Name(f"{self._letter}{len(self.known) + 1}"))
+            case atom:
+                return atom
+
+    def product(self, *factors: Atom) -> Atom:
+        return factors[0] if len(factors) == 1 else self(Operation.MULTIPLY, *factors)
+
+    def sum(self, terms: Iterable[Atom]) -> Atom:
+        first, *rest = terms
+        return self(Operation.ADD, first, *rest) if rest else first
+
+    def quotient(self, a: Atom, b: Atom) -> Atom:
+        return self(Operation.DIVIDE, a, b)
+
+    def power(self, base: Atom, exponent: Fraction) -> Atom:
+        if exponent in (ZERO, ONE):
+            return base if exponent else ONE
+        return self(Operation.POWER, base, exponent)
+
+    def one_plus(self, sign: int, x: Atom) -> Atom:
+        """Return 1 + x^2 or 1 - x^2."""
+        return self(Operation.ADD if sign > 0 else Operation.SUBTRACT, ONE, self.power(x, TWO))
+
+
+def _root(tape: _Tape, x: Atom) -> Atom:
+    return tape.quotient(ONE, tape(Operation.SQRT, x))
+
+
+def _bell(tape: _Tape, x: Atom) -> Atom:
+    gauss = tape(Operation.EXP, tape(Operation.NEGATE, tape.power(x, TWO)))
+    return tape.product(TWO, _root(tape, Constant.PI), gauss)
+
+
+Slope = Callable[[_Tape, Atom, Atom], Atom]
+SLOPES: Mapping[Operation, Slope] = {
+    Operation.NEGATE: lambda tape, x, y: -ONE,
+    Operation.SQRT: lambda tape, x, y: tape.quotient(ONE, tape.product(TWO, y)),
+    Operation.EXP: lambda tape, x, y: y,
+    Operation.LN: lambda tape, x, y: tape.quotient(ONE, x),
+    Operation.ABS: lambda tape, x, y: tape(Operation.SIGN, x),
+    Operation.SIGN: lambda tape, x, y: ZERO,
+    Operation.SIN: lambda tape, x, y: tape(Operation.COS, x),
+    Operation.COS: lambda tape, x, y: tape(Operation.NEGATE, tape(Operation.SIN, x)),
+    Operation.TAN: lambda tape, x, y: tape.one_plus(1, y),
+    Operation.SINH: lambda tape, x, y: tape(Operation.COSH, x),
+    Operation.COSH: lambda tape, x, y: tape(Operation.SINH, x),
+    Operation.TANH: lambda tape, x, y: tape.one_plus(-1, y),
+    Operation.ARCSIN: lambda tape, x, y: _root(tape, tape.one_plus(-1, x)),
+    Operation.ARCCOS: lambda tape, x, y: tape(Operation.NEGATE, _root(tape, tape.one_plus(-1, x))),
+    Operation.ARCTAN: lambda tape, x, y: tape.quotient(ONE, tape.one_plus(1, x)),
+    Operation.ARSINH: lambda tape, x, y: _root(tape, tape.one_plus(1, x)),
+    Operation.ARCOSH: lambda tape, x, y: _root(tape, tape(Operation.SUBTRACT, tape.power(x, TWO), ONE)),
+    Operation.ARTANH: lambda tape, x, y: tape.quotient(ONE, tape.one_plus(-1, x)),
+    Operation.ERF: lambda tape, x, y: _bell(tape, x),
+}
+"""Derivatives of functions of one argument, of x and of the value y."""
+
+
+def _duals(tape: _Tape) -> Arithmetic[_Dual]:
+    """The arithmetic of values with their derivatives."""
+    special = {
+        Operation.ADD: _sum,
+        Operation.SUBTRACT: _difference,
+        Operation.MULTIPLY: _product,
+        Operation.DIVIDE: _quotient,
+        Operation.POWER: _general_power,
+        Operation.ARCTAN2: _angle,
+    }
+    functions = {operation: _function(tape, operation, slope) for operation, slope in SLOPES.items()}
+    return Arithmetic(
+        number=_Dual,
+        constants={each: _Dual(each) for each in Constant},
+        power=lambda base, exponent: _power(tape, base, exponent),
+        operations=functions | {operation: _on(tape, rule) for operation, rule in special.items()},
+    )
+
+
+def _on(tape: _Tape, rule: Callable[..., _Dual]) -> Callable[..., _Dual]:
+    return lambda *arguments: rule(tape, *arguments)
+
+
+def _function(tape: _Tape, operation: Operation, slope: Slope) -> Callable[[_Dual], _Dual]:
+    def dual(x: _Dual) -> _Dual:
+        value = tape(operation, x.value)
+        return _Dual(value, _scaled(tape, x, lambda: slope(tape, x.value, value)))
+
+    return dual
+
+
+def _scaled(tape: _Tape, x: _Dual, slope: Callable[[], Atom]) -> Mapping[str, Atom]:
+    """Return the derivatives of a function of one value by its slope, which is made where it is needed alone."""
+    if not x.rates:
+        return {}
+    factor = slope()
+    return {} if factor == ZERO else {k: tape.product(factor, rate) for k, rate in x.rates.items()}
+
+
+def _in_any(*duals: _Dual) -> Iterable[str]:
+    return dict.fromkeys(direction for each in duals for direction in each.rates)
+
+
+def _sum(tape: _Tape, *terms: _Dual) -> _Dual:
+    rates = {k: tape.sum(term.rates[k] for term in terms if k in term.rates) for k in _in_any(*terms)}
+    return _Dual(tape.sum(term.value for term in terms), rates)
+
+
+def _difference(tape: _Tape, a: _Dual, b: _Dual) -> _Dual:
+    rates = {k: tape(Operation.SUBTRACT, a.rates.get(k, ZERO), b.rates.get(k, ZERO)) for k in _in_any(a, b)}
+    return _Dual(tape(Operation.SUBTRACT, a.value, b.value), rates)
+
+
+def _product(tape: _Tape, *factors: _Dual) -> _Dual:
+    values = [factor.value for factor in factors]
+    others = [values[:place] + values[place + 1 :] for place in range(len(values))]
+    rates = {
+        k: tape.sum(
+            tape.product(*rest, factor.rates[k])
+            for rest, factor in zip(others, factors, strict=True)
+            if k in factor.rates
+        )
+        for k in _in_any(*factors)
+    }
+    return _Dual(tape.product(*values), rates)
+
+
+def _quotient(tape: _Tape, a: _Dual, b: _Dual) -> _Dual:
+    value = tape(Operation.DIVIDE, a.value, b.value)
+    rates = {}
+    for k in _in_any(a, b):
+        change = a.rates.get(k, ZERO)
+        if k in b.rates:
+            change = tape(Operation.SUBTRACT, change, tape.product(value, b.rates[k]))
+        rates[k] = tape.quotient(change, b.value)
+    return _Dual(value, rates)
+
+
+def _power(tape: _Tape, base: _Dual, exponent: Fraction) -> _Dual:
+    slope = _scaled(tape, base, lambda: tape.product(exponent, tape.power(base.value, exponent - 1)))
+    return _Dual(tape.power(base.value, exponent), slope)
+
+
+def _general_power(tape: _Tape, base: _Dual, exponent: _Dual) -> _Dual:
+    """Differentiate b^e: e b^(e - 1) b' + b^e ln(b) e'."""
+    value = tape(Operation.POWER, base.value, exponent.value)
+
+    def by_base() -> Atom:
+        less = tape(Operation.POWER, base.value, tape(Operation.SUBTRACT, exponent.value, ONE))
+        return tape.product(exponent.value, less)
+
+    parts = (
+        _scaled(tape, base, by_base),
+        _scaled(tape, exponent, lambda: tape.product(value, tape(Operation.LN, base.value))),
+    )
+    return _Dual(value, {k: tape.sum(part[k] for part in parts if k in part) for k in _in_any(base, exponent)})
+
+
+def _angle(tape: _Tape, y: _Dual, x: _Dual) -> _Dual:
+    """Differentiate atan2(y, x): (x y' - y x')/(x^2 + y^2)."""
+    square = tape.sum([tape.power(x.value, TWO), tape.power(y.value, TWO)])
+    change = _difference(tape, *(
+        _Dual(ZERO, _scaled(tape, moving, lambda by=by: by.value)) for moving, by in ((y, x), (x, y))
+    ))  # fmt: skip
+    rates = {k: tape.quotient(rate, square) for k, rate in change.rates.items()}
+    return _Dual(tape(Operation.ARCTAN2, y.value, x.value), rates)
+
+
+def along(names: Iterable[str], directions: Iterable[str]) -> dict[str, dict[str, Expression]]:
+    """Return seeds for quantities that change in directions: the derivatives of each are inputs."""
+    directions = tuple(directions)
+    return {name: {k: Name(derivative_name(name, k)) for k in directions} for name in names}

@@ -1,0 +1,134 @@
+"""How the start of a motion moves with its parameters and initial values: the derivative of eqs. (12) and (19).
+
+What the scene gives moves as it says; the constraints, differentiated, move the rest: J d = -r, d least in the mass
+metric where that leaves something open.
+"""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..failures import Failure, HolonomError
+from ..program.differentiation import derivative_name, differentiated
+from ..program.motion_problem import MotionProblem
+from ..program.numpy_function import NumpyFunction
+from .evaluation import Numbers
+from .initial_state import least_step
+from .matrices import Matrices, MotionMatrices, start_of
+from .variation import Variation, size_of
+
+CONSISTENT = 1e-9  # of the terms of a constraint's rate: what it misses
+RESIDUALS = "residual", "residual_rate"
+
+
+class ConstraintVariation:
+    """How f and df/dt move with the state and the directions.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        Without signs.
+    """
+
+    def __init__(self, problem: MotionProblem, directions: Sequence[str]) -> None:
+        self._g = len(problem.multipliers)
+        outputs = [f"{name}[{beta}]" for name in RESIDUALS for beta in range(1, self._g + 1)]
+        self._variation = Variation(problem, problem.matrices, outputs, directions) if outputs else None
+
+    def __call__(self, t: float, state: Numbers, moves: Numbers) -> tuple[Numbers, Numbers]:
+        """Return the changes of f and of df/dt, each of shape (g, p), for moves of shape (2n, p)."""
+        if self._variation is None:
+            return (np.zeros((0, moves.shape[1])),) * 2
+        found = self._variation(np.array([t]), state[:, None], moves[:, :, None])[:, :, 0]
+        return found[: self._g], found[self._g :]
+
+
+def initial_tangents(problem: MotionProblem, analytic: MotionProblem, directions: Sequence[str]) -> Numbers:
+    """Return how the state at the start moves in directions, shape (2n, p).
+
+    Parameters
+    ----------
+    problem, analytic : MotionProblem
+        The motion, and the same one without signs, as it begins.
+    directions : sequence of str
+        Parameters, by their `size_of`; coordinates and velocities, whose initial values move by one.
+
+    Raises
+    ------
+    HolonomError
+        The start cannot follow.
+    """
+    t, state = start_of(problem)
+    n = len(problem.coordinates)
+    constraints, here = ConstraintVariation(analytic, directions), MotionMatrices(analytic)(t, state)
+    moves = _data(problem, directions)
+    for half in (0, 1):
+        for k, name in enumerate(directions):
+            column = moves[half * n :][:n, k]
+            for free in _free(problem, half, name):
+                _require_unique(problem, here, free, name)
+                missed = constraints(t, state, moves)[half][:, k]
+                column[free] += _least(here, missed, free, problem.dependent)
+                if _consistent(constraints(t, state, moves)[half][:, k], here, column, missed):
+                    break
+            else:
+                reason = f"the constraints do not let the initial values follow {name}"
+                raise HolonomError(Failure.START_UNFOLLOWED, problem.scene, reason)
+    return moves
+
+
+def _data(problem: MotionProblem, directions: Sequence[str]) -> Numbers:
+    """How the given values move, and the numbers that a search begins with; shape (2n, p)."""
+    moves = np.zeros((len(problem.state), len(directions)))
+    for k, name in enumerate(directions):
+        if name in problem.state:
+            moves[problem.state.index(name), k] = 1.0
+    start = problem.parametric_start
+    parameters = [name for name in directions if name in problem.parameters]
+    if not parameters:
+        return moves
+    if start.obstacle is not None:
+        raise HolonomError(Failure.START_UNFOLLOWED, problem.scene, start.obstacle)
+    seeds = {name: {name: size_of(problem, name)} for name in parameters}
+    program = differentiated(start.program, seeds)
+    found = dict(zip(program.outputs, NumpyFunction(program)(problem.numbers), strict=True))
+    for name in parameters:
+        moves[:, directions.index(name)] = [found[derivative_name(each, name)] for each in problem.state]
+    return moves
+
+
+def _free(problem: MotionProblem, half: int, direction: str) -> Iterator[NDArray[np.int64]]:
+    """Yield places in a half of the state that may follow.
+
+    They are what the scene does not give; where that is not enough for an initial value, all but this value.
+    """
+    n = len(problem.coordinates)
+    others = [(s, name) for s, name in enumerate(problem.state[half * n :][:n]) if name != direction]
+    yield np.array([s for s, name in others if name not in problem.given], dtype=int)
+    if direction in problem.state:
+        yield np.array([s for s, _ in others], dtype=int)
+
+
+def _require_unique(problem: MotionProblem, at: Matrices, free: NDArray[np.int64], direction: str) -> None:
+    """Refuse a start that is the nearest of many to a guess off the constraints: it moves with their curvature, too."""
+    if direction in problem.state or problem.moved is None or float(problem.moved[1]) == 0:
+        return
+    if np.linalg.matrix_rank(at.jacobian[:, free]) < len(free):
+        reason = "it is the nearest of many to initial_guess; give more of it in initial_state"
+        raise HolonomError(Failure.START_UNFOLLOWED, problem.scene, reason)
+
+
+def _least(at: Matrices, missed: Numbers, free: NDArray[np.int64], redundant: bool) -> Numbers:
+    """Return the least move of some places, in the mass metric, that makes up for what constraints miss, shape (g,)."""
+    touched = np.flatnonzero((at.jacobian[:, free] != 0).any(axis=1))
+    if not len(touched):
+        return np.zeros(len(free))
+    mass, jacobian = at.mass[np.ix_(free, free)], at.jacobian[np.ix_(touched, free)]
+    return least_step(mass[..., None], jacobian[..., None], missed[touched, None], redundant)[:, 0]
+
+
+def _consistent(left: Numbers, at: Matrices, moves: Numbers, missed: Numbers) -> bool:
+    """Whether what constraints still miss is rounding, beside the terms that it is the sum of."""
+    terms = np.abs(at.jacobian) @ np.abs(moves) + np.abs(missed)
+    return bool((np.abs(left) <= CONSISTENT * terms).all())

@@ -1,0 +1,312 @@
+"""Derivatives of a motion by parameters and initial values: the variational equations beside it.
+
+With the state x = (q, dot q), dx/dt = F(t, x, p) and X = dx/dp,
+
+    dX/dt = F_x X + F_p.
+
+Where a surface s(t, x, p) = 0 switches F, X jumps with the instant of the switching (Hiskens & Pai, Trajectory
+sensitivity analysis of hybrid systems, IEEE Trans. Circuits Syst. I 47 (2000) 204):
+
+    X+ = X- + (F- - F+) dt/dp,    dt/dp = -(s_x X- + s_p)/(s_t + s_x F-).
+
+X keeps the constraints' derivative, J dq/dp = -f_p and its rate, from which rounding lets it go.
+"""
+
+from collections.abc import Sequence
+from copy import copy
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..failures import Failure, HolonomError
+from ..program.differentiation import derivative_name, differentiated
+from ..program.heyoka_function import heyoka_expressions, import_heyoka
+from ..program.motion_problem import MotionProblem, computing
+from ..program.motion_program import Program
+from ..program.precision import read_precision
+from ..program.sign_pattern import SLIDING, switching_function
+from .constraints.factorization import factored_constraints
+from .engines.code import Code, better_code, pays
+from .engines.engine import Step
+from .evaluation import Numbers
+from .initial_tangents import ConstraintVariation, initial_tangents
+from .inputs import Inputs, heyoka_inputs
+from .mode import Mode
+from .nominal import nominal_of
+from .recording import SampleBlock
+from .variation import TIME, Variation, seeds_of, size_of
+
+BLOCK = 128  # steps of the motion after which X is put back onto the constraints
+FOLLOWED = 1e-6  # relative: by how much the state beside X may differ from the motion's
+CONTINUOUS = 1e-9  # relative change of a state that is none
+
+
+class _Piece(NamedTuple):
+    """A part of the motion with its derivatives."""
+
+    start: float
+    end: float
+    mode: "_ModeVariation"
+    states: Any  # takes instants, shape (k,), to rows of states and scaled derivatives
+
+
+class _ModeVariation:
+    """The variational equations of one mode."""
+
+    def __init__(self, mode: Mode, directions: tuple[str, ...], tol: float | None) -> None:
+        self.mode, self.problem, self._directions = mode, mode.problem, directions
+        if self.problem.obstacle is not None:
+            raise HolonomError(Failure.NO_SENSITIVITY, detail=self.problem.obstacle)
+        if closed := [name for name in directions if name not in (*self.problem.parameters, *self.problem.state)]:
+            raise HolonomError(Failure.NO_SENSITIVITY, detail=f"the equations are made for one value of {closed[0]}")
+        self.constraints = ConstraintVariation(self.problem, directions)
+        self.inputs = Inputs(self.problem)
+        self._tolerance = tolerance_of(self.problem, tol)
+        self._seeds = seeds_of(self.problem, directions, self.problem.state)
+        self._kind = directions, *(size_of(self.problem, name) for name in directions)
+        self._program = self.problem.once(("accelerations", *self._kind), self.problem.motion, self._differentiated)
+        self._code = Code.QUICK
+        self._integrator = self._built()
+
+    def _differentiated(self) -> Program:
+        return differentiated(
+            computing(self.problem.motion, [f"ddot({q})" for q in self.problem.coordinates]), self._seeds
+        )
+
+    def _built(self) -> Any:
+        kind = "variational", self._code, *self._kind, *self._tolerance.values()
+        return copy(self.problem.once(kind, self.problem.motion, self._compiled))
+
+    def _compiled(self) -> Any:
+        heyoka, n = import_heyoka(), len(self.problem.coordinates)
+        moving = {
+            derivative_name(name, k): heyoka.expression(derivative_name(name, k))
+            for name in self.problem.state
+            for k in self._directions
+        }
+        given = heyoka_inputs(self.problem)
+        found = heyoka_expressions(self._program, given | moving)
+        variables = {name: given[name] for name in self.problem.state} | moving
+        rates = [given[name] for name in self.problem.state[n:]]
+        rates += [found[f"ddot({q})"] for q in self.problem.coordinates]
+        rates += [moving[derivative_name(v, k)] for v in self.problem.state[n:] for k in self._directions]
+        rates += [found[derivative_name(f"ddot({q})", k)] for q in self.problem.coordinates for k in self._directions]
+        equations = list(zip(variables.values(), rates, strict=True))
+        return heyoka.taylor_adaptive(equations, [0.0] * len(equations), **self._tolerance, **self._code.options)
+
+    def follow(self, start: float, state: Numbers, moves: Numbers, end: float, left: float) -> _Piece:
+        """Follow the derivatives through a part of the motion; `left` is the time that is left of the motion then."""
+        integrator = self._integrator
+        integrator.time = start
+        integrator.state[:] = np.concatenate([state, moves.ravel()])
+        contained = len(integrator.pars)
+        integrator.pars[:] = self.inputs.open_values(start, "right")[:contained]
+        outcome, *_, steps, between, _ = integrator.propagate_until(end, c_output=True)
+        if integrator.time != end or not np.isfinite(integrator.state).all():
+            raise HolonomError(Failure.NO_SENSITIVITY, detail=f"they are no numbers beyond t = {start:.10g}")
+        piece = _Piece(start, end, self, between)
+        self._compile_if_it_pays(steps * left / (end - start))
+        return piece
+
+    def reached(self, shape: tuple[int, int]) -> tuple[Numbers, Numbers]:
+        """Return the state and the derivatives at the end of the last part, put back onto the constraints."""
+        state, moves = np.split(self._integrator.state.copy(), [len(self.problem.state)])
+        return state, self.corrected(self._integrator.time, state, moves.reshape(shape))
+
+    def corrected(self, t: float, state: Numbers, moves: Numbers) -> Numbers:
+        """Return the derivatives nearest in the mass metric that keep those of the constraints."""
+        n, moves = len(self.problem.coordinates), moves.copy()
+        if not self.problem.multipliers:
+            return moves
+        here = self.mode.matrices.independent(t, state)
+        factors, kept = factored_constraints(here.mass, here.jacobian), list(self.problem.independent)
+        for half in (0, 1):
+            missed = self.constraints(t, state, moves)[half][kept]
+            moves[half * n :][:n] += np.array([factors.correction(column) for column in missed.T]).T
+        return moves
+
+    def rates(self, t: float, state: Numbers) -> Numbers:
+        """Return the rates of the state, shape (2n,)."""
+        n = len(self.problem.coordinates)
+        solved = self.mode.engine.solutions(np.array([t]), state[:, None])
+        return np.concatenate([state[n:], solved.accelerations[:, 0]])
+
+    def multipliers(self, instants: Numbers, states: Numbers, moves: Numbers, *more: str) -> Numbers:
+        """Return the derivatives of the multipliers, shape (g, p, k); `more` are directions behind the others."""
+        if not self.problem.multipliers:
+            return np.zeros((0, *moves.shape[1:]))
+        program, names = self.problem.motion, self.problem.multipliers
+        return Variation(self.problem, program, names, (*self._directions, *more))(instants, states, moves)
+
+    def delays(self, event: int, t: float, state: Numbers, moves: Numbers) -> tuple[Numbers, Numbers]:
+        """Return how the instant of an event moves, shape (p,), and state and multipliers with it, shape (2n + g, p).
+
+        Parameters
+        ----------
+        event : int
+            Its place in `MotionProblem.until`, from 0.
+        """
+        instants, states = np.array([t]), state[:, None]
+        moves = np.concatenate([moves, self.rates(t, state)[:, None]], axis=1)[:, :, None]
+        moves = np.concatenate([moves, self.multipliers(instants, states, moves, TIME)])
+        outputs, directions = (f"event[{event + 1}]",), (*self._directions, TIME)
+        variation = Variation(self.problem, self.problem.events, outputs, directions, multipliers=True)
+        solved = self.mode.engine.solutions(instants, states).multipliers
+        *changes, rate = variation(instants, states, moves, solved)[0, :, 0]
+        delays = _instant_moves(t, np.array(changes), rate)
+        return delays, moves[:, :-1, 0] + np.outer(moves[:, -1, 0], delays)
+
+    def _compile_if_it_pays(self, steps: float) -> None:
+        better = better_code(self._code, read_precision("double"))
+        if better and pays(self._code, better, self._program.operations, steps, self._tolerance["tol"]):
+            last, self._code = self._integrator.state.copy(), better
+            self._integrator = self._built()
+            self._integrator.state[:] = last
+
+
+class Sensitivities:
+    """The derivatives of one motion, followed beside it.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        With its parameters open.
+    directions : sequence of str
+        Parameters; coordinates and velocities, for their initial values.
+    begun : Mode
+        In which the motion begins.
+    tol : float or None
+        Tolerance of a step; None for the precision of the numbers.
+    end : float
+        The last instant.
+
+    Raises
+    ------
+    HolonomError
+        A direction is neither, the start does not follow it, or no motion program solves the equations.
+    """
+
+    def __init__(
+        self, problem: MotionProblem, directions: Sequence[str], begun: Mode, tol: float | None, end: float
+    ) -> None:
+        self._problem, self.directions, self._tol, self._end = problem, tuple(directions), tol, end
+        known = *problem.parameters, *problem.state
+        if unknown := [name for name in directions if name not in known]:
+            raise HolonomError(Failure.NO_SENSITIVITY, detail=f"{unknown[0]} is none of {', '.join(known)}")
+        self._sizes = np.array([float(size_of(problem, name)) for name in directions])
+        self._modes: dict[Mode, _ModeVariation] = {}
+        self._nominal = nominal_of(begun.problem)
+        self._here = self._of(begun)
+        self._time, self._state = float(problem.start["t"]), None
+        self._moves = initial_tangents(problem, begun.problem, self.directions)
+        self._steps, self._reached = 0, self._time
+        self._pieces: list[_Piece] = []
+
+    def take(self, step: Step) -> None:
+        """Follow a step of the motion."""
+        if step.mode is not self._here.mode:
+            self._advance()
+            self._switch(step)
+        elif self._steps >= BLOCK or self._at_knot(step):
+            self._advance()
+        if not self._steps:
+            state = step.states(np.array([step.start]))[:, 0]
+            self._require_followed(state)
+            self._state = state
+        self._steps, self._reached = self._steps + 1, float(step.end)
+
+    def samples(self, stretch: SampleBlock) -> tuple[Numbers, Numbers]:
+        """Return the derivatives at samples: of the state, shape (2n, p, k), and the multipliers, shape (g, p, k)."""
+        self._advance()
+        found = [self._in_mode(self._of(mode), t, states) for mode, t, states in stretch.by_mode()]
+        self._pieces = [piece for piece in self._pieces if piece.end >= stretch.instants[-1]]
+        return tuple(np.concatenate(parts, axis=2) / self._sizes[:, None] for parts in zip(*found, strict=True))
+
+    def at_event(self, event: int) -> tuple[Numbers, Numbers]:
+        """Return the derivatives of the last instant, shape (p,), and those of state and multipliers at this event.
+
+        Parameters
+        ----------
+        event : int
+            As for `_ModeVariation.delays`.
+        """
+        delays, moves = self._here.delays(event, self._time, self._state, self._moves)
+        return delays / self._sizes, moves / self._sizes
+
+    def _in_mode(self, here: _ModeVariation, instants: Numbers, states: Numbers) -> tuple[Numbers, Numbers]:
+        moves = np.full((*self._moves.shape, len(instants)), np.nan)
+        for piece in self._pieces:
+            inside = (piece.start <= instants) & (instants <= piece.end) & (piece.mode is here)
+            if inside.any():
+                rows = np.array(piece.states(instants[inside]))[:, len(states) :]
+                moves[:, :, inside] = rows.T.reshape(*self._moves.shape, -1)
+        return moves, here.multipliers(instants, states, moves)
+
+    def _of(self, mode: Mode) -> _ModeVariation:
+        if mode not in self._modes:
+            self._modes[mode] = _ModeVariation(mode, self.directions, self._tol)
+        return self._modes[mode]
+
+    def _advance(self) -> None:
+        """Follow the derivatives as far as the motion has come, and put them back onto the constraints."""
+        if not self._steps:
+            return
+        self._pieces.append(
+            self._here.follow(self._time, self._state, self._moves, self._reached, self._end - self._reached)
+        )
+        self._time, self._steps = self._reached, 0
+        self._state, self._moves = self._here.reached(self._moves.shape)
+
+    def _require_followed(self, state: Numbers) -> None:
+        """Refuse derivatives beside another motion than the one that is recorded."""
+        if self._state is not None and self._nominal.share(state - self._state, state) > FOLLOWED:
+            raise HolonomError(Failure.NO_SENSITIVITY, detail=f"steps become too coarse at t = {self._time:.10g}")
+
+    def _at_knot(self, step: Step) -> bool:
+        """Whether a table's next polynomial begins with a step."""
+        values = self._here.inputs.open_values
+        start = np.array(float(step.start))
+        return bool(self._problem.tables) and not np.array_equal(values(start, "left"), values(start, "right"))
+
+    # ---- switching ----
+
+    def _switch(self, step: Step) -> None:
+        """Jump with the instant of a switching."""
+        before, after = self._here, self._of(step.mode)
+        t, state = self._time, step.states(np.array([step.start]))[:, 0]
+        changed = [name for name, value in step.mode.pattern.items() if before.mode.pattern[name] != value]
+        if self._nominal.share(state - self._state, state) > CONTINUOUS:
+            raise HolonomError(Failure.NO_SENSITIVITY, detail=f"the velocities jump at t = {t:.10g}")
+        if len(changed) != 1:
+            raise HolonomError(Failure.NO_SENSITIVITY, detail=f"several signs change at t = {t:.10g}")
+        if before.mode.pattern[changed[0]] != SLIDING:  # from the surface a motion goes on as it is
+            rates = before.rates(t, state)
+            self._moves = self._moves + np.outer(
+                rates - after.rates(t, state), self._delays(changed[0], t, state, rates)
+            )
+        self._moves, self._here = after.corrected(t, state, self._moves), after
+
+    def _delays(self, sign: str, t: float, state: Numbers, rates: Numbers) -> Numbers:
+        """Return how the instant at which a sign changes moves in each direction, shape (p,)."""
+        problem, pattern = self._problem, self._here.mode.pattern
+        surface = problem.once(
+            ("surface", sign, frozenset(pattern.items())),
+            problem.switching,
+            lambda: switching_function(problem, "switch", sign, pattern),
+        )
+        variation = Variation(problem, surface, tuple(surface.outputs), (*self.directions, TIME))
+        moves = np.concatenate([self._moves, rates[:, None]], axis=1)
+        *changes, rate = variation(np.array([t]), state[:, None], moves[:, :, None])[0, :, 0]
+        return _instant_moves(t, np.array(changes), rate)
+
+
+def _instant_moves(t: float, changes: Numbers, rate: float) -> Numbers:
+    """Return how the instant of a zero moves, by the changes of the function and its rate along the motion."""
+    if not rate:
+        raise HolonomError(Failure.NO_SENSITIVITY, detail=f"a zero is only touched at t = {t:.10g}")
+    return -changes / rate
+
+
+def tolerance_of(problem: MotionProblem, tol: float | None) -> dict[str, float]:
+    """Return heyoka's tolerance of a step."""
+    return {"tol": (float(np.finfo(float).eps) if tol is None else tol) * nominal_of(problem).absolute()}

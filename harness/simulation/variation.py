@@ -1,0 +1,98 @@
+"""Programs of a motion with their derivatives in directions: parameters, initial values, the time.
+
+A state moves in a direction by X, shape (2n,): then a program's output changes by its gradient along X, and by its own
+derivative where the direction is an input of the program.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from math import floor, log10
+
+import numpy as np
+
+from ..program.differentiation import Seeds, along, derivative_name, differentiated
+from ..program.folding import ONE
+from ..program.motion_problem import MotionProblem, computing
+from ..program.motion_program import Program
+from ..program.precision import read_precision
+from .evaluation import Evaluation, Numbers, evaluation
+from .inputs import Inputs
+
+TIME = "t"
+
+
+def seeds_of(problem: MotionProblem, directions: Sequence[str], moving: Sequence[str]) -> Seeds:
+    """Return the seeds of `differentiated`: `moving` have derivatives as inputs, and a direction moves itself.
+
+    A parameter moves by `size_of`, the time by one.
+    """
+    own = {name: {name: size_of(problem, name)} for name in directions if name not in problem.state}
+    return along(moving, directions) | own
+
+
+def size_of(problem: MotionProblem, name: str) -> Fraction:
+    """Return the power of ten by which a direction is scaled: near the value of a parameter, one of others."""
+    value = problem.values.get(name)
+    return Fraction(10) ** floor(log10(abs(value))) if value else ONE
+
+
+class Variation:
+    """Derivatives of a program's outputs in directions, compiled.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        Without signs.
+    program : Program
+        One of its programs.
+    outputs : sequence of str
+        Those of its outputs that are differentiated.
+    directions : sequence of str
+        Parameters, names of the state, and ``t``.
+    multipliers : bool
+        Whether the multipliers move as well.
+    """
+
+    def __init__(
+        self,
+        problem: MotionProblem,
+        program: Program,
+        outputs: Sequence[str],
+        directions: Sequence[str],
+        multipliers: bool = False,
+    ) -> None:
+        moving = (*problem.state, *(problem.multipliers if multipliers else ()))
+        self._shape = len(outputs), len(directions)
+
+        def build() -> Evaluation:
+            found = differentiated(computing(program, outputs), seeds_of(problem, directions, moving))
+            rates = {name: found.outputs[name] for name in (derivative_name(y, k) for y in outputs for k in directions)}
+            return evaluation(computing(replace(found, outputs=rates), rates), read_precision("double"))
+
+        sizes = (size_of(problem, name) for name in directions)
+        kind = ("variation", *directions, *sizes, multipliers, *outputs)
+        self._evaluate = problem.once(kind, program, build)
+        self._inputs = Inputs(problem)
+
+    def __call__(
+        self, instants: Numbers, states: Numbers, moves: Numbers, multipliers: Numbers | None = None
+    ) -> Numbers:
+        """Evaluate the derivatives.
+
+        Parameters
+        ----------
+        instants : ndarray, shape (k,)
+        states : ndarray, shape (2n, k)
+        moves : ndarray, shape (2n, p, k), or (2n + g, p, k)
+            How the state, and then the multipliers, move in each direction.
+        multipliers : ndarray, shape (g, k), or None
+            None for zeros.
+
+        Returns
+        -------
+        ndarray, shape (outputs, p, k)
+        """
+        k = len(instants)
+        inputs = np.concatenate([self._inputs(instants, states, multipliers), moves.reshape(-1, k)])
+        return self._evaluate(np.ascontiguousarray(inputs)).reshape(*self._shape, k)

@@ -1,0 +1,197 @@
+"""Derivatives of motions, against closed forms and differences."""
+
+import json
+from math import cosh, sinh, sqrt
+
+import numpy as np
+import pytest
+
+import holonom
+from holonom.failures import Failure, HolonomError
+
+SPRING = """
+system : holonomic_system(coordinates = [x], parameters = [m, k], kinetic_energy = m*dot(x)^2/2,
+  potential_energy = k*x^2/2)$
+scene : holonomic_scene(system, parameter_values = [m = 2, k = 8], initial_state = [x = 3, dot(x) = 1],
+  time_span = [0, 5])$
+"""
+BEAD = """
+system : holonomic_system(coordinates = [r, phi], controls = [u], parameters = [m, w],
+  kinetic_energy = m*(dot(r)^2 + r^2*dot(phi)^2)/2, constraints = [phi - u])$
+scene : holonomic_scene(system, control_law = [u = w*t], parameter_values = [m = 3, w = 2],
+  initial_state = [r = 1, dot(r) = 0], time_span = [0, 1])$
+"""
+CIRCLE = """
+system : holonomic_system(coordinates = [x, y], parameters = [g, l], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  potential_energy = g*y, constraints = [x^2 + y^2 - l^2])$
+scene : holonomic_scene(system, parameter_values = [g = 981/100, l = 1], {start}, time_span = [0, 3])$
+"""
+ANGLE = """
+system : holonomic_system(coordinates = [phi], parameters = [g, l], kinetic_energy = l^2*dot(phi)^2/2,
+  potential_energy = -g*l*cos(phi))$
+scene : holonomic_scene(system, parameter_values = [g = 981/100, l = 1], initial_state = [phi = asin(3/5),
+  dot(phi) = 0], time_span = [0, 3])$
+"""
+FALL = """
+system : holonomic_system(coordinates = [y], parameters = [g, h], kinetic_energy = dot(y)^2/2,
+  potential_energy = g*y)$
+scene : holonomic_scene(system, parameter_values = [g = 10, h = 5], initial_state = [y = h, dot(y) = 0],
+  time_span = [0, 5], until = [y])$
+"""
+SLIDE = """
+system : holonomic_system(coordinates = [x], parameters = [mu, g, v], kinetic_energy = dot(x)^2/2,
+  forces = [friction = [-mu*g*signum(dot(x))]])$
+scene : holonomic_scene(system, parameter_values = [mu = 1/4, g = 10, v = 3], initial_state = [x = 0, dot(x) = v],
+  time_span = [0, 2])$
+"""
+PUSH = """
+system : holonomic_system(coordinates = [x], controls = [F], parameters = [m, P, T],
+  kinetic_energy = m*dot(x)^2/2, forces = [push = [F]])$
+scene : holonomic_scene(system, control_law = [F = if t < T then P else 0],
+  parameter_values = [m = 2, P = 6, T = 1], initial_state = [x = 0, dot(x) = 0], time_span = [0, 3])$
+"""
+JERK = """
+system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [a, m],
+  kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2, constraints = [x - u])$
+scene : holonomic_scene(system, control_law = [u = if t < 1 then a*t else a],
+  parameter_values = [a = 2, m = 1], initial_state = [y = 0, dot(y) = 0], time_span = [0, 3])$
+"""
+
+
+def circle(start: str) -> holonom.Scene:
+    return holonom.system(CIRCLE.format(start=start))
+
+
+GIVEN = circle("initial_state = [x = 3*l/5, y = -4*l/5, dot(x) = 0, dot(y) = 0]")
+GUESSED = circle("initial_state = [x = 3/5, dot(x) = 0], initial_guess = [y = -1]")
+
+
+def test_the_oscillator_of_the_textbook():
+    """x = x0 cos(w t) + v0/w sin(w t), w^2 = k/m."""
+    motion = holonom.system(SPRING).simulate(samples=21, sensitivities=["k", "m", "x", "dot(x)"])
+    t, w, x0, v0 = motion["t"], 2.0, 3.0, 1.0
+    by_w = -x0 * t * np.sin(w * t) + v0 * (t * np.cos(w * t) / w - np.sin(w * t) / w**2)
+    for name, expected in {
+        "d(x, x)": np.cos(w * t),
+        "d(x, dot(x))": np.sin(w * t) / w,
+        "d(x, k)": by_w / (2 * w * 2),
+        "d(x, m)": -by_w * w / (2 * 2),
+        "d(dot(x), x)": -w * np.sin(w * t),
+    }.items():
+        assert motion[name] == pytest.approx(expected, abs=1e-12), name
+    assert motion.report.sensitivities["d(x, k)"] == motion["d(x, k)"][-1]
+
+
+def test_multipliers_of_the_bead_on_a_turning_wire():
+    """r = cosh(w t), and the moment lambda1 = 2 m w r dot(r)."""
+    motion = holonom.system(BEAD).simulate(samples=5, sensitivities="w,m")
+    c, s = (np.array([f(2 * t) for t in motion["t"]]) for f in (cosh, sinh))
+    t, w, m = motion["t"], 2.0, 3.0
+    assert motion["d(r, w)"] == pytest.approx(t * s, abs=1e-12)
+    assert motion["d(r, m)"] == pytest.approx(0 * t, abs=1e-12)
+    sign = np.sign(motion["lambda1"][-1])
+    by_w = 2 * m * (2 * w * c * s + w**2 * t * (c**2 + s**2))
+    assert motion["d(lambda1, w)"] == pytest.approx(sign * by_w, rel=1e-12, abs=1e-11)
+    assert motion["d(lambda1, m)"] == pytest.approx(sign * 2 * w**2 * c * s, rel=1e-12, abs=1e-11)
+
+
+@pytest.mark.parametrize("scene", [GIVEN, GUESSED], ids=["given", "guessed"])
+def test_an_initial_value_takes_the_others_along_the_manifold(scene):
+    """The pendulum in x and y, and in its angle: dx0 = l cos(phi0) dphi0."""
+    motion = scene.simulate(samples=7, sensitivities=["g", "x"])
+    angle = holonom.system(ANGLE).simulate(samples=7, sensitivities=["g", "phi"])
+    cos, sin = np.cos(angle["phi"]), np.sin(angle["phi"])
+    assert motion["d(x, g)"] == pytest.approx(cos * angle["d(phi, g)"], abs=1e-11)
+    assert motion["d(x, x)"] == pytest.approx(cos * angle["d(phi, phi)"] / 0.8, abs=1e-11)
+    assert motion["d(y, x)"] == pytest.approx(sin * angle["d(phi, phi)"] / 0.8, abs=1e-11)
+
+
+def test_a_parameter_of_the_start_moves_the_start():
+    """Twice the length is the same motion in a time sqrt(2) times as long: l dx/dl = x - t dot(x)/2."""
+    motion = GIVEN.simulate(samples=7, sensitivities="l")
+    assert motion["d(x, l)"] == pytest.approx(motion["x"] - motion["t"] * motion["dot(x)"] / 2, abs=1e-11)
+
+
+def test_an_event_moves_with_the_parameters():
+    """A body falls from h in t = sqrt(2 h/g), and arrives with sqrt(2 g h)."""
+    end = holonom.system(FALL).simulate(samples=3, sensitivities=["g", "h"]).report.sensitivities
+    assert end["d(t, h)"] == pytest.approx(1 / sqrt(2 * 5 * 10), rel=1e-12)
+    assert end["d(t, g)"] == pytest.approx(-1 / 2 * sqrt(2 * 5 / 10**3), rel=1e-12)
+    assert end["d(dot(y), h)"] == pytest.approx(-sqrt(10 / (2 * 5)), rel=1e-12)
+    assert end["d(y, g)"] == pytest.approx(0, abs=1e-12)
+
+
+def test_friction_that_stops_a_body():
+    """It stops after v/(mu g), having come v^2/(2 mu g) far."""
+    motion = holonom.system(SLIDE).simulate(samples=5, sensitivities=["mu", "v"])
+    assert motion["d(x, v)"][-1] == pytest.approx(3 / 2.5, rel=1e-12)
+    assert motion["d(x, mu)"][-1] == pytest.approx(-(3**2) / (2 * 0.25**2 * 10), rel=1e-12)
+    assert motion["d(dot(x), v)"][-1] == pytest.approx(0, abs=1e-12)
+
+
+def test_the_instant_of_a_law_that_switches():
+    """x = P T (t - T/2)/m after the push is over."""
+    motion = holonom.system(PUSH).simulate(samples=4, sensitivities=["T", "P"])
+    assert motion["d(x, T)"][-1] == pytest.approx(6 * (3 - 1) / 2, rel=1e-12)
+    assert motion["d(x, P)"][-1] == pytest.approx(1 * (3 - 1 / 2) / 2, rel=1e-12)
+    assert motion["d(dot(x), T)"][-1] == pytest.approx(6 / 2, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("example", "name", "value", "until"),
+    [
+        ("andrews", "c0", 4530.0, "1/100"),
+        ("crane", "M", 200.0, "1/2"),
+        ("heavy_top", "I1", 0.0005, "1/2"),
+        ("hoist", "g", 9.81, "1/2"),
+        ("overhead_crane", "g", 9.81, "1/2"),
+        ("whirling_bob", "l0", 1.0, "1/2"),
+    ],
+)
+def test_differences_of_an_example(example, name, value, until):
+    """In overhead_crane servo-constraints find the controls, hoist has a table, heavy_top one constraint too many."""
+    scene, step = holonom.load(f"examples/{example}.mac"), 1e-4 * value
+    found, ahead, behind = (
+        scene.simulate(samples=4, until=until, sensitivities=[name], **{name: value + h}) for h in (0, step, -step)
+    )
+    for quantity in (*found.coordinates, *found.multipliers):
+        difference = (ahead[quantity] - behind[quantity]) / (2 * step)
+        size = max(np.max(np.abs(found[quantity])) / value, 1e-6)
+        assert found[f"d({quantity}, {name})"] == pytest.approx(difference, rel=1e-6, abs=1e-6 * size), quantity
+
+
+@pytest.mark.parametrize(
+    ("scene", "options"),
+    [
+        (holonom.system(SPRING), {"sensitivities": "q"}),
+        (holonom.system(SPRING), {"sensitivities": "k", "precision": "extended"}),
+        (holonom.system(SPRING), {"sensitivities": "k", "drift": "ggl"}),
+        (holonom.system(JERK), {"sensitivities": "a"}),
+    ],
+    ids=["no parameter", "other numbers", "other equations", "impulse"],
+)
+def test_refusals(scene, options):
+    with pytest.raises(HolonomError) as refused:
+        scene.simulate(**options)
+    assert refused.value.failure is Failure.NO_SENSITIVITY
+
+
+@pytest.mark.parametrize("start", ["initial_state = [x = 3/5, y = -4/5, dot(x) = 0]"])
+def test_a_start_that_does_not_follow_is_refused(start):
+    with pytest.raises(HolonomError) as refused:
+        circle(start).simulate(sensitivities="l")
+    assert refused.value.failure is Failure.START_UNFOLLOWED
+
+
+def test_on_the_command_line(tmp_path, holonom_here):
+    file, samples = tmp_path / "scene.mac", tmp_path / "samples.csv"
+    file.write_text(f'load("holonom.mac")$ {SPRING}', encoding="utf-8")
+    run = holonom_here("simulate", file, "--sensitivity", "k,x", "--samples", "5", "-o", samples, "--json", "-")
+    assert run.returncode == 0
+    document = json.loads(run.stdout)
+    assert list(document["sensitivities"]) == ["d(x, k)", "d(x, x)", "d(dot(x), k)", "d(dot(x), x)"]
+    assert (
+        samples.read_text(encoding="utf-8")
+        .splitlines()[0]
+        .endswith('"d(x, k)","d(x, x)","d(dot(x), k)","d(dot(x), x)"')
+    )
