@@ -148,7 +148,9 @@ def _in_digits(n: int, digits: int) -> tuple[list[str], list[str]]:
 
 
 def _constraints_move(problem: MotionProblem) -> bool:
-    """Whether a constraint contains the time, be it through a control."""
+    """Return True if a constraint contains the time, be it through a control, or one that servo-constraints move."""
+    if problem.servo:
+        return True
     residuals_alone = {name for name in problem.matrices.outputs if name.startswith("residual[")}
     program = computing(problem.matrices, residuals_alone)
     parts = (*(expression for _, expression in program.assignments), *program.outputs.values())

@@ -189,7 +189,8 @@ def zeros_of_controls(problem: MotionProblem, start: float, end: float) -> list[
         middle = (left + right) / 2
         same = np.sign(values(middle)[controls, np.arange(len(places))]) == signs[controls, places]
         left, right = np.where(same, middle, left), np.where(same, right, middle)
-    touched = grid[1:-1][np.any(signs[:, 1:-1] == 0, axis=0)]
+    zero = signs == 0
+    touched = grid[1:-1][np.any(zero[:, 1:-1] & ~(zero[:, :-2] & zero[:, 2:]), axis=0)]  # a control may stay zero
     return sorted({*map(float, right), *map(float, touched)})
 
 
