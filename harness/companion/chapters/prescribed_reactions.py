@@ -12,7 +12,7 @@ from ..chapter import Page, Run
 from ..excerpts import excerpt
 from ..mathematics import description
 from ..runs import derived, free, series, simulation
-from . import PRESCRIBED_TENSION
+from . import LEVEL_LOAD, PRESCRIBED_TENSION
 
 SOURCE = "maxima/control/prescribed_reactions.mac"
 FUNCTIONS = ("released_system", "controls_under_reactions")
@@ -40,12 +40,13 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
             "system": system,
             "description": description(system),
             "scene_lines": excerpt(root, PRESCRIBED_TENSION, SCENES[1]),
+            "level_lines": excerpt(root, LEVEL_LOAD, "swing_scene"),
             "answers": {name: results[f"{name} free"] for name in SCENES},
             "series": {name: results[f"{name} series"] for name in SCENES},
             "excerpts": [excerpt(root, SOURCE, name) for name in FUNCTIONS],
         },
         figures={"winch": draw_curves(panels(results), gettext("t (units of the scene)"))},
-        sources=(SOURCE, PRESCRIBED_TENSION),
+        sources=(SOURCE, PRESCRIBED_TENSION, LEVEL_LOAD),
     )
 
 
