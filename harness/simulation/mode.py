@@ -96,7 +96,7 @@ class Mode:
         end: Any,
         known: dict[Hashable, MotionProblem],
     ) -> None:
-        self._whole, self.pattern, self._precision, self._time_events = problem, pattern, precision, time_events
+        self.whole, self.pattern, self._precision, self._time_events = problem, pattern, precision, time_events
         analytic = problem_in(problem, pattern)
         if any(sign.by is By.TIME for sign in problem.signs):
             analytic = sharing_programs(analytic, known)
@@ -122,18 +122,18 @@ class Mode:
     @cached_property
     def surfaces(self) -> Surfaces:
         """The surfaces on which the pattern ends."""
-        return Surfaces(self._whole, self.pattern, self._precision, self._end - self._start, self._time_events)
+        return Surfaces(self.whole, self.pattern, self._precision, self._end - self._start, self._time_events)
 
     @cached_property
     def momenta(self) -> Any:
         """dL/d dot(q) as a function of the state."""
-        switching = self._whole.switching
+        switching = self.whole.switching
         wanted = {name for name in switching.outputs if name.startswith("momentum[")}
 
         def build() -> Evaluation:
-            return evaluation(program_in(self._whole, computing(switching, wanted), self.pattern), self._precision)
+            return evaluation(program_in(self.whole, computing(switching, wanted), self.pattern), self._precision)
 
-        return self._whole.once(("momenta", self._precision.name, frozenset(self.pattern.items())), switching, build)
+        return self.whole.once(("momenta", self._precision.name, frozenset(self.pattern.items())), switching, build)
 
     def controls(self, instants: Numbers, states: Numbers) -> Numbers:
         """Return the observed controls at instants, shape (k,), and states, shape (2n, k).

@@ -12,7 +12,7 @@ sensitivity analysis of hybrid systems, IEEE Trans. Circuits Syst. I 47 (2000) 2
 X keeps the constraints' derivative, J dq/dp = -f_p and its rate, from which rounding lets it go.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from copy import copy
 from typing import Any, NamedTuple
 
@@ -48,6 +48,14 @@ class _Piece(NamedTuple):
     end: float
     mode: "_ModeVariation"
     states: Any  # takes instants, shape (k,), to rows of states and scaled derivatives
+
+
+class _Zero(NamedTuple):
+    """The zero of an output of one of a motion's programs."""
+
+    problem: MotionProblem
+    program: Program
+    output: str
 
 
 class _ModeVariation:
@@ -127,34 +135,48 @@ class _ModeVariation:
 
     def rates(self, t: float, state: Numbers) -> Numbers:
         """Return the rates of the state, shape (2n,)."""
-        n = len(self.problem.coordinates)
         solved = self.mode.engine.solutions(np.array([t]), state[:, None])
-        return np.concatenate([state[n:], solved.accelerations[:, 0]])
+        return np.concatenate([state[len(self.problem.coordinates) :], solved.accelerations[:, 0]])
 
-    def multipliers(self, instants: Numbers, states: Numbers, moves: Numbers, *more: str) -> Numbers:
-        """Return the derivatives of the multipliers, shape (g, p, k); `more` are directions behind the others."""
-        if not self.problem.multipliers:
-            return np.zeros((0, *moves.shape[1:]))
-        program, names = self.problem.motion, self.problem.multipliers
-        return Variation(self.problem, program, names, (*self._directions, *more))(instants, states, moves)
-
-    def delays(self, event: int, t: float, state: Numbers, moves: Numbers) -> tuple[Numbers, Numbers]:
-        """Return how the instant of an event moves, shape (p,), and state and multipliers with it, shape (2n + g, p).
+    def derivatives(self, instants: Numbers, states: Numbers, moves: Numbers, *more: str) -> dict[str, Numbers]:
+        """Return the derivatives of state, multipliers and outputs by name, each of shape (p, k).
 
         Parameters
         ----------
-        event : int
-            Its place in `MotionProblem.until`, from 0.
+        moves : ndarray, shape (2n, p, k)
+            Derivatives of the state.
+        *more : str
+            Directions behind the others.
         """
-        instants, states = np.array([t]), state[:, None]
-        moves = np.concatenate([moves, self.rates(t, state)[:, None]], axis=1)[:, :, None]
-        moves = np.concatenate([moves, self.multipliers(instants, states, moves, TIME)])
-        outputs, directions = (f"event[{event + 1}]",), (*self._directions, TIME)
-        variation = Variation(self.problem, self.problem.events, outputs, directions, multipliers=True)
+        problem, directions = self.problem, (*self._directions, *more)
+        solved = (*problem.multipliers, *(f"ddot({q})" for q in problem.coordinates))
+        moves = np.concatenate([moves, Variation(problem, problem.motion, solved, directions)(instants, states, moves)])
+        found = dict(zip((*problem.state, *problem.multipliers), moves, strict=False))
+        if problem.outputs is None:
+            return found
+        values, names = self.mode.engine.solutions(instants, states), tuple(problem.outputs.outputs)
+        variation = Variation(problem, problem.outputs, names, directions, solved)
+        rows = variation(instants, states, moves, values.multipliers, values.accelerations)
+        return found | dict(zip(names, rows, strict=True))
+
+    def delays(self, zero: "_Zero", t: float, state: Numbers, moves: Numbers) -> Numbers:
+        """Return how the instant of a zero moves, shape (p,)."""
+        instants, states, multipliers = np.array([t]), state[:, None], self.problem.multipliers
+        along_it = np.concatenate([moves, self.rates(t, state)[:, None]], axis=1)[:, :, None]
+        derivatives = self.derivatives(instants, states, along_it, TIME)
+        along_it = np.concatenate([along_it, *(derivatives[name][None] for name in multipliers)])
+        variation = Variation(zero.problem, zero.program, (zero.output,), (*self._directions, TIME), multipliers)
         solved = self.mode.engine.solutions(instants, states).multipliers
-        *changes, rate = variation(instants, states, moves, solved)[0, :, 0]
-        delays = _instant_moves(t, np.array(changes), rate)
-        return delays, moves[:, :-1, 0] + np.outer(moves[:, -1, 0], delays)
+        *changes, rate = variation(instants, states, along_it, solved)[0, :, 0]
+        if not rate:
+            raise HolonomError(Failure.NO_SENSITIVITY, detail=f"a zero is only touched at t = {t:.10g}")
+        return -np.array(changes) / rate
+
+    def at_moving_instant(self, t: float, state: Numbers, moves: Numbers, delays: Numbers) -> dict[str, Numbers]:
+        """Return `derivatives` at an instant that moves, each of shape (p,)."""
+        along_it = np.concatenate([moves, self.rates(t, state)[:, None]], axis=1)[:, :, None]
+        found = self.derivatives(np.array([t]), state[:, None], along_it, TIME)
+        return {name: rows[:-1, 0] + rows[-1, 0] * delays for name, rows in found.items()}
 
     def _compile_if_it_pays(self, steps: float) -> None:
         better = better_code(self._code, read_precision("double"))
@@ -215,32 +237,40 @@ class Sensitivities:
             self._state = state
         self._steps, self._reached = self._steps + 1, float(step.end)
 
-    def samples(self, stretch: SampleBlock) -> tuple[Numbers, Numbers]:
-        """Return the derivatives at samples: of the state, shape (2n, p, k), and the multipliers, shape (g, p, k)."""
+    def samples(self, stretch: SampleBlock) -> dict[str, Numbers]:
+        """Return the derivatives at samples by name, ``d(x, m)``, zeros for multipliers of constraints that ended."""
         self._advance()
         found = [self._in_mode(self._of(mode), t, states) for mode, t, states in stretch.by_mode()]
         self._pieces = [piece for piece in self._pieces if piece.end >= stretch.instants[-1]]
-        return tuple(np.concatenate(parts, axis=2) / self._sizes[:, None] for parts in zip(*found, strict=True))
+        none = [np.zeros((len(self.directions), len(t))) for _, t, _ in stretch.by_mode()]
+        return self._named({
+            name: np.concatenate([part.get(name, zero) for part, zero in zip(found, none, strict=True)], axis=1)
+            for name in found[0] | found[-1]
+        })  # fmt: skip
 
-    def at_event(self, event: int) -> tuple[Numbers, Numbers]:
-        """Return the derivatives of the last instant, shape (p,), and those of state and multipliers at this event.
+    def at_event(self, event: str) -> dict[str, float]:
+        """Return the derivatives at an event that ends the motion, and ``d(t, m)``, those of its instant."""
+        here, place = self._here, self._problem.until.index(event) + 1
+        zero = _Zero(here.problem, here.problem.events, f"event[{place}]")
+        delays = here.delays(zero, self._time, self._state, self._moves)
+        return self._named({TIME: delays} | here.at_moving_instant(self._time, self._state, self._moves, delays))
 
-        Parameters
-        ----------
-        event : int
-            As for `_ModeVariation.delays`.
-        """
-        delays, moves = self._here.delays(event, self._time, self._state, self._moves)
-        return delays / self._sizes, moves / self._sizes
+    def _named(self, found: Mapping[str, Numbers]) -> dict[str, Numbers]:
+        """Return rows of derivatives, one for each direction and unscaled, by their names."""
+        return {
+            derivative_name(name, direction): row / size
+            for name, rows in found.items()
+            for direction, row, size in zip(self.directions, rows, self._sizes, strict=True)
+        }
 
-    def _in_mode(self, here: _ModeVariation, instants: Numbers, states: Numbers) -> tuple[Numbers, Numbers]:
+    def _in_mode(self, here: _ModeVariation, instants: Numbers, states: Numbers) -> dict[str, Numbers]:
         moves = np.full((*self._moves.shape, len(instants)), np.nan)
         for piece in self._pieces:
             inside = (piece.start <= instants) & (instants <= piece.end) & (piece.mode is here)
             if inside.any():
                 rows = np.array(piece.states(instants[inside]))[:, len(states) :]
                 moves[:, :, inside] = rows.T.reshape(*self._moves.shape, -1)
-        return moves, here.multipliers(instants, states, moves)
+        return here.derivatives(instants, states, moves)
 
     def _of(self, mode: Mode) -> _ModeVariation:
         if mode not in self._modes:
@@ -274,37 +304,36 @@ class Sensitivities:
         """Jump with the instant of a switching."""
         before, after = self._here, self._of(step.mode)
         t, state = self._time, step.states(np.array([step.start]))[:, 0]
-        changed = [name for name, value in step.mode.pattern.items() if before.mode.pattern[name] != value]
         if self._nominal.share(state - self._state, state) > CONTINUOUS:
             raise HolonomError(Failure.NO_SENSITIVITY, detail=f"the velocities jump at t = {t:.10g}")
-        if len(changed) != 1:
-            raise HolonomError(Failure.NO_SENSITIVITY, detail=f"several signs change at t = {t:.10g}")
-        if before.mode.pattern[changed[0]] != SLIDING:  # from the surface a motion goes on as it is
-            rates = before.rates(t, state)
-            self._moves = self._moves + np.outer(
-                rates - after.rates(t, state), self._delays(changed[0], t, state, rates)
-            )
+        surface = self._surface(before.mode, after.mode)
+        if surface is not None:
+            jump = before.rates(t, state) - after.rates(t, state)
+            self._moves = self._moves + np.outer(jump, before.delays(surface, t, state, self._moves))
         self._moves, self._here = after.corrected(t, state, self._moves), after
 
-    def _delays(self, sign: str, t: float, state: Numbers, rates: Numbers) -> Numbers:
-        """Return how the instant at which a sign changes moves in each direction, shape (p,)."""
-        problem, pattern = self._problem, self._here.mode.pattern
-        surface = problem.once(
-            ("surface", sign, frozenset(pattern.items())),
-            problem.switching,
-            lambda: switching_function(problem, "switch", sign, pattern),
+    def _surface(self, before: Mode, after: Mode) -> _Zero | None:
+        """Return the zero that leads from one mode to the next.
+
+        None where a motion leaves a surface that it was held on: it goes on as it is.
+        """
+        ended = set(before.problem.multipliers) - set(after.problem.multipliers)
+        if ended:
+            releases = before.problem.released
+            place = next(i for i, each in enumerate(releases, start=1) if set(each.multipliers) == ended)
+            return _Zero(before.problem, before.problem.releases, f"event[{place}]")
+        changed = [name for name, value in after.pattern.items() if before.pattern[name] != value]
+        if len(changed) != 1:
+            raise HolonomError(Failure.NO_SENSITIVITY, detail=f"several signs change at t = {self._time:.10g}")
+        if before.pattern[changed[0]] == SLIDING:
+            return None
+        whole, pattern = before.whole, before.pattern
+        program = whole.once(
+            ("surface", changed[0], frozenset(pattern.items())),
+            whole.switching,
+            lambda: switching_function(whole, "switch", changed[0], pattern),
         )
-        variation = Variation(problem, surface, tuple(surface.outputs), (*self.directions, TIME))
-        moves = np.concatenate([self._moves, rates[:, None]], axis=1)
-        *changes, rate = variation(np.array([t]), state[:, None], moves[:, :, None])[0, :, 0]
-        return _instant_moves(t, np.array(changes), rate)
-
-
-def _instant_moves(t: float, changes: Numbers, rate: float) -> Numbers:
-    """Return how the instant of a zero moves, by the changes of the function and its rate along the motion."""
-    if not rate:
-        raise HolonomError(Failure.NO_SENSITIVITY, detail=f"a zero is only touched at t = {t:.10g}")
-    return -changes / rate
+        return _Zero(whole, program, *program.outputs)
 
 
 def tolerance_of(problem: MotionProblem, tol: float | None) -> dict[str, float]:

@@ -268,31 +268,24 @@ class _Simulation:
         """Derivatives of what the scene observes."""
         if self.sensitivities is None:
             return {}
-        found = self._named_derivatives(np.concatenate(self.sensitivities.samples(stretch)))
-        self.last_derivatives = {name: float(row[-1]) for name, row in found.items()}
+        found = self._observed_derivatives(self.sensitivities.samples(stretch))
+        self.last_derivatives = {name: row[-1] for name, row in found.items()}
         return found
 
-    def _named_derivatives(self, rows: Numbers) -> dict[str, Numbers]:
-        """Derivatives of the state and the multipliers, shape (2n + g, p, ...), as far as the scene observes them."""
-        observe, reactions = self.problem.observe, self.problem.reactions
-        observed = (*self.problem.state,) if "trajectory" in observe else ()
-        observed += reactions if "multipliers" in observe else ()
-        names = *self.problem.state, *self.problem.multipliers
-        return {
-            derivative_name(name, direction): row
-            for name, each in zip(names, rows, strict=True)
-            if name in observed
-            for direction, row in zip(self.sensitivities.directions, each, strict=True)
-        }
+    def _observed_derivatives(self, found: Mapping[str, Numbers]) -> Samples:
+        observe, outputs = self.problem.observe, self.problem.outputs
+        observed = [*(self.problem.state if "trajectory" in observe else ())]
+        observed += self.problem.reactions if "multipliers" in observe else ()
+        observed += () if outputs is None else outputs.outputs
+        names = (derivative_name(name, k) for name in ("t", *observed) for k in self.sensitivities.directions)
+        return {name: found[name] for name in names if name in found}
 
     def _derivatives_at_end(self) -> Mapping[str, float]:
         if self.sensitivities is None:
             return {}
         if self.ending is None or self.ending.crossed is None:
             return self.last_derivatives
-        delays, moves = self.sensitivities.at_event(self.problem.until.index(self.ending.crossed))
-        instants = {derivative_name("t", k): d for k, d in zip(self.sensitivities.directions, delays, strict=True)}
-        return {name: float(number) for name, number in {**instants, **self._named_derivatives(moves)}.items()}
+        return self._observed_derivatives(self.sensitivities.at_event(self.ending.crossed))
 
     def _residual_samples(self, stretch: SampleBlock, solutions: Solutions) -> Samples:
         if "residuals" not in self.problem.observe:

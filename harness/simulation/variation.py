@@ -50,8 +50,8 @@ class Variation:
         Those of its outputs that are differentiated.
     directions : sequence of str
         Parameters, names of the state, and ``t``.
-    multipliers : bool
-        Whether the multipliers move as well.
+    solved : sequence of str
+        The multipliers, and then the accelerations, as far as the program takes them: what moves beside the state.
     """
 
     def __init__(
@@ -60,9 +60,9 @@ class Variation:
         program: Program,
         outputs: Sequence[str],
         directions: Sequence[str],
-        multipliers: bool = False,
+        solved: Sequence[str] = (),
     ) -> None:
-        moving = (*problem.state, *(problem.multipliers if multipliers else ()))
+        moving = (*problem.state, *solved)
         self._shape = len(outputs), len(directions)
 
         def build() -> Evaluation:
@@ -71,12 +71,17 @@ class Variation:
             return evaluation(computing(replace(found, outputs=rates), rates), read_precision("double"))
 
         sizes = (size_of(problem, name) for name in directions)
-        kind = ("variation", *directions, *sizes, multipliers, *outputs)
+        kind = ("variation", *directions, *sizes, *solved, *outputs)
         self._evaluate = problem.once(kind, program, build)
         self._inputs = Inputs(problem)
 
     def __call__(
-        self, instants: Numbers, states: Numbers, moves: Numbers, multipliers: Numbers | None = None
+        self,
+        instants: Numbers,
+        states: Numbers,
+        moves: Numbers,
+        multipliers: Numbers | None = None,
+        accelerations: Numbers | None = None,
     ) -> Numbers:
         """Evaluate the derivatives.
 
@@ -84,15 +89,16 @@ class Variation:
         ----------
         instants : ndarray, shape (k,)
         states : ndarray, shape (2n, k)
-        moves : ndarray, shape (2n, p, k), or (2n + g, p, k)
-            How the state, and then the multipliers, move in each direction.
-        multipliers : ndarray, shape (g, k), or None
-            None for zeros.
+        moves : ndarray, shape (2n + solved, p, k)
+            How the state and what is solved move in each direction.
+        multipliers, accelerations : ndarray, shape (g, k), shape (n, k), or None
+            As for `Inputs`.
 
         Returns
         -------
         ndarray, shape (outputs, p, k)
         """
         k = len(instants)
-        inputs = np.concatenate([self._inputs(instants, states, multipliers), moves.reshape(-1, k)])
+        here = self._inputs(instants, states, multipliers, accelerations=accelerations)
+        inputs = np.concatenate([here, moves.reshape(-1, k)])
         return self._evaluate(np.ascontiguousarray(inputs)).reshape(*self._shape, k)

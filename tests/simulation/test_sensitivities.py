@@ -50,6 +50,26 @@ system : holonomic_system(coordinates = [x], controls = [F], parameters = [m, P,
 scene : holonomic_scene(system, control_law = [F = if t < T then P else 0],
   parameter_values = [m = 2, P = 6, T = 1], initial_state = [x = 0, dot(x) = 0], time_span = [0, 3])$
 """
+SHARED = """
+system : holonomic_system(coordinates = [x], controls = [F], parameters = [m, T], kinetic_energy = m*dot(x)^2/2,
+  forces = [push = [F]])$
+scene : holonomic_scene(system, control_law = [F = if t < T then 6*t + 2 else 3*t],
+  parameter_values = [m = 1, T = 1], initial_state = [x = 0, dot(x) = 0], time_span = [0, 2])$
+"""
+THROWN = """
+a : particle(1, [x1, y1])$  b : particle(3, [x2, y2])$
+rod : distance_joint(a, b, 4)$
+system : holonomic_system(parameters = [c], assembly(a, b, rod))$
+scene : holonomic_scene(system, parameter_values = [c = 1], time_span = [0, 3], released = [rod = t - c],
+  initial_state = [x1 = 3, y1 = 0, x2 = -1, y2 = 0, dot(x1) = 1, dot(y1) = 6, dot(x2) = 1, dot(y2) = -2])$
+"""
+WEIGHED = """
+system : holonomic_system(coordinates = [r, phi], controls = [u], parameters = [m, w],
+  kinetic_energy = m*(dot(r)^2 + r^2*dot(phi)^2)/2, constraints = [phi - u])$
+scene : holonomic_scene(system, control_law = [u = w*t], parameter_values = [m = 3, w = 2],
+  initial_state = [r = 1, dot(r) = 0], time_span = [0, 1],
+  observe = [ratio = ddot(r)/r, moment = lambda1/m, work = m*dot(r)^2/2], until = [lambda1 - 20, lambda1 + 20])$
+"""
 JERK = """
 system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [a, m],
   kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2, constraints = [x - u])$
@@ -135,6 +155,34 @@ def test_the_instant_of_a_law_that_switches():
     assert motion["d(x, T)"][-1] == pytest.approx(6 * (3 - 1) / 2, rel=1e-12)
     assert motion["d(x, P)"][-1] == pytest.approx(1 * (3 - 1 / 2) / 2, rel=1e-12)
     assert motion["d(dot(x), T)"][-1] == pytest.approx(6 / 2, rel=1e-12)
+
+
+def test_the_instant_of_a_release():
+    """A mass turns about the mass centre at 2 rad/s and a distance of 3, and flies on when the rod is released."""
+    motion = holonom.system(THROWN).simulate(samples=4, sensitivities="c")
+    expected = [0 if t <= 1 else -12 * np.cos(2) * (t - 1) for t in motion["t"]]
+    assert motion["d(x1, c)"] == pytest.approx(expected, abs=1e-11)
+
+
+def test_outputs_of_a_scene_of_its_own():
+    """ddot(r)/r = w^2, lambda1/m = w^2 sinh(2 w t) up to its sign; the end is where m w^2 sinh(2 w t) is 20."""
+    motion = holonom.system(WEIGHED).simulate(samples=5, sensitivities="w,m")
+    t, w, m, end = motion["t"], 2.0, 3.0, motion.report.sensitivities
+    assert motion["d(ratio, w)"] == pytest.approx(2 * w + 0 * t, rel=1e-12)
+    assert motion["d(ratio, m)"] == pytest.approx(0 * t, abs=1e-12)
+    moment = 2 * w * np.sinh(2 * w * t) + 2 * t * w**2 * np.cosh(2 * w * t)
+    assert np.abs(motion["d(moment, w)"]) == pytest.approx(moment, rel=1e-12, abs=1e-12)
+    rate = 2 * w * m * w**2 * cosh(2 * w * t[-1])
+    assert end["d(t, m)"] == pytest.approx(-20 / m / rate, rel=1e-11)
+    assert end["d(moment, m)"] == pytest.approx(-np.sign(motion["moment"][-1]) * 20 / m**2, rel=1e-11)
+    work = w**2 * sinh(w * t[-1]) ** 2 / 2 + end["d(t, m)"] * m * w**3 * sinh(w * t[-1]) * cosh(w * t[-1])
+    assert end["d(work, m)"] == pytest.approx(work, rel=1e-11)
+
+
+def test_the_instant_of_a_law_with_numbers():
+    """The velocity is 3 T^2 + 2 T + 3/2 (t^2 - T^2) after it."""
+    motion = holonom.system(SHARED).simulate(samples=3, sensitivities="T")
+    assert motion["d(dot(x), T)"][-1] == pytest.approx(3 + 2, rel=1e-12)
 
 
 @pytest.mark.parametrize(
