@@ -24,8 +24,8 @@ def begun(output: nbformat.NotebookNode) -> str:
     return BEGINNING.match(output.get("data", {}).get("text/plain", ""))[0]
 
 
-def test_there_are_three():
-    assert [file.stem for file in NOTEBOOKS] == ["numbers_and_code", "own_system", "paper"]
+def test_there_are_four():
+    assert [file.stem for file in NOTEBOOKS] == ["fit", "numbers_and_code", "own_system", "paper"]
 
 
 @pytest.mark.parametrize(
