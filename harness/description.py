@@ -150,6 +150,11 @@ class Description:
         return tuple(structured(DescribedScene, scene) for scene in self.content["scenes"])
 
     @property
+    def joints(self) -> Mapping[str, str]:
+        """Of multipliers the name, in the file, of the joint or body that wrote the constraint."""
+        return self.content.get("joints", {})
+
+    @property
     def unused_parameters(self) -> tuple[str, ...]:
         """Parameters that the system declares, and that neither it nor a scene contains."""
         system = {key: value for key, value in self.content["system"].items() if key != "parameters"}

@@ -98,7 +98,7 @@ def simulate(
     imports = partial(_import_what_follows, click.get_current_context().obj is OWN_PROCESS)
     with meanwhile(scene_file, limits, imports):
         document = problem_document(source, request, limits, digits, open_names(request, digits, wanted.sensitivities))
-    problem = read_problem(document)
+    problem = read_problem(document, source.description(request.settings).joints)
     if not stands(problem):
         problem = motion_problem(source, request, limits, digits)
     from ..display.motion import distrust, show_report

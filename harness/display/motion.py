@@ -94,7 +94,8 @@ def show_report(console: "Console", scene: str, title: str, report: "Report") ->
     table = Table("", "", show_header=False)
     for group in ("coordinates", "velocities", "multipliers", "controls", "outputs", "sensitivities"):
         for name, value in document[group].items():
-            table.add_row(name, str(value))
+            joint = report.joints.get(name)
+            table.add_row(visible_line(f"{name} ({joint})") if joint else name, str(value))
         table.add_section()
     console.print(table)
     for line in _quality(report):

@@ -16,7 +16,7 @@ from ..documents import ask
 from ..failures import Failure, HolonomError
 from ..formats import Document, read
 from ..sandbox import Limits
-from ..source import Source
+from ..source import Source, source_of
 from ..structs import structured
 from .motion_program import Program, count_operations, names_in
 from .request import Request
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from .drawing import Drawing
 
 Built = TypeVar("Built")
+NO_JOINTS: Mapping[str, str] = {}
 DOUBLE_DIGITS = 17  # decimal digits that tell any two doubles apart
 
 
@@ -144,6 +145,7 @@ class MotionProblem:
     given: tuple[str, ...] = ()  # of the state: what the scene gives at the start; the rest is found
     # sizes beside which quantities are large or small, by name, ``t`` for the time: those that the scene gives
     nominal: Mapping[str, float] = field(default_factory=dict)
+    joints: Mapping[str, str] = field(default_factory=dict)  # as `Description.joints`
     _compiled: dict[Hashable, tuple[object, Any]] = field(default_factory=dict, compare=False, repr=False)
 
     def once(self, what: Hashable, part: object, build: "Callable[[], Built]") -> "Built":
@@ -242,7 +244,9 @@ def motion_problem(
     HolonomError
         As `holonom.maxima.ask_scene`; the file has no scene, a control no law, a parameter no value.
     """
-    return read_problem(problem_document(file, request, limits, digits, open_parameters))
+    source = source_of(file, limits)
+    document = problem_document(source, request, limits, digits, open_parameters)
+    return read_problem(document, source.description(request.settings).joints)
 
 
 def problem_document(
@@ -257,18 +261,23 @@ def problem_document(
     return ask(Document.MOTION_PROBLEM, file, *asked, settings=request.settings, limits=limits)
 
 
-def read_problem(text: str) -> MotionProblem:
+def read_problem(text: str, joints: Mapping[str, str] = NO_JOINTS) -> MotionProblem:
     """Read the document of a motion problem.
+
+    Parameters
+    ----------
+    joints : mapping of str to str
+        As `Description.joints`.
 
     Raises
     ------
     HolonomError
         It is no such document, or one of its programs is no program.
     """
-    return _problem(read(Document.MOTION_PROBLEM, text))
+    return _problem(read(Document.MOTION_PROBLEM, text), joints)
 
 
-def _problem(document: Mapping[str, Any]) -> MotionProblem:
+def _problem(document: Mapping[str, Any], joints: Mapping[str, str]) -> MotionProblem:
     system, span, drawing = document["system"], document["time_span"], document["drawing"]
     start = document["parametric_start"]
     problem = structured(
@@ -279,10 +288,11 @@ def _problem(document: Mapping[str, Any]) -> MotionProblem:
         start=document["start"] or {"t": span[0] if span else "0"},
         parametric_start=start and structured(ParametricStart, start | {"origins": start["origins"] or {}}),
         released=tuple(
-            Release(each["of"], tuple(each["multipliers"]), _problem(each["after"]))
+            Release(each["of"], tuple(each["multipliers"]), _problem(each["after"], joints))
             for each in document.get("released", ())
         ),
         drawing=None,
+        joints=joints,
     )
     if drawing is None:
         return problem

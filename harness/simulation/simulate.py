@@ -328,6 +328,7 @@ class _Simulation:
             choice=self.begun.engine.choice,
             controls={name: values[-1] for name, values in self.controls.items()},
             outputs={name: values[-1] for name, values in self.outputs.items()},
+            joints={name: joint for name, joint in self.problem.joints.items() if name in observed},
             relative_degrees=self.problem.relative_degrees,
             unresolved=self.motion.unresolved,
             sensitivities=self._derivatives_at_end(),

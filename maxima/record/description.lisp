@@ -9,6 +9,7 @@
 (in-package :maxima)
 
 (defvar *tables-described* nil "Tables of the description that is written or read.")
+(defvar *joints-described* nil "Members of the description that is read: the name of a multiplier, that of its joint.")
 (defvar *is-description* nil "Whether what is written is a description.")
 
 (defvar *described-functions*
@@ -22,6 +23,11 @@
 ;;; Written by the process that ran the scene file
 
 (defun $write_described (tree file) (let ((*is-description* t)) ($write_json tree file)))
+(defun $joints_described ()
+  "name = multiplier for each joint of the description that was read."
+  (mlist-of (mapcar #'(lambda (each) (list '(mequal simp) (described-symbol (cdr each)) (described-symbol (car each))))
+                    *joints-described*)))
+
 (defun $described_tables (tables) (setq *tables-described* (cdr tables)) tables)
 
 (defun $json_described (entry e)
@@ -89,7 +95,8 @@
          (system nil))
     (setq $closed_form_size (member-of document "closed_form_size")
           $settings (described-values (member-of document "settings"))
-          $settings_used (mlist-of (mapcar #'second (cdr $settings))))
+          $settings_used (mlist-of (mapcar #'second (cdr $settings)))
+          *joints-described* (cdr (member-of document "joints")))
     (dolist (fact (member-of document "assumptions")) (mfuncall '$assume (described-expression fact)))
     (dolist (fact (member-of document "declarations"))
       (mapply1 '$declare (mapcar #'described-symbol fact) '$declare nil))

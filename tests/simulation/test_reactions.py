@@ -1,9 +1,13 @@
 """Reactions of joints and forces of loads, against the equations of Newton and Euler of each body."""
 
+import io
+
 import numpy as np
 import pytest
+from rich.console import Console
 
 import holonom
+from holonom.display.motion import show_simulation
 
 ROD = """
 rod : {body}$
@@ -66,8 +70,9 @@ system : holonomic_system(assembly(crank, rod, slider, guide, pivot, pin, wrist,
   gravity = uniform_gravity(10, crank, rod, slider)))$
 turn   : holonomic_scene(system, initial_state = [a = 1, dot(a) = 2], time_span = [0, 1],
   initial_guess = [x1 = 1/4, y1 = 1/2, x2 = 5/4, y2 = 1/2, b = -3/10, x3 = 2, y3 = 1/10, c = 0],
-  observe = [trajectory, G = reaction(guide), P = reaction(pivot), Q = reaction(pin), R = reaction(pin, rod),
-    W = reaction(wrist), S = force(push), D = force(drag), T = force(drive), A = [ddot(x1), ddot(y1), ddot(a)],
+  observe = [trajectory, multipliers, G = reaction(guide), P = reaction(pivot), Q = reaction(pin),
+    R = reaction(pin, rod), W = reaction(wrist), S = force(push), D = force(drag), T = force(drive),
+    A = [ddot(x1), ddot(y1), ddot(a)],
     B = [ddot(x2), ddot(y2), ddot(b)], C = [ddot(x3), ddot(y3), ddot(c)]])$
 """
 
@@ -75,6 +80,15 @@ turn   : holonomic_scene(system, initial_state = [a = 1, dot(a) = 2], time_span 
 @pytest.fixture(scope="module")
 def slider_crank():
     return holonom.system(SLIDER_CRANK).simulate(samples=6)
+
+
+def test_multipliers_belong_to_the_joints_that_wrote_their_constraints(slider_crank):
+    joints = slider_crank.report.joints
+    assert list(joints) == [f"lambda{k}" for k in range(1, 9)]
+    assert list(joints.values()) == ["guide", "guide", "pivot", "pivot", "pin", "pin", "wrist", "wrist"]
+    text = io.StringIO()
+    show_simulation(Console(file=text, width=120), slider_crank)
+    assert "lambda3 (pivot)" in text.getvalue()
 
 
 def rows(motion, name, count):
