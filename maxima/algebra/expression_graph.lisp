@@ -22,6 +22,7 @@
 (defstruct expression-graph
   (nodes (make-hash-table))                ; hash of a description -> list of (description . node)
   (variables (make-hash-table))            ; symbol to differentiate by -> its position
+  (one nil)                                ; the empty product, once asked for
   (size 0))
 
 (defstruct node
@@ -61,7 +62,11 @@
 
 ;;; ---- numbers and symbols ---------------------------------------------------------------
 
-(defun one () (node-of 'product nil '(product)))
+(defun one ()
+  (or (expression-graph-one $expression_graph)
+      (setf (expression-graph-one $expression_graph) (node-of 'product nil '(product)))))
+
+
 (defun number-term (number) (make-term :coefficient number :node (one)))
 (defun zero-term-p (term) (zerop (term-coefficient term)))
 (defun number-term-p (term) (one-p (term-node term)))
@@ -86,7 +91,7 @@
 
 (defun with-numbers-together (terms)
   "2*(x + 1) + 3 as 2*x + 2 + 3: sums that contain a number are opened where numbers meet."
-  (if (cdr (remove-if-not #'contains-number-p terms))
+  (if (member-if #'contains-number-p (cdr (member-if #'contains-number-p terms)))
       (mapcan #'(lambda (term)
                   (if (and (contains-number-p term) (not (number-term-p term)))
                       (multiples (term-coefficient term) (node-parts (term-node term)))
@@ -96,14 +101,21 @@
 
 (defun contains-number-p (term)
   (or (number-term-p term)
-      (and (eq (node-kind (term-node term)) 'sum) (some #'number-term-p (node-parts (term-node term))))))
+      (and (eq (node-kind (term-node term)) 'sum) (any-of-p #'number-term-p (node-parts (term-node term))))))
 
 (defun multiples (number terms) (mapcar #'(lambda (term) (scaled-term number term)) terms))
+
+(defun greatest-first (items order)
+  "The items, the greatest first; two, as nearly always, are compared once."
+  (cond ((null (cdr items)) items)
+        ((cddr items) (sort (copy-list items) #'> :key order))
+        ((< (funcall order (first items)) (funcall order (second items))) (reverse items))
+        (t items)))
 
 (defun collect-like-terms (terms)
   "The terms in the order of their nodes, each node once, none with coefficient zero."
   (let ((collected nil))
-    (dolist (term (sort (copy-list terms) #'> :key #'term-order) collected)
+    (dolist (term (greatest-first terms #'term-order) collected)
       (if (and collected (eq (term-node term) (term-node (car collected))))
           (push (make-term :coefficient (+ (term-coefficient term)
                                            (term-coefficient (pop collected)))
@@ -131,7 +143,7 @@
 (defun grouped-by-magnitude (terms)
   "2*a + b - 2*c as b + 2*(a - c): one multiplication for terms of like magnitude."
   (let ((magnitudes (shared-magnitudes terms)))
-    (if (or (null magnitudes) (every #'unit-coefficient-p terms))
+    (if (or (null magnitudes) (all-of-p #'unit-coefficient-p terms))
         terms
         (let ((grouped (remove-if #'(lambda (term) (member (magnitude term) magnitudes)) terms)))
           (dolist (m magnitudes (collect-like-terms grouped))
@@ -170,7 +182,7 @@
   (let ((collected (collect-like-factors factors)))
     (cond ((and collected (null (cdr collected)) (eql (factor-exponent (car collected)) 1))
            (node-term (factor-node (car collected))))
-          ((some #'openable-p collected) (product-of (mapcar #'opened collected)))
+          ((any-of-p #'openable-p collected) (product-of (mapcar #'opened collected)))
           (t (node-term (product-node collected))))))
 
 (defun product-node (factors)
@@ -181,7 +193,7 @@
 
 (defun collect-like-factors (factors)
   (let ((collected nil))
-    (dolist (factor (sort (copy-list factors) #'> :key #'factor-order) collected)
+    (dolist (factor (greatest-first factors #'factor-order) collected)
       (if (and collected (eq (factor-node factor) (factor-node (car collected))))
           (push (make-factor :node (factor-node factor)
                              :exponent (+ (factor-exponent factor) (factor-exponent (pop collected))))
@@ -242,7 +254,10 @@
 (defun exact-root (integer root)
   (let ((r ($inrt integer root))) (and (integerp r) (= (expt r root) integer) r)))
 
-(defun quotient-of (a b) (product-of (list a (power-of b -1))))
+(defun quotient-of (a b)
+  (if (and (number-term-p b) (not (zero-term-p b)))
+      (scaled-term (/ (term-coefficient b)) a)
+      (product-of (list a (power-of b -1)))))
 
 ;;; ---- calls and held nodes --------------------------------------------------------------
 
@@ -439,7 +454,7 @@
 
 (defun $graph_hold (term)
   "Holds what took a division by more than a symbol; plain products stay open to factoring."
-  (if (some #'computed-factor-p (factors-of (term-node term))) (held-term term) term))
+  (if (any-of-p #'computed-factor-p (factors-of (term-node term))) (held-term term) term))
 
 (defun computed-factor-p (factor)
   (let ((kind (node-kind (factor-node factor))))

@@ -58,7 +58,7 @@
   "Whether all are zero where every symbol has a value of its own."
   (let ((point (make-sample-point :scattered t)) (zero nil))
     (catch 'irregular-point
-      (setq zero (every #'(lambda (e) (zerop (value-at (expression-term e) point))) (cdr expressions))))
+      (setq zero (all-of-p #'(lambda (e) (zerop (value-at (expression-term e) point))) (cdr expressions))))
     zero))
 
 ;;; ---- values ------------------------------------------------------------------------------
@@ -90,8 +90,8 @@
                          (mapcar #'(lambda (term) (value-at term point)) (cdr (node-parts node)))))))
 
 (defun sum-of-numbers (numbers)
-  (let ((sum (reduce #'+ numbers)))
-    (if (< (abs sum) (* *zero-share* (reduce #'max (mapcar #'abs numbers))))
+  (let ((sum (sum-of-all numbers)))
+    (if (< (abs sum) (* *zero-share* (largest-of (mapcar #'abs numbers))))
         0
         (short-number sum))))
 
@@ -230,7 +230,7 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
   (let ((*zero-share* *zero-share-of-constraints*)
         (*equations* (cdr constraints)) (*jacobian* jacobian) (*unknowns* (cdr coordinates)) (*metric* nil))
     (catch 'irregular-point
-      (if (every #'zerop (residuals-at point))
+      (if (all-of-p #'zerop (residuals-at point))
           (copied-point point)
           (let ((close (point-near-manifold point))) (if close (refined-point close)))))))
 
@@ -252,7 +252,7 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
   (let ((*small-coordinate* *smallest-coordinate*) (before nil)) ; what lands too soon cannot be corrected
     (dotimes (attempt *most-refinements* nil)
       (let* ((residuals (residuals-at point))
-             (size (reduce #'max (mapcar #'abs residuals) :initial-value 0))
+             (size (largest-of (cons 0 (mapcar #'abs residuals))))
              (corrections (if (or (null before) (< (* *least-gain* size) before))
                               (corrections-in-floats residuals size point))))
         (cond ((zerop size) (return point))
@@ -277,7 +277,7 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
   (let ((last-size nil))
     (dotimes (attempt *most-corrections* nil)
       (let ((residuals (residuals-at point)))
-        (if (every #'zerop residuals) (return (copied-point point)))
+        (if (all-of-p #'zerop residuals) (return (copied-point point)))
         (let* ((corrections (corrections-of residuals point)) (size (largest-correction corrections)))
           (if (and *floating* (< size (* double-float-epsilon (largest-coordinate point)))) (return point))
           (if (and (> attempt *impatience*) last-size (>= size last-size)) (return nil))
@@ -296,7 +296,7 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
     (let* ((trial (corrected-point point (shortened corrections share)))
            (residuals (catch 'irregular-point (residuals-at trial))))
       (if (and residuals
-               (or (every #'zerop residuals)
+               (or (all-of-p #'zerop residuals)
                    (< size (* *small-correction* (largest-coordinate point)))
                    (<= (largest-correction (corrections-of residuals point)) (* (- 1 (/ share 4)) size))))
           (return trial)))))
@@ -369,7 +369,7 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
 
 (defun with-right-side (residual row) (if (zerop residual) row (acons 0 residual row)))
 (defun coordinate (symbol point) (gethash symbol (sample-point-symbols point)))
-(defun largest-coordinate (point) (reduce #'max (mapcar #'(lambda (q) (abs (coordinate q point))) *unknowns*)))
+(defun largest-coordinate (point) (largest-of (mapcar #'(lambda (q) (abs (coordinate q point))) *unknowns*)))
 
 (defun largest-correction (corrections)
   (let ((largest 0))

@@ -4,12 +4,17 @@
 ;;; new term with those it has, from the greatest on; terms that come in descending order find their place at once.
 ;;;
 ;;; GCL's some, every, find-if, position, count-if and reduce look each item of a list up from its beginning: what goes
-;;; through lists of any length asks member-if.
+;;; through lists of any length asks these.
 
 (in-package :maxima)
 
 (defun any-of-p (test items) (if (member-if test items) t nil))
 (defun all-of-p (test items) (not (member-if-not test items)))
+
+(defun sum-of-all (numbers) (let ((sum 0)) (dolist (number numbers sum) (incf sum number))))
+
+(defun largest-of (numbers)
+  (let ((largest (car numbers))) (dolist (number (cdr numbers) largest) (setq largest (max largest number)))))
 
 (defun same-items-p (items others)
   "Whether two lists of one length hold the very same items."
@@ -54,6 +59,34 @@
         (($listp x) (mlist-of (mapcar #'(lambda (each) ($dotted dots each)) (cdr x))))
         (($mapatom x) (list (list dots 'simp) x)) ; as it is written, in index notation
         (t ($refuse '$dot_of_expression (letters-of-name dots) x))))
+
+(defun $initial (x)
+  "x_0, a name that is made once."
+  (or (get x 'initial) (setf (get x 'initial) ($name_around "" x "_0"))))
+
+;;; Tables, by which a name is found at once however many there are: of  name = value, and of names.
+
+(defun $table_of_values (items) (table-of (mapcar #'second (cdr items)) (mapcar #'third (cdr items))))
+(defun $table_of_names (names) (table-of (cdr names) (mapcar #'(lambda (name) (declare (ignore name)) t) (cdr names))))
+
+(defun table-of (names values)
+  (let ((table (mfuncall '$make_array '$hashed 1)))
+    (mapc #'(lambda (name value) (marrayset value table name)) names values)
+    table))
+
+(defun $values_in (table names) (mlist-of (mapcar #'(lambda (name) (marrayref table name)) (cdr names))))
+(defun $names_inside (table names) (mlist-of (remove-if-not #'(lambda (name) (marrayref table name)) (cdr names))))
+(defun $names_outside (table names) (mlist-of (remove-if #'(lambda (name) (marrayref table name)) (cdr names))))
+
+(defun $without_repeats (items)
+  (let ((met (make-hash-table :test 'equal :size 16)) (others nil) (kept nil))
+    (dolist (x (cdr items) (mlist-of (nreverse kept)))
+      (cond ((atom x) (unless (gethash x met) (setf (gethash x met) t) (push x kept)))
+            ((not (member x others :test #'alike1)) (push x others) (push x kept))))))
+
+(defun $items_inside (table items)
+  "Of  name = value  those whose name the table has."
+  (mlist-of (remove-if-not #'(lambda (item) (marrayref table (second item))) (cdr items))))
 
 (defun $contains_floats (e) (some-part-p #'(lambda (part) (or (floatp part) (bigfloatp part))) e))
 

@@ -82,10 +82,10 @@
 (defun unruled-p (node rewriting) (not (and (eq (node-kind node) 'sum) (rewriting-sum-rule rewriting))))
 
 (defun parts-as-they-were-p (node rewriting)
-  (every #'(lambda (part)
-             (let ((term (rewritten-node part rewriting)))
-               (and (eq (term-node term) part) (eql (term-coefficient term) 1))))
-         (own-parts node)))
+  (all-of-p #'(lambda (part)
+                (let ((term (rewritten-node part rewriting)))
+                  (and (eq (term-node term) part) (eql (term-coefficient term) 1))))
+            (own-parts node)))
 
 (defun node-again (node parts rewriting)
   "A node made anew from its parts rewritten."
@@ -141,9 +141,9 @@
 (defun letter-term (letter) (power-of (node-term (car letter)) (cdr letter)))
 
 (defun contains-letter-p (term letter)
-  (some #'(lambda (factor)
-            (and (eq (factor-node factor) (car letter)) (plusp (* (cdr letter) (factor-exponent factor)))))
-        (factors-of (term-node term))))
+  (any-of-p #'(lambda (factor)
+                (and (eq (factor-node factor) (car letter)) (plusp (* (cdr letter) (factor-exponent factor)))))
+            (factors-of (term-node term))))
 
 (defun divided-by-letter (term letter)
   (product-of (list term (power-of (node-term (car letter)) (- (cdr letter))))))

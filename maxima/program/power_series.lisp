@@ -106,15 +106,15 @@
                   weights)
           (mapcar #'+ (ascending (power-series-exponents x) x first)
                   (descending (power-series-exponents y) y last))))
-        (t (reduce #'+ (mapcar #'* (ascending (power-series-derivatives x) x first)
+        (t (sum-of-all (mapcar #'* (ascending (power-series-derivatives x) x first)
                                (descending (power-series-derivatives y) y last)
                                weights)))))
 
 (defun sum-of-floats (mantissas exponents)
   "Without loss down to the last bit of the largest term."
-  (let* ((largest (reduce #'max exponents))
+  (let* ((largest (largest-of exponents))
          (shifts (mapcar #'- exponents (make-list (length exponents) :initial-element largest))))
-    (times-power-of-two (reduce #'+ (mapcar #'ash mantissas shifts)) largest)))
+    (times-power-of-two (sum-of-all (mapcar #'ash mantissas shifts)) largest)))
 
 ;;; ---- the machine: what is computed at each order -----------------------------------------
 
@@ -197,7 +197,7 @@
     (new-series
      #'(lambda (h n)
          (append-derivative
-          h (reduce #'+ (mapcar #'(lambda (c x) (* c (derivative x n))) factors parts)))))))
+          h (sum-of-all (mapcar #'(lambda (c x) (* c (derivative x n))) factors parts)))))))
 
 (defun product-series (factors)
   (let ((above nil) (below nil))
@@ -241,7 +241,7 @@
          (append-derivative
           h (if (eql n 0)
                 (function-at-start operator arguments assignment)
-                (reduce #'+ (mapcar #'(lambda (g x) (function-derivative g x n)) gradient arguments))))))))
+                (sum-of-all (mapcar #'(lambda (g x) (function-derivative g x n)) gradient arguments))))))))
 
 (defun look-up-derivatives ()
   "Partial derivatives of the functions found, whose own functions are found on the way."

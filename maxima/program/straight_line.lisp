@@ -38,8 +38,8 @@
         ((eq (node-kind place) 'call) (count-if #'(lambda (term) (lone-minus-p term signs))
                                                 (cdr (node-parts place))))
         (t (let ((sign (sign-of place signs)))
-             (if (every #'(lambda (term) (eql -1 (* sign (written-coefficient term signs))))
-                        (node-parts place))
+             (if (all-of-p #'(lambda (term) (eql -1 (* sign (written-coefficient term signs))))
+                           (node-parts place))
                  1 0)))))
 
 (defun chosen-signs (roots census)
@@ -52,7 +52,7 @@
 
 (defun turn-to-save (sum signs)
   (let ((places (remove-duplicates (cons sum (places-above sum signs)))) (turned (signs-turned signs)))
-    (flet ((minuses () (reduce #'+ (mapcar #'(lambda (place) (lone-minuses place signs)) places)))
+    (flet ((minuses () (sum-of-all (mapcar #'(lambda (place) (lone-minuses place signs)) places)))
            (turn () (setf (gethash (node-number sum) turned) (not (gethash (node-number sum) turned)))))
       (let ((before (minuses)))
         (when (plusp before)
@@ -95,6 +95,9 @@
 
 (defun output-variable (term program) (writing-expression (named (writing-of-term term program) program)))
 
+(defun numbered-name (prefix number)
+  (intern (concatenate 'string (symbol-name prefix) (princ-to-string number)) :maxima))
+
 (defun named-p (node program)
   (and (shared-p node (program-census program)) (not (eq (node-kind node) 'symbol))))
 
@@ -102,7 +105,7 @@
   "The writing as a variable; symbols and numbers need none."
   (if (zerop (writing-operations writing))
       writing
-      (let ((name ($concat (program-prefix program) (incf (program-length program)))))
+      (let ((name (numbered-name (program-prefix program) (incf (program-length program)))))
         (push (list '(mlist) name (writing-expression writing)) (program-assignments program))
         (incf (program-operations program) (writing-operations writing))
         (make-writing :expression name))))
@@ -130,7 +133,7 @@
 (defun combined (operator operations writings)
   "The expression  operator(writings), itself so many operations; Maxima is to leave it as it is."
   (make-writing :expression (cons (list operator 'simp) (mapcar #'writing-expression writings))
-                :operations (reduce #'+ writings :key #'writing-operations :initial-value operations)))
+                :operations (+ operations (sum-of-all (mapcar #'writing-operations writings)))))
 
 (defun number-writing (number) (make-writing :expression (maxima-number number)))
 

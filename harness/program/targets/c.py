@@ -17,6 +17,7 @@ from ..motion_program import Program
 from ..templates import filled, template
 
 UNKNOWN = "NAN"  # what has no value
+ENTRY = re.compile(r"J\[(\d+),(\d+)\]")  # of the constraints' Jacobian, counted from one
 
 
 def write_model(model: Model, name: str) -> dict[str, str]:
@@ -215,8 +216,9 @@ def _jacobian(model: Model, function: Callable[..., str]) -> str:
     parameters = "t q v u p J"
     if model.constraints is None:
         return _body((), parameters)
-    n, g = len(model.coordinates), len(model.multipliers)
-    places = {f"J[{b},{s}]": f"J[{(b - 1) * n + s - 1}]" for b in range(1, g + 1) for s in range(1, n + 1)}
+    n = len(model.coordinates)
+    entries = (ENTRY.fullmatch(name) for name in model.constraints.outputs)
+    places = {entry[0]: f"J[{(int(entry[1]) - 1) * n + int(entry[2]) - 1}]" for entry in entries if entry}
     program = computing(model.constraints, places)
-    zeros = [f"    {place} = 0;" for name, place in places.items() if name not in program.outputs]
-    return "\n".join([function(program, [places[name] for name in program.outputs], parameters), *zeros])
+    zeros = f"    memset(J, 0, {n * len(model.multipliers)}*sizeof *J);"
+    return "\n".join([zeros, function(program, [places[name] for name in program.outputs], parameters)])
