@@ -4,6 +4,7 @@ import re
 import shlex
 import subprocess
 from functools import partial
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,9 @@ ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 BLOCK = r"^```(\w*)\n(.*?)^```$"
 BLOCKS = re.findall(BLOCK, README, re.MULTILINE | re.DOTALL)
+OUTPUTS = {
+    before.splitlines()[-1].partition("#")[0]: text for (_, before), (kind, text) in pairwise(BLOCKS) if kind == "text"
+}
 # Commands that other tests run; here, that they take their arguments.
 LONG = ("companion", "accuracy", "stability", "errata", "sweep")
 
@@ -50,7 +54,38 @@ def place(tmp_path_factory) -> Path:
 
 
 def test_there_are_snippets_of_each_kind():
-    assert {kind for kind, _ in BLOCKS} == {"sh", "python", "maxima"}
+    assert {kind for kind, _ in BLOCKS} == {"sh", "text", "python", "maxima"}
+
+
+def require_parts(output: str, printed: list[str]) -> None:
+    """Find each part between dots in what a command prints."""
+    for part in output.split("...\n"):
+        wanted = part.split()
+        starts = range(len(printed) - len(wanted) + 1)
+        assert any(all(map(alike, wanted, printed[at:])) for at in starts), part
+
+
+def alike(wanted: str, found: str) -> bool:
+    """Return True for the same word, and for numbers that differ by rounding alone."""
+    try:
+        return float(found) == pytest.approx(float(wanted), rel=1e-9)
+    except ValueError:
+        return wanted == found
+
+
+def test_each_output_follows_a_command_that_is_run():
+    assert len(OUTPUTS) == 3
+    assert {*OUTPUTS} <= {shlex.join(command) for command in commands()}
+
+
+def test_times_beside_peers_are_those_of_the_benchmark():
+    header, _, row = README[README.index("| Holonom | ") :].splitlines()[:3]
+    names, shown = ([cell.strip() for cell in line.strip("|").split("|")] for line in (header, row))
+    measured = (ROOT / "tests" / "benchmarks" / "simulation.txt").read_text(encoding="utf-8")
+    for name, number in zip(names, shown, strict=True):
+        method = {"Holonom": "Holonom, Taylor"}.get(name, name)
+        found = re.search(rf"^pendulum +{method} +([0-9.]+)", measured, re.MULTILINE)[1]
+        assert number == f"{float(found):.3g}", name
 
 
 def in_a_process(*command: str) -> subprocess.CompletedProcess[str]:
@@ -75,6 +110,7 @@ def test_a_command_of_the_readme_runs(command, place, monkeypatch, holonom_here,
         assert done.returncode == 0, done.stderr
         assert "Traceback" not in done.stderr
         assert " error" not in done.stdout.replace("energy error", "")
+        require_parts(OUTPUTS.get(shlex.join(command), ""), done.stdout.split())
 
 
 def test_the_python_of_the_readme_runs(place, monkeypatch):
