@@ -65,6 +65,7 @@ class System:
     potential_energy: tuple[Effect, ...]
     forces: tuple[ForceEffect, ...]  # Q as a sum of named parts
     constraint_trees: tuple[Tree, ...] = key("constraints")  # each is zero on every motion
+    switches: tuple[str, ...] = ()  # names in T, V and Q that are 1 where a scene calls for them, else 0
 
     @cached_property
     def constraints(self) -> "tuple[Expr, ...]":

@@ -122,9 +122,11 @@ class DescribedMotion:
         return Law({} if self.scene is None else self.scene.prescribed_reactions.trees, self.splines)
 
     def parameters(self) -> dict[str, Polynomial]:
-        """Values of the parameters that have one."""
+        """Values of the parameters that have one, and of the switches."""
         trees = {} if self.scene is None else self.scene.parameter_values.trees
-        return {name: (number(tree),) for name, tree in trees.items()}
+        called = self.system.switches if self.scene is None else self.scene.effects
+        switches = {name: (mp.mpf(name in called),) for name in self.system.switches}
+        return {name: (number(tree),) for name, tree in trees.items()} | switches
 
     def number_of(self, tree: Tree) -> mp.mpf:
         """Value of an expression of parameters alone."""

@@ -140,7 +140,7 @@ def _state_of(motion: DescribedMotion) -> list[str]:
 def _differences_of_effects(record: Record, premises: Premises) -> Iterator[Difference]:
     system = premises.system
     parts = (*system.kinetic_energy, *system.potential_energy, *system.forces)
-    everything = tuple(sorted({part.effect for part in parts}))  # as Maxima's sets are
+    everything = tuple(sorted({*system.switches, *(part.effect for part in parts)}))  # as Maxima's sets are
     stated = list(dict.fromkeys(scene.effects for scene in premises.scenes))
     said = [derived.effects for derived in record.derivations]
     if premises.scenes and said != stated:

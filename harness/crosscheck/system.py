@@ -129,16 +129,21 @@ def exact(expression: sp.Expr) -> sp.Expr:
 
 
 def described_system(system: System, effects: Collection[str]) -> MechanicalSystem:
-    """Take the system of a record with the named effects alone."""
+    """Take the system of a record with the named effects and switches alone."""
     forces = [effect.value for effect in system.forces if effect.effect in effects]
+    switches = {sp.Symbol(name, real=True): sp.Integer(name in effects) for name in system.switches}
+
+    def put_in(expression: sp.Expr) -> sp.Expr:
+        return exact(expression).subs(switches)
+
     return MechanicalSystem(
         time=sp.Symbol(system.time, real=True),
         coordinates=_symbols(system.coordinates),
         controls=_symbols(system.controls),
         multipliers=_symbols(system.multipliers),
-        kinetic_energy=_sum_of(system.kinetic_energy, effects),
-        potential_energy=_sum_of(system.potential_energy, effects),
-        forces=tuple(exact(sp.Add(*(force[s] for force in forces))) for s in range(len(system.coordinates))),
+        kinetic_energy=put_in(_sum_of(system.kinetic_energy, effects)),
+        potential_energy=put_in(_sum_of(system.potential_energy, effects)),
+        forces=tuple(put_in(sp.Add(*(force[s] for force in forces))) for s in range(len(system.coordinates))),
         constraints=tuple(map(exact, system.constraints)),
     )
 
@@ -148,4 +153,4 @@ def _symbols(names: Iterable[str]) -> tuple[sp.Symbol, ...]:
 
 
 def _sum_of(parts: Iterable[Effect], effects: Collection[str]) -> sp.Expr:
-    return exact(sp.Add(*(part.value for part in parts if part.effect in effects)))
+    return sp.Add(*(part.value for part in parts if part.effect in effects))

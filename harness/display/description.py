@@ -40,6 +40,7 @@ def _entries_of_system(system: "System") -> Iterator[tuple[str, list[str]]]:
     yield "coordinates", _names(system.coordinates)
     yield "controls", _names(system.controls)
     yield "parameters", _names(system.parameters)
+    yield "switches", _names(system.switches)
     yield "kinetic_energy", [f"{part.effect} = {scene_text(part.tree)}" for part in system.kinetic_energy]
     yield "potential_energy", [f"{part.effect} = {scene_text(part.tree)}" for part in system.potential_energy]
     yield "forces", [f"{part.effect} = [{', '.join(map(scene_text, part.trees))}]" for part in system.forces]

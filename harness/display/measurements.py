@@ -29,7 +29,7 @@ def show_costs(console: Console, costs: "MeasuredCosts") -> None:
         cost = (str(term.operations), _nanoseconds(term.seconds)) if term.status == "present" else ("", "")
         terms.add_row(term.equation, Text(term.term), styled(term.status), *cost)
     effects = Table("effect", "status", "operations", unit)
-    for effect in costs.effects:
+    for effect in (*costs.effects, *costs.pairs):
         operations = _indispensable(effect.status) if effect.operations is None else f"{effect.operations:+d}"
         effects.add_row(effect.name, styled(effect.status), operations, _added_nanoseconds(effect.seconds))
     for table in (terms, effects):

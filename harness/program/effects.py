@@ -2,7 +2,7 @@
 
 A term costs what a program of that term alone takes. An effect costs what the scene's program takes more than the one
 without it; left out, what it would take more with it. A cost may be negative: without an effect another order of
-elimination may be needed.
+elimination may be needed. A pair of switches costs what both add beyond what each adds alone.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -67,12 +67,21 @@ class EffectProgram:
 
 
 @dataclass(frozen=True)
+class PairProgram:
+    """Two switches of the system."""
+
+    names: tuple[str, str]
+    otherwise: Program | None  # the program of the scene that differs in both; None where that scene cannot be solved
+
+
+@dataclass(frozen=True)
 class Costs:
     """The programs by which a scene's costs are found."""
 
     program: Program
     terms: tuple[TermProgram, ...]
     effects: tuple[EffectProgram, ...]
+    pairs: tuple[PairProgram, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -88,7 +97,7 @@ class TermCost:
 
 @dataclass(frozen=True)
 class EffectCost:
-    """What an effect adds, or would add; None where nothing can be solved without it, or with it."""
+    """What an effect or a pair of switches adds, or would add; None where nothing can be solved without, or with it."""
 
     name: str
     status: Status
@@ -106,6 +115,7 @@ class MeasuredCosts(Shown):
     measured_in: Measure
     terms: tuple[TermCost, ...]
     effects: tuple[EffectCost, ...]
+    pairs: tuple[EffectCost, ...] = ()  # of switches a and b, named a*b
 
 
 def scene_costs(file: Source | Path, request: Request, limits: Limits) -> MeasuredCosts:
@@ -136,7 +146,7 @@ def measure_costs(costs: Costs) -> MeasuredCosts:
         The C compiler refuses a program.
     """
     programs = [costs.program, *(part.program for part in costs.terms if part.program is not None)]
-    programs += [effect.otherwise for effect in costs.effects if effect.otherwise is not None]
+    programs += [each.otherwise for each in (*costs.effects, *costs.pairs) if each.otherwise is not None]
     point = _regular_point(costs.program, dict.fromkeys(name for program in programs for name in program.inputs))
     measured_in, batches = _batches(programs, point)
     seconds = shortest_times(dict(zip(map(id, programs), batches, strict=True)))
@@ -147,6 +157,7 @@ def measure_costs(costs: Costs) -> MeasuredCosts:
         measured_in,
         tuple(_term_cost(term, seconds) for term in costs.terms),
         tuple(_effect_cost(effect, costs.program, seconds) for effect in costs.effects),
+        tuple(_pair_cost(pair, costs, seconds) for pair in costs.pairs),
     )
 
 
@@ -162,6 +173,22 @@ def _effect_cost(effect: EffectProgram, whole: Program, seconds: Mapping[int, fl
         return EffectCost(effect.name, status, None, None)
     more, less = (whole, effect.otherwise) if effect.called else (effect.otherwise, whole)
     return EffectCost(effect.name, status, more.operations - less.operations, seconds[id(more)] - seconds[id(less)])
+
+
+def _pair_cost(pair: PairProgram, costs: Costs, seconds: Mapping[int, float]) -> EffectCost:
+    """With both, less with either one, and with neither."""
+    one, other = (next(effect for effect in costs.effects if effect.name == name) for name in pair.names)
+    name, status = "*".join(pair.names), Status.PRESENT if one.called and other.called else Status.ABSENT_BY_CHOICE
+    alike, unlike = (costs.program, pair.otherwise), (one.otherwise, other.otherwise)
+    if None in (*alike, *unlike):
+        return EffectCost(name, status, None, None)
+    more, less = (alike, unlike) if one.called == other.called else (unlike, alike)
+    return EffectCost(
+        name,
+        status,
+        sum(program.operations for program in more) - sum(program.operations for program in less),
+        sum(seconds[id(program)] for program in more) - sum(seconds[id(program)] for program in less),
+    )
 
 
 def _batches(programs: Sequence[Program], point: Mapping[str, float]) -> tuple[Measure, list[Batch]]:

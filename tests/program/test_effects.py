@@ -15,13 +15,17 @@ from holonom.cli import holonom
 from holonom.crosscheck.check import check_record
 from holonom.crosscheck.evaluation import Steps
 from holonom.crosscheck.independent import IndependentEquations
+from holonom.crosscheck.motion_program import ScenePrograms, judge_programs
 from holonom.crosscheck.points import random_point
+from holonom.crosscheck.premises import differences, premises_of
+from holonom.crosscheck.report import Verdict
 from holonom.crosscheck.system import described_system
 from holonom.failures import HolonomError
 from holonom.program.effects import Measure, Status, read_costs, scene_costs
 from holonom.program.forms import MotionProgram
+from holonom.program.motion_problem import motion_problem
 from holonom.program.numpy_function import NumpyFunction
-from holonom.program.request import Request
+from holonom.program.request import Request, Solve
 from holonom.record import derived_record
 from holonom.sandbox import Limits
 from holonom.source import describe
@@ -197,6 +201,52 @@ def assert_same_assignments(chosen, name, kept, write_scene):
     uncalled = set(chosen["inputs"]) - set(written["inputs"])  # of a control that only the effects left out contain
     assert uncalled <= {"u", "dot(u)", "ddot(u)"}
     assert chosen | {"inputs": [name for name in chosen["inputs"] if name not in uncalled]} == written
+
+
+SWITCHED = """
+v : [dot(x) + {shaking}*dot(u) - {turning}*k*y, dot(y) + {turning}*k*(x + {shaking}*u)]$
+system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [m, k], {switches}
+  kinetic_energy = [motion = m*(v . v)/2], potential_energy = [weight = {turning}*m*y],
+  forces = [drag = [-{shaking}*dot(x), u - k*dot(y)]], constraints = [x^2 + y^2 - 1])$
+scene : holonomic_scene(system, {effects} control_law = [u = 1 + t], parameter_values = [m = 3/2, k = 1/3],
+  initial_state = [x = 1, y = 0, dot(y) = 0])$
+"""
+
+
+@pytest.mark.parametrize("called", [(), ("shaking",), ("turning",), ("shaking", "turning")], ids=listed)
+def test_switches_are_as_if_one_or_zero_were_written(called, write_scene):
+    """With both T has their product, the acceleration k u of the moved support in turning axes."""
+    names = {"shaking": "shaking", "turning": "turning", "switches": "switches = [shaking, turning],"}
+    numbers = {name: str(int(name in called)) for name in ("shaking", "turning")} | {"switches": ""}
+    effects = f"effects = {listed(['motion', 'weight', 'drag', *called])},"
+    programs = []
+    for filled in (SWITCHED.format(**numbers, effects=""), SWITCHED.format(**names, effects=effects)):
+        file = write_scene('load("holonom.mac")$' + filled)
+        programs.append(json.loads(MotionProgram(file, Request(), Limits()).document))
+    assert programs[0] == programs[1]
+    assert check_record(derived_record(file), describe(file)).disagreements == 0
+
+
+def test_a_pair_of_switches_costs_what_both_add_beyond_each(write_scene):
+    pair = ("support_motion", "frame_rotation")
+    found = [costs_of(write_scene(spherical_scene(called))) for called in ((), pair[:1], pair[1:], pair)]
+    neither, support, frame, both = (costs["operations"] for costs in found)
+    for costs in found:
+        assert [(each["name"], each["operations"]) for each in costs["pairs"]] == [
+            ("frame_rotation*support_motion", both - support - frame + neither)
+        ]
+    assert both - support - frame + neither > 0
+
+
+def test_check_finds_a_program_with_other_switches(write_scene):
+    other = describe(write_scene(spherical_scene(["support_motion"])))
+    file = write_scene(spherical_scene(["support_motion", "frame_rotation"]))
+    problems = {solve: motion_problem(file, Request(solve=solve), Limits()) for solve in Solve}
+    programs = [ScenePrograms("moving_scene", problems)]
+    verdicts = [{each.found.verdict for each in judge_programs(of, programs, "seed")} for of in (describe(file), other)]
+    assert verdicts[0] == {Verdict.AGREES}
+    assert Verdict.DISAGREES in verdicts[1]
+    assert any(each.what == "effects" for each in differences(derived_record(file), premises_of(other)))
 
 
 def test_a_scene_that_calls_for_less_pays_less():
