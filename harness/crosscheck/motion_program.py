@@ -235,6 +235,9 @@ def _released_states(
                 yield part, Claim(name, found[name][0], value[0], abs(value[0]))
             accelerations = {q: found[f"ddot({q})"][0] for q in problem.coordinates}
             multipliers = [found[name][0] for name in motion.system.multipliers]
+            size = mp.fsum(map(abs, (*accelerations.values(), *multipliers)))
+            for name in problem.multipliers[len(multipliers) :]:
+                yield part, Claim(name, found[name][0], mp.zero, size)
             curve = own.curve(state, accelerations, controls)
             kept = [*motion.constraints, *motion.outputs]
             yield from ((part, each) for each in states.claims_by_substitution(motion, curve, multipliers, kept))

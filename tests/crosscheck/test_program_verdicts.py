@@ -19,15 +19,22 @@ from holonom.source import Source
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 # A law of one control, tables, servo-constraints of relative degree 4, prescribed reactions, redundant constraints,
-# a mass matrix that the constraints make up for, signs that switch.
+# a mass matrix that the constraints make up for, signs that switch; servo-constraints of a control in a constraint.
 FILES = ("paper/paper", "hoist", "overhead_crane", "prescribed_tension", "hard/repeated_constraint", "linkage", "bead")
-MUTATED = ("paper/paper", "pendulum", "arm", "crane", "prescribed_tension")
+MUTATED = ("paper/paper", "pendulum", "arm", "crane", "prescribed_tension", "level_load")
 EACH = 12  # mutants of each file
 PROGRAMS = ("motion", "projection", "matrices", "energy")
 OPEN = """
 load("holonom.mac")$
 system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [m, k], kinetic_energy = m*(dot(x)^2 +
   dot(y)^2)/2, potential_energy = k*x^4, forces = [drag = [-abs(dot(x))*dot(x), 0]], constraints = [y - sin(u*x)])$
+"""
+KINDS = """
+load("holonom.mac")$
+system : holonomic_system(coordinates = [r, x, z], controls = [u, w, F], kinetic_energy = (dot(r)^2 + dot(x)^2 +
+  dot(z)^2)/2, potential_energy = x^2*z, forces = [0, 0, F], constraints = [r - u - r*x/2, x*z - w])$
+run : holonomic_scene(system, prescribed_reactions = [lambda1 = t], servo_constraints = [x = 1 + t^2, z = 2 + t^3],
+  initial_state = [r = 1, dot(r) = 0, x = 1, z = 2], time_span = [0, 1])$
 """
 ROUNDING = 1e-13
 SINES = {
@@ -70,6 +77,18 @@ def test_a_program_whose_controls_are_open_agrees(write_scene):
 
 def without_drag(content: dict) -> dict:
     return content | {"system": content["system"] | {"forces": []}}
+
+
+def test_reactions_beside_servo_constraints_agree(write_scene):
+    """The multiplier of a servo-constraint, which is zero, is looked at too."""
+    source, (written,) = asked(write_scene(KINDS))
+    assert {each.found.verdict for each in judge_programs(source.description(), [written], "kinds")} == {Verdict.AGREES}
+    problem = written.problems[Solve.DIRECT]
+    for name in ("ddot(u)", "ddot(w)", "lambda1", "lambda2", "lambda3"):
+        outputs = problem.motion.outputs | {name: Name("x")}
+        wrong = replace(problem, motion=replace(problem.motion, outputs=outputs))
+        found = judge_programs(source.description(), [replace(written, problems={Solve.DIRECT: wrong})], name)
+        assert Verdict.DISAGREES in {each.found.verdict for each in found}, name
 
 
 @pytest.mark.parametrize("name", MUTATED)

@@ -48,6 +48,22 @@ def test_the_torques_are_those_of_inverse_dynamics(arm: Model):
     assert [motion["lambda1"], motion["lambda2"]] == pytest.approx([0, 0], abs=1e-12)
 
 
+def test_a_length_that_is_found_is_a_state():
+    """No input, and no force that is found: ddot(u) is of the load that swings harmonically at one height."""
+    model = scene_model(EXAMPLES / "level_load.mac", Request("swing_scene"), ["m"], Limits())
+    assert (model.coordinates, model.controls, model.found) == (("x", "y", "u"), ("w",), ())
+    x, vx = 0.75, 0.4
+    u = np.hypot(x, 2)
+    inputs = {"x": x, "y": -2, "u": u, "dot(x)": vx, "dot(u)": x * vx / u, "m": 1.5}
+    values = [inputs.get(name, 0.0) for name in model.motion.inputs]
+    motion = dict(zip(model.motion.outputs, NumpyFunction(model.motion)(values), strict=True))
+    slope = -9.81 / 2 * x
+    wanted = [slope, 0, (vx**2 + x * slope - (x * vx / u) ** 2) / u, -1.5 * 9.81 / 4, 0]
+    assert [motion[name] for name in ("ddot(x)", "ddot(y)", "ddot(u)", "lambda1", "lambda2")] == pytest.approx(
+        wanted, rel=1e-13, abs=1e-13
+    )
+
+
 @pytest.mark.parametrize(
     ("example", "scene", "until", "torques"),
     [

@@ -93,6 +93,15 @@ system : holonomic_system(title = "A bob", coordinates = [r, phi], controls = [u
 run : holonomic_scene(system, prescribed_reactions = [lambda1 = -3*t], parameter_values = [m = 1, g = 10],
   initial_state = [r = 1, phi = 0, dot(r) = 0, dot(phi) = 2], time_span = [0, 1])$
 """
+MOVED = """
+system : holonomic_system(title = "A bob on a winch", coordinates = [x, y], controls = [u, w], parameters = [m, g],
+  kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2, potential_energy = m*g*y, forces = [drag = [-dot(x), 0]],
+  constraints = [x^2 + (y - w)^2 - u^2])$
+run : holonomic_scene(system, servo_constraints = [y = t - 2], control_law = [w = t^2],
+  parameter_values = [m = 1, g = 10],
+  initial_state = [x = 3/2, dot(x) = 1], initial_guess = [y = -2, dot(y) = 1, u = 2, dot(u) = 0], time_span = [0, 1],
+  observe = [trajectory, controls])$
+"""
 OTHERS = (
     *((SWITCHED, "t < 2", other) for other in ("t < 9/4", "t < 2 + 1/1000")),
     *((SWITCHED, "[2, 2]", other) for other in ("[2, 2 + 1/10^9]", "[9/4, 2]")),
@@ -111,6 +120,8 @@ OTHERS = (
     *((PRESCRIBED, "-3*t", other) for other in ("-3*t^2", "-3*t + 1/10^20")),
     *((PRESCRIBED, "dot(phi) = 2", f"dot(phi) = {other}") for other in ("-2", "2 + 1/10^20")),
     *((PRESCRIBED, old, new) for old, new in (("r = 1,", "r = 11/10,"), ("m = 1", "m = 2"), ("[0, 1]", "[0, 1/2]"))),
+    *((MOVED, "y = t - 2", f"y = {other}") for other in ("2*t - 2", "t - 2 + t^4", "t - 2 + t^2/10^20")),
+    *((MOVED, old, new) for old, new in (("w = t^2", "w = t^3"), ("-dot(x)", "dot(x)"), ("u = 2,", "u = -2,"))),
     *((CIRCLE, "y = -2", other) for other in ("y = 2", "y = 1/2")),
 )
 """Scenes, and what is written otherwise in others: a record and motions of the latter are wrong ones of the former."""
