@@ -167,6 +167,12 @@ class Failure(Enum):
     NOT_A_PRECISION = ("{detail}", "take another one", "ask for {--digits}, which Maxima computes with")
     NO_CONTINUATION = ("{detail}", "ask for an earlier instant")
     NO_SUCH_FORMAT = ("no such file can be written", "give a name that ends in one of {detail}")
+    NO_CURVE = ("the motion has no samples of {detail}", "observe the quantity, or choose another curve")
+    NOT_FILMED = (
+        "the motion cannot be filmed: {detail}",
+        "observe the trajectory, take {--samples}, and give the system a drawing, which bodies and joints have",
+    )
+    NO_FFMPEG = ("ffmpeg, which writes .mp4, is not installed", "install it, or take .svg, .html or .gif")
     START_UNFOLLOWED = "the start does not follow these parameters: {detail}"
     NOTHING_VARIES = ("no parameter varies", "name one with {--grid}, {--list} or {--sample}")
     NOT_AN_AXIS = (

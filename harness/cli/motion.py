@@ -72,6 +72,14 @@ FAILED = 1  # exit status of a result that is none
     help="Also write the samples of the motion.",
 )
 @click.option("--plot", "plot_file", metavar="FILE.svg|.png", type=OutputFile(), help="Also draw the motion.")
+@click.option("--curves", metavar="NAME,...", help="Curves of the plot, such as x,dot(x),energy. Default: all.")
+@click.option(
+    "--film",
+    "film_file",
+    metavar="FILE.svg|.html|.gif|.mp4",
+    type=OutputFile(),
+    help="Also film the system as it is drawn.",
+)
 @runs_scenes
 def simulate(
     scene_file: Path,
@@ -81,6 +89,8 @@ def simulate(
     json_file: Path | None,
     output: Path | None,
     plot_file: Path | None,
+    curves: str | None,
+    film_file: Path | None,
     limits: Limits,
 ) -> int:
     """Follow the motion of a SCENE in numbers, and say how well it was followed.
@@ -116,12 +126,15 @@ def simulate(
     from ..simulation.simulate import follow
     from ..simulation.simulate import simulate as follow_and_keep
 
-    require_formats(output, plot_file)
-    if final and output is None and plot_file is None:
+    if curves is not None and plot_file is None:
+        raise click.UsageError("--curves chooses those of --plot")
+    require_formats(output, plot_file, film_file)
+    drawn = plot_file is not None or film_file is not None
+    if final and output is None and not drawn:
         wanted = replace(wanted, samples=FINAL_STATE_ALONE)
-    elif wanted.samples is None and plot_file is not None:
+    elif wanted.samples is None and drawn:
         wanted = replace(wanted, samples=SAMPLES_OF_A_PLOT)
-    if output is not None and streams(output) and plot_file is None and (json_file is None or final):
+    if output is not None and streams(output) and not drawn and (json_file is None or final):
         require_disk(problem, wanted.samples or 0, output)
         with motion_progress(problem.title) as progress, sample_file(output, digits) as take:
             report = follow(problem, wanted, take, progress)
@@ -129,7 +142,7 @@ def simulate(
         require_memory(problem, wanted.samples or 0, limits.memory_mib)
         with motion_progress(problem.title) as progress:
             simulation = follow_and_keep(problem, wanted, progress)
-        write_files(simulation, output, plot_file)
+        write_files(simulation, output, plot_file, None if curves is None else _names_of(curves), film_file)
         report = simulation.report
     if json_file is not None:
         publish(json_text(report_document(report) if final else simulation_document(simulation)), json_file)
@@ -140,6 +153,12 @@ def simulate(
     for doubt in report.doubts:
         click.echo(distrust(doubt), err=True)
     return 0 if report.trusted else FAILED
+
+
+def _names_of(curves: str) -> list[str]:
+    from ..sweeps.kept import items_of
+
+    return [name.strip() for name in items_of(curves)]
 
 
 def _digits_of(precision: str) -> int:

@@ -70,7 +70,7 @@ class Film:
 
     def parts(self) -> Iterator[tuple[Shape, NDArray[np.float64], bool]]:
         """Each shape with its numbers, and whether it moves."""
-        least = STEADY * max(map(np.ptp, _extents(self.shapes, self.numbers)))
+        least = STEADY * max(map(np.ptp, extents(self.shapes, self.numbers)))
         for shape, numbers in zip(self.shapes, self.numbers, strict=True):
             yield shape, numbers, bool(np.ptp(numbers, axis=0).max() > least)
 
@@ -100,7 +100,7 @@ def animation(film: Film) -> str:
 def strip(film: Film) -> str:
     """A film as SVG that stands still: positions over each other, side by side if it is tall, in a column if flat."""
     frames = np.unique(np.linspace(0, len(film.instants) - 1, POSITIONS).round().astype(int))
-    width, height = map(np.ptp, _extents(film.shapes, film.numbers))
+    width, height = map(np.ptp, extents(film.shapes, film.numbers))
     arrange = _row if width < TALL * height else _column if height < FLAT * width else _superposition
     stage = arrange(film, frames)
     stage.draw_foot(frames)
@@ -141,7 +141,7 @@ class _Stage:
 
     def __init__(self, film: Film, highest: float, across: int = 1, down: int = 1) -> None:
         self.film = film
-        (left, right), (low, high) = _extents(film.shapes, film.numbers)
+        (left, right), (low, high) = extents(film.shapes, film.numbers)
         self.width = (WIDTH - 2 * MARGIN) / across
         self.scale = min(self.width / max(right - left, 1e-300), highest / max(high - low, 1e-300))
         self.height = max(LOWEST, self.scale * (high - low)) + (2 * MARGIN if down == 1 else 0)
@@ -257,7 +257,7 @@ def _round_length(longest: float) -> float:
     return next(digit * power for digit in (5, 2, 1) if digit * power <= longest)
 
 
-def _extents(shapes: Sequence[Shape], numbers: Sequence[NDArray[np.float64]]) -> list[NDArray[np.float64]]:
+def extents(shapes: Sequence[Shape], numbers: Sequence[NDArray[np.float64]]) -> list[NDArray[np.float64]]:
     """Least and greatest x, least and greatest y."""
     return [
         np.array([min(low.min() for low, _ in sides), max(high.max() for _, high in sides)])

@@ -1,12 +1,14 @@
 """A motion as a figure: over the time, and from above with an effect and without it."""
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..failures import Failure, HolonomError
 from ..language import gettext, translated
 from .style import BLUE, LINES, PALETTE, VERMILION, figure_style, lettered, new_figure, svg_text, write_figure
 
@@ -20,11 +22,11 @@ if TYPE_CHECKING:
 WIDTH, HEIGHT_OF_PANEL = 9.0, 3.2  # inches
 UNLIKE = 30.0  # how many times larger a curve is that leaves another one flat
 NOTHING = 1e-9  # size of a curve that is rounding alone
-LEGIBLE = 12  # curves that a legend can still tell apart
+IN_A_COLUMN = 12  # curves in a column of a legend
 
 
-def draw_motion(simulation: "Simulation", file: Path) -> None:
-    """Draw a motion into a file, SVG or PNG.
+def draw_motion(simulation: "Simulation", file: Path, curves: Sequence[str] | None = None) -> None:
+    """Draw a motion, or some curves of it, into a file, SVG or PNG.
 
     Raises
     ------
@@ -32,16 +34,21 @@ def draw_motion(simulation: "Simulation", file: Path) -> None:
         Matplotlib is not installed; the file cannot be written.
     """
     with figure_style():
-        write_figure(motion_figure(simulation), file)
+        write_figure(motion_figure(simulation, curves), file)
 
 
-def motion_figure(simulation: "Simulation") -> "Figure":
+def motion_figure(simulation: "Simulation", curves: Sequence[str] | None = None) -> "Figure":
     """The figure of a motion, a panel for each kind of quantity that it holds.
+
+    Parameters
+    ----------
+    curves : sequence of str or None
+        Names of quantities as in `Simulation.keys`; None for all but residuals and sensitivities.
 
     Raises
     ------
     HolonomError
-        Matplotlib is not installed.
+        Matplotlib is not installed; there is no such quantity, or the scene does not observe it.
     """
     groups = {
         gettext("coordinates"): simulation.coordinates,
@@ -50,7 +57,11 @@ def motion_figure(simulation: "Simulation") -> "Figure":
         gettext("constraint forces"): simulation.constraint_forces,
         gettext("controls"): simulation.controls,
         gettext("outputs"): simulation.outputs,
+        gettext("energy"): simulation.energy,
     }
+    if curves is not None:
+        others = {gettext("residuals"): simulation.residual_columns(), gettext("derivatives"): simulation.sensitivities}
+        groups = _chosen(groups | others, curves)
     drawn = [(title, part) for title, curves in groups.items() for part in of_like_size(curves)]
     with figure_style():
         figure = new_figure(WIDTH, HEIGHT_OF_PANEL * len(drawn))
@@ -61,6 +72,13 @@ def motion_figure(simulation: "Simulation") -> "Figure":
         panels[0].set_title(translated(simulation.title))
         panels[-1].set_xlabel(gettext("t (units of the scene)"))
     return figure
+
+
+def _chosen(groups: Mapping[str, Mapping[str, NDArray]], names: Sequence[str]) -> dict[str, dict[str, NDArray]]:
+    known = {name for group in groups.values() for name in group}
+    if unknown := [name for name in names if name not in known] or [""] * (not names):
+        raise HolonomError(Failure.NO_CURVE, detail=f"{unknown[0]!r}; there are {', '.join(sorted(known))}")
+    return {title: {name: group[name] for name in group if name in names} for title, group in groups.items()}
 
 
 def of_like_size(curves: Mapping[str, NDArray]) -> list[dict[str, NDArray]]:
@@ -84,8 +102,8 @@ def _draw(axes: "Axes", instants: NDArray[np.float64], curves: Mapping[str, NDAr
         line = LINES[index // len(PALETTE) % len(LINES)]
         colour = PALETTE[index % len(PALETTE)]
         axes.plot(instants, samples.astype(float), linestyle=line, color=colour, label=lettered(name))
-    if len(curves) <= LEGIBLE:
-        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    columns = math.ceil(len(curves) / IN_A_COLUMN)
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), ncols=columns)
 
 
 HEIGHT_OF_WAYS = 4.8  # inches

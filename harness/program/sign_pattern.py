@@ -61,6 +61,12 @@ def drawing_at_any_time(problem: MotionProblem) -> Drawing:
     return replace(problem.drawing, program=program)
 
 
+def drawing_in_numbers(problem: MotionProblem) -> Drawing:
+    """As `drawing_at_any_time`, with the values of the open parameters put in."""
+    drawing = drawing_at_any_time(problem)
+    return replace(drawing, program=in_numbers(problem, drawing.program))
+
+
 def holdable(problem: MotionProblem, name: str) -> bool:
     """Whether a sign can hold the motion on its surface: forces alone contain it, and linearly."""
     return problem.switching is not None and f"grip[{_index(problem, name)}]" in problem.switching.outputs

@@ -7,7 +7,7 @@ import csv
 import io
 import shutil
 import zipfile
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from pathlib import Path
 from types import ModuleType
@@ -33,7 +33,7 @@ FORMULA = ("=", "+", "-", "@", "\t", "\r")  # with which a spreadsheet's formula
 Format = Callable[[BinaryIO], AbstractContextManager[Write]]
 
 
-def require_formats(samples: Path | None, figure: Path | None) -> None:
+def require_formats(samples: Path | None, figure: Path | None, film: Path | None = None) -> None:
     """Refuse names of files that cannot be written, before there is anything to write.
 
     Raises
@@ -45,6 +45,10 @@ def require_formats(samples: Path | None, figure: Path | None) -> None:
         sample_format(samples)
     if figure is not None and figure.suffix not in FIGURES:
         raise _no_such_format(figure, FIGURES)
+    if film is not None:
+        from ..figures.film import film_format
+
+        film_format(film)
 
 
 def require_memory(problem: MotionProblem, samples: int, memory_mib: int) -> None:
@@ -77,8 +81,14 @@ def _numbers_a_sample(problem: MotionProblem) -> int:
     return 1 + len(problem.state) + len(problem.multipliers)
 
 
-def write_files(simulation: Simulation, samples: Path | None, figure: Path | None) -> None:
-    """Write the samples of a motion, and its figure, as far as they are wanted.
+def write_files(
+    simulation: Simulation,
+    samples: Path | None,
+    figure: Path | None,
+    curves: Sequence[str] | None = None,
+    film: Path | None = None,
+) -> None:
+    """Write the samples of a motion, its figure, of all curves or some, and its film, as far as they are wanted.
 
     Raises
     ------
@@ -90,7 +100,9 @@ def write_files(simulation: Simulation, samples: Path | None, figure: Path | Non
     if figure is not None:
         from ..figures.motion import draw_motion
 
-        draw_motion(simulation, figure)
+        draw_motion(simulation, figure, curves)
+    if film is not None:
+        simulation.film().save(film)
 
 
 def write_samples(simulation: Simulation, path: Path) -> None:

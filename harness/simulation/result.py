@@ -19,7 +19,9 @@ from .hybrid_motion import Switching
 if TYPE_CHECKING:
     from pandas import DataFrame
 
+    from ..figures.film import MovingPicture
     from ..figures.style import Picture
+    from ..program.drawing import Drawing
 
 Samples = Mapping[str, NDArray[Any]]
 
@@ -136,8 +138,11 @@ class Sampled:
         forces = self.multipliers, self.constraint_forces, self.controls
         for group in (self.coordinates, self.velocities, *forces, self.outputs, self.energy, self.sensitivities):
             yield from group.items()
-        for name, samples in self.residuals.items():
-            yield f"residual.{name}", samples
+        yield from self.residual_columns().items()
+
+    def residual_columns(self) -> Samples:
+        """Residuals by the names of their columns."""
+        return {f"residual.{name}": samples for name, samples in self.residuals.items()}
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
@@ -147,6 +152,7 @@ class Simulation(Sampled, Shown):
     scene: str
     title: str
     report: Report
+    drawing: "Drawing | None" = field(default=None, compare=False)  # how the system looks; None if it does not say
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         """Samples of one quantity: ``t``, a coordinate, ``dot(x)``, ``lambda1``, ``energy``, ``residual.position``.
@@ -179,18 +185,36 @@ class Simulation(Sampled, Shown):
             raise missing_package("pandas") from None
         return DataFrame(dict(self.columns())).set_index("t")
 
-    def plot(self) -> "Picture":
+    def plot(self, curves: Sequence[str] | None = None) -> "Picture":
         """The motion as a picture, for a notebook or a file.
+
+        Parameters
+        ----------
+        curves : sequence of str or None
+            Names of quantities as in `keys`; None for all but residuals and sensitivities.
 
         Raises
         ------
         HolonomError
-            Matplotlib is not installed.
+            Matplotlib is not installed; there is no such quantity, or the scene does not observe it.
         """
         from ..figures.motion import motion_figure
         from ..figures.style import Picture
 
-        return Picture(motion_figure(self))
+        return Picture(motion_figure(self, curves))
+
+    def film(self) -> "MovingPicture":
+        """Return the motion as a film, for a notebook or a file.
+
+        Raises
+        ------
+        HolonomError
+            The system has no drawing, the scene does not observe the trajectory, or the samples are not equidistant, as
+            those of ``samples=601`` are.
+        """
+        from ..figures.film import moving_picture
+
+        return moving_picture(self)
 
 
 def joined(parts: Sequence[Sampled]) -> Sampled:

@@ -14,7 +14,7 @@ from ..program.differentiation import derivative_name
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Program
 from ..program.precision import Precision, read_precision
-from ..program.sign_pattern import with_values_in
+from ..program.sign_pattern import drawing_in_numbers, with_values_in
 from ..supervisor import doing
 from .accuracy_check import doubts, energy_missed, expected, may_hide
 from .defect import DefectControl
@@ -43,7 +43,9 @@ def simulate(problem: MotionProblem, request: SimulationRequest, progress: Progr
     """
     parts: list[Sampled] = []
     report = follow(problem, request, parts.append, progress)
-    return Simulation(scene=problem.scene, title=problem.title, report=report, **vars(joined(parts)))
+    drawing = problem.drawing and drawing_in_numbers(problem)
+    named = {"scene": problem.scene, "title": problem.title, "drawing": drawing}
+    return Simulation(**named, report=report, **vars(joined(parts)))
 
 
 def follow(

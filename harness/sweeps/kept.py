@@ -77,11 +77,11 @@ def read_kept(texts: Iterable[str]) -> tuple[Kept, ...]:
     HolonomError
         One of them cannot be kept.
     """
-    items = [item for text in texts for item in _items(text)]
+    items = [item for text in texts for item in items_of(text)]
     return tuple(dict.fromkeys(_kept(item) for item in items))
 
 
-def _items(text: str) -> Iterator[str]:
+def items_of(text: str) -> Iterator[str]:
     """The parts between commas that no bracket encloses."""
     depth, begin = 0, 0
     for place, letter in enumerate(text):
