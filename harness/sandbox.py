@@ -51,7 +51,12 @@ UNCONFINED = (
 
 
 class Sandbox(Enum):
-    """When a scene file runs in the sandbox: always, if this machine has one, or never because it is trusted."""
+    """When a scene file runs in the sandbox: always, if this machine has one, or never because it is trusted.
+
+    In it, the file sees the system's programs, the library, copies of the files that its text names below its own
+    folder, and copies of the ``.mac``, ``.lisp`` and ``.csv`` files beside it; `Limits.allow` adds others. It has no
+    network, no sockets, no privileges, and limited memory, processes and time.
+    """
 
     REQUIRED = "required"
     WHERE_POSSIBLE = "where possible"

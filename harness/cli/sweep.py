@@ -70,6 +70,9 @@ def sweep(
 
     The rows go into a folder of Parquet files, each with its parameters, what is kept, its residual and its status.
     The same command again computes only what is missing there. The exit status is 1 where no row came about.
+
+    A Dask scheduler is started by `dask scheduler`, each worker by `dask worker ADDRESS`. On a cluster dask-jobqueue
+    does both: SLURMCluster(cores=8, processes=8, memory="16GB").scale(jobs=20), and its scheduler_address for --dask.
     """
     from ..display.motion import show_sweep
     from ..display.progress import sweep_progress
