@@ -2,12 +2,14 @@
 
 import json
 import os
+import shlex
 import subprocess
 import sys
 from importlib import metadata
 from pathlib import Path
 from string import Formatter
 
+import click
 import pytest
 from click.testing import CliRunner
 from confinement import without_notice
@@ -40,6 +42,25 @@ def test_help_waits_for_no_library():
         "import holonom.cli, sys; print({'sympy', 'rich', 'numpy', 'heyoka'} & sys.modules.keys())",
     ]
     assert subprocess.run(imported, capture_output=True, text=True, check=True).stdout == "set()\n"
+
+
+COMMANDS = sorted(cli.commands.items())
+
+
+@pytest.mark.parametrize(("name", "command"), COMMANDS, ids=[name for name, _ in COMMANDS])
+def test_help_shows_a_whole_summary_and_examples_that_are_commands(name, command, monkeypatch):
+    monkeypatch.chdir(EXAMPLES.parent)
+    summary = command.help.splitlines()[0]
+    assert len(summary) <= 45
+    assert summary in cli.get_help(click.Context(cli, terminal_width=80))
+    assert len(command.examples) >= (2 if command.params else 1)
+    for example in command.examples:
+        called, *arguments = shlex.split(example)
+        assert called == name
+        files = [
+            part for each in arguments for part in (sorted(map(str, Path().glob(each))) if "*" in each else [each])
+        ]
+        command.make_context(name, files)
 
 
 def test_derive_prints_the_equations_by_their_numbers(particle_scene):

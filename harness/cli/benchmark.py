@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ..program.request import Request
 
 
-@holonom.command()
+@holonom.command(examples=["accuracy examples/pendulum.mac", "accuracy examples/pendulum.mac --plot accuracy.svg"])
 @asks_one_scene()
 @takes(*options_of(SimulationRequest, "until"))
 @click.option("--plot", "plot_file", metavar="FILE", type=OutputFile(), help="Also draw a figure, SVG.")
@@ -32,7 +32,10 @@ def accuracy(
     json_file: Path | None,
     limits: Limits,
 ) -> int:
-    """Measure what accuracy costs in time for the motion of a SCENE, and give plain advice."""
+    """Measure what accuracy costs in time.
+
+    The motion of a SCENE is followed with tolerances from coarse to fine, and plain advice is given.
+    """
     from ..benchmark.work_precision.study import Plan, study, study_document
     from ..display.measurements import show_study
     from ..display.progress import progress
@@ -51,12 +54,15 @@ def accuracy(
 FAILED = 1
 
 
-@holonom.command()
+@holonom.command(examples=["stability --short", "stability --plot stability.svg --json stability.json"])
 @click.option("--short", is_flag=True, help="Follow the long motions for less time: under a minute in all.")
 @click.option("--plot", "plot_file", metavar="FILE", type=OutputFile(), help="Also draw a figure.")
 @writes_json
 def stability(short: bool, plot_file: Path | None, json_file: Path | None) -> int:
-    """Run the register of hard cases: the digits that each method keeps, and what to do."""
+    """Run the test set of hard cases.
+
+    The result is how many digits each method keeps, and advice.
+    """
     from ..benchmark.hard_cases.case import Extent
     from ..benchmark.hard_cases.register import REGISTER, examine_all
     from ..display.measurements import show_stability

@@ -16,7 +16,7 @@ from .outputs import OutputFile, SceneFile, as_given
 EXTRAS = ("jinja2", "babel", "latex2mathml", "matplotlib", "heyoka", "ziamath", "pypdf")
 
 
-@holonom.command()
+@holonom.command(examples=["companion -o build/companion", "companion examples/pendulum.mac -o pages"])
 @click.argument("scenes", metavar="[SCENE...]", nargs=-1, type=SceneFile())
 @click.option(
     "-o",
@@ -45,7 +45,10 @@ def companion(
     settings: dict[str, str],
     limits: Limits,
 ) -> int:
-    """Make the textbook companion of the paper, or of the SCENEs given, as pages for a browser."""
+    """Make the textbook, or pages of a SCENE.
+
+    Without a SCENE it is the textbook companion of the paper, else pages of the SCENEs, for a browser.
+    """
     require_extras()
     from ..companion.book import make_book
     from ..companion.own_scenes import book_of_scenes

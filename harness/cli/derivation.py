@@ -30,15 +30,15 @@ limits_closed_forms = click.option(
 )
 
 
-@holonom.command()
+@holonom.command(examples=["describe examples/pendulum.mac", "describe examples/pendulum.mac --json pendulum.json"])
 @click.argument("scene", type=SceneFile())
 @takes_settings
 @writes_json
 @runs_scenes
 def describe(scene: Path, settings: dict[str, str], json_file: Path | None, limits: Limits) -> int:
-    """Show what a SCENE file says, before anything is derived.
+    """Show what a SCENE file says.
 
-    The document that --json writes is taken wherever a SCENE is.
+    Nothing is derived. The document that --json writes is taken wherever a SCENE is.
     """
     from ..display.description import show_description
     from ..source import describe as describe_file
@@ -48,7 +48,7 @@ def describe(scene: Path, settings: dict[str, str], json_file: Path | None, limi
     return 0
 
 
-@holonom.command()
+@holonom.command(examples=["derive examples/pendulum.mac", "derive examples/pendulum.mac --tex pendulum.tex"])
 @click.argument("scene", type=SceneFile())
 @takes_settings
 @limits_closed_forms
@@ -63,7 +63,10 @@ def derive(
     tex_file: Path | None,
     limits: Limits,
 ) -> int:
-    """Derive the equations of a SCENE, under the paper's numbers."""
+    """Derive the equations of motion.
+
+    They stand under the equation numbers of the paper, (1) to (19).
+    """
     from ..display.derivation import show_record
     from ..documents import ask
     from ..formats import Document
@@ -79,7 +82,7 @@ def derive(
     return 0
 
 
-@holonom.command()
+@holonom.command(examples=["check examples/pendulum.mac", "check examples/pendulum.mac examples/crane.mac"])
 @click.argument("scenes", metavar="SCENE...", nargs=-1, required=True, type=SceneFile())
 @takes_settings
 @limits_closed_forms
@@ -96,7 +99,11 @@ def check(
     allow_undecided: bool,
     limits: Limits,
 ) -> int:
-    """Derive each SCENE and compare every equation with an independent SymPy evaluation."""
+    """Check the derivation with SymPy.
+
+    Every equation, program and series of each SCENE is compared with an independent SymPy evaluation. The exit status
+    is 1 if one disagrees or could not be decided.
+    """
     from ..crosscheck.seed import fresh_seed
     from ..record import derived_record
     from ..source import Source
@@ -161,7 +168,7 @@ def _import_what_judges_motions() -> None:
     from ..program import drawing  # noqa: F401
 
 
-@holonom.command()
+@holonom.command(examples=["errata", "errata --language zh --svg errata.svg"])
 @writes_json
 @click.option("--svg", "svg_file", metavar="FILE", type=OutputFile(), help="Also draw the table.")
 @click.option(
@@ -172,7 +179,10 @@ def _import_what_judges_motions() -> None:
     help="Of the table, not of JSON.",
 )
 def errata(json_file: Path | None, svg_file: Path | None, language: str) -> int:
-    """Compare every equation that the paper prints with the derived one."""
+    """Compare the printed with derived equations.
+
+    Every equation that the paper prints is compared with the derived one.
+    """
     from ..display.derivation import draw_errata, show_errata
     from ..errata import errata as compare
     from ..formats import Document, published

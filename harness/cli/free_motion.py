@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ..program.request import Request
 
 
-@holonom.command()
+@holonom.command(examples=["free examples/pendulum.mac", "free examples/paper/paper.mac --scene free_motion_scene"])
 @asks_one_scene()
 @click.option(
     "--order",
@@ -34,9 +34,10 @@ def free(
     json_file: Path | None,
     limits: Limits,
 ) -> int:
-    """Find when the motion of a SCENE is free: as it is, under which laws, under which for one trajectory.
+    """Find when a motion is free.
 
-    The exit status is 1 where SymPy's own evaluation contradicts a law that was found.
+    The verdicts are about the motion as it is, about control laws that make every motion free, and about laws that
+    make one trajectory free. The exit status is 1 where SymPy's own evaluation contradicts a law that was found.
     """
     from ..documents import ask
     from ..formats import Document

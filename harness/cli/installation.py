@@ -17,10 +17,13 @@ if TYPE_CHECKING:
 MISSING = 1
 
 
-@holonom.command()
+@holonom.command(examples=["doctor", "doctor --json -"])
 @writes_json
 def doctor(json_file: Path | None) -> int:
-    """Say what is installed, what is missing, and the command that installs it."""
+    """List what is installed and missing.
+
+    For what is missing it prints the command that installs it.
+    """
     from ..formats import Publication, published
     from ..installation import components
 
@@ -51,13 +54,14 @@ def show_components(console: "Console", components: "Iterable[Component]") -> No
         console.print("Nothing is missing.")
 
 
-@holonom.command("maxima-path")
+@holonom.command("maxima-path", examples=["maxima-path"])
 def maxima_path() -> int:
-    """Put Holonom into Maxima's user directory, where load(holonom) finds it from anywhere.
+    """Let Maxima load the library anywhere.
 
-    Then `? holonomic_system`, example(holonomic_system) and demo(holonom) work in Maxima as well. Like all of Maxima's
-    demonstrations, the latter waits for a `;` after each step, in batch too; the example does not. The directory is
-    the one that MAXIMA_USERDIR names, or .maxima in the home directory; no file of yours there is replaced.
+    Holonom is put into Maxima's user directory, where load(holonom) finds it. Then `? holonomic_system`,
+    example(holonomic_system) and demo(holonom) work in Maxima as well. Like all of Maxima's demonstrations, the latter
+    waits for a `;` after each step, in batch too; the example does not. The directory is the one that MAXIMA_USERDIR
+    names, or .maxima in the home directory; no file of yours there is replaced.
     """
     from ..installation import put_into_maxima, user_directory
     from .console import make_console

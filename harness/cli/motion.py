@@ -22,7 +22,9 @@ from .options import as_instant, asks_one_scene, json_text, present, publish, ru
 from .outputs import STANDARD_OUTPUT, OutputFile
 
 
-@holonom.command()
+@holonom.command(
+    examples=["series examples/pendulum.mac --order 40", "series examples/pendulum.mac --order 8 --exact --at 1/10"]
+)
 @asks_one_scene()
 @takes(*options_of(SeriesRequest, "order", "precision", "until"))
 @click.option("--exact", is_flag=True, help="Rational coefficients, or none; the default is exact where possible.")
@@ -40,7 +42,10 @@ def series(
     json_file: Path | None,
     limits: Limits,
 ) -> int:
-    """Expand the initial motion of a SCENE in power series, and say how far they hold."""
+    """Expand the initial motion in power series.
+
+    The result says how far the series hold.
+    """
     from ..display.motion import show_series
     from ..series.compute import compute_series
     from ..series.power_series import series_document, values_at
@@ -59,7 +64,12 @@ SAMPLES_OF_A_PLOT = 1001
 FAILED = 1  # exit status of a result that is none
 
 
-@holonom.command()
+@holonom.command(
+    examples=[
+        "simulate examples/pendulum.mac --until 10 --plot swing.svg",
+        "simulate examples/pendulum.mac --precision 50 -o swing.csv",
+    ]
+)
 @asks_one_scene(*options_of(Request, "solve"))
 @takes(*options_of(SimulationRequest))
 @click.option("--final", is_flag=True, help="Of the motion, only the final state goes into the JSON document.")
@@ -93,10 +103,10 @@ def simulate(
     film_file: Path | None,
     limits: Limits,
 ) -> int:
-    """Follow the motion of a SCENE in numbers, and say how well it was followed.
+    """Integrate the equations of motion.
 
-    What depends on the time alone is looked at before, so that no step passes over what lasts longer than 1/32768 of
-    the time span. The exit status is 1 where the constraints, the energy, or forces within a step are missed out of
+    The report says how well the motion was followed. No step misses a pulse in time that lasts longer than 1/32768 of
+    the time span. The exit status is 1 if the constraints, the energy, or forces within a step are missed out of
     proportion to the tolerance.
     """
     from ..program.motion_problem import motion_problem, problem_document, read_problem

@@ -4,7 +4,7 @@ What is there is replaced with --force alone, or where it is a JSON document of 
 """
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -61,15 +61,39 @@ class OutputFile(click.Path):
         self.json, self.directory = json, directory
 
 
-class Command(click.Command):
-    """A command that looks at its outputs before it begins."""
+COMMON = {"scene", "settings", "json_file", "time_limit", "memory_limit", "trust", "sandbox", "allow", "force", "help"}
 
-    def __init__(self, *arguments: Any, **options: Any) -> None:
+
+class Command(click.Command):
+    """A command that looks at its outputs before it begins.
+
+    Parameters
+    ----------
+    examples : sequence of str
+        Commands that its help shows, without ``holonom``.
+    """
+
+    def __init__(self, *arguments: Any, examples: Sequence[str] = (), **options: Any) -> None:
         super().__init__(*arguments, **options)
+        self.examples = tuple(examples)
         if any(isinstance(each.type, OutputFile) for each in self.params):
             self.params.append(
                 click.Option(["--force"], is_flag=True, help="Replace files, and not only Holonom's own documents.")
             )
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the command's own options, then those that it has in common with others, then the examples."""
+        common = [each for each in self.get_params(ctx) if each.name in COMMON]
+        own = [each for each in self.get_params(ctx) if each not in common]
+        for title, options in (("Options", own), ("Common options", common)):
+            rows = [row for each in options if (row := each.get_help_record(ctx)) is not None]
+            if rows:
+                with formatter.section(title):
+                    formatter.write_dl(rows)
+        if self.examples:
+            with formatter.section("Examples"):
+                for each in self.examples:
+                    formatter.write(f"{'':{formatter.current_indent}}holonom {each}\n")
 
     def invoke(self, ctx: click.Context) -> Any:
         """Refuse outputs that would destroy something or cannot be written; then run the command."""

@@ -15,7 +15,12 @@ from .options import asks_one_scene, present, publish, runs_scenes, writes_json
 from .outputs import STANDARD_OUTPUT, OutputFile, is_forced
 
 
-@holonom.command()
+@holonom.command(
+    examples=[
+        "program examples/chain.mac --set N=64 --to python -o chain.py",
+        "program examples/pendulum.mac --to c --parameters m -o pendulum/",
+    ]
+)
 @asks_one_scene(*options_of(Request, "solve"))
 @click.option(
     "--to",
@@ -50,12 +55,12 @@ def program(
     output: Path,
     limits: Limits,
 ) -> int:
-    """Write the motion program of a SCENE, for those who carry it elsewhere.
+    """Write the motion as code.
 
-    As json, python or javascript it has the scene's values, and controls as inputs. As c it is a library in C11:
-    accelerations and multipliers, the control law, residuals and Jacobian of the constraints, projection; as fmu the
-    same for FMI 3 model exchange. Controls, and parameters without a value or named by --parameters, are inputs of
-    both.
+    As json, python or javascript the motion program has the scene's values, and controls as inputs. As c it is a
+    library in C11: accelerations and multipliers, the control law, residuals and Jacobian of the constraints,
+    projection; as fmu the same for FMI 3 model exchange. Controls, and parameters without a value or named by
+    --parameters, are inputs of both.
     """
     from ..files import require_own_files, write_files, write_whole
     from ..program.forms import MotionProgram
@@ -75,7 +80,7 @@ def program(
     return 0
 
 
-@holonom.command()
+@holonom.command(examples=["effects examples/crane.mac", "effects examples/crane.mac --json costs.json"])
 @asks_one_scene(*options_of(Request, "solve"))
 @writes_json
 @runs_scenes
@@ -85,7 +90,10 @@ def effects(
     json_file: Path | None,
     limits: Limits,
 ) -> int:
-    """Show which terms and effects a SCENE has and what each costs, in operations and in measured time."""
+    """Measure what each term costs.
+
+    The terms and effects of a SCENE are listed with their operations and their measured time.
+    """
     from ..display.measurements import show_costs
     from ..formats import Publication, published
     from ..program.effects import scene_costs

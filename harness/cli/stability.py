@@ -14,7 +14,7 @@ from .group import holonom
 from .options import asks_one_scene, present, runs_scenes, takes, writes_json
 
 
-@holonom.command()
+@holonom.command(examples=["linearize examples/pendulum.mac --at 2", "linearize examples/crane.mac --json -"])
 @asks_one_scene()
 @takes(*options_of(LinearizationRequest))
 @writes_json
@@ -22,7 +22,10 @@ from .options import asks_one_scene, present, runs_scenes, takes, writes_json
 def linearize(
     scene_file: Path, request: Request, options: dict[str, Any], json_file: Path | None, limits: Limits
 ) -> int:
-    """Linearise the motion of a SCENE on the constraint manifold: eigenvalues, modes, state space."""
+    """Linearise the motion of a SCENE.
+
+    The result holds eigenvalues, modes and the state space in coordinates of the constraint manifold.
+    """
     from ..display.stability import show_linearization
     from ..formats import Publication, published
     from ..scene import Scene
@@ -32,7 +35,7 @@ def linearize(
     return 0
 
 
-@holonom.command()
+@holonom.command(examples=["equilibria examples/pendulum.mac --set l0=1", "equilibria examples/arm.mac --json -"])
 @asks_one_scene()
 @click.option(
     "--control", "controls", metavar="NAME=VALUE", multiple=True, help="A constant control, not as its law begins."
@@ -48,7 +51,10 @@ def equilibria(
     json_file: Path | None,
     limits: Limits,
 ) -> int:
-    """Look for states at rest of a SCENE for constant controls, and say how stable they are."""
+    """Find states at rest and their stability.
+
+    The controls are constant. Others than the states found may exist.
+    """
     from ..display.stability import show_equilibria
     from ..formats import Publication, published
     from ..program.request import read_settings

@@ -17,7 +17,12 @@ from .outputs import OutputFile, as_given
 FAILED = 1  # exit status of a sweep none of whose rows came about
 
 
-@holonom.command()
+@holonom.command(
+    examples=[
+        "sweep examples/crane.mac --grid m=50:500:300 -o runs",
+        'sweep examples/crane.mac --list m=100,200 --keep "max(abs(lambda1))" -o kept',
+    ]
+)
 @asks_one_scene(*options_of(Request, "solve"))
 @click.option("--grid", "grids", metavar="NAME=FIRST:LAST:COUNT", multiple=True, help="Equidistant values.")
 @click.option("--list", "lists", metavar="NAME=VALUE,...", multiple=True, help="These values.")
@@ -66,7 +71,7 @@ def sweep(
     json_file: Path | None,
     limits: Limits,
 ) -> int:
-    """Follow the motion of a SCENE for many values of its parameters.
+    """Vary parameters over many motions.
 
     The rows go into a folder of Parquet files, each with its parameters, what is kept, its residual and its status.
     The same command again computes only what is missing there. The exit status is 1 where no row came about.

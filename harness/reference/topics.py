@@ -118,7 +118,9 @@ def command_topics() -> Iterator[Topic]:
 
 def _usage(command: click.Command, name: str, more: Sequence[str] = ()) -> tuple[Table | Code, ...]:
     arguments = [_argument(each) for each in command.params if isinstance(each, click.Argument)]
-    usage = Code("How it is called", " ".join([name, "[OPTIONS]", *arguments, *more]))
+    called = " ".join([name, "[OPTIONS]", *arguments, *more])
+    examples = [f"holonom {each}" for each in getattr(command, "examples", ())]
+    usage = Code("How it is called", "\n".join([called, *examples]))
     rows = tuple(map(option_row, command_options(command)))
     return (usage, Table("Options", ("option", "what it does", "without it"), rows)) if rows else (usage,)
 
