@@ -89,6 +89,8 @@ def remarks(report: "Report") -> Iterator[str]:
     if report.unresolved is not None:
         yield unresolved(report.unresolved)
     yield from (translated(advice(kind)) for kind in report.cases)
+    if report.undetermined:
+        yield gettext("Outputs that are not unique: %(names)s.", names=", ".join(report.undetermined))
 
 
 def unresolved(start: float) -> str:

@@ -61,6 +61,8 @@ class Report:
         What is out of proportion to the tolerance; a motion with any is no result.
     ending : Ending or None
         Whether an event ended the motion; None where the scene names none.
+    undetermined : tuple of str
+        Outputs that are not unique because constraints are redundant.
     joints : mapping of str to str
         Of multipliers the joint or body that they belong to, by its name in the scene file.
     controls : mapping of str to number
@@ -101,6 +103,7 @@ class Report:
     choice: Choice | None = None
     controls: Mapping[str, Any] = field(default_factory=dict)
     outputs: Mapping[str, Any] = field(default_factory=dict)
+    undetermined: tuple[str, ...] = ()
     joints: Mapping[str, str] = field(default_factory=dict)
     relative_degrees: tuple[int, ...] = ()
     moved: tuple[str, str] | None = None

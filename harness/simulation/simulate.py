@@ -30,6 +30,7 @@ from .request import FINAL_STATE_ALONE, EngineName, SimulationRequest, Stabiliza
 from .residuals import condition, residuals
 from .result import Report, Sampled, Samples, Simulation, joined
 from .sensitivities import Sensitivities
+from .uniqueness import undetermined_outputs
 
 Progress = Callable[[float], None]
 TakeSamples = Callable[[Sampled], None]
@@ -330,6 +331,9 @@ class _Simulation:
             choice=self.begun.engine.choice,
             controls={name: values[-1] for name, values in self.controls.items()},
             outputs={name: values[-1] for name, values in self.outputs.items()},
+            undetermined=undetermined_outputs(
+                mode.problem, end, *(as_floats(part[:, -1]) for part in self.solutions[:2])
+            ),
             joints={name: joint for name, joint in self.problem.joints.items() if name in observed},
             relative_degrees=self.problem.relative_degrees,
             unresolved=self.motion.unresolved,

@@ -207,3 +207,33 @@ def test_bodies_in_space_obey_newton_and_euler():
         assert own[part] == pytest.approx(np.einsum("kij,jk->ik", rotation, above[part]), abs=1e-9)
     along_hinge = hinge[3]  # nothing turns the hinge about its axis, x
     assert along_hinge == pytest.approx(np.zeros(5), abs=1e-9)
+
+
+DOOR = """
+door : rigid_body(20, [5/3, 5/3, 5/3], [x, y, z], [e0, e1, e2, e3])$
+low  : revolute_joint(marker(door, [-1/2, 0, -1], [0, 0, 1]), marker(ground, [0, 0, 0], [0, 0, 1]))$
+high : {high}$
+system : holonomic_system(assembly(door, low, {name} applied_torque([0, 0, 30], door), uniform_gravity(10, door)))$
+rest : holonomic_scene(system, time_span = [0, 1], initial_state = [x = 1/2, y = 0, z = 1, e0 = 1, e1 = 0, e2 = 0,
+    e3 = 0, dot(e3) = 0], observe = [trajectory, R = reaction(low), {own}])$
+"""
+
+
+def test_hinge_of_a_door_carries_its_weight():
+    """At rest, of width 1 and mass 20; 30/(5/3 + 20/4) = 4.5 turns it, and accelerates its centre by 2.25."""
+    motion = holonom.system(DOOR.format(high="0", name="", own="a = acceleration(door)")).simulate(samples=2)
+    assert rows(motion, "a", 3)[:, 0] == pytest.approx([0, 2.25, 0], abs=1e-12)
+    assert rows(motion, "R", 6)[:, 0] == pytest.approx([0, 45, 200, -45, -100, 0], abs=1e-10)
+    assert motion.report.undetermined == ()
+
+
+def test_two_hinges_share_a_door_in_a_way_that_is_not_unique():
+    """Their sum is unique, and that neither turns the door about its axis or the ball about any."""
+    high = "spherical_joint(marker(door, [-1/2, 0, 1]), [0, 0, 2])"
+    own = "S = reaction(high), force = [R[1] + S[1], R[2] + S[2], R[3] + S[3]]"
+    motion = holonom.system(DOOR.format(high=high, name="high,", own=own)).simulate(samples=2)
+    assert rows(motion, "force", 3)[:, 0] == pytest.approx([0, 45, 200], abs=1e-10)
+    assert motion.report.undetermined == ("R[1]", "R[2]", "R[3]", "R[4]", "R[5]", "S[1]", "S[2]", "S[3]")
+    text = io.StringIO()
+    show_simulation(Console(file=text, width=200), motion)
+    assert "Outputs that are not unique: R[1], R[2], R[3], R[4], R[5], S[1], S[2], S[3]." in text.getvalue()
