@@ -59,7 +59,7 @@ def _entries_of_scene(scene: "DescribedScene") -> Iterator[tuple[str, list[str]]
     yield "time_span", [", ".join(map(scene_text, scene.span_trees))] if scene.span_trees else []
     yield "until", _zeros(scene.until_trees)
     yield "released", [f"{', '.join(names)} at {scene_text(tree)} = 0" for tree, names in scene.released]
-    yield "observe", _names(scene.observe)
+    yield "observe", [*_names(scene.observe), *_values(scene.outputs.trees)]
 
 
 def _names(names: Iterable[str]) -> list[str]:

@@ -78,7 +78,8 @@ def require_disk(problem: MotionProblem, samples: int, path: Path) -> None:
 
 
 def _numbers_a_sample(problem: MotionProblem) -> int:
-    return 1 + len(problem.state) + len(problem.multipliers)
+    outputs = () if problem.outputs is None else problem.outputs.outputs
+    return 1 + len(problem.state) + len(problem.multipliers) + len(outputs)
 
 
 def write_files(

@@ -209,7 +209,8 @@ def _found(program: Program | None, function: Callable[..., str], array: str) ->
     parameters = f"t q v u p {array}"
     if program is None:
         return _body((), parameters)
-    return function(program, [f"{array}[{place}]" for place in range(len(program.outputs))], parameters)
+    places = [f"{array}[{place}]" for place in range(len(program.outputs))]
+    return function(computing(program, program.outputs), places, parameters)
 
 
 def _jacobian(model: Model, function: Callable[..., str]) -> str:
