@@ -161,7 +161,7 @@ def test_multipliers_of_neighbouring_states(file):
     motion = problem(file, name)
     found = holonom.load(f"examples/{file}", scene=name).linearize(instant)
     t, state = state_at(motion, instant and Fraction(instant))
-    function, rows = NumpyFunction(motion.motion), slice(len(state), None)
+    function, rows = NumpyFunction(motion.motion), slice(len(state), len(state) + len(motion.multipliers))
     places = [function.outputs.index(each) for each in found.outputs[rows]]
     deviation = np.random.default_rng(1).normal(size=len(found.A))
     moved = found.C[: len(state)] @ deviation
