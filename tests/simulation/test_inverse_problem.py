@@ -171,6 +171,23 @@ def test_motion_ends_at_a_dead_centre_with_its_time(course, end, engine):
     assert float(ended.value.detail.split(",")[0]) == pytest.approx(end, abs=1e-6)
 
 
+@pytest.mark.parametrize("friction", [3, 30])
+def test_friction_holds_the_load_that_is_kept_level(friction):
+    """Its sign changes the drive of the winch, too. From x = 1 the pull -10 x may be less than the friction."""
+    text = BOB.format(course="-2", speed=1).replace(
+        " constraints", f" forces = [-{friction}*signum(dot(x)), 0], constraints"
+    )
+    motion = holonom.system(text).simulate(samples=9)
+    assert motion["lambda1"] == pytest.approx(-5, rel=1e-13)
+    sticks = motion.instants > 0.1
+    if friction == 3:
+        assert motion.report.switchings[0].passage == "crossed"
+    else:
+        assert motion["dot(x)"][sticks] == pytest.approx(0, abs=1e-13)
+        assert motion["dot(u)"][sticks] == pytest.approx(0, abs=1e-13)
+        assert np.ptp(motion["x"][sticks]) < 1e-13
+
+
 def test_start_at_a_dead_centre_is_refused():
     scene = holonom.system(
         SLIDE.format(position="u^3", course="t^3", start="x = 0, u = 0, dot(u) = 0", guess="dot(x) = 0")

@@ -250,6 +250,18 @@ def test_two_masses_and_a_spring_have_the_known_feedforward():
     assert motion.report.relative_degrees == (4,)
 
 
+def test_friction_whose_sign_changes_the_force_holds_two_masses_together():
+    """F = -sin(t) - 2 s, so that s = 3/4 keeps x' = y'; the part of F in this was left out."""
+    motion = holonom.system("""
+system : holonomic_system(coordinates = [x, y], controls = [F], kinetic_energy = (dot(x)^2 + dot(y)^2)/2, forces =
+  [drive = [F, F], friction = [3 - 2*signum(dot(x) - dot(y)), 2*signum(dot(x) - dot(y))]])$
+led : holonomic_scene(system, servo_constraints = [y = sin(t)], initial_state = [x = 0, dot(x) = 2], time_span = [0, 2],
+  observe = [trajectory, controls])$""").simulate(samples=9)
+    t, held = motion.instants, motion.instants > 1
+    assert (motion["dot(x)"] - motion["dot(y)"])[held] == pytest.approx(0, abs=1e-14)
+    assert motion["F"] == pytest.approx(-np.sin(t) - np.where(held, 3 / 2, 2), rel=1e-13)
+
+
 @pytest.mark.parametrize("samples", [3, 4])
 def test_servo_constraint_ends_where_no_equation_gives_its_control(samples):
     """ddot(x) = x u with x = sin(t - 1) is u = -1, and any number where x is zero."""
