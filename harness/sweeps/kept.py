@@ -3,6 +3,7 @@
     final               the coordinates and velocities at the end
     EXPR                a quantity at the end, at(EXPR, T) at an instant
     max(EXPR)           its largest value on the way; so min, mean, and max(abs(EXPR))
+    d(NAME, P)          derivative at the end of a quantity by a parameter that varies, or by an initial value
     zero(EXPR)          the first instant after the start at which it crosses zero; empty where it does not
     free                whether the multipliers stay at zero, as the condition (10) of free motion says
     radius              radius of convergence of the initial motion
@@ -50,6 +51,7 @@ class Kind(StrEnum):
     LARGEST = "largest"  # max(abs(...)), which is not analytic where its quantity changes its sign
     MEAN = "mean"
     ZERO = "zero"
+    DERIVATIVE = "d"
     FREE = "free"
     RADIUS = "radius"
     RESIDUAL = "residual"
@@ -67,6 +69,7 @@ class Kept:
     kind: Kind
     quantity: Expression | None = None  # None where the whole motion is meant
     instant: Fraction | None = None  # of `Kind.AT`; None for the end
+    direction: str = ""  # of `Kind.DERIVATIVE`: a parameter, or a name of the state
 
 
 def read_kept(texts: Iterable[str]) -> tuple[Kept, ...]:
@@ -101,6 +104,11 @@ def _kept(item: str) -> Kept:
             return Kept(text, Kind.LARGEST, _analytic(quantity, text))
         case ast.Call(ast.Name("max" | "min" | "mean" | "zero" as kind), [quantity], []):
             return Kept(text, Kind(kind), _analytic(quantity, text))
+        case ast.Call(ast.Name("d"), [quantity, direction], []):
+            what, by = (_expression(each, text) for each in (quantity, direction))
+            if not isinstance(what, Name) or not isinstance(by, Name):
+                raise _refusal(text, "is no derivative of one quantity by one parameter or initial value")
+            return Kept(text, Kind.DERIVATIVE, what, direction=by.text)
         case ast.Call(ast.Name("at"), [quantity, _], []):
             inside, _, instant = text[len("at(") : -1].rpartition(",")
             return Kept(text, Kind.AT, _expression(quantity, text), _instant(instant, text))

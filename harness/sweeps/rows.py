@@ -4,7 +4,7 @@ A row that cannot be computed says so and why; no row is left out.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from fractions import Fraction
 from functools import cached_property, reduce
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ..explanations import unresolved
 from ..failures import Failure, HolonomError
+from ..program.differentiation import derivative_name
 from ..program.heyoka_function import import_heyoka
 from ..program.motion_problem import MotionProblem, computing, require_analytic
 from ..program.motion_program import Expression, Name, Operation, Program, calls_in, names_in
@@ -87,6 +88,8 @@ class RowMaker:
         require_known(problem, [kept.quantity for kept in plan.kept if kept.quantity is not None])
         _require_smooth(problem, plan.kept)
         self._starts, self._start = initial_states_of(problem), float(problem.start["t"])
+        self._derivatives = [kept for kept in plan.kept if kept.kind is Kind.DERIVATIVE]
+        _require_directions(problem, self._derivatives)
         if problem.released or any(kept.kind is Kind.RADIUS for kept in plan.kept):
             require_analytic(problem)
         self._moves = any(kept.kind is not Kind.RADIUS for kept in plan.kept)
@@ -168,7 +171,7 @@ class RowMaker:
         problem = self._problem
         ends_smoothly = problem.events is None or not _has_kinks(problem.events)
         alone = problem.signs or problem.tables or problem.obstacle is not None or controls_may_fail(problem)
-        return ends_smoothly and not alone and not self._hides
+        return ends_smoothly and not alone and not self._hides and not self._derivatives
 
     def _together(self, rows: "_Rows", there: NDArray, states: Floats, stops: Sequence[float]) -> NDArray:
         """Follow motions in lanes; those that this does not do for."""
@@ -206,6 +209,8 @@ class RowMaker:
             name: Fraction(float(x)) for name, x in zip(self._problem.parameters, rows.values[:, row], strict=True)
         }
         problem = started(self._problem, numbers, state)
+        if self._derivatives:
+            problem = replace(problem, observe=(*problem.observe, "trajectory", "multipliers"))
         try:
             found = self._singles.follow(problem, self._asked)
         except HolonomError as error:
@@ -220,6 +225,9 @@ class RowMaker:
         points = {stop: found.points[place][:, None] for place, stop in enumerate(self._asked)}
         self._keep(rows, here, np.array([report.t]), found.state[:, None], points)
         self._keep_along(rows, here, self._seen(found.steps))
+        for kept in self._derivatives:
+            number = report.sensitivities[derivative_name(kept.quantity.text, kept.direction)]
+            rows.keep(kept.text, here, np.array([number]), there_is=True)
 
     # ---- what is kept ----
 
@@ -319,7 +327,10 @@ class RowMaker:
 
     @cached_property
     def _singles(self) -> SingleMotions:
-        request = SimulationRequest(tol=self.plan.tol, drift=self.plan.drift, until=self.plan.until)
+        directions = tuple(dict.fromkeys(kept.direction for kept in self._derivatives))
+        request = SimulationRequest(
+            tol=self.plan.tol, drift=self.plan.drift, until=self.plan.until, sensitivities=directions
+        )
         return SingleMotions(self._problem, request, self._along, self._points)
 
     @cached_property
@@ -336,6 +347,20 @@ def _require_smooth(problem: MotionProblem, kept: Sequence[Kept]) -> None:
             if _has_kinks(computing(problem.outputs, {name})):
                 raise HolonomError(
                     Failure.NOT_KEPT, detail=f"{each.text} holds {name}, which is kept at instants only: it has a kink"
+                )
+
+
+def _require_directions(problem: MotionProblem, derivatives: Sequence[Kept]) -> None:
+    """Refuse derivatives of other things than state, multipliers and outputs, and by what neither varies nor starts."""
+    outputs = () if problem.outputs is None else problem.outputs.outputs
+    for kept in derivatives:
+        for name, known in (
+            (kept.quantity.text, (*problem.state, *problem.reactions, *outputs)),
+            (kept.direction, (*problem.parameters, *problem.state)),
+        ):
+            if name not in known:
+                raise HolonomError(
+                    Failure.NOT_KEPT, detail=f"{kept.text} holds {name}, which is none of {', '.join(known)}"
                 )
 
 

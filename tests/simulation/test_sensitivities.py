@@ -185,6 +185,22 @@ def test_the_instant_of_a_law_with_numbers():
     assert motion["d(dot(x), T)"][-1] == pytest.approx(3 + 2, rel=1e-12)
 
 
+def test_a_sweep_keeps_derivatives():
+    """x = x0 cos(w t) + v0/w sin(w t) at t = 5."""
+    swept = holonom.sweep(
+        holonom.system(SPRING), values={"k": [2, 8]}, keep=["x", "d(x, k)", "d(x, x)", "d(dot(x), dot(x))"]
+    ).to_pandas()
+    w = np.sqrt(np.array([2, 8]) / 2)
+    by_w = -3 * 5 * np.sin(5 * w) + 5 * np.cos(5 * w) / w - np.sin(5 * w) / w**2
+    assert swept["d(x,k)"] == pytest.approx(by_w / (4 * w), rel=1e-10)
+    assert swept["d(x,x)"] == pytest.approx(np.cos(5 * w), rel=1e-10)
+    assert swept["d(dot(x),dot(x))"] == pytest.approx(np.cos(5 * w), rel=1e-10)
+    for asked in ("d(x, m)", "d(q, k)", "d(x + 1, k)"):
+        with pytest.raises(HolonomError) as refused:
+            holonom.sweep(holonom.system(SPRING), values={"k": [2]}, keep=[asked])
+        assert refused.value.failure is Failure.NOT_KEPT
+
+
 @pytest.mark.parametrize(
     ("example", "name", "value", "until"),
     [
