@@ -24,13 +24,15 @@ def first_differences(claims: Callable[[int], Parts], attempt: int) -> tuple[dic
         return {}, regular
     found: dict[str, str] = {}
     with mp.workdps(2 * WORKING_DIGITS):
-        again, _ = _made(claims(attempt))
+        again, still = _made(claims(attempt))
         for place, before in suspected.items():
+            if place >= len(again) and not still:
+                continue  # rounding hid that a value is missing at this state
             part, claim = again[place] if place < len(again) else made[place]
             rounding = abs(claim.given - claim.true) <= before * mp.mpf(10) ** -VANISHED
             if _differs(claim) and not rounding:
                 found.setdefault(part, _told(claim))
-    return found, regular
+    return found, regular and still
 
 
 def differing(claims: Callable[[], Iterator[Claim]], digits: int = DIGITS) -> str:

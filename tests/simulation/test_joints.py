@@ -48,6 +48,26 @@ run : holonomic_scene(system, control_law = [u = t^2], parameter_values = [m = 2
 """
 
 
+PLANETARY = """
+load("holonom.mac")$
+arm : rotor(4, phi)$  planet : planar_body(3, 1/2, [x, y], psi)$
+system : holonomic_system(parameters = [M], assembly(arm, planet, gear(2, ground, 1, planet, arm),
+  revolute_joint(planet, marker(arm, [3, 0])), applied_torque(M, arm)))$
+run : holonomic_scene(system, parameter_values = [M = 71/10], time_span = [0, 1],
+  initial_state = [phi = 0, dot(phi) = 0, psi = 0])$
+"""
+
+SCREW = """
+load("holonom.mac")$
+nut : rigid_body(2, [1, 1, 3], [x, y, z], [e0, e1, e2, e3])$
+P : marker(nut, [0, 0, 0], [0, 0, 1])$  Q : marker(ground, [0, 0, 0], [0, 0, 1])$
+system : holonomic_system(parameters = [g], assembly(nut, cylindrical_joint(P, Q), prescribed_angle(P, Q, theta),
+  rack(P, Q, 1/2, theta), uniform_gravity(g, nut)))$
+run : holonomic_scene(system, parameter_values = [g = 10], time_span = [0, 1],
+  initial_state = [x = 0, y = 0, z = 0, e0 = 1, e1 = 0, e2 = 0, e3 = 0, theta = 0, dot(theta) = 0])$
+"""
+
+
 def simulated(text: str) -> Simulation:
     return holonom.system(text).simulate(samples=5, tol=1e-13)
 
@@ -79,3 +99,18 @@ def test_motor_turns_by_the_course_and_its_moment_is_the_multiplier():
     motion = simulated(MOTOR)
     np.testing.assert_allclose(motion["e0"], np.cos(motion["t"] ** 2 / 2), atol=1e-12)
     np.testing.assert_allclose(np.abs(motion["lambda1"]), (3 + 2 * 1) * 2, atol=1e-10)
+
+
+def test_planet_wheel_rolls_round_the_fixed_sun():
+    """With R + r = 3 and psi = 3 phi the inertia is 4 + 3*9 + 9/2 = 35.5; the teeth carry 1/2 psi''."""
+    motion = simulated(PLANETARY)
+    np.testing.assert_allclose(motion["phi"], 0.1 * motion["t"] ** 2, atol=1e-13)
+    np.testing.assert_allclose(motion["psi"], 0.3 * motion["t"] ** 2, atol=1e-13)
+    np.testing.assert_allclose(motion["lambda1"], 0.3, atol=1e-12)
+
+
+def test_nut_on_a_screw_falls_as_its_spin_lets_it():
+    """theta'' = -m g p/(m p^2 + J) = -20/7 with the pitch p = 1/2."""
+    motion = simulated(SCREW)
+    np.testing.assert_allclose(motion["theta"], -10 / 7 * motion["t"] ** 2, atol=1e-12)
+    np.testing.assert_allclose(motion["z"], -5 / 7 * motion["t"] ** 2, atol=1e-12)

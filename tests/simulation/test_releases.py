@@ -49,6 +49,20 @@ run : holonomic_scene(system, parameter_values = [c = 1/10, h = -1/2, g = 10], t
 """
 
 
+# A body welded to an arm that turns at the rate 2, let go when the arm has turned by a right angle.
+WELDED = """
+load("holonom.mac")$
+arm : rigid_body(1, [1, 1, 1], [x1, y1, z1], [a0, a1, a2, a3])$
+load_ : rigid_body(1, [1, 2, 3], [x, y, z], [e0, e1, e2, e3])$
+A : marker(arm, [0, 0, 0], [0, 0, 1])$  Q : marker(ground, [0, 0, 0], [0, 0, 1])$
+weld : generic_joint(marker(load_, [0, 0, 0], [0, 0, 1]), marker(arm, [1, 0, 0], [0, 0, 1]), [1, 2, 3], [1, 2, 3])$
+system : holonomic_system(assembly(arm, load_, revolute_joint(A, Q), prescribed_angle(A, Q, theta), weld))$
+run : holonomic_scene(system, time_span = [0, 2], released = [weld = theta - %pi/2],
+  initial_state = [x1 = 0, y1 = 0, z1 = 0, a0 = 1, a1 = 0, a2 = 0, a3 = 0, theta = 0, dot(theta) = 2,
+    x = 1, y = 0, z = 0, e0 = 1, e1 = 0, e2 = 0, e3 = 0])$
+"""
+
+
 def released(motion: Simulation) -> list[tuple[float, str]]:
     assert {each.passage for each in motion.report.switchings} == {Passage.JOINT_RELEASED}
     return [(each.t, each.function) for each in motion.report.switchings]
@@ -91,6 +105,17 @@ def test_two_bodies_fly_apart_along_straight_lines(engine):
     np.testing.assert_allclose(motion["x1"][2:], t + 3 * np.cos(turn) - 6 * np.sin(turn) * (t - 2), atol=1e-9)
     np.testing.assert_allclose(motion["y1"][2:], 3 * np.sin(turn) + 6 * np.cos(turn) * (t - 2), atol=1e-9)
     np.testing.assert_allclose(motion["x1"] + 3 * motion["x2"], 4 * motion["t"], atol=1e-9)
+
+
+def test_welded_body_flies_off_along_the_tangent_and_keeps_its_spin():
+    motion = holonom.system(WELDED).simulate(samples=5)
+    ((t, _),) = released(motion)
+    assert t == pytest.approx(np.pi / 4, abs=1e-12)
+    flying = motion["t"] > t
+    np.testing.assert_allclose(motion["x"][flying], -2 * (motion["t"][flying] - np.pi / 4), atol=1e-11)
+    np.testing.assert_allclose(motion["y"][flying], 1, atol=1e-11)
+    np.testing.assert_allclose(motion["e3"], np.sin(motion["t"]), atol=1e-11)
+    np.testing.assert_allclose(motion["theta"], 2 * motion["t"], atol=1e-11)
 
 
 def test_releases_keep_the_digits_of_a_longer_precision():
