@@ -10,6 +10,7 @@ foot. What never moves, a hinge or a rail, is drawn in ink; what moves, in colou
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
@@ -19,8 +20,10 @@ from numpy.typing import NDArray
 from ..hidden import visible
 from ..language import gettext
 from ..program.drawing import Drawing, Shape
-from ..simulation.result import Simulation
 from .style import BLUE, INK_RULE, VERMILION
+
+if TYPE_CHECKING:
+    from ..simulation.result import Simulation
 
 FRAMES = 180  # at most
 ROUNDS = 6.0  # a film ends when a body has gone so many times through the whole picture
@@ -75,7 +78,7 @@ class Film:
             yield shape, numbers, bool(np.ptp(numbers, axis=0).max() > least)
 
 
-def film_of(simulation: Simulation, drawing: Drawing) -> Film:
+def film_of(simulation: "Simulation", drawing: Drawing) -> Film:
     """The film of a motion, or of its beginning where it goes through the picture too often.
 
     The motion has many equidistant instants; the film has 180 frames at most.
