@@ -345,7 +345,7 @@ class HybridMotion:
         return moved
 
     def _require_reactions(self, at: Matrices, change: Vector, kick: Vector, sign: Sign, t: Any) -> None:
-        """Velocities may change by reactions alone: the controls that servo-constraints find are forces."""
+        """Refuse a change of velocities that takes an impulse of the controls that servo-constraints find."""
         reactions = at.jacobian[: len(self.problem.reactions)].T
         impulse = at.mass @ change - kick
         left = impulse - reactions @ np.linalg.lstsq(reactions, impulse)[0]

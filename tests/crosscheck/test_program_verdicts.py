@@ -20,7 +20,10 @@ from holonom.source import Source
 EXAMPLES = Path(__file__).parents[2] / "examples"
 # A law of one control, tables, servo-constraints of relative degree 4, prescribed reactions, redundant constraints,
 # a mass matrix that the constraints make up for, signs that switch; servo-constraints of a control in a constraint.
-FILES = ("paper/paper", "hoist", "overhead_crane", "prescribed_tension", "hard/repeated_constraint", "linkage", "bead")
+FILES = (
+    *("paper/paper", "hoist", "overhead_crane", "prescribed_tension", "hard/repeated_constraint", "linkage", "bead"),
+    "level_load",
+)
 MUTATED = ("paper/paper", "pendulum", "arm", "crane", "prescribed_tension", "level_load")
 EACH = 12  # mutants of each file
 PROGRAMS = ("motion", "projection", "matrices", "energy")
