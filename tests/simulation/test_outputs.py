@@ -118,3 +118,20 @@ led : holonomic_scene(system, servo_constraints = [x = sin(t)], initial_state = 
 def test_outputs_hold_controls_that_servo_constraints_find():
     motion = holonom.system(CART).simulate(samples=5)
     assert motion["push"] == pytest.approx(-np.sin(motion.instants))  # of the driven half: its acceleration
+
+
+SHAKEN = """
+bob : particle(m, [x + shaking*u, y])$
+system : holonomic_system(controls = [u], parameters = [m], switches = [shaking],
+  assembly(bob, coordinates = [x]), constraints = [x^2 + y^2 - 1])$
+turn : holonomic_scene(system, effects = {effects}, control_law = [u = t^2], parameter_values = [m = 1],
+  initial_state = [x = 1, y = 0, dot(y) = 1], time_span = [0, 1],
+  observe = [trajectory, apart = position(bob)[1] - x, rate = velocity(bob)[1] - dot(x)])$
+"""
+
+
+@pytest.mark.parametrize(("effects", "shaking"), [("[shaking]", 1), ("[]", 0)])
+def test_outputs_have_the_switches_that_the_scene_chooses(effects, shaking):
+    motion = holonom.system(SHAKEN.format(effects=effects)).simulate(samples=3)
+    assert motion["apart"] == pytest.approx(shaking * motion.instants**2)
+    assert motion["rate"] == pytest.approx(2 * shaking * motion.instants)
