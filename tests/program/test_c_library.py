@@ -145,6 +145,21 @@ def test_constraints_and_jacobian_are_those_of_the_circle(pendulum):
     assert jacobian == pytest.approx(2 * q, rel=1e-15)
 
 
+def test_the_jacobian_of_a_chain_is_zero_where_it_has_no_entry(tmp_path, c_compiler):
+    directory = write_library(tmp_path / "c", "chain.mac", "chain")
+    run("cc", "-std=c11", "-shared", "-fPIC", "chain.c", "-o", "chain.so", "-lm", directory=directory)
+    jacobian = ctypes.CDLL(str(directory / "chain.so")).chain_jacobian
+    jacobian.argtypes = [ctypes.c_double, *[DOUBLES] * 5]
+    q, found = np.random.default_rng(3).normal(size=8), np.full((4, 8), np.nan)
+    jacobian(0.0, q, np.zeros(8), np.array([1.0, 0.0, 0.0]), np.zeros(1), found)
+    expected = np.zeros((4, 8))
+    for k, link in enumerate(np.diff(np.vstack([np.zeros(2), q.reshape(4, 2)]), axis=0)):
+        expected[k, 2 * k : 2 * k + 2] = link
+        if k > 0:
+            expected[k, 2 * k - 2 : 2 * k] = -link
+    assert np.array_equal(found, expected)
+
+
 def test_projection_goes_along_the_radius(pendulum):
     q, v, u, p = np.array([0.9, -1.2]), np.array([0.4, 0.3]), np.array([1.0, 0.25, 0.0]), np.array([2.0, 9.81])
     assert pendulum.bob_project(0.0, q, v, u, p) == 0
