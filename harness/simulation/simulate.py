@@ -331,15 +331,19 @@ class _Simulation:
             choice=self.begun.engine.choice,
             controls={name: values[-1] for name, values in self.controls.items()},
             outputs={name: values[-1] for name, values in self.outputs.items()},
-            undetermined=undetermined_outputs(
-                mode.problem, end, *(as_floats(part[:, -1]) for part in self.solutions[:2])
-            ),
+            undetermined=self._undetermined(end, mode),
             joints={name: joint for name, joint in self.problem.joints.items() if name in observed},
             relative_degrees=self.problem.relative_degrees,
             unresolved=self.motion.unresolved,
             sensitivities=self._derivatives_at_end(),
             doubts=tuple(doubts(self._missed(left, start, end), self.begun.engine.tol, self.motion.steps)),
         )
+
+    def _undetermined(self, end: Instant, mode: Mode) -> tuple[str, ...]:
+        """Outputs that are not unique at the end, where some constraints may have ended."""
+        known = dict(zip(self.problem.multipliers, self.solutions.multipliers[:, -1], strict=True))
+        multipliers = as_floats(np.array([known[name] for name in mode.problem.multipliers]))
+        return undetermined_outputs(mode.problem, end, as_floats(self.solutions.accelerations[:, -1]), multipliers)
 
     def _missed(self, left: Mapping[str, float], start: Instant, end: Instant) -> Mapping[str, float]:
         """What is missed of each quantity that the tolerance speaks of, relative to its size."""

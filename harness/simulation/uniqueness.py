@@ -30,7 +30,7 @@ def undetermined_outputs(
     accelerations, multipliers : ndarray, shape (n,) and (g,)
         There.
     """
-    if problem.outputs is None or not problem.dependent or not at.here.finite:
+    if problem.outputs is None or not problem.dependent or not len(multipliers) or not at.here.finite:
         return ()
     lengths = np.linalg.norm(at.here.jacobian, axis=1)
     weights = 1 / np.where(lengths > 0, lengths, 1.0)

@@ -237,3 +237,14 @@ def test_two_hinges_share_a_door_in_a_way_that_is_not_unique():
     text = io.StringIO()
     show_simulation(Console(file=text, width=200), motion)
     assert "Outputs that are not unique: R[1], R[2], R[3], R[4], R[5], S[1], S[2], S[3]." in text.getvalue()
+
+
+def test_outputs_are_unique_once_a_redundant_joint_is_released():
+    high = "spherical_joint(marker(door, [-1/2, 0, 1]), [0, 0, 2])"
+    text = DOOR.format(high=high, name="high,", own="S = reaction(high)").replace(
+        "observe =", "released = [high = t - 1/2], observe ="
+    )
+    motion = holonom.system(text).simulate(samples=5)
+    assert motion.report.undetermined == ()
+    assert rows(motion, "S", 6)[:, -1] == pytest.approx(np.zeros(6), abs=1e-12)
+    assert rows(motion, "R", 3)[2, -1] == pytest.approx(200)
