@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from fractions import Fraction
 
 from mpmath import mp
 
@@ -36,7 +37,15 @@ def other_premises(motion: DescribedMotion, problems: Mapping[Solve, MotionProbl
     if motion.ended:
         return ""
     with mp.workdps(WORKING_DIGITS):
-        return nearer_start(motion, _start(next(iter(problems.values()))))
+        first = next(iter(problems.values()))
+        return nearer_start(motion, _start(first), _masses(motion, first))
+
+
+def _masses(motion: DescribedMotion, problem: MotionProblem) -> dict[str, mp.mpf]:
+    """Masses of the controls that move, the last coordinates: a convention of the problem."""
+    places = {u: problem.coordinates.index(u) + 1 for u in motion.moved}
+    found = {u: problem.matrices.outputs.get(f"A[{s},{s}]") for u, s in places.items()}
+    return {u: mp.mpf(mass.numerator) / mass.denominator for u, mass in found.items() if isinstance(mass, Fraction)}
 
 
 def _stated(motion: DescribedMotion, problem: MotionProblem) -> dict[str, tuple[Sequence[str], Sequence[str]]]:

@@ -66,8 +66,11 @@ def _changes(slopes: Mapping[str, Polynomial], start: State, q: str, order: int)
     return [slope * start.get(f"dot({q})", mp.zero), slope_rate * start.get(q, mp.zero)]
 
 
-def nearer_start(motion: DescribedMotion, start: State) -> str:
-    """Tell which value Newton's method finds nearer to the guess than that of a start; empty if it finds none."""
+def nearer_start(motion: DescribedMotion, start: State, masses: State | None = None) -> str:
+    """Tell which value Newton's method finds nearer to the guess than that of a start; empty if it finds none.
+
+    The masses are those that the start gives to the controls that move.
+    """
     if motion.scene is None or not motion.scene.initial_guess:
         return ""
     guessed = {name: motion.number_of(tree) for name, tree in motion.scene.initial_guess.trees.items()}
@@ -77,7 +80,7 @@ def nearer_start(motion: DescribedMotion, start: State) -> str:
     rates = {f"dot({q})": q for q in coordinates}
     for order, columns in enumerate((places, rates)):
         own = {name: guess[name] for name in columns if name in guess}
-        if own and (found := _Search(motion, start, own, columns, order).nearer()):
+        if own and (found := _Search(motion, start, own, columns, order, masses or {}).nearer()):
             return found
     return ""
 
@@ -95,8 +98,15 @@ class _Search:
     """Newton's method from a guess of coordinates (order 0) or velocities (order 1), by the shortest corrections."""
 
     def __init__(
-        self, motion: DescribedMotion, start: State, guess: State, columns: Mapping[str, str], order: int
+        self,
+        motion: DescribedMotion,
+        start: State,
+        guess: State,
+        columns: Mapping[str, str],
+        order: int,
+        masses: State,
     ) -> None:
+        self._masses = masses
         self._motion, self._start, self._guess, self._order = motion, start, guess, order
         self._columns = {columns[name]: i for i, name in enumerate(guess)}  # place of each coordinate among the names
         self._conditions = [*motion.constraints, *motion.outputs]
@@ -120,7 +130,7 @@ class _Search:
         return f"initial value of {name}: {given}, where {true} is nearer to the guess"
 
     def _metric(self, state: State) -> list[Row]:
-        """Mass matrix of the names at a state, 1 of controls that move, and a faint one of coordinates without mass."""
+        """Mass matrix of the names at a state; coordinates without mass get a faint one."""
         motion, rates = self._motion, [f"dot({q})" for q in self._columns]
         at_rest = state | {f"dot({q})": mp.zero for q in motion.system.coordinates if q in state}
         momenta = [
@@ -130,7 +140,7 @@ class _Search:
         resting, *moving = ([each.get(rate, (mp.zero,))[0] for rate in rates] for each in momenta)
         rows = [{k: a - b for k, (a, b) in enumerate(zip(row, resting, strict=True)) if a != b} for row in moving]
         faint = FAINT * (max((abs(x) for row in rows for x in row.values()), default=mp.zero) or 1)
-        own = {i: mp.one for q, i in self._columns.items() if q in motion.moved}
+        own = {i: self._masses[q] for q, i in self._columns.items() if q in self._masses}
         return [row | {i: row.get(i, mp.zero) + own.get(i, faint)} for i, row in enumerate(rows)]
 
     def _root(self, state: State, metric: Sequence[Row]) -> tuple[State, bool]:

@@ -39,6 +39,17 @@ def test_bob_kept_level_swings_as_a_harmonic_oscillator(engine, c_compiler):
     assert motion.report.trusted
 
 
+@pytest.mark.parametrize("mass", [10**9, 10**-9])
+def test_rates_of_the_winch_keep_their_digits_with_any_load(mass):
+    """The second rate is the difference of the drive and the reaction, which a unit mass made one of large numbers."""
+    motion = holonom.system(BOB.format(course="-2", speed=0).replace("m = 2", f"m = {mass:.1e}")).simulate(samples=5)
+    u = sp.sqrt(sp.cos(sp.sqrt(5) * T) ** 2 + 4)
+    truth = values([u, sp.diff(u, T, 2), -5 * mass / 2 + 0 * T], motion.instants)
+    assert np.array([motion[name] for name in ("u", "ddot(u)", "lambda1")]) == pytest.approx(
+        truth, rel=1e-13, abs=1e-13
+    )
+
+
 def test_course_of_a_thrown_bob_makes_the_motion_free():
     scene = holonom.system(BOB.format(course="-2 - 5*t^2", speed=3))
     motion = scene.simulate(samples=5)
