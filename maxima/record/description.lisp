@@ -119,7 +119,8 @@
 (defun system-entries (document)
   (entries-anew document
     '(($title . identity) ($source . identity) ($coordinates . described-names) ($controls . described-names)
-      ($parameters . described-names) ($switches . described-names) ($kinetic_energy . described-effects) ($potential_energy . described-effects)
+      ($parameters . described-names) ($switches . described-names)
+      ($kinetic_energy . described-effects) ($potential_energy . described-effects)
       ($forces . described-forces) ($constraints . described-list) ($drawing . described-drawing))))
 
 (defun scene-entries (document)
