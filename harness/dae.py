@@ -151,7 +151,7 @@ class Dae:
     def _evaluated(
         self, t: float, y: ArrayLike, yp: ArrayLike
     ) -> tuple[list[Floats], list[Floats], Mapping[str, Floats]]:
-        """The parts q, v, lambda, mu of y and of y', and the equations with their gradients."""
+        """Return the parts q, v, lambda, mu of y and of y', and the equations with their gradients."""
         ends = np.cumsum([self._n, self._n, len(self._kept)])
         parts, rates = (np.split(np.asarray(each, dtype=float), ends) for each in (y, yp))
         multipliers = np.zeros(len(self.equations.multipliers))

@@ -167,7 +167,7 @@ class Description:
         return json.dumps(self.content, ensure_ascii=False, separators=(",", ":"))
 
     def with_settings(self, settings: Mapping[str, str]) -> "Description":
-        """The description with other values of parameters, which is what a setting can be once the file has run.
+        """Return the description with other values of parameters, which is what a setting can be once the file has run.
 
         Raises
         ------
@@ -205,14 +205,14 @@ def read_description(text: str, file: Path) -> Description:
 
 
 def _texts(content: dict[str, Any]) -> Iterator[str]:
-    """What a description holds in words; its names are of letters and digits, as the schema says."""
+    """Yield what a description holds in words; its names are of letters and digits, as the schema says."""
     for part in (content["system"], *content["scenes"]):
         yield part["title"]
         yield part.get("source") or ""
 
 
 def _strings(part: Any) -> Iterator[str]:
-    """All texts of a part of a document, names among them."""
+    """Yield all texts of a part of a document, names among them."""
     if isinstance(part, str):
         yield part
     elif isinstance(part, dict | list):
@@ -252,7 +252,7 @@ def _with_value(content: dict[str, Any], name: str, value: Tree, file: Path) -> 
 
 
 def _number(text: str) -> Tree:
-    """The tree of a number, exactly as it is written; a quotient may be one of decimals."""
+    """Return the tree of a number, exactly as it is written; a quotient may be one of decimals."""
     numerator, _, denominator = text.partition("/")
     value = Fraction(numerator) / Fraction(denominator or 1)
     parts = [part if abs(part) < JSON_INTEGERS else {"num": str(part)} for part in value.as_integer_ratio()]

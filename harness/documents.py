@@ -89,7 +89,7 @@ def ask_all(
 
 
 def written(answer: str | HolonomError) -> str:
-    """A document; raises where there is none."""
+    """Return a document; raises where there is none."""
     if isinstance(answer, HolonomError):
         raise answer
     return answer

@@ -15,7 +15,7 @@ class _Jacobi(Function):
     kind: str
 
     def fdiff(self, argindex: int = 1) -> Expr:
-        """Derivative by u; none by the parameter m is known here."""
+        """Return derivative by u; none by the parameter m is known here."""
         if argindex != 1:
             raise ArgumentIndexError(self, argindex)
         return self._rate(*self.args)

@@ -37,11 +37,11 @@ class Equations(Sequence["Equation"]):
         return Equations(found)
 
     def titles(self) -> Iterator[str]:
-        """Number, id and name of each."""
+        """Return number, id and name of each."""
         return (f"({equation.number}) {equation.id}: {equation.name}" for equation in self._equations)
 
     def solved_for(self, name: str) -> Any:
-        """The right side of the relation whose left side is the quantity of that name, in SymPy.
+        """Return the right side of the relation whose left side is the quantity of that name, in SymPy.
 
         Raises
         ------

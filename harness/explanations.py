@@ -53,7 +53,7 @@ ADVICE = {
 
 
 def advice(kind: HardCase) -> str:
-    """The sentence that says what to do about a hard case."""
+    """Return the sentence that says what to do about a hard case."""
     return ADVICE[kind]
 
 
@@ -75,7 +75,7 @@ def engine_text(legs: "Sequence[EngineSegment]") -> str:
 
 
 def remarks(report: "Report") -> Iterator[str]:
-    """What happened on the way, and what to do about the hard cases that the motion is: one sentence each."""
+    """Yield what happened on the way, and what to do about the hard cases that the motion is: one sentence each."""
     called = [leg for leg in report.legs if leg.engine == FALLBACK and leg.case is not None]
     for leg in called[:LISTED]:
         yield gettext(
@@ -94,7 +94,7 @@ def remarks(report: "Report") -> Iterator[str]:
 
 
 def unresolved(start: float) -> str:
-    """The sentence that says from when on jumps in time may be passed over."""
+    """Return the sentence that says from when on jumps in time may be passed over."""
     return gettext(
         "From t = %(start).6g a function of the time changes too often to be looked at ahead: a jump is not found.",
         start=start,

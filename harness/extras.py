@@ -11,7 +11,7 @@ NO_ROOM = ("failed to map segment", "annot allocate memory")  # what the loader 
 
 
 def extra_of(package: str) -> str | None:
-    """The extra that installs a package; None where none does."""
+    """Return the extra that installs a package; None where none does."""
     from importlib import metadata  # takes longer to import than all else here
 
     found = (REQUIREMENT.match(requirement) for requirement in metadata.requires("holonom") or ())
@@ -19,7 +19,7 @@ def extra_of(package: str) -> str | None:
 
 
 def missing_package(package: str) -> HolonomError:
-    """The refusal to go on without a package, with the command that installs the extra that it belongs to."""
+    """Return the refusal to go on without a package, with the command that installs the extra that it belongs to."""
     extra = extra_of(package)
     named = f"holonom[{extra}]" if extra else package
     return HolonomError(Failure.EXTRA_MISSING, detail=f"{package}, which is not installed; run `pip install '{named}'`")

@@ -330,7 +330,7 @@ class HolonomError(Exception):
         return self._told(self._remedies(_argument))
 
     def sentence(self, options: Collection[str] | None = None) -> str:
-        """What went wrong, where, and what to do, as the command line says it.
+        """Return what went wrong, where, and what to do, as the command line says it.
 
         Parameters
         ----------

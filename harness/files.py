@@ -18,7 +18,7 @@ LINKS = 40  # that lead from one to the next, which is what Linux follows
 
 
 def shared(folder: str) -> Path:
-    """A folder that travels with the package, ``maxima`` or ``examples``: inside it where a wheel has put it.
+    """Return a folder that travels with the package, ``maxima`` or ``examples``: inside it where a wheel has put it.
 
     In the repository, where the package is used in place, it lies beside the package.
     """
@@ -27,7 +27,10 @@ def shared(folder: str) -> Path:
 
 
 def scene_file(path: str | Path) -> Path:
-    """A scene file as it is named; where there is none, the example of that name that travels with the package."""
+    """Return a scene file as it is named.
+
+    Where there is none, the example of that name that travels with the package.
+    """
     file = Path(path)
     if not file.exists() and file.parts[:1] == ("examples",):
         travelling = shared("examples").joinpath(*file.parts[1:])
@@ -36,7 +39,10 @@ def scene_file(path: str | Path) -> Path:
 
 
 def near_file(missing: Path) -> str:
-    """What a file that is missing may have been meant to be, as the end of a sentence; empty where nothing is near."""
+    """Return what a file that is missing may have been meant to be, as the end of a sentence.
+
+    Empty where nothing is near.
+    """
     try:
         names = [file.name for file in missing.parent.iterdir()]
     except OSError:
@@ -87,7 +93,7 @@ def write_whole(path: Path, content: str | bytes) -> None:
 
 @contextmanager
 def whole_file(path: Path) -> Iterator[BinaryIO]:
-    """A file that is written piece by piece, and of which nobody ever sees a part.
+    """Provide a file that is written piece by piece, and of which nobody ever sees a part.
 
     Parameters
     ----------
@@ -148,7 +154,7 @@ def write_files(directory: Path, files: Mapping[str, str]) -> None:
 
 
 def written_before(directory: Path) -> frozenset[str]:
-    """The files of a directory that its manifest lists, by their paths in it."""
+    """Return the files of a directory that its manifest lists, by their paths in it."""
     try:
         listed = (directory / MANIFEST).read_text(encoding="utf-8").splitlines()
     except (OSError, UnicodeDecodeError):
@@ -199,7 +205,7 @@ def write_whole_directory(path: Path, files: Mapping[str, str | bytes]) -> None:
 
 
 def _target(path: Path) -> Path:
-    """The file that a name leads to; no link is followed that somebody else made."""
+    """Return the file that a name leads to; no link is followed that somebody else made."""
     link = path
     for _ in range(LINKS):
         if not link.is_symlink():
@@ -211,14 +217,17 @@ def _target(path: Path) -> Path:
 
 
 def _status(path: Path) -> os.stat_result | None:
-    """What there is of a name; None where there is nothing."""
+    """Return what there is of a name; None where there is nothing."""
     with suppress(FileNotFoundError):
         return path.lstat()
     return None
 
 
 def _unnamed(folder: Path) -> BinaryIO:
-    """A file on the disk of a folder that has no name: it is gone when it is closed, also by the end of the process."""
+    """Return a file on the disk of a folder that has no name.
+
+    It is gone when it is closed, also by the end of the process.
+    """
     with suppress(AttributeError, OSError):  # a system, or a file system, without O_TMPFILE
         return os.fdopen(os.open(folder, os.O_TMPFILE | os.O_RDWR, 0o600), "w+b")
     return tempfile.TemporaryFile(dir=folder)
@@ -311,7 +320,10 @@ def _manifest(names: Iterable[str]) -> str:
 
 
 def _unwritable(path: Path, error: OSError) -> Exception:
-    """The refusal to write a file; a lack of descriptors or memory, or a broken disk, is no matter of the file."""
+    """Return the refusal to write a file.
+
+    A lack of descriptors or memory, or a broken disk, is no matter of the file.
+    """
     if error.errno in (errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EIO):
         return error
     full = error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)

@@ -93,12 +93,12 @@ def _json_path(steps: Iterable[str | int]) -> str:
 
 
 def published(name: Document | Publication, content: Mapping[str, Any]) -> dict[str, Any]:
-    """What a command publishes, with its format and version."""
+    """Return what a command publishes, with its format and version."""
     return {"format": f"holonom-{name}", "version": VERSION, **content}
 
 
 def is_document(content: bytes) -> bool:
-    """Whether it is a document, by its format and version, or a list of documents."""
+    """Return True if it is a document, by its format and version, or a list of documents."""
     try:
         found = json.loads(content)
     except (ValueError, RecursionError):
@@ -110,7 +110,7 @@ def is_document(content: bytes) -> bool:
 
 
 def schema(name: str) -> dict[str, Any]:
-    """The JSON schema of a format, given its name without ``holonom-``."""
+    """Return the JSON schema of a format, given its name without ``holonom-``."""
     return json.loads((SCHEMAS / f"{name}.json").read_text(encoding="utf-8"))
 
 

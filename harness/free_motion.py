@@ -138,7 +138,7 @@ class Premises:
     time_span: tuple[Tree, Tree] | None
 
     def trial(self) -> FreeMotionTrial:
-        """What the verdicts are tried on."""
+        """Return what the verdicts are tried on."""
         return FreeMotionTrial(
             described_system(self.system, self.effects).without(self.redundant),
             {Symbol(name, real=True): value for name, value in self.parameter_values.items()},

@@ -19,12 +19,12 @@ def hidden_character(text: str) -> str:
 
 
 def visible(text: str) -> str:
-    """A text of any number of lines in which each character is seen."""
+    """Return a text of any number of lines in which each character is seen."""
     return UNSEEN.sub(_code, text)
 
 
 def visible_line(text: str) -> str:
-    """A text as one line in which each character is seen: nothing in it looks like a line of its own."""
+    """Return a text as one line in which each character is seen: nothing in it looks like a line of its own."""
     return visible(text).replace("\n", "\\n").replace("\t", " ")
 
 

@@ -45,7 +45,7 @@ class Component:
 
 
 def components() -> Iterator[Component]:
-    """All that Holonom uses, programs of the system first."""
+    """Yield all that Holonom uses, programs of the system first."""
     for program, purpose in PROGRAMS.items():
         version = None if shutil.which(program) is None else ""
         remedy = _install_program(program)
@@ -107,7 +107,7 @@ MARK = "/* Holonom, put here by `holonom maxima-path`, which puts it here anew w
 
 
 def user_directory() -> Path:
-    """The directory that Maxima calls maxima_userdir."""
+    """Return the directory that Maxima calls maxima_userdir."""
     named = os.environ.get("MAXIMA_USERDIR")
     return Path(named or Path.home() / ".maxima").absolute()
 
@@ -134,7 +134,7 @@ def put_into_maxima(directory: Path) -> Path:
 
 
 def stub_text(library: Path, helping: Path) -> str:
-    """The Maxima file that loads the library and tells Maxima of its help."""
+    """Return the Maxima file that loads the library and tells Maxima of its help."""
     return (
         f"{MARK}\n\n"
         f"load({_maxima_text(library / 'holonom.mac')})$\n"

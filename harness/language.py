@@ -34,7 +34,7 @@ class Message(str):
     values: dict[str, Any]  # what stands in their places; messages among them are translated with it
 
     def __new__(cls, pattern: str, **values: Any) -> Message:
-        """The English message, and what it was made of."""
+        """Return the English message, and its parts."""
         made = super().__new__(cls, pattern % values if values else pattern)
         made.pattern, made.values = pattern, values
         return made
@@ -62,24 +62,24 @@ def speaking(language: str) -> Iterator[None]:
 
 
 def spoken() -> str:
-    """The language that messages are translated into."""
+    """Return the language that messages are translated into."""
     return _spoken.get()
 
 
 def gettext(message: str, **values: Any) -> str:
-    """A message in the language spoken, with values in its placeholders where some are given."""
+    """Return a message in the language spoken, with values in its placeholders where some are given."""
     found = _catalog(spoken()).gettext(message) if message else message
     return found % values if values else found
 
 
 def ngettext(singular: str, plural: str, count: int, **values: Any) -> str:
-    """The form of a message that fits a count."""
+    """Return the form of a message that fits a count."""
     found = _catalog(spoken()).ngettext(singular, plural, count)
     return found % values if values else found
 
 
 def translated(text: str) -> str:
-    """A text in the language spoken: a `Message` with its values, any other where the catalog knows it."""
+    """Return a text in the language spoken: a `Message` with its values, any other where the catalog knows it."""
     if not isinstance(text, Message):
         return gettext(str(text))
     values = {name: translated(each) if isinstance(each, str) else each for name, each in text.values.items()}
@@ -87,13 +87,13 @@ def translated(text: str) -> str:
 
 
 def catalog_file(language: str) -> Path:
-    """The catalog of a language."""
+    """Return the catalog of a language."""
     return LOCALE / language / "LC_MESSAGES" / f"{DOMAIN}.po"
 
 
 @cache
 def _catalog(language: str) -> catalogs.NullTranslations:
-    """The messages of a language; of English none, for they are English.
+    """Return the messages of a language; of English none, for they are English.
 
     Raises
     ------

@@ -90,7 +90,7 @@ class Run:
     left_behind: tuple[str, ...]
 
     def leaves(self, what: str) -> Path:
-        """The file that the run is to leave behind."""
+        """Return the file that the run is to leave behind."""
         return self.directory / f"{what}-{self.mark}"
 
 
@@ -244,7 +244,10 @@ def _new_run(
 
 
 def _copy(run: Run) -> str:
-    """The name of a copy of the run's file, as Lisp text; every path and every line end can be read in the copy."""
+    """Return the name of a copy of the run's file, as Lisp text.
+
+    Every path and every line end can be read in the copy.
+    """
     text = read_maxima_text(run.file)
     _require_short_names(text, run.file)
     (run.directory / "file.mac").write_bytes(text.encode())
@@ -352,7 +355,7 @@ def _passed_on() -> dict[str, str]:
 
 
 def _place(run: Run, maxima: Path) -> Place:
-    """A private directory for all that Maxima keeps, English messages, and nothing else of this machine's settings."""
+    """Return a private directory for what Maxima keeps, with English messages and no settings of this machine."""
     directory = str(run.directory)
     environment = ENVIRONMENT | _passed_on()
     environment |= {
@@ -382,7 +385,7 @@ def _memory_of_the_machine() -> int:
 
 
 def _read_ending(run: Run, what: str, broken_off: Ending) -> Ending | None:
-    """The ending that `headless.lisp` wrote; None of what is finished."""
+    """Return the ending that `headless.lisp` wrote; None of what is finished."""
     lines = (_read_left(run.leaves(what), LONGEST_OUTCOME) or b"").decode(errors="replace").split("\n")
     if lines == [""]:
         return broken_off
@@ -401,7 +404,7 @@ def _read_ending(run: Run, what: str, broken_off: Ending) -> Ending | None:
 
 
 def _unfinished(run: Run, status: int) -> Ending:
-    """The ending of a run that did not come to its end: it ended itself, or was ended by a signal."""
+    """Return the ending of a run that did not come to its end: it ended itself, or was ended by a signal."""
     number = -status if status < 0 else status - SIGNALLED
     if number not in SIGNALS:
         return Ending(Failure.ENDED_EARLY, str(run.file))
@@ -409,7 +412,7 @@ def _unfinished(run: Run, status: int) -> Ending:
 
 
 def _finished_document(run: Run, ended: Ended, writer: str, document: str = DOCUMENT) -> str:
-    """What a run left; raise where it did not come to its end."""
+    """Return what a run left; raise where it did not come to its end."""
     ended.require_finished(run, writer)
     last_lines = _last_lines(ended.printed)
     content = _read_left(run.leaves(document), run.limits.file_mib * MIB)
@@ -421,7 +424,7 @@ def _finished_document(run: Run, ended: Ended, writer: str, document: str = DOCU
 
 
 def _read_left(path: Path, most: int) -> bytes | None:
-    """What a process left in a regular file, or None; a link is not followed, nor a pipe waited for."""
+    """Return what a process left in a regular file, or None; a link is not followed, nor a pipe waited for."""
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
     except OSError:
@@ -439,12 +442,12 @@ def _last_lines(printed: str) -> tuple[str, ...]:
 
 
 def _set(settings: Mapping[str, str]) -> str:
-    """A Maxima assignment of the settings."""
+    """Return a Maxima assignment of the settings."""
     return f"settings : [{', '.join(f'{name} = {value}' for name, value in settings.items())}]"
 
 
 def _repeating_command(file: Path, call: str, settings: Mapping[str, str]) -> str:
-    """A shell command that repeats a run with Maxima alone."""
+    """Return a shell command that repeats a run with Maxima alone."""
     search = f"file_search_maxima : cons({quoted(LIBRARY / '$$$.mac')}, file_search_maxima)$"
     statements = f"{_set(settings)}$ {search} batch({quoted(file.resolve())})$ {call}"
     return f"maxima --init=/dev/null --batch-string={shlex.quote(statements)} </dev/null"

@@ -88,7 +88,7 @@ def _expanded(tree: Tree) -> Expanded:
 
 
 def _parted(tree: Tree) -> tuple[bool, Tree]:
-    """Whether a minus sign stands before a tree, and the tree without it."""
+    """Return whether a minus sign stands before a tree, and the tree without it."""
     match tree:
         case bool():
             return False, tree
@@ -147,7 +147,7 @@ def _product(tree: Tree) -> Expanded:
 
 
 def _fraction(factor: Tree) -> tuple[Tree, Tree]:
-    """What of a factor stands above the stroke and what below it."""
+    """Return what of a factor stands above the stroke and what below it."""
     match factor:
         case ["Rational", numerator, denominator]:
             _digits(numerator), _digits(denominator)  # which are refused where they are no whole numbers
@@ -160,7 +160,7 @@ def _fraction(factor: Tree) -> tuple[Tree, Tree]:
 
 
 def _below(tree: Tree) -> Tree | None:
-    """What stands below a stroke, where that is all of a tree, or its denominator."""
+    """Return what stands below a stroke, where that is all of a tree, or its denominator."""
     match tree:
         case ["Rational" | "Divide", _, denominator]:
             return denominator

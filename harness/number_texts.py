@@ -9,13 +9,13 @@ SPARE_DIGITS = 11  # of a number longer than Python reads, beyond those that mpm
 
 
 def number(text: str) -> mpmath.mpf:
-    """The value of p/q or of decimal digits, rounded to the digits that mpmath works with."""
+    """Return the value of p/q or of decimal digits, rounded to the digits that mpmath works with."""
     numerator, _, denominator = text.partition("/")
     return _decimal(numerator) / _decimal(denominator or "1")
 
 
 def numbers(texts: Iterable[str]) -> list[mpmath.mpf]:
-    """The values of several."""
+    """Return the values of several."""
     return [number(text) for text in texts]
 
 

@@ -131,7 +131,7 @@ def read_instant(value: Any) -> Fraction:
 
 
 def within_reach(number: str) -> bool:
-    """Whether a double holds the parts of a decimal number or quotient, told without computing them."""
+    """Return True if a double holds the parts of a decimal number or quotient, told without computing them."""
     for part in number.lower().split("/"):
         digits, _, exponent = part.partition("e")
         if len(digits) > LONGEST or len(exponent) > 4 or not abs(int(exponent or 0)) + len(digits) <= LARGEST_EXPONENT:

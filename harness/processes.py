@@ -140,7 +140,7 @@ def _kill_at_end_of_input(child: int) -> None:
 
 
 def usable_cores() -> int:
-    """Those that this process may use, where the system can tell; else those that there are."""
+    """Return those that this process may use, where the system can tell; else those that there are."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 

@@ -188,7 +188,7 @@ class Scene:
         self._derived = Derivations(self._source)
 
     def with_settings(self, settings: Mapping[str, Number] | None = None, **more: Number) -> "Scene":
-        """The same scene with other numbers for what the file leaves open and for parameters."""
+        """Return the same scene with other numbers for what the file leaves open and for parameters."""
         other = Scene(self.file, self._name, self.settings | _settings({**(settings or {}), **more}), self.limits)
         other._directory, other._source, other._derived = self._directory, self._source, self._derived
         return other
@@ -229,7 +229,7 @@ class Scene:
         return Equations((*record.derivations[chosen.derivation].equations, *chosen.equations))
 
     def _name_among(self, names: Sequence[str]) -> str | None:
-        """The scene's name: the last one where none is given, None where there is no scene."""
+        """Return the scene's name: the last one where none is given, None where there is no scene."""
         if self._name is not None and self._name not in names:
             said = f"{self._name}; the file has {', '.join(names) or 'none'}"
             raise HolonomError(Failure.NO_SUCH_SCENE, self.file, said)
@@ -263,7 +263,7 @@ class Scene:
 
     @naming_the_extra()
     def effects(self) -> "MeasuredCosts":
-        """Which terms and effects there are, and what each costs in operations and in measured time."""
+        """Return which terms and effects there are, and what each costs in operations and in measured time."""
         from .program.effects import scene_costs
 
         return scene_costs(self._source, self._request(), self.limits)
@@ -380,7 +380,7 @@ class Scene:
     @naming_the_extra()
     @takes_options(*options_of(DaeRequest))
     def dae(self, options: dict[str, Any]) -> "Dae":
-        """The equations of motion as F(t, y, y') = 0, with its Jacobian, for any solver of such systems.
+        """Return the equations of motion as F(t, y, y') = 0, with its Jacobian, for any solver of such systems.
 
         Parameters
         ----------
@@ -404,7 +404,7 @@ class Scene:
     @naming_the_extra()
     @takes_options(*options_of(Request, "solve"))
     def rhs(self, options: dict[str, Any]) -> "RightHandSide":
-        """The equations of motion as f(t, y) for any integrator, y the coordinates and then the velocities.
+        """Return the equations of motion as f(t, y) for any integrator, y the coordinates and then the velocities.
 
         The control law and the parameters are put in; nothing keeps the constraints but the accelerations.
 
@@ -422,7 +422,7 @@ class Scene:
 
     @takes_options(*options_of(Request, "solve"))
     def program(self, options: dict[str, Any]) -> MotionProgram:
-        """The motion program: accelerations and multipliers of (t, q, dot q, u, dot u, ddot u)."""
+        """Return the motion program: accelerations and multipliers of (t, q, dot q, u, dot u, ddot u)."""
         return MotionProgram(self._source, self._request(**options), self.limits)
 
     @cached_property

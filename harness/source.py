@@ -28,7 +28,7 @@ class Source:
         self._described: dict[tuple[tuple[str, str], ...], Description] = {}
 
     def description(self, settings: Mapping[str, str] = NO_SETTINGS) -> Description:
-        """What the file says under these settings; raises as `describe`."""
+        """Return what the file says under these settings; raises as `describe`."""
         key = tuple(sorted(settings.items()))
         if key not in self._described:
             self._described[key] = describe(self.file, settings, self.limits)
@@ -36,7 +36,7 @@ class Source:
 
 
 def source_of(file: Source | Path, limits: Limits) -> Source:
-    """A source of a file; a source as it is."""
+    """Return a source of a file; a source as it is."""
     return file if isinstance(file, Source) else Source(file, limits)
 
 

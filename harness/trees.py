@@ -58,7 +58,7 @@ def converted(root: Any, expand: Callable[[Any], tuple[Callable[..., Any], list]
 
 
 def integer(tree: object) -> int:
-    """The value of a tree that is an integer.
+    """Return the value of a tree that is an integer.
 
     Raises
     ------
@@ -75,7 +75,7 @@ def integer(tree: object) -> int:
 
 
 def quantity(name: str) -> str:
-    """A name, if it is one of a quantity.
+    """Return a name, if it is one of a quantity.
 
     Raises
     ------

@@ -30,7 +30,7 @@ class Machine:
 
 
 def this_machine(packages: tuple[str, ...] = PACKAGES) -> Machine:
-    """The machine this runs on, today, with the versions of those packages that are installed."""
+    """Return the machine this runs on, today, with the versions of those packages that are installed."""
     versions = {"Python": platform.python_version()}
     for package in packages:
         try:

@@ -31,7 +31,10 @@ def beside(work: Callable[..., Any], *arguments: Any) -> Iterator[Connection]:
 
 
 def result_of(child: Connection, seconds: float = math.inf, otherwise: Any = None) -> Any:
-    """What came of the work, or something else if it takes longer; raises what it raised, and where the child ended."""
+    """Return what came of the work, or something else if it takes longer.
+
+    Raises what it raised, and where the child ended.
+    """
     if math.isfinite(seconds) and not child.poll(max(seconds, 0)):
         return otherwise
     try:

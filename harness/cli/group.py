@@ -86,7 +86,7 @@ class Commands(click.Group):
     help="Tell the versions of Holonom, Maxima and its Lisp, heyoka and SymPy.",
 )
 def holonom(verbose: bool, quiet: bool) -> None:
-    """Controllable holonomic systems with redundant coordinates, derived by Maxima and checked by SymPy.
+    """Derive, check and simulate controllable holonomic systems with redundant coordinates.
 
     A SCENE is a Maxima file that describes a system and what to do with it.
     """

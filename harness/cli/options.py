@@ -186,7 +186,7 @@ def as_instant(ctx: click.Context, parameter: click.Parameter, text: str | None)
 
 
 def json_text(document: Any) -> str:
-    """A document as `--json` writes it."""
+    """Return a document as `--json` writes it."""
     return json.dumps(document, ensure_ascii=False, indent=1) + "\n"
 
 

@@ -28,7 +28,7 @@ class SceneFile(click.Path):
         super().__init__(path_type=Path)
 
     def convert(self, value: Any, parameter: click.Parameter | None, ctx: click.Context | None) -> Path:
-        """The path of the file."""
+        """Return the path of the file."""
         if value != str(STANDARD_OUTPUT) or ctx is None:
             return scene_file(super().convert(value, parameter, ctx))
         from ..maxima import limited
@@ -40,7 +40,7 @@ class SceneFile(click.Path):
 
 
 def as_given(scene: Path) -> str:
-    """How the command line names a scene file: ``-`` where it stands on standard input."""
+    """Return how the command line names a scene file: ``-`` where it stands on standard input."""
     stands_in = scene == click.get_current_context().meta.get(STANDARD_INPUT)
     return str(STANDARD_OUTPUT if stands_in else scene)
 
@@ -112,7 +112,7 @@ class Command(click.Command):
 
 
 def is_forced() -> bool:
-    """Whether the running command may replace what is somebody else's."""
+    """Return True if the running command may replace what is somebody else's."""
     return click.get_current_context().meta.get(FORCE, False)
 
 

@@ -12,5 +12,5 @@ TEMPLATES = Path(__file__).with_name("templates")
 
 
 def table(name: str) -> dict[str, Any]:
-    """What the pages are told beside the runs: the table of that name, which lies with the templates."""
+    """Return what the pages are told beside the runs: the table of that name, which lies with the templates."""
     return tomllib.loads((TEMPLATES / f"{name}.toml").read_text(encoding="utf-8"))

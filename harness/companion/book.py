@@ -94,7 +94,7 @@ def make_book(
 
 
 def twins_of(language: str, languages: Sequence[str]) -> tuple[Twin, ...]:
-    """Where the pages of the other languages are, as seen from those of one."""
+    """Return where the pages of the other languages are, as seen from those of one."""
     back = "../" if _folder(language, languages) else ""
     return tuple(Twin(other, back + _folder(other, languages)) for other in languages if other != language)
 
@@ -112,7 +112,7 @@ def require_companion_or_nothing(directory: Path) -> None:
 
 
 def pages(book: Book, results: Mapping[Run, Any], twins: tuple[Twin, ...] = ()) -> dict[str, str | bytes]:
-    """The files of a book, in the language spoken, by their names."""
+    """Return the files of a book, in the language spoken, by their names."""
     contents = contents_of(book, results, twins)
     made = {chapter: _page(chapter, results) for chapter in book.chapters}
     written = {f"{chapter.slug}.html": chapter_page(contents, chapter, page.content) for chapter, page in made.items()}
@@ -139,7 +139,7 @@ def _page(chapter: Chapter, results: Mapping[Run, Any]) -> Page:
 
 
 def contents_of(book: Book, results: Mapping[Run, Any], twins: tuple[Twin, ...] = ()) -> Contents:
-    """What every page of a book knows about it."""
+    """Return what every page of a book knows about it."""
     numbers, letters = map(str, count(1)), iter(ascii_uppercase)
     return Contents(
         title=translated(book.title),

@@ -76,13 +76,13 @@ def scene_cards(
 
 
 def printed_card(printed: Iterable[PrintedEquation], name: str) -> Card:
-    """The card of an equation that the paper prints without a number, and no record has, given its name."""
+    """Return the card of an equation that the paper prints without a number, and no record has, given its name."""
     found = next(each for each in printed if each.name == name)
     return Card(anchor("", found), found.number, found.name, "", True, (found,), (), ())
 
 
 def named_equations(derived: Derived, scene: str | None = None) -> dict[str, Equation]:
-    """The equations of a derivation, of all its effects, or of a scene, by id."""
+    """Return the equations of a derivation, of all its effects, or of a scene, by id."""
     record = derived.record
     whole = max(record.derivations, key=lambda each: len(each.effects))
     found = whole.equations if scene is None else scene_named(derived, scene).equations
@@ -90,27 +90,27 @@ def named_equations(derived: Derived, scene: str | None = None) -> dict[str, Equ
 
 
 def scene_named(derived: Derived, name: str) -> Scene:
-    """The scene of that name in a record."""
+    """Return the scene of that name in a record."""
     return next(scene for scene in derived.record.scenes if scene.name == name)
 
 
 def verdicts_on(derived: Derived, equation: Equation, scene: str | None) -> tuple[EquationVerdict, ...]:
-    """The verdicts on an equation of a scene or, without a scene, of the derivation."""
+    """Return the verdicts on an equation of a scene or, without a scene, of the derivation."""
     return tuple(found for found in derived.report.verdicts if found.scene == scene and found.id == equation.id)
 
 
 def missing(derived: Derived) -> list[EquationVerdict]:
-    """The verdicts on equations that a record should hold and does not: they have no card."""
+    """Return the verdicts on equations that a record should hold and does not: they have no card."""
     return [found for found in derived.report.verdicts if not found.held and found.verdict is Verdict.DISAGREES]
 
 
 def files_of(cards: Iterable[Card]) -> tuple[str, ...]:
-    """The Maxima files that the lines on some cards come from."""
+    """Return the Maxima files that the lines on some cards come from."""
     return tuple(each.file for card in cards for each in card.lines)
 
 
 def anchor(prefix: str, equation: Equation | PrintedEquation, taken: Iterable[str] = ()) -> str:
-    """The anchor of an equation: its number, or its name where there is none or another has it."""
+    """Return the anchor of an equation: its number, or its name where there is none or another has it."""
     short = "-".join(filter(None, [prefix, "eq", equation.number]))
     named = f"{short}-{re.sub(r'[^a-z0-9]+', '-', equation.name.lower()).strip('-')}"
     return named if not equation.number or short in taken else short
@@ -157,12 +157,12 @@ def _distinct(equations: Iterable[Equation]) -> list[Equation]:
 
 
 def _same(one: PrintedEquation, other: Equation) -> bool:
-    """Whether a derived equation is the one printed; the print bears its number and its name."""
+    """Return True if a derived equation is the one printed; the print bears its number and its name."""
     return (one.number, one.name) == (other.number, other.name)
 
 
 def _derivation_instances(derived: Derived) -> list[Instance]:
-    """The equations of all derivations of a record, those with most effects first."""
+    """Return the equations of all derivations of a record, those with most effects first."""
     record = derived.record
     report = [found for found in derived.report.verdicts if found.scene is None]
     parts = sorted(enumerate(record.derivations), key=lambda part: len(part[1].effects), reverse=True)
@@ -187,5 +187,5 @@ def _scene_instances(derived: Derived, name: str) -> list[Instance]:
 
 
 def _speaks_of(found: EquationVerdict, equation: Equation) -> bool:
-    """Whether a verdict is one on an equation; SymPy's own LagrangesMethod speaks of equation (2)."""
+    """Return True if a verdict is one on an equation; SymPy's own LagrangesMethod speaks of equation (2)."""
     return found.id == equation.id or (found.id, equation.id) == (OPINION.id, "lagrange_equations")

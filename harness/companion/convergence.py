@@ -129,7 +129,7 @@ def draw_radius(found: RadiiFound, file: Path) -> None:
 
 
 def _expanded(controls: Sequence[Fraction], scene: str, order: int) -> list[MotionSeries]:
-    """A scene's motion, under each of the initial controls."""
+    """Return a scene's motion, under each of the initial controls."""
     requests = [SeriesRequest(order, scene, settings={"u0": str(u0)}) for u0 in controls]
     with ThreadPoolExecutor(AT_ONCE) as pool:
         return list(pool.map(lambda request: compute_series(PAPER, request, Limits()), requests))

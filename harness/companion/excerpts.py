@@ -39,12 +39,12 @@ def excerpt(root: Path, file: str, name: str) -> Excerpt:
 
 
 def step(root: Path, name: str) -> tuple[Excerpt, ...]:
-    """The Maxima lines that derive an equation, given its id."""
+    """Return the Maxima lines that derive an equation, given its id."""
     return tuple(excerpt(root, file, function) for file, functions in STEPS[name].items() for function in functions)
 
 
 def _with_comment(text: str, start: int) -> int:
-    """Where the comment begins that ends on the line above, or the start itself."""
+    """Return where the comment begins that ends on the line above, or the start itself."""
     if not text[:start].endswith("*/\n"):
         return start
     opening = text.rindex("/*", 0, start)

@@ -9,7 +9,7 @@ from ..mathjson import Tree, to_sympy
 
 
 def under(law: Mapping[str, Expr], expression: Expr) -> Expr:
-    """An expression under a control law, simplified."""
+    """Return an expression under a control law, simplified."""
     time = Symbol("t", real=True)
     for control, value in law.items():
         for order, name in enumerate((control, f"dot({control})", f"ddot({control})")):
@@ -18,12 +18,12 @@ def under(law: Mapping[str, Expr], expression: Expr) -> Expr:
 
 
 def right_side(tree: Tree) -> Expr:
-    """The right side of a printed equation of the example as a SymPy expression."""
+    """Return the right side of a printed equation of the example as a SymPy expression."""
     return to_sympy(_named(tree[2]))
 
 
 def _named(tree: Tree) -> Tree:
-    """The same tree with the names of a record: Dot of q1 is dot(q1) there."""
+    """Return the same tree with the names of a record: Dot of q1 is dot(q1) there."""
     match tree:
         case [("Dot" | "Ddot") as dots, str(name)]:
             return f"{dots.lower()}({name})"
@@ -34,6 +34,6 @@ def _named(tree: Tree) -> Tree:
 
 
 def zeros(expression: Expr) -> list[Expr]:
-    """The zeros, complex ones too, of an expression in a single symbol."""
+    """Return the zeros, complex ones too, of an expression in a single symbol."""
     (symbol,) = expression.free_symbols
     return sympy.solve(expression.subs(symbol, sympy.Dummy()))

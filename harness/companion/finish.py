@@ -61,7 +61,7 @@ def finished(pages: Mapping[str, str], parts: Sequence[Sequence[str]]) -> dict[s
 
 
 def _links(found: Mapping[str, Sequence[str]], names: Sequence[str]) -> dict[str, str]:
-    """Where each equation is first."""
+    """Return where each equation is first."""
     links: dict[str, str] = {}
     for name in names:
         for number in found.get(name, ()):
@@ -70,7 +70,7 @@ def _links(found: Mapping[str, Sequence[str]], names: Sequence[str]) -> dict[str
 
 
 def with_sections(page: str) -> str:
-    """A page with links to its sections, where it has several."""
+    """Return a page with links to its sections, where it has several."""
     headings = HEADING.findall(page)
     if len(headings) <= FEW:
         return NAVIGATION.sub("", page)
@@ -82,7 +82,7 @@ def with_sections(page: str) -> str:
 
 
 def with_equations(page: str, places: Mapping[str, str]) -> str:
-    """A page in whose prose each number of an equation is a link to it."""
+    """Return a page in whose prose each number of an equation is a link to it."""
 
     def linked(number: re.Match) -> str:
         link = places.get(number[1])
@@ -92,7 +92,7 @@ def with_equations(page: str, places: Mapping[str, str]) -> str:
 
 
 def _outside(page: str, change: Callable[[str], str]) -> Iterator[str]:
-    """The page with its text changed, but for that in elements where nothing is to be changed."""
+    """Yield the page with its text changed, but for that in elements where nothing is to be changed."""
     inside = 0
     for piece in TAG.split(page):
         if name := TAG_NAME.match(piece):
@@ -104,7 +104,7 @@ def _outside(page: str, change: Callable[[str], str]) -> Iterator[str]:
 
 
 def with_columns(page: str) -> str:
-    """A page in whose tables each cell knows the head of its column, which stands before it where tables are folded."""
+    """Return a page whose table cells know the heads of their columns, for folded tables."""
     return TABLE.sub(lambda table: _with_columns(table[0]), page)
 
 
@@ -124,7 +124,7 @@ def _labelled(row: str, columns: Sequence[str]) -> str:
 
 
 def terms(pages: Mapping[str, str]) -> list[Place]:
-    """The words that pages define, in the order of the alphabet."""
+    """Return the words that pages define, in the order of the alphabet."""
     found = [
         Place(Markup(text), f"{name}#{anchor}") for name, page in pages.items() for anchor, text in TERM.findall(page)
     ]

@@ -28,7 +28,7 @@ CHARACTERS = (
 
 @cache  # one for the pages in every language
 def mathematics_font() -> tuple[bytes, str]:
-    """The subset as WOFF, and its notice of copyright and licence.
+    """Return the subset as WOFF, and its notice of copyright and licence.
 
     Raises
     ------

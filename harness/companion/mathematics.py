@@ -33,7 +33,7 @@ Formulas = Callable[[int], Sequence[str]]  # LaTeX at a width in digits
 
 
 def tex(formula: str) -> Markup:
-    """A formula within a line of text."""
+    """Return a formula within a line of text."""
     return Markup(inline_mathml(formula))
 
 
@@ -45,33 +45,33 @@ def prose(text: str) -> Markup:
 
 
 def expression(value: Expr) -> Markup:
-    """A SymPy expression within a line of text."""
+    """Return a SymPy expression within a line of text."""
     return Markup(inline_mathml(latex(value), str(value)))
 
 
 def equality(name: str, value: Expr) -> Markup:
-    """A named value within a line of text."""
+    """Return a named value within a line of text."""
     return symbol(name) + tex("=") + expression(value)
 
 
 def display(left: Expr, right: Expr | int) -> Markup:
-    """Both sides of an equation on lines of its own."""
+    """Return both sides of an equation on lines of its own."""
     relation = Relation(from_sympy(left), from_sympy(sympify(right)))
     return _at_each_width(lambda width: [latex_relation(relation, width)], f"{left} = {right}")
 
 
 def display_named(name: str, value: Expr) -> Markup:
-    """A named value on lines of its own."""
+    """Return a named value on lines of its own."""
     return display(Symbol(name, real=True), value)
 
 
 def display_expression(value: Expr) -> Markup:
-    """An expression on lines of its own."""
+    """Return an expression on lines of its own."""
     return _at_each_width(lambda width: [latex(value, width)], str(value))
 
 
 def symbol(name: str) -> Markup:
-    """The letter of a quantity within a line of text."""
+    """Return the letter of a quantity within a line of text."""
     return expression(Symbol(name, real=True))
 
 
@@ -89,31 +89,31 @@ class Typeset:
 
 
 def typeset(equation: Equation) -> Typeset:
-    """The relations of an equation; those of the entries of one array as one, where it is narrow enough."""
+    """Return the relations of an equation; those of the entries of one array as one, where it is narrow enough."""
     said = "; ".join(f"{relation.left} = {relation.right}" for relation in equation.relations)
     lines = sum(formula.count(LINE_BREAK) + 1 for formula in latex_equation(equation, WIDTH))
     return Typeset(_at_each_width(lambda width: latex_equation(equation, width), said), lines)
 
 
 def nothing_to_show(equation: Equation) -> str:
-    """What an equation without relations says."""
+    """Return what an equation without relations says."""
     return translated(NOTHING.get(equation.number, UNCONSTRAINED))
 
 
 def as_printed(printed: PrintedEquation) -> Markup:
-    """An equation as the paper prints it, the misprint marked."""
+    """Return an equation as the paper prints it, the misprint marked."""
     if printed.agrees:
         return _printed(printed.printed_tree, printed.printed_tree, MISPRINT, printed.printed)
     return _printed(printed.printed_tree, printed.corrected_tree, MISPRINT, printed.printed)
 
 
 def as_corrected(printed: PrintedEquation) -> Markup:
-    """The printed equation mended, the correction marked."""
+    """Return the printed equation mended, the correction marked."""
     return _printed(printed.corrected_tree, printed.printed_tree, CORRECTION, printed.corrected)
 
 
 def difference(printed: PrintedEquation) -> Markup:
-    """What is printed less what is derived."""
+    """Return what is printed less what is derived."""
     return _block(lambda width: [latex_tree(printed.difference_tree, width)], printed.difference)
 
 

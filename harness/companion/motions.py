@@ -40,12 +40,12 @@ class Motion:
 
 
 def motion(file: Path, scene: str | None = None, until: Fraction | None = None) -> Run:
-    """The pictures of a scene's motion, through its time span or to an instant: a `Motion`."""
+    """Return the pictures of a scene's motion, through its time span or to an instant: a `Motion`."""
     return Run(follow, (file, scene, until, NO_SETTINGS, DEFAULT_LIMITS))
 
 
 def motions(file: Path, settings: Settings, limits: Limits) -> Run:
-    """The pictures of all motions of a file: by scene a `Motion`, or the `Refusal` that takes its place."""
+    """Return the pictures of all motions of a file: by scene a `Motion`, or the `Refusal` that takes its place."""
     return Run(follow_all, (file, settings, limits))
 
 
@@ -70,7 +70,7 @@ def follow(file: Path, scene: str | None, until: Fraction | None, settings: Sett
 
 
 def figures_of(motions: Iterable[tuple[str, Motion]]) -> dict[str, str]:
-    """The SVG files of motions, whose names each begin with the motion's own."""
+    """Return the SVG files of motions, whose names each begin with the motion's own."""
     files: dict[str, str] = {}
     for name, found in motions:
         files[f"{name}-curves"] = drawn(partial(draw_motion, found.simulation))

@@ -24,7 +24,7 @@ INITIAL_MOTION = ("12", "13", "18", "19")
 
 
 def book_of_scenes(files: Sequence[Path], settings: Settings, limits: Limits, command: str) -> Book:
-    """The companion of scene files, which a command makes."""
+    """Return the companion of scene files, which a command makes."""
     prefixes = [""] if len(files) == 1 else [_prefix(file, place) for place, file in enumerate(files, 1)]
     return Book(
         title=translatable("A companion to systems of your own"),
@@ -48,12 +48,12 @@ def _chapters(prefix: str, file: Path, settings: Settings, limits: Limits) -> tu
 
 
 def _prefix(file: Path, place: int) -> str:
-    """What the names of a file's pages begin with: no two files have the same."""
+    """Return what the names of a file's pages begin with: no two files have the same."""
     return f"{place}-{re.sub(r'[^a-z0-9]+', '-', file.stem.lower())}-"
 
 
 def system(prefix: str, file: Path, results: Mapping[str, FileAnswers]) -> Page:
-    """The system as its file describes it."""
+    """Return the system as its file describes it."""
     derived = results["study"].derived
     cards = derivation_cards(["1"], [derived], (), REPOSITORY)
     return Page(
@@ -69,7 +69,7 @@ def system(prefix: str, file: Path, results: Mapping[str, FileAnswers]) -> Page:
 
 
 def equations(prefix: str, file: Path, results: Mapping[str, FileAnswers]) -> Page:
-    """The equations of motion of the system, and the verdicts on them."""
+    """Return the equations of motion of the system, and the verdicts on them."""
     derived = results["study"].derived
     cards = derivation_cards(EQUATIONS, [derived], (), REPOSITORY)
     closed = all(each.closed_form_operations is not None for each in derived.record.derivations)
@@ -89,7 +89,7 @@ def free_motion(prefix: str, file: Path, results: Mapping[str, FileAnswers]) -> 
 
 
 def initial_motion(prefix: str, file: Path, results: Mapping[str, FileAnswers]) -> Page:
-    """The initial motion of each scene: the power series with its radius, and closed forms."""
+    """Return the initial motion of each scene: the power series with its radius, and closed forms."""
     found = results["study"]
     scenes = [
         {"name": name, "title": title, "cards": _scene_cards(found, INITIAL_MOTION, name), "series": found.series[name]}
@@ -99,7 +99,7 @@ def initial_motion(prefix: str, file: Path, results: Mapping[str, FileAnswers]) 
 
 
 def motion(prefix: str, file: Path, results: Mapping[str, Any]) -> Page:
-    """The motion of each scene: drawn, where the system says how it looks, and as curves."""
+    """Return the motion of each scene: drawn, where the system says how it looks, and as curves."""
     found, titles = results["motions"], results["study"].titles
     scenes = [(f"{prefix}scene-{place}", titles[name], name, found[name]) for place, name in enumerate(found, 1)]
     shown = [(figure, moved) for figure, _, _, moved in scenes if isinstance(moved, Motion)]

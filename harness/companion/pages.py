@@ -83,12 +83,12 @@ class Contents:
 
 
 def index_page(book: Contents, terms: Sequence[Place]) -> str:
-    """The first page: foreword, contents, and where each word is defined."""
+    """Return the first page: foreword, contents, and where each word is defined."""
     return _rendered("index.html", "index.html", book=book, terms=terms)
 
 
 def chapter_page(book: Contents, chapter: Chapter, content: Mapping[str, Any]) -> str:
-    """The page of a chapter, well-formed.
+    """Return the page of a chapter, well-formed.
 
     Raises
     ------
@@ -112,18 +112,18 @@ def chapter_page(book: Contents, chapter: Chapter, content: Mapping[str, Any]) -
 def printed_page(
     book: Contents, front: Markup, chapters: Sequence[tuple[Entry, Markup]], sheets: Mapping[str, int]
 ) -> str:
-    """The whole book as one page, with the sheet that each place is on as far as it is known."""
+    """Return the whole book as one page, with the sheet that each place is on as far as it is known."""
     terms = terms_in({f"{entry.slug}.html": text for entry, text in chapters})
     return _rendered("print.html", "print.html", book=book, front=front, chapters=chapters, sheets=sheets, terms=terms)
 
 
 def source_page(book: Contents, file: str, text: str) -> str:
-    """A Maxima file with numbered lines."""
+    """Return a Maxima file with numbered lines."""
     return _rendered("source.html", source_name(file), book=book, file=file, lines=text.splitlines())
 
 
 def topic_page(book: Contents, topic: Topic) -> str:
-    """A page of the reference."""
+    """Return a page of the reference."""
     return _rendered("topic.html", topic_name(topic), book=book, topic=topic)
 
 
@@ -214,7 +214,7 @@ def _listed(items: Iterable[Markup]) -> Markup:
 
 
 def _both(items: Iterable[Markup]) -> Markup:
-    """Two things, or more of them, joined by the word for and."""
+    """Return two things, or more of them, joined by the word for and."""
     return Markup(gettext(" and ")).join(items)
 
 
@@ -240,7 +240,7 @@ def _emphasized(names: Iterable[str]) -> Markup:
 
 
 def _law_text(law: UniversalLaw) -> Markup:
-    """A control law: what the controls are, which of them are free, and what has to be positive for it."""
+    """Return a control law: what the controls are, which of them are free, and what has to be positive for it."""
     text = _equalities(law.controls)
     for name in law.free:
         message = Markup(gettext("%(law)s, %(control)s any function of the time"))
@@ -256,12 +256,12 @@ def _rounded(value: float, digits: int = 6) -> str:
 
 
 def _signed(value: float) -> str:
-    """A rounded number with its sign; nothing has a sign only where it is nothing."""
+    """Return a rounded number with its sign; nothing has a sign only where it is nothing."""
     return f"{value:+.0f}" if round(value) else gettext("under 1")
 
 
 def _counted(message: str, count: int, none: str) -> str:
-    """The message with the count in it, or that there are none."""
+    """Return the message with the count in it, or that there are none."""
     return message % {"count": count} if count else none
 
 
@@ -280,12 +280,15 @@ def _complex_number(value: complex, paired: bool) -> str:
 
 
 def _coefficient(text: str) -> str:
-    """An exact number that is short, or a rounded one."""
+    """Return an exact number that is short, or a rounded one."""
     return text if len(text) <= LONGEST_COEFFICIENT else f"{float(number(text)):.10g}"
 
 
 def _maxima_text(text: str) -> Markup:
-    """A reason of Maxima's, an expression that it names as code; in English where the catalog does not know it."""
+    """Return a reason of Maxima's, an expression that it names as code.
+
+    In English where the catalog does not know it.
+    """
     told = translated(text)
     marked = NAMED_BY_MAXIMA.sub(r"\1<code>\2</code>\3", str(escape(told)))
     foreign = told == text and spoken() != ENGLISH
@@ -293,7 +296,7 @@ def _maxima_text(text: str) -> Markup:
 
 
 def _power_of_ten(value: float) -> Markup:
-    """A small number with one digit and its power of ten."""
+    """Return a small number with one digit and its power of ten."""
     if not value:
         return mathematics.tex("0")
     digit, exponent = f"{value:.0e}".split("e")

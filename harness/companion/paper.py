@@ -15,7 +15,7 @@ REPOSITORY = shared("maxima").parent
 
 
 def book_of_the_paper(root: Path = REPOSITORY) -> Book:
-    """The companion of the paper, with the examples and Maxima files of a repository."""
+    """Return the companion of the paper, with the examples and Maxima files of a repository."""
     parts = tuple(
         (part["heading"], tuple(_chapter(root, **each) for each in part["chapter"]))
         for part in table("contents")["part"]
@@ -35,12 +35,12 @@ def book_of_the_paper(root: Path = REPOSITORY) -> Book:
 
 
 def chapter_of_the_paper(name: str, root: Path = REPOSITORY) -> Chapter:
-    """A chapter of that book by the name of its template."""
+    """Return a chapter of that book by the name of its template."""
     return next(each for each in book_of_the_paper(root).chapters if each.template == f"{name}.html")
 
 
 def _chapter(root: Path, name: str, heading: str, aim: str, data: bool = False) -> Chapter:
-    """A chapter that computes, or one whose page is made of a table alone; both bear their template's name."""
+    """Return a chapter that computes, or one whose page is made of a table alone; both bear their template's name."""
     about = (name.replace("_", "-"), heading, aim, f"{name}.html")
     if data:
         content = table(name)

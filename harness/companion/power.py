@@ -48,7 +48,7 @@ def energy_balance(system: System, scene: Scene, motion: Simulation) -> EnergyBa
 
 
 def values_along(expression: Expr, scene: Scene, motion: Simulation) -> NDArray[np.float64]:
-    """An expression in the state, the multipliers and the controls with their rates, along a motion under the law."""
+    """Return an expression of state, multipliers and controls along a motion under the law."""
     known = {"t": motion.instants, **motion.coordinates, **motion.velocities, **motion.multipliers}
     values: Mapping[Symbol, Expr] = {Symbol(name, real=True): value for name, value in scene.parameter_values.items()}
     expression = under(scene.control_law, expression).subs(values)

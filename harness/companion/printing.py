@@ -67,7 +67,7 @@ def print_book(contents: Contents, files: Mapping[str, str | bytes], pdf: Path) 
 
 
 def browser() -> str:
-    """The browser that prints, or the refusal where none is installed."""
+    """Return the browser that prints, or the refusal where none is installed."""
     found = next(filter(None, map(shutil.which, BROWSERS)), None)
     if found is None:
         raise HolonomError(Failure.BROWSER_MISSING)
@@ -75,7 +75,7 @@ def browser() -> str:
 
 
 def one_document(contents: Contents, files: Mapping[str, str | bytes], sheets: Mapping[str, int]) -> str:
-    """All chapters in one document, ids and links made to fit."""
+    """Return all chapters in one document, ids and links made to fit."""
     chapters = [
         (entry, _fitted(ARTICLE.search(files[f"{entry.slug}.html"])[1], entry.slug)) for entry in contents.entries
     ]
@@ -84,7 +84,7 @@ def one_document(contents: Contents, files: Mapping[str, str | bytes], sheets: M
 
 
 def _fitted(text: str, slug: str) -> str:
-    """The text of a page with its ids and links as they are in one document; what leads out of it is no link."""
+    """Return the text of a page with its ids and links as they are in one document; what leads out of it is no link."""
 
     def linked(link: re.Match) -> str:
         page, anchor = link[1], (link[2] or "")[1:]
@@ -98,7 +98,7 @@ def _fitted(text: str, slug: str) -> str:
 
 
 def _printed(page: Path) -> Path:
-    """The PDF that the browser makes of a page."""
+    """Return the PDF that the browser makes of a page."""
     printed = page.with_suffix(".pdf")
     root = ["--no-sandbox"] if os.geteuid() == 0 else []  # Chromium's sandbox refuses to be set up by root
     command = [browser(), *PRINT, *root, f"--user-data-dir={page.parent / 'profile'}", f"--print-to-pdf={printed}"]
@@ -112,7 +112,7 @@ def _printed(page: Path) -> Path:
 
 
 def sheets_of(pdf: Path) -> dict[str, int]:
-    """The sheet, from 1 on, that each place of a printed document is on."""
+    """Return the sheet, from 1 on, that each place of a printed document is on."""
     try:
         from pypdf import PdfReader
     except ImportError:

@@ -78,38 +78,38 @@ class FileAnswers:
 
 
 def derived(file: Path, settings: Settings = NO_SETTINGS, limits: Limits = DEFAULT_LIMITS) -> Run:
-    """The derivation of a scene file, cross-checked: a `Derived`."""
+    """Return the derivation of a scene file, cross-checked: a `Derived`."""
     return Run(_derive, (file, settings, limits))
 
 
 def printed() -> Run:
-    """The paper as printed, compared with the derivation: a tuple of `PrintedEquation`."""
+    """Return the paper as printed, compared with the derivation: a tuple of `PrintedEquation`."""
     return Run(errata)
 
 
 def free(
     file: Path, scene: str | None = None, settings: Settings = NO_SETTINGS, limits: Limits = DEFAULT_LIMITS
 ) -> Run:
-    """The free motion of a scene: a `FreeMotion`."""
+    """Return the free motion of a scene: a `FreeMotion`."""
     return Run(_free, (file, scene, settings, limits))
 
 
 def series(
     file: Path, scene: str | None, order: int, settings: Settings = NO_SETTINGS, limits: Limits = DEFAULT_LIMITS
 ) -> Run:
-    """The power series of a scene's motion: a `MotionSeries`."""
+    """Return the power series of a scene's motion: a `MotionSeries`."""
     return Run(_series, (file, scene, order, settings, limits))
 
 
 def simulation(
     file: Path, scene: str | None, until: Fraction | None, samples: int | None, settings: Settings = NO_SETTINGS
 ) -> Run:
-    """A scene's motion followed through its time span or to an instant: a `Simulation`."""
+    """Return a scene's motion followed through its time span or to an instant: a `Simulation`."""
     return Run(_simulate, (file, scene, until, samples, settings))
 
 
 def study(file: Path, settings: Settings, limits: Limits) -> Run:
-    """All that is asked of somebody's own scene file: a `FileAnswers`."""
+    """Return all that is asked of somebody's own scene file: a `FileAnswers`."""
     return Run(_study, (file, settings, limits))
 
 
@@ -156,7 +156,7 @@ def _simulate(
 
 
 def drawn(draw: Callable[[Path], None]) -> str:
-    """The text of the SVG document that a function writes to a file."""
+    """Return the text of the SVG document that a function writes to a file."""
     with private_directory() as directory:
         file = directory / "figure.svg"
         draw(file)
@@ -174,12 +174,12 @@ def _study(file: Path, settings: Settings, limits: Limits) -> FileAnswers:
 
 
 def names_of_scenes(file: Path, settings: Settings, limits: Limits) -> list[str]:
-    """Names of a file's scenes, of those too that prescribe reactions."""
+    """Return names of a file's scenes, of those too that prescribe reactions."""
     return [scene.name for scene in describe(file, dict(settings), limits).scenes]
 
 
 def or_refusal(compute: Callable[..., Any], *arguments: Any) -> Any:
-    """What a function returns, or why it does not."""
+    """Return what a function returns, or why it does not."""
     try:
         return compute(*arguments)
     except HolonomError as error:

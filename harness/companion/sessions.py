@@ -26,7 +26,7 @@ class Session:
 
 
 def sessions(root: Path, chapters: Iterable[Chapter]) -> dict[str, Session]:
-    """The sessions, by the slugs of those chapters that have one."""
+    """Return the sessions, by the slugs of those chapters that have one."""
     known = table("sessions")
     return {
         chapter.slug: Session(
@@ -42,7 +42,7 @@ def sessions(root: Path, chapters: Iterable[Chapter]) -> dict[str, Session]:
 
 
 def session_text(session: Session) -> str:
-    """A session as a Maxima file, its comments in the language spoken."""
+    """Return a session as a Maxima file, its comments in the language spoken."""
     head = gettext(
         "%(title)s: a session of Maxima, after `make install`, for instance by  maxima -b %(slug)s.mac",
         title=translated(session.title),

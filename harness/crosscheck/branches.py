@@ -34,7 +34,7 @@ class Branch:
         return not self.is_growing
 
     def is_empty(self, side: int) -> bool:
-        """Whether the argument is known never to be on this side of zero."""
+        """Return True if the argument is known never to be on this side of zero."""
         argument = self.argument.replace(lambda part: part.is_real is None and _branch(part) is not None, _real)
         argument = argument.replace(_is_inverse_square, lambda part: sp.Dummy(positive=True))
         bounds = argument.replace(_is_bounded, lambda part: sp.AccumBounds(-1, 1))
@@ -43,7 +43,7 @@ class Branch:
         return bool(argument.is_nonpositive if side > 0 else argument.is_nonnegative)
 
     def target(self, draw: random.Random) -> mp.mpf:
-        """A value of the argument near which points are wanted."""
+        """Return a value of the argument near which points are wanted."""
         return mp.mpf(draw.uniform(-RANGE, RANGE)) if self.is_growing else mp.zero
 
 
@@ -61,7 +61,7 @@ Branches = tuple[Branch, ...]
 
 
 def branches_of(expressions: Iterable[sp.Expr]) -> Branches:
-    """All branches of some expressions, each once."""
+    """Return all branches of some expressions, each once."""
     parts = set().union(*(expression.atoms(sp.Function, sp.Pow) for expression in expressions))
     found: dict[sp.Expr, Branch] = {}
     for part in sorted(parts, key=sp.default_sort_key):

@@ -93,7 +93,7 @@ def residual_pairs(what: str, relations: Sequence[Relation], expected: Sequence[
 
 
 def shown(left: Tree) -> str:
-    """A left side for people: ``A[1, 2]``."""
+    """Return a left side for people: ``A[1, 2]``."""
     match left:
         case ["Subscript", str(name), *indices]:
             return f"{name}[{', '.join(map(str, indices))}]"

@@ -55,7 +55,7 @@ class DescribedMotion:
         self.ended: frozenset[str] = frozenset()  # multipliers of constraints that have ended
 
     def after(self, k: int) -> DescribedMotion:
-        """The motion after the k-th release of the scene, counted from 0."""
+        """Return the motion after the k-th release of the scene, counted from 0."""
         found, scene, ended = copy(self), self.scene, self.scene.released[k].multipliers
         kept = [beta for beta, name in enumerate(self.system.multipliers) if name not in ended]
         found.scene = replace(scene, released=scene.released[:k] + scene.released[k + 1 :])
@@ -87,7 +87,7 @@ class DescribedMotion:
         return self._standing_in([place for name, place in places if name in self.scene.prescribed_reactions])
 
     def _standing_in(self, places: Sequence[int]) -> tuple[str, ...]:
-        """Controls without a law that expressions contain."""
+        """Return controls without a law that expressions contain."""
         needed = self.tape.needed_for(places)
         free = (u for u in self.system.controls if u not in self.scene.control_law)
         return tuple(u for u in free if self.tape.names.get(u) in needed)
@@ -122,7 +122,7 @@ class DescribedMotion:
         return Law({} if self.scene is None else self.scene.prescribed_reactions.trees, self.splines)
 
     def parameters(self) -> dict[str, Polynomial]:
-        """Values of the parameters that have one, and of the switches."""
+        """Return values of the parameters that have one, and of the switches."""
         trees = {} if self.scene is None else self.scene.parameter_values.trees
         called = self.system.switches if self.scene is None else self.scene.effects
         switches = {name: (mp.mpf(name in called),) for name in self.system.switches}
@@ -133,11 +133,14 @@ class DescribedMotion:
         return Law({"": tree}, ()).at(Taylor(0), mp.zero, self.parameters())[""][0]
 
     def values(self, taylor: Taylor, curve: Curve, needed: Container[int] | None = None) -> list[Polynomial]:
-        """Values of T, V, Q, f and all their parts along a curve, or of those needed; raises as `Tape.values`."""
+        """Return values of T, V, Q, f and all their parts along a curve, or of those needed.
+
+        Raises as `Tape.values`.
+        """
         return self.tape.values(taylor, self.with_rates(taylor, curve), needed)
 
     def with_rates(self, taylor: Taylor, curve: Curve) -> dict[str, Polynomial]:
-        """A curve with the rates of its coordinates and controls."""
+        """Return a curve with the rates of its coordinates and controls."""
         names = (*self.system.coordinates, *self.system.controls)
         return {**{f"dot({name})": taylor.rate(curve[name]) for name in names if name in curve}, **curve}
 
@@ -173,7 +176,7 @@ class DescribedMotion:
         return self.tape.gradient(taylor, values, seeds)
 
     def energy(self, taylor: Taylor, values: Sequence[Polynomial], curve: Curve) -> Polynomial:
-        """The energy function dot(q_s) dL/d dot(q_s) - L along the curve."""
+        """Return the energy function dot(q_s) dL/d dot(q_s) - L along the curve."""
         lagrangian = self._gradient_of_lagrangian(taylor, values)
         rates = self.with_rates(taylor, curve)
         parts = [

@@ -50,7 +50,7 @@ class Draws:
         self._reached: set[tuple[tuple[int, int], ...]] = set()
 
     def point(self, attempt: int) -> Point:
-        """The point of this attempt, moved into the domain where that is easily done."""
+        """Return the point of this attempt, moved into the domain where that is easily done."""
         draw = random.Random(f"{self.seed} {attempt}")
         point = self._drawn(attempt, draw)
         outside = self._outside(point) if self._wanted else []
@@ -90,7 +90,7 @@ class Draws:
         return missing if self.names else []
 
     def _drawn(self, attempt: int, draw: random.Random) -> dict[sp.Symbol, sp.Rational]:
-        """Every second attempt is of many sizes; of the others, every second is positive throughout."""
+        """Return every second attempt is of many sizes; of the others, every second is positive throughout."""
         if attempt % 2:
             return random_point(self.names, attempt // 2, self.seed)
         return {sp.Symbol(name, real=True): _number(draw) for name in self.names}
@@ -107,7 +107,7 @@ class Draws:
         return [i for i in self._wanted if found[i] is None or mp.im(found[i]) or found[i] < 0]
 
     def _note(self, point: Point) -> bool:
-        """Whether the point reaches a side, or a combination of sides, for the first time."""
+        """Return True if the point reaches a side, or a combination of sides, for the first time."""
         sides = [
             (i, 1 if value > 0 else -1)
             for i, value in enumerate(self._looked_at(point))
@@ -149,7 +149,10 @@ def _exact(number: mp.mpf) -> sp.Rational:
 
 
 def _solved(residual: Steps, symbol: sp.Symbol, point: Point) -> mp.mpf | None:
-    """The number for the symbol at which the residual vanishes, by the secant method; None where it finds none."""
+    """Return the number for the symbol at which the residual vanishes, by the secant method.
+
+    None where it finds none.
+    """
     values = {x: mp.mpf(number.p) / number.q for x, number in point.items()}
 
     def at(number: mp.mpf) -> Number | None:

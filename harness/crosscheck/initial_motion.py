@@ -224,7 +224,7 @@ def at_start(claims: SceneClaims, pairs: Iterable[Pair]) -> tuple[Comparison, ..
 
 
 def is_rounded(value: sp.Expr) -> bool:
-    """Whether a number may have been rounded: its fraction is as long as those that Newton's method finds."""
+    """Return True if a number may have been rounded: its fraction is as long as those that Newton's method finds."""
     return any(number.q > 10**FEWEST_ROUNDED_DIGITS for number in value.atoms(sp.Rational))
 
 
@@ -274,7 +274,7 @@ def _for_all_states(
 
 
 def _containing(symbols: set[sp.Symbol], residuals: Iterable[sp.Expr]) -> Mapping[sp.Symbol, list[sp.Expr]]:
-    """The residuals that contain each symbol."""
+    """Return the residuals that contain each symbol."""
     found: dict[sp.Symbol, list[sp.Expr]] = defaultdict(list)
     for residual in residuals:
         for symbol in residual.free_symbols & symbols:
@@ -283,7 +283,7 @@ def _containing(symbols: set[sp.Symbol], residuals: Iterable[sp.Expr]) -> Mappin
 
 
 def _without_closed_form(numbers: set[sp.Symbol], containing: Mapping[sp.Symbol, Sequence[sp.Expr]]) -> set[sp.Symbol]:
-    """Those of the symbols that share residuals with many, or with one that is not linear in them."""
+    """Return those of the symbols that share residuals with many, or with one that is not linear in them."""
     found: set[sp.Symbol] = set()
     waiting = set(numbers)
     while waiting:
@@ -299,7 +299,7 @@ def _without_closed_form(numbers: set[sp.Symbol], containing: Mapping[sp.Symbol,
 def _sharing(
     x: sp.Symbol, numbers: set[sp.Symbol], containing: Mapping[sp.Symbol, Sequence[sp.Expr]]
 ) -> set[sp.Symbol]:
-    """The symbols that share residuals with one, directly or through others."""
+    """Return the symbols that share residuals with one, directly or through others."""
     found: set[sp.Symbol] = set()
     waiting = [x]
     while waiting:
@@ -311,7 +311,7 @@ def _sharing(
 
 
 def _is_quadratic(claims: SceneClaims, x: sp.Symbol, known: set[sp.Symbol], containing: Sequence[sp.Expr]) -> bool:
-    """Whether a residual in the state alone fixes a symbol by a quadratic equation, whose root is a closed form."""
+    """Return True if a residual in the state alone fixes a symbol by a quadratic equation."""
     if len(containing) != 1 or containing[0].free_symbols & known != {x}:
         return False
     state = {*claims.state, claims.system.time}

@@ -16,7 +16,10 @@ Parts = Iterator[tuple[str, Claim]]  # each claim with the part of the programs 
 
 
 def first_differences(claims: Callable[[int], Parts], attempt: int) -> tuple[dict[str, str], bool]:
-    """The first claim of each part that is not so at a state, found in twice the digits once more; if it is regular."""
+    """Return the first claim of each part that is not so at a state, found in twice the digits once more.
+
+    If it is regular.
+    """
     with mp.workdps(WORKING_DIGITS):
         made, regular = _made(claims(attempt))
         suspected = {place: abs(each.given - each.true) for place, (_, each) in enumerate(made) if _differs(each)}
@@ -36,7 +39,7 @@ def first_differences(claims: Callable[[int], Parts], attempt: int) -> tuple[dic
 
 
 def differing(claims: Callable[[], Iterator[Claim]], digits: int = DIGITS) -> str:
-    """The first claim that is not so, found in twice the digits once more; empty where all are."""
+    """Return the first claim that is not so, found in twice the digits once more; empty where all are."""
     with mp.workdps(WORKING_DIGITS):
         suspected = {
             place: abs(each.given - each.true) for place, each in enumerate(claims()) if _differs(each, digits)
@@ -54,7 +57,7 @@ def differing(claims: Callable[[], Iterator[Claim]], digits: int = DIGITS) -> st
 
 
 def _made(claims: Parts) -> tuple[list[tuple[str, Claim]], bool]:
-    """The claims at a state, up to where something has no value; whether all have."""
+    """Return the claims at a state, up to where something has no value; whether all have."""
     made: list[tuple[str, Claim]] = []
     try:
         for each in claims:

@@ -25,7 +25,7 @@ LARGEST_SYSTEM = 24
 
 
 def can_take(system: MechanicalSystem) -> bool:
-    """Whether the method is asked about a system."""
+    """Return True if the method is asked about a system."""
     return len(system.coordinates) + len(system.constraints) <= LARGEST_SYSTEM
 
 

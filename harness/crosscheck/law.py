@@ -49,7 +49,7 @@ class Spline:
         return _tridiagonal(rows)
 
     def at(self, instant: mp.mpf) -> Polynomial:
-        """The polynomial that counts at an instant, about it."""
+        """Return the polynomial that counts at an instant, about it."""
         if not self.times[0] <= instant < self.times[-1]:
             raise IrregularPoint
         k = bisect_right(self.times, instant) - 1
@@ -101,7 +101,7 @@ class Law:
 
 
 def _with_names(tree: Tree) -> Tree:
-    """The tree with a quantity in the place of each table."""
+    """Return the tree with a quantity in the place of each table."""
     match tree:
         case ["Table", int(k), "t"]:
             return f"table {k}"
@@ -115,5 +115,5 @@ SWITCHING = ("Max", "Min", "UnitStep", "HalfStep", "Which", "Table")
 
 
 def is_switched(tree: Tree) -> bool:
-    """Whether there is a switch or a table in a law."""
+    """Return True if there is a switch or a table in a law."""
     return isinstance(tree, list) and (tree[0] in SWITCHING or any(map(is_switched, tree[1:])))

@@ -248,7 +248,7 @@ def _polynomial(c: Vector, s: float, unit: float) -> Vector:
 
 
 def _moved(x: Vector, residuals: Vector, slopes: Sequence[Vector]) -> Vector:
-    """The shortest Newton step; slopes[k] are the derivatives of the residuals by x[k]."""
+    """Return the shortest Newton step; slopes[k] are the derivatives of the residuals by x[k]."""
     range_of_rows = range(len(residuals))
     products = [[sum(slope[i] * slope[j] for slope in slopes) for j in range_of_rows] for i in range_of_rows]
     weights = _solved(products, residuals)

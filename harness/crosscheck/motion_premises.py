@@ -49,7 +49,7 @@ def _masses(motion: DescribedMotion, problem: MotionProblem) -> dict[str, mp.mpf
 
 
 def _stated(motion: DescribedMotion, problem: MotionProblem) -> dict[str, tuple[Sequence[str], Sequence[str]]]:
-    """Names as a problem has them and as they are stated."""
+    """Return names as a problem has them and as they are stated."""
     scene, system = motion.scene, motion.system
     events = [f"event[{i}]" for i in range(1, len(scene.until_trees) + 1)]
     return {
@@ -98,7 +98,7 @@ def _claims(motion: DescribedMotion, problem: MotionProblem, seed: str) -> Itera
 
 
 def law_programs(motion: DescribedMotion, problem: MotionProblem) -> list[Program]:
-    """The parts of a problem's programs that compute laws, each once."""
+    """Return the parts of a problem's programs that compute laws, each once."""
     laws = [
         f"{dots}{name}{end}" for name in motion.law.places for dots, end in (("", ""), ("dot(", ")"), ("ddot(", ")"))
     ]
@@ -118,7 +118,7 @@ def law_programs(motion: DescribedMotion, problem: MotionProblem) -> list[Progra
 def claims_of_inputs(
     motion: DescribedMotion, problems: Mapping[Solve, MotionProblem], seed: str
 ) -> Callable[[int], Parts]:
-    """Controls, events and outputs, at random states; accelerations are random, and the energy is judged elsewhere."""
+    """Judge controls, events and outputs at random states; the energy is judged elsewhere."""
     drawn = {solve: States(motion, problem, seed) for solve, problem in problems.items()}
     stated = motion.scene.until_trees, [each.condition for each in motion.scene.released]
     expressions = [Law({f"event[{i}]": tree for i, tree in enumerate(trees, 1)}, motion.splines) for trees in stated]

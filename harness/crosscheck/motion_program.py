@@ -74,7 +74,7 @@ def _programs_of(
 
 
 def why_missing(error: HolonomError) -> Judgement:
-    """The verdict where Maxima has written nothing; raises what is neither a refusal nor a limit."""
+    """Return the verdict where Maxima has written nothing; raises what is neither a refusal nor a limit."""
     if error.failure is Failure.REFUSED:
         return Judgement(Verdict.NOTHING, None, None, error.said)
     if error.failure in (Failure.TOO_LONG, Failure.TOO_LARGE):
@@ -148,7 +148,9 @@ def _judge_problems(motion: DescribedMotion, programs: ScenePrograms, seed: str)
 
 
 def _values_of(program: Program, inputs: Values, solve: Solve) -> Values | None:
-    """Values of a program; None where it has none and should have: the orthogonal solve needs masses that are positive.
+    """Return values of a program.
+
+    None where it has none and should have: the orthogonal solve needs masses that are positive.
 
     Raises
     ------

@@ -115,7 +115,7 @@ def _judged(claims: Callable[[], Iterator[Claim]], digits: int) -> Judgement:
 
 
 def _claims(motion: DescribedMotion, series: MotionSeries, correction: tuple[str, str] | None) -> Iterator[Claim]:
-    """That a power series begins at the start and satisfies the equations, and that its reactions are as prescribed."""
+    """Claim that a power series begins at the start and satisfies the equations and reactions."""
     taylor, instant = Taylor(ORDER), number(series.t0)
     curve: Values = motion.parameters() | motion.law.at(Taylor(ORDER + 1), instant, motion.parameters())
     curve |= {name: tuple(numbers(row)) for name, row in series.coordinates.items()}
@@ -138,7 +138,7 @@ def _claims_of_forces(
     multipliers: list[Polynomial],
     given: Mapping[str, Sequence[str]],
 ) -> Iterator[Claim]:
-    """The constraint forces of a series, by Lambda[s]."""
+    """Yield the constraint forces of a series, by Lambda[s]."""
     if not given:
         return
 
@@ -209,7 +209,7 @@ def _changes(
 
 
 def _claims_of_servo(motion: DescribedMotion, problem: MotionProblem, series: MotionSeries | None) -> Iterator[Claim]:
-    """That the outputs stay zero along the motion that the program makes, which is that of the power series."""
+    """Claim that the outputs stay zero along the motion that the program makes, which is that of the power series."""
     taylor = Taylor(ORDER)
     curve, computed = _expanded(problem)
     for q, row in series.coordinates.items() if series else ():

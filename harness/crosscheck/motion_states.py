@@ -55,7 +55,7 @@ class Bordered(NamedTuple):
         return solved(rows, kept)
 
     def claims(self, what: Sequence[str], x: Sequence[mp.mpf], right: Sequence[mp.mpf]) -> Iterator[Claim]:
-        """That numbers solve the equations."""
+        """Claim that numbers solve the equations."""
         for i, (row, side) in enumerate(zip(self.rows, right, strict=True)):
             if i - self.n not in self.left_out:
                 terms = [entry * x[k] for k, entry in row.items()]
@@ -97,7 +97,9 @@ class States:
         return state
 
     def kept(self, state: Values) -> Values:
-        """The state moved to where the constraints hold, if servo-constraints need it: there their conditions agree.
+        """Return the state moved to where the constraints hold, if servo-constraints need it.
+
+        There their conditions agree.
 
         Raises
         ------
@@ -119,14 +121,14 @@ class States:
         raise IrregularPoint
 
     def inputs(self, state: Values, multipliers: Sequence[mp.mpf]) -> Values:
-        """What programs take at a state."""
+        """Return what programs take at a state."""
         known = {name: value[:1] for name, value in state.items()}
         known |= {name: (x,) for name, x in zip(self.problem.multipliers, multipliers, strict=True)}
         known |= letters_of_tables(self.problem, state["t"][0])
         return with_signs(self.problem, known)
 
     def curve(self, state: Values, accelerations: Mapping[str, mp.mpf], controls: Values) -> Values:
-        """The curve through a state with these accelerations."""
+        """Return the curve through a state with these accelerations."""
         found = self.motion.parameters() | controls | {"t": state["t"]}
         for q in self.problem.coordinates:
             found[q] = (state[q][0], state[f"dot({q})"][0], accelerations[q] / 2)
@@ -138,7 +140,7 @@ class States:
         return [mp.mpf(draw.randint(-(2**40), 2**40)) / 2**40 for _ in range(count)]
 
     def controls(self, state: Values, computed: Values) -> Values:
-        """The controls along a motion: by the law of the description, or as the program found them."""
+        """Return the controls along a motion: by the law of the description, or as the program found them."""
         law = self.motion.law.at(Taylor(3), state["t"][0], self.motion.parameters())
         found = [name for name in self.motion.system.controls if name not in law and name in computed]
         return law | {name: computed[name] for name in found if name not in self.problem.coordinates}
@@ -148,7 +150,7 @@ class States:
 
 
 def claims_of_law(controls: Values, computed: Values) -> Iterator[Claim]:
-    """Controls and their rates, as a program computes them under the law."""
+    """Yield controls and their rates, as a program computes them under the law."""
     for name, x in controls.items():
         for place, what in enumerate((name, f"dot({name})", f"ddot({name})")):
             if what in computed:
@@ -157,7 +159,7 @@ def claims_of_law(controls: Values, computed: Values) -> Iterator[Claim]:
 
 
 def bordered(computed: Values, n: int, multipliers: Sequence[str], redundant: Sequence[str]) -> Bordered:
-    """The bordered system, of the outputs of the program of matrices."""
+    """Return the bordered system, of the outputs of the program of matrices."""
     rows: list[dict[int, mp.mpf]] = [{} for _ in range(n + len(multipliers))]
     right = [mp.zero] * len(rows)
     for name, x in computed.items():
@@ -180,7 +182,7 @@ def bordered(computed: Values, n: int, multipliers: Sequence[str], redundant: Se
 def claims_of_matrices(
     motion: DescribedMotion, system: Bordered, computed: Values, curve: Values, x: Sequence[mp.mpf]
 ) -> Iterator[Claim]:
-    """That the matrices, energy and power are those of the description, along accelerations and multipliers x.
+    """Claim that the matrices, energy and power are those of the description, along accelerations and multipliers x.
 
     The rate of the energy is the power and the work of what the equations of motion lack of zero.
     """
@@ -210,7 +212,7 @@ def claims_of_matrices(
 def claims_of_solve(
     system: Bordered, solution: Sequence[mp.mpf], computed: Values, names: Sequence[str], servo: int
 ) -> Iterator[Claim]:
-    """That accelerations and multipliers solve the bordered system, servo-constraints without multipliers."""
+    """Claim that accelerations and multipliers solve the bordered system, servo-constraints without multipliers."""
     x = [computed[name][0] for name in names]
     what = [
         f"{name}: the program gives {mp.nstr(a, 12)}, the bordered system {mp.nstr(b, 12)}; the equation of it"
@@ -226,7 +228,7 @@ def claims_of_solve(
 
 
 def claims_of_constraint_forces(system: Bordered, computed: Values, names: Sequence[str]) -> Iterator[Claim]:
-    """That constraint forces are those of the multipliers."""
+    """Claim that constraint forces are those of the multipliers."""
     for s in range(system.n):
         name = f"Lambda[{s + 1}]"
         if name in computed:
@@ -235,7 +237,7 @@ def claims_of_constraint_forces(system: Bordered, computed: Values, names: Seque
 
 
 def claims_of_projection(system: Bordered, computed: Values, residuals: Values, which: str) -> Iterator[Claim]:
-    """That a correction is the least in the mass metric that makes up for the residuals."""
+    """Claim that a correction is the least in the mass metric that makes up for the residuals."""
     residual = {"position": "residual", "velocity": "residual_rate"}[which]
     right = [mp.zero] * system.n + _residuals(system, residuals, residual)
     solution = system.solution(right)
@@ -245,14 +247,14 @@ def claims_of_projection(system: Bordered, computed: Values, residuals: Values, 
 
 
 def _residuals(system: Bordered, computed: Values, which: str) -> list[mp.mpf]:
-    """What the constraints, or their rates, lack of zero."""
+    """Return what the constraints, or their rates, lack of zero."""
     return [-computed[f"{which}[{beta + 1}]"][0] for beta in range(len(system.rows) - system.n)]
 
 
 def claims_by_substitution(
     motion: DescribedMotion, curve: Values, multipliers: Sequence[mp.mpf], kept: Sequence[int]
 ) -> Iterator[Claim]:
-    """That the equations of motion hold along a curve through a state, and the second rates of what is kept."""
+    """Claim that the equations of motion hold along a curve through a state, and the second rates of what is kept."""
     values = motion.values(SECOND, curve)
     for q, equation in zip(
         motion.system.coordinates, motion.equations(SECOND, values, [(x,) for x in multipliers]), strict=True

@@ -51,7 +51,7 @@ class RootRelation(NamedTuple):
 
 
 def is_identically_zero(expressions: Iterable[sp.Expr], allowance: int = ALLOWANCE) -> bool:
-    """Whether all expressions are shown to be identically zero within the allowance.
+    """Return True if all expressions are shown to be identically zero within the allowance.
 
     True is a proof; False says nothing. The allowance is of terms read and products of terms made.
     """

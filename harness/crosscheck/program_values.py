@@ -57,7 +57,7 @@ class Same:
 
 
 def run(program: Program, inputs: Mapping[str, Polynomial]) -> Values:
-    """Values of all names and outputs of a program, where its inputs have the values that they begin with.
+    """Return values of all names and outputs of a program, where its inputs have the values that they begin with.
 
     Raises
     ------
@@ -74,7 +74,10 @@ def run(program: Program, inputs: Mapping[str, Polynomial]) -> Values:
 
 @lru_cache(maxsize=32)
 def _steps(same: Same) -> tuple[list[Step], dict[str, int]]:
-    """A program as operations on two places in a list, which begins with its inputs; and the places of its names."""
+    """Return a program as operations on two places in a list, which begins with its inputs.
+
+    And the places of its names.
+    """
     program = same.program
     places: dict[str, int] = {name: place for place, name in enumerate(program.inputs)}
     steps: list[Step] = []
@@ -106,13 +109,13 @@ def _steps(same: Same) -> tuple[list[Step], dict[str, int]]:
 
 
 def outputs_of(program: Program, inputs: Mapping[str, Polynomial]) -> Values:
-    """Values of the outputs of a program; raises as `run`."""
+    """Return values of the outputs of a program; raises as `run`."""
     values = run(program, inputs)
     return {name: values[name] for name in program.outputs}
 
 
 def run_along(program: Program, inputs: Mapping[str, Polynomial], taylor: Taylor) -> Values:
-    """Values of all names and outputs of a program along a curve; raises as `run`."""
+    """Return values of all names and outputs of a program along a curve; raises as `run`."""
     known: Values = {name: inputs[name] for name in program.inputs}
 
     def evaluate(expression: Expression) -> Polynomial:
@@ -177,7 +180,7 @@ BINARY: dict[Operation, Callable[..., Number]] = {
 
 
 def with_signs(problem: MotionProblem, inputs: Values) -> Values:
-    """The inputs with the signs that a motion depends on: a function may contain the signs before its own."""
+    """Return the inputs with the signs that a motion depends on: a function may contain the signs before its own."""
     found = inputs | {sign.name: (mp.one,) for sign in problem.signs}
     for place, sign in enumerate(problem.signs, 1):
         switch = run(problem.switching, found)[f"switch[{place}]"][0]
@@ -188,7 +191,7 @@ def with_signs(problem: MotionProblem, inputs: Values) -> Values:
 
 
 def letters_of_tables(problem: MotionProblem, instant: mp.mpf) -> Values:
-    """The numbers of the polynomial that each table is at an instant."""
+    """Return the numbers of the polynomial that each table is at an instant."""
     found: Values = {}
     for table in problem.tables:
         piece = table.pieces[bisect_right(table.begins, Fraction(*to_rational(instant._mpf_))) - 1]

@@ -35,7 +35,7 @@ class Elimination:
         return len(self._pivots)
 
     def solution(self) -> Row:
-        """A solution of the equations kept: what no pivot determines is zero."""
+        """Return a solution of the equations kept: what no pivot determines is zero."""
         found: Row = {}
         for column, (row, right) in reversed(self._pivots.items()):
             others = mp.fsum(value * found.get(k, mp.zero) for k, value in row.items() if k != column)

@@ -123,7 +123,7 @@ class _Manifold:
         return Ranks(Elimination(mass).rank, Elimination(every).rank, Elimination(kept).rank)
 
     def _brought_onto(self, state: State) -> bool:
-        """Whether Newton's method on the constraints that are kept brings the state to where all hold."""
+        """Return True if Newton's method on the constraints that are kept brings the state to where all hold."""
         for _ in range(NEWTON_STEPS):
             values, rows = self._constraints.at(state), self._jacobian.at(state)
             if rows is None or any(value is None or mp.im(value) for value in values):

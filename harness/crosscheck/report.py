@@ -98,7 +98,7 @@ class CheckReport(Shown):
     seed: str
 
     def with_verdicts(self, verdicts: Iterable[EquationVerdict]) -> CheckReport:
-        """The same report with further verdicts."""
+        """Return the same report with further verdicts."""
         return replace(self, verdicts=(*self.verdicts, *verdicts))
 
     @property
@@ -107,5 +107,5 @@ class CheckReport(Shown):
         return self.count(Verdict.DISAGREES)
 
     def count(self, *verdicts: Verdict) -> int:
-        """Number of equations with one of these verdicts."""
+        """Return number of equations with one of these verdicts."""
         return sum(found.verdict in verdicts for found in self.verdicts)

@@ -27,7 +27,7 @@ ZEROS_LEFT_OUT = ", without the zeros off the diagonal of A"
 
 
 def derivation_items(closed: bool, regular: bool, redundant: Sequence[str], all_entries: bool) -> tuple[Item, ...]:
-    """The equations of a derivation, in their order."""
+    """Return the equations of a derivation, in their order."""
     inverse = "inverse of the mass matrix" + ("" if regular else " with J^T J added, which is singular without")
     items = (
         Item("constraints", "1", "constraints"),
@@ -50,7 +50,7 @@ def derivation_items(closed: bool, regular: bool, redundant: Sequence[str], all_
 
 
 def scene_items(closed: bool, series: bool, law: bool) -> tuple[Item, ...]:
-    """The equations of a scene, in their order."""
+    """Return the equations of a scene, in their order."""
     items = (
         (closed and law, Item("free_motion_residual", "10", "condition of free motion under the control law")),
         (True, Item("initial_state", "12", "initial state")),

@@ -97,7 +97,7 @@ class Tape:
     def values(
         self, taylor: Taylor, known: Mapping[str, Polynomial], needed: Container[int] | None = None
     ) -> list[Polynomial]:
-        """Values of all operations, or of those that are needed.
+        """Return values of all operations, or of those that are needed.
 
         Raises
         ------
@@ -117,7 +117,7 @@ class Tape:
     def sizes(
         self, taylor: Taylor, values: Sequence[Polynomial], needed: Container[int] | None = None
     ) -> list[Polynomial]:
-        """What the sizes of all terms of sums add up to, of each operation, or of those that are needed."""
+        """Return what the sizes of all terms of sums add up to, of each operation, or of those that are needed."""
         found: list[Polynomial] = []
         for place, (head, arguments) in enumerate(self.operations):
             x = [found[each] for each in arguments]
@@ -279,7 +279,7 @@ def _shares(
     place: int,
     adjoint: Polynomial,
 ) -> list[Polynomial | None]:
-    """The shares that the arguments of an operation have in its adjoint."""
+    """Return the shares that the arguments of an operation have in its adjoint."""
     x = [values[each] for each in arguments]
     match head:
         case "Add":

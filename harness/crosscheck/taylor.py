@@ -24,7 +24,7 @@ class Taylor:
         self.order = order
 
     def constant(self, number: mp.mpf | int) -> Polynomial:
-        """A number."""
+        """Return a number."""
         return (mp.mpf(number),)
 
     def add(self, *terms: Polynomial) -> Polynomial:
@@ -148,7 +148,7 @@ def _real(number: mp.mpf | mp.mpc) -> mp.mpf:
 
 
 def _root(taylor: Taylor, x: Polynomial, a: int, b: int, exponent: mp.mpf | int) -> Polynomial:
-    """(a + b x^2)^exponent."""
+    """Return (a + b x^2)^exponent."""
     return taylor.power(taylor.add((mp.mpf(a),), taylor.scale(b, taylor.multiply(x, x))), mp.mpf(exponent))
 
 

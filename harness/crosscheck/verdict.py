@@ -183,7 +183,7 @@ class _Judge:
         return Judgement(Verdict.UNDECIDED, None, fewest or None, reason)
 
     def _agrees_independently(self) -> bool:
-        """Whether the pairs agree where exp, sin and the like have values independent of their arguments."""
+        """Return True if the pairs agree where exp, sin and the like have values independent of their arguments."""
         comparison = with_independent_functions(self.comparison)
         evaluation = Evaluation(comparison)
         draws = Draws(_free_names(comparison), Branches(()), f"{self.draws.seed} independent")
@@ -208,7 +208,7 @@ class Evaluation:
         self._right = Steps([pair.independent for pair in comparison.pairs])
 
     def findings(self, point: Point, complex_too: bool = False) -> Iterator[tuple[Found, Number | None, Number | None]]:
-        """What the point tells of each pair, and the values of both sides."""
+        """Yield what the point tells of each pair, and the values of both sides."""
         fine = self._values(point, CONFIRMING_DIGITS)
         coarse = self._values(point, WORKING_DIGITS)
         for digits in range(WORKING_DIGITS + 1, WORKING_DIGITS + MOST_AGAIN):
@@ -255,12 +255,12 @@ def _finding(left: Sequence[Number | None], right: Sequence[Number | None], comp
 
 
 def _is_luck(left: Number | None, right: Number | None, left_again: Number | None, right_again: Number | None) -> bool:
-    """Whether a rounding of zero is zero itself in the fewer digits, so that nothing is seen to shrink."""
+    """Return True if a rounding of zero is zero itself in the fewer digits, so that nothing is seen to shrink."""
     return left is not None and left == right and left_again != right_again
 
 
 def _vanishes(coarse: Number, fine: Number) -> bool:
-    """Whether a number shrinks with the precision, as a rounding of zero does."""
+    """Return True if a number shrinks with the precision, as a rounding of zero does."""
     return not fine or abs(fine) <= mp.mpf(10) ** -SHRUNK * abs(coarse)
 
 
@@ -332,7 +332,7 @@ def _where(point: Point) -> str:
 
 
 def _free_names(comparison: Comparison) -> list[str]:
-    """Names of the symbols that need a value at a point."""
+    """Return names of the symbols that need a value at a point."""
     solved = {symbol for equations in comparison.solves for symbol in equations.unknowns}
     free = set().union(*(e.free_symbols for e in _expressions(comparison)))
     return sorted(symbol.name for symbol in free - solved - comparison.given.keys() if isinstance(symbol, sp.Symbol))

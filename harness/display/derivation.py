@@ -107,7 +107,7 @@ def _show_left_out(console: Console, left_out: "LeftOut | None") -> None:
 
 
 def why_left_out(left_out: "LeftOut") -> str:
-    """The sentence that says why equations were not made, and how to get them."""
+    """Return the sentence that says why equations were not made, and how to get them."""
     size, limit = left_out.size, f"more than closed_form_size = {left_out.limit}"
     if size > HELD_IN_MEMORY:
         terms = f"{size:.0e} terms{' or more' if size == LARGEST_SIZE else ''}"

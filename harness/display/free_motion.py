@@ -139,7 +139,7 @@ FUNCTION_NAMES = {each.head: each.scene for each in FUNCTIONS}
 
 
 def power_series(value: Expr) -> str:
-    """A truncated series, its terms in the order that they have."""
+    """Return a truncated series, its terms in the order that they have."""
     terms = [formula(term) if not term.is_Add else f"({formula(term)})" for term in _terms(value)]
     return " + ".join(terms).replace("+ -", "- ") if terms else "0"
 

@@ -65,7 +65,7 @@ def _show_continuation(console: "Console", continuation: "Continuation") -> None
 
 
 def short_number(text: str) -> str:
-    """A number in ``p/q`` or decimal notation: as it is where it is exact and short, else rounded."""
+    """Return a number in ``p/q`` or decimal notation: as it is where it is exact and short, else rounded."""
     from ..number_texts import number
 
     return text if len(text) <= SHOWN_TEXT and "." not in text else _rounded(number(text))
@@ -148,7 +148,7 @@ def _ending(report: "Report") -> str:
 
 
 def _switchings(switchings: "Sequence[Switching]") -> Iterator[str]:
-    """What happened where the motion is not analytic."""
+    """Yield what happened where the motion is not analytic."""
     for switching in switchings[:LISTED]:
         if switching.passage == "joint released":
             yield f"At t = {switching.t:.10g}, where {switching.function} crosses zero, a joint is released."
@@ -163,7 +163,7 @@ def _passed(passage: str) -> str:
 
 
 def distrust(doubt: "AccuracyViolation") -> str:
-    """The sentence that says why a motion is no result."""
+    """Return the sentence that says why a motion is no result."""
     if isnan(doubt.missed):
         return f"holonom: this is no result: {doubt.reason}; end the run before that."
     return (

@@ -42,7 +42,7 @@ def sweep_progress(rows: int) -> Iterator[Callable[[int], None] | None]:
 
 @contextmanager
 def _bar(title: str, total: float, *columns: object) -> "Iterator[Progress | None]":
-    """A bar with one task, its columns those of rich unless they are given; None in a pipe."""
+    """Provide a bar with one task, its columns those of rich unless they are given; None in a pipe."""
     if not sys.stderr.isatty():
         yield None
         return

@@ -69,20 +69,20 @@ def _title(found: "Linearization") -> str:
 
 
 def _rounded(value: complex, size: float) -> complex:
-    """The number without parts that are rounding beside a size."""
+    """Return the number without parts that are rounding beside a size."""
     real, imaginary = (0.0 if abs(part) <= ROUNDING * size else float(part) for part in (value.real, value.imag))
     return complex(real, imaginary)
 
 
 def _pair(value: complex) -> str:
-    """An eigenvalue; one above the real axis is shown with its conjugate."""
+    """Return an eigenvalue; one above the real axis is shown with its conjugate."""
     if not value.imag:
         return f"{value.real:.6g}"
     return f"{value.real:.6g} ± {value.imag:.6g} i" if value.real else f"± {value.imag:.6g} i"
 
 
 def _number(value: complex) -> str:
-    """An entry of a mode, whose largest is 1."""
+    """Return an entry of a mode, whose largest is 1."""
     seen = _rounded(value, 1.0)
     if not seen.imag:
         return f"{seen.real:.6g}"

@@ -47,22 +47,22 @@ class PlainConsole(Console):
 
 
 def html_of(show: Callable[[Console], None]) -> str:
-    """What is shown on a console, as HTML for a notebook."""
+    """Return what is shown on a console, as HTML for a notebook."""
     return _shown(show).export_html(inline_styles=True, code_format=HTML)
 
 
 def text_of(show: Callable[[Console], None]) -> str:
-    """What is shown on a console, as plain text."""
+    """Return what is shown on a console, as plain text."""
     return "\n".join(line.rstrip() for line in _shown(show).export_text().splitlines())
 
 
 def styled(verdict: str) -> Text:
-    """A verdict in its colour."""
+    """Return a verdict in its colour."""
     return Text(translated(verdict), style=STYLES[verdict])
 
 
 def counted(count: int, what: str) -> str:
-    """How many of what there are, in words."""
+    """Return how many of what there are, in words."""
     return f"{count or 'no'} {what}{'' if count == 1 else 's'}"
 
 

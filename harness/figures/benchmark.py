@@ -113,7 +113,7 @@ def draw_stability(reports: Sequence[CaseReport], file: Path) -> None:
 
 
 def _rows(report: CaseReport) -> list[Result | str]:
-    """The name of a case, then what has digits to show."""
+    """Return the name of a case, then what has digits to show."""
     return [report.case.name, *(result for result in report.results if result.digits is not None)]
 
 

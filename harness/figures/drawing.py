@@ -72,14 +72,14 @@ class Film:
         return self.span / self.seconds
 
     def parts(self) -> Iterator[tuple[Shape, NDArray[np.float64], bool]]:
-        """Each shape with its numbers, and whether it moves."""
+        """Yield each shape with its numbers, and whether it moves."""
         least = STEADY * max(map(np.ptp, extents(self.shapes, self.numbers)))
         for shape, numbers in zip(self.shapes, self.numbers, strict=True):
             yield shape, numbers, bool(np.ptp(numbers, axis=0).max() > least)
 
 
 def film_of(simulation: "Simulation", drawing: Drawing) -> Film:
-    """The film of a motion, or of its beginning where it goes through the picture too often.
+    """Return the film of a motion, or of its beginning where it goes through the picture too often.
 
     The motion has many equidistant instants; the film has 180 frames at most.
     """
@@ -91,7 +91,7 @@ def film_of(simulation: "Simulation", drawing: Drawing) -> Film:
 
 
 def animation(film: Film) -> str:
-    """A film as SVG that moves; it begins again when it is over."""
+    """Return a film as SVG that moves; it begins again when it is over."""
     stage = _Stage(film, HIGHEST)
     stage.draw_traces()
     stage.draw(stage.group(), slice(None), moving=True)
@@ -101,7 +101,10 @@ def animation(film: Film) -> str:
 
 
 def strip(film: Film) -> str:
-    """A film as SVG that stands still: positions over each other, side by side if it is tall, in a column if flat."""
+    """Return a film as SVG that stands still.
+
+    Positions over each other, side by side if it is tall, in a column if flat.
+    """
     frames = np.unique(np.linspace(0, len(film.instants) - 1, POSITIONS).round().astype(int))
     width, height = map(np.ptp, extents(film.shapes, film.numbers))
     arrange = _row if width < TALL * height else _column if height < FLAT * width else _superposition
@@ -172,7 +175,7 @@ class _Stage:
         self.draw(self.group(**STILL, **shift), slice(1), moving=False)
 
     def draw_traces(self) -> None:
-        """The way of each body."""
+        """Draw the way of each body."""
         traces = self.group()
         for shape, numbers, moves in self.film.parts():
             if moves and shape is Shape.POINT:
@@ -180,13 +183,13 @@ class _Stage:
                 SubElement(traces, "polyline", {"class": "trace", "points": way})
 
     def draw_foot(self, frames: Sequence[int] | NDArray[np.int_]) -> None:
-        """The scale, and the time: a line with a mark that runs along it, or with those of some instants."""
+        """Draw the scale, and the time as a line with a mark that runs along it, or marks of some instants."""
         level = self.foot + FOOT / 2 - 8
         self._draw_scale(MARGIN + 4, level)
         self._draw_clock(WIDTH / 2, WIDTH - MARGIN - 4, level, frames)
 
     def text(self) -> str:
-        """The sheet as text."""
+        """Return the sheet as text."""
         return visible(ElementTree.tostring(self.root, encoding="unicode")) + "\n"
 
     def _element(self, shape: Shape, numbers: NDArray[np.float64], moves: bool) -> tuple[str, dict, dict]:
@@ -275,7 +278,7 @@ def _sides(shape: Shape, numbers: NDArray[np.float64], axis: int) -> tuple[NDArr
 
 
 def _last_frame(shapes: Sequence[Shape], numbers: Sequence[NDArray[np.float64]]) -> int:
-    """The last frame, or the one at which a body has gone through the picture so far often enough."""
+    """Return the last frame, or the one at which a body has gone through the picture so far often enough."""
     places = [row[:, :2] if shape is Shape.CIRCLE else row for shape, row in zip(shapes, numbers, strict=True)]
     xy = np.concatenate([row.reshape(len(row), -1, 2) for row in places], axis=1)
     gone = np.cumsum(np.linalg.norm(np.diff(xy, axis=0), axis=2), axis=0).max(axis=1)

@@ -38,7 +38,7 @@ def draw_motion(simulation: "Simulation", file: Path, curves: Sequence[str] | No
 
 
 def motion_figure(simulation: "Simulation", curves: Sequence[str] | None = None) -> "Figure":
-    """The figure of a motion, a panel for each kind of quantity that it holds.
+    """Return the figure of a motion, a panel for each kind of quantity that it holds.
 
     Parameters
     ----------

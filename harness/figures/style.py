@@ -98,7 +98,7 @@ def figure_style() -> Iterator[None]:
 
 
 def _fonts() -> list[str]:
-    """The fonts in which labels are set, in the language spoken."""
+    """Return the fonts in which labels are set, in the language spoken."""
     wanted = OPEN_FONTS.get(spoken(), ())
     if not wanted:
         return [LATIN]
@@ -109,7 +109,7 @@ def _fonts() -> list[str]:
 
 
 def new_figure(width: float, height: float) -> "Figure":
-    """An empty figure of that size in inches, of no window and no global state; panels do not overlap.
+    """Return an empty figure of that size in inches, of no window and no global state; panels do not overlap.
 
     Raises
     ------
@@ -123,12 +123,12 @@ def new_figure(width: float, height: float) -> "Figure":
 
 
 def legend_above(axes: "Axes") -> None:
-    """The legend of a panel above it, where it lies on no data."""
+    """Put the legend of a panel above it, where it lies on no data."""
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
 
 
 def lettered(name: str) -> str:
-    """The name of a quantity as a reader writes it: λ₁ for lambda1, φ̇ for dot(phi)."""
+    """Return the name of a quantity as a reader writes it: λ₁ for lambda1, φ̇ for dot(phi)."""
     if rate := RATE.fullmatch(name):
         letter, *rest = lettered(rate[2])
         return letter + DOTS[rate[1]] + "".join(rest)
@@ -137,12 +137,12 @@ def lettered(name: str) -> str:
 
 
 def lettered_text(text: str) -> str:
-    """A text in which names of quantities are written in their letters."""
+    """Return a text in which names of quantities are written in their letters."""
     return WORD.sub(lambda word: lettered(word[0]), text)
 
 
 def _in_greek(name: str) -> str:
-    """The Greek letter of that name, or the name where there is none."""
+    """Return the Greek letter of that name, or the name where there is none."""
     case = "SMALL" if name.islower() else "CAPITAL"
     try:
         return unicodedata.lookup(f"GREEK {case} LETTER {name.lower().replace('lambda', 'lamda')}")
@@ -183,7 +183,7 @@ class Picture:
 
 
 def svg_text(figure: "Figure") -> str:
-    """A figure as the text of an SVG document, its ink the reader's."""
+    """Return a figure as the text of an SVG document, its ink the reader's."""
     buffer = io.StringIO()
     _take_text_for_text(figure)
     with import_matplotlib().rc_context(WRITING):

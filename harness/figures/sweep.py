@@ -20,7 +20,9 @@ BESIDE = ("row", "residual", "status", "remark")
 
 
 def sweep_figure(sweep: "Sweep", quantity: str | None = None) -> "Figure":
-    """The figure of a column of a sweep, else of the first that is kept; of rows without a value nothing is drawn.
+    """Return the figure of a column of a sweep, else of the first that is kept.
+
+    Of rows without a value nothing is drawn.
 
     Raises
     ------
@@ -54,7 +56,7 @@ def require_plottable(axes: "SweepAxes") -> None:
 
 
 def plotted(document: dict[str, Any]) -> str:
-    """The first quantity that a sweep keeps; its residual where it keeps none."""
+    """Return the first quantity that a sweep keeps; its residual where it keeps none."""
     names = {axis["name"] for axis in document["parameters"]}
     kept = [name for name in document["columns"] if name not in names and name not in BESIDE]
     return kept[0] if kept else "residual"

@@ -39,7 +39,7 @@ class Arithmetic(Generic[Value]):
     operations: Mapping[Operation, Callable[..., Value]]
 
     def value(self, expression: Expression, names: Mapping[str, Value]) -> Value:
-        """What an expression becomes, given what its names have become."""
+        """Return what an expression becomes, given what its names have become."""
         match expression:
             case Call(Operation.POWER, (base, Fraction() as exponent)):
                 return self.power(self.value(base, names), exponent)
@@ -49,7 +49,7 @@ class Arithmetic(Generic[Value]):
                 return self.atom(atom, names)
 
     def atom(self, atom: Atom, names: Mapping[str, Value]) -> Value:
-        """What a name, a number or a constant becomes."""
+        """Return what a name, a number or a constant becomes."""
         match atom:
             case Name(text):
                 return names[text]

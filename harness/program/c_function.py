@@ -129,14 +129,14 @@ def compile_shared(sources: Sequence[Path], library: Path, *options: str) -> Non
 
 
 def has_compiler() -> bool:
-    """Whether there is a C compiler."""
+    """Return True if there is a C compiler."""
     with suppress(HolonomError):
         return bool(_compiler())
     return False
 
 
 def _compiler() -> list[str]:
-    """The compiler's command: what CC says, or the first that is installed."""
+    """Return the compiler's command: what CC says, or the first that is installed."""
     if named := os.environ.get("CC"):
         command = _words(named)
         found = shutil.which(command[0])

@@ -44,7 +44,10 @@ class Target:
 
 
 def c_source(program: Program) -> str:
-    """A program as C99, ``motion`` and ``motion_batch``: a translation unit that needs the standard library alone."""
+    """Return a program as C99, ``motion`` and ``motion_batch``.
+
+    A translation unit that needs the standard library alone.
+    """
     places = range(len(program.inputs))
     one = scalar_statements(program, [f"in[{place}]" for place in places])
     lanes = [f"lanes_at(in + {place}*points + i)" for place in places]
@@ -64,7 +67,7 @@ def c_source(program: Program) -> str:
 
 
 def scalar_statements(program: Program, inputs: Sequence[str]) -> Iterator[str]:
-    """The program for one point, as statements of C that fill an array ``out``.
+    """Return the program for one point, as statements of C that fill an array ``out``.
 
     Each input is given as an expression of C. They need `HELPERS` and the mathematical functions.
     """
@@ -106,7 +109,7 @@ def _table(program: Program) -> Iterator[str]:
 
 
 def statements(program: Program, target: Target, inputs: Sequence[str], writes: Sequence[str]) -> Iterator[str]:
-    """The program as statements of C.
+    """Yield the program as statements of C.
 
     Parameters
     ----------
@@ -131,7 +134,7 @@ def statements(program: Program, target: Target, inputs: Sequence[str], writes: 
 
 
 def lanes_support(text: str) -> str:
-    """What statements for `MANY` need before them: the type, and the functions that they call lane by lane."""
+    """Return what statements for `MANY` need before them: the type, and the functions that they call lane by lane."""
     arities = {name: 2 if name in ("pow", "atan2") else 1 for name in (*FUNCTIONS.values(), "pow")}
     called = set(re.findall(r"\blanes_(\w+)\(", text))
     return template("lanes.h") + "".join(

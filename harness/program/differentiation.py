@@ -136,7 +136,7 @@ SLOPES: Mapping[Operation, Slope] = {
 
 
 def _duals(tape: _Tape) -> Arithmetic[_Dual]:
-    """The arithmetic of values with their derivatives."""
+    """Return the arithmetic of values with their derivatives."""
     special = {
         Operation.ADD: _sum,
         Operation.SUBTRACT: _difference,

@@ -35,7 +35,7 @@ class Drawing:
     tables: tuple[Table, ...] = ()  # whose polynomials it takes
 
     def numbers(self, instants: NDArray, coordinates: Mapping[str, NDArray]) -> list[NDArray[np.float64]]:
-        """The numbers of each shape along a motion.
+        """Return the numbers of each shape along a motion.
 
         Parameters
         ----------

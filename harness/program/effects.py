@@ -119,7 +119,10 @@ class MeasuredCosts(Shown):
 
 
 def scene_costs(file: Source | Path, request: Request, limits: Limits) -> MeasuredCosts:
-    """What a scene pays for, its programs asked of Maxima; raises as `holonom.documents.ask` and `measure_costs`."""
+    """Return what a scene pays for, its programs asked of Maxima.
+
+    Raises as `holonom.documents.ask` and `measure_costs`.
+    """
     asked = (Document.EFFECTS, file, request.scene, request.solve)
     return measure_costs(read_costs(ask(*asked, settings=request.settings, limits=limits)))
 
@@ -204,7 +207,7 @@ def _batches(programs: Sequence[Program], point: Mapping[str, float]) -> tuple[M
 
 
 def _regular_point(program: Program, names: Mapping[str, None]) -> dict[str, float]:
-    """The first point of a sequence without symmetry where the program's values are finite."""
+    """Return the first point of a sequence without symmetry where the program's values are finite."""
     evaluate = NumpyFunction(program)
     for point in _points(names):
         with np.errstate(all="ignore"):

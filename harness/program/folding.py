@@ -33,7 +33,7 @@ def folded(operation: Operation, arguments: list[Expression]) -> Expression:
 
 
 def _collected(operation: Operation, arguments: list[Expression], neutral: Fraction) -> Expression:
-    """A sum or product with its numbers taken together."""
+    """Return a sum or product with its numbers taken together."""
     number, rest = neutral, []
     for argument in arguments:
         if isinstance(argument, Fraction):

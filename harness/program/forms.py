@@ -58,24 +58,24 @@ class MotionProgram:
 
     @naming_the_extra()
     def compile(self) -> "CFunction":
-        """A function of an array (inputs,) or (inputs, points), compiled by the system's C compiler."""
+        """Return a function of an array (inputs,) or (inputs, points), compiled by the system's C compiler."""
         from .c_function import compile_c
 
         return compile_c(self.program)
 
     @naming_the_extra()
     def lambdify(self) -> "NumpyFunction":
-        """The same function by NumPy alone."""
+        """Return the same function by NumPy alone."""
         from .numpy_function import NumpyFunction
 
         return NumpyFunction(self.program)
 
     def to_python(self) -> str:
-        """A Python module that needs the standard library alone."""
+        """Return a Python module that needs the standard library alone."""
         return self.written("python")
 
     def to_javascript(self) -> str:
-        """A script for a page or for Node that needs nothing but Math."""
+        """Return a script for a page or for Node that needs nothing but Math."""
         return self.written("javascript")
 
     def to_c(self, directory: str | Path, name: str | None = None, parameters: Sequence[str] = ()) -> None:

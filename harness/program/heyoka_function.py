@@ -119,7 +119,7 @@ def dynamics(
 
 
 def _variables(program: Program) -> dict[str, expression]:
-    """A heyoka variable for each input."""
+    """Return a heyoka variable for each input."""
     return {name: import_heyoka().expression(name) for name in program.inputs}
 
 

@@ -22,46 +22,46 @@ class Formula:
     rank: Rank
 
     def within(self, rank: Rank) -> str:
-        """The text as part of a formula that needs at least this rank."""
+        """Return the text as part of a formula that needs at least this rank."""
         return self.text if self.rank >= rank else f"({self.text})"
 
 
 def atom(text: str) -> Formula:
-    """A name or a number without a sign."""
+    """Return a name or a number without a sign."""
     return Formula(text, Rank.ATOM)
 
 
 def signed(text: str) -> Formula:
-    """A number, perhaps with a minus sign."""
+    """Return a number, perhaps with a minus sign."""
     return Formula(text, Rank.SIGNED if text.startswith("-") else Rank.ATOM)
 
 
 def call(function: str, *arguments: Formula) -> Formula:
-    """A function call."""
+    """Return a function call."""
     return atom(f"{function}({', '.join(argument.text for argument in arguments)})")
 
 
 def add(first: Formula, *others: Formula) -> Formula:
-    """A sum, from left to right."""
+    """Return a sum, from left to right."""
     return Formula(" + ".join([first.text, *(term.within(Rank.PRODUCT) for term in others)]), Rank.SUM)
 
 
 def subtract(a: Formula, b: Formula) -> Formula:
-    """A difference."""
+    """Return a difference."""
     return Formula(f"{a.text} - {b.within(Rank.PRODUCT)}", Rank.SUM)
 
 
 def multiply(first: Formula, *others: Formula) -> Formula:
-    """A product, from left to right."""
+    """Return a product, from left to right."""
     factors = [first.within(Rank.PRODUCT), *(factor.within(Rank.SIGNED) for factor in others)]
     return Formula("*".join(factors), Rank.PRODUCT)
 
 
 def divide(a: Formula, b: Formula) -> Formula:
-    """A quotient."""
+    """Return a quotient."""
     return Formula(f"{a.within(Rank.PRODUCT)}/{b.within(Rank.SIGNED)}", Rank.PRODUCT)
 
 
 def negate(a: Formula) -> Formula:
-    """A change of sign."""
+    """Return a change of sign."""
     return Formula(f"-{a.within(Rank.POWER)}", Rank.SIGNED)

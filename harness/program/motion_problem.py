@@ -149,7 +149,7 @@ class MotionProblem:
     _compiled: dict[Hashable, tuple[object, Any]] = field(default_factory=dict, compare=False, repr=False)
 
     def once(self, what: Hashable, part: object, build: "Callable[[], Built]") -> "Built":
-        """What is built of a part, a program mostly, once for all values of what is open; anew where nothing is.
+        """Return what is built of a part, a program mostly, once for all values of what is open; anew where nothing is.
 
         `what` tells apart what is built of the same part.
         """
@@ -161,7 +161,7 @@ class MotionProblem:
         return self._compiled[key][1]
 
     def __getstate__(self) -> dict[str, Any]:
-        """What another process gets: not what is compiled for this one."""
+        """Return the state for another process, without compiled functions."""
         return {**vars(self), "_compiled": {}}
 
     @property
@@ -213,7 +213,7 @@ def require_analytic(problem: MotionProblem) -> None:
 
 
 def function_of_knot(knot: Fraction) -> str:
-    """The function whose sign tells on which side of an instant the time is, as Maxima prints it."""
+    """Return the function whose sign tells on which side of an instant the time is, as Maxima prints it."""
     return f"t{'+' if knot < 0 else '-'}{abs(knot)}" if knot else "t"
 
 
@@ -256,7 +256,10 @@ def problem_document(
     digits: int = DOUBLE_DIGITS,
     open_parameters: Sequence[str] = (),
 ) -> str:
-    """The document of a scene's motion, as Maxima writes it, for `read_problem`; arguments as for `motion_problem`."""
+    """Return the document of a scene's motion, as Maxima writes it, for `read_problem`.
+
+    Arguments as for `motion_problem`.
+    """
     asked = (request.scene, request.solve, digits, tuple(open_parameters))
     return ask(Document.MOTION_PROBLEM, file, *asked, settings=request.settings, limits=limits)
 
@@ -302,7 +305,7 @@ def _problem(document: Mapping[str, Any], joints: Mapping[str, str]) -> MotionPr
 
 
 def computing(program: Program, wanted: Collection[str]) -> Program:
-    """The part of a program that some of its outputs need, with the same inputs."""
+    """Return the part of a program that some of its outputs need, with the same inputs."""
     outputs = {name: value for name, value in program.outputs.items() if name in wanted}
     needed = set().union(*map(names_in, outputs.values()))
     kept = []

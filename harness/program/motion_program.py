@@ -153,7 +153,7 @@ def operations_in(expression: Expression) -> int:
 
 
 def names_in(expression: Expression) -> Set[str]:
-    """Names of the values that an expression is made of."""
+    """Return names of the values that an expression is made of."""
     match expression:
         case Name(text):
             return {text}
@@ -164,7 +164,7 @@ def names_in(expression: Expression) -> Set[str]:
 
 
 def names_used(program: Program) -> Set[str]:
-    """Names that the assignments and outputs of a program are made of."""
+    """Return names that the assignments and outputs of a program are made of."""
     expressions = [*(expression for _, expression in program.assignments), *program.outputs.values()]
     return set().union(*map(names_in, expressions))
 
@@ -188,7 +188,7 @@ def _expression(tree: object, levels: int) -> Expression:
 
 
 def _takes(head: str, arguments: int) -> bool:
-    """Whether there is an operation of that head with so many arguments."""
+    """Return True if there is an operation of that head with so many arguments."""
     if head not in OPERATIONS:
         return False
     if head in VARIADIC:

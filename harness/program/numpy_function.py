@@ -76,7 +76,7 @@ class NumpyFunction:
 
 
 def needs_scipy(program: Program) -> bool:
-    """Whether a program calls functions that NumPy does not have."""
+    """Return True if a program calls functions that NumPy does not have."""
     return any(call.operation in OF_SCIPY for _, expression in program.assignments for call in calls_in(expression))
 
 
@@ -91,7 +91,7 @@ def _compiled(program: Program) -> Callable[[Sequence[NDArray[np.float64]]], tup
 
 
 def _called_of_scipy(names: Sequence[str]) -> Mapping[str, np.ufunc]:
-    """The ufuncs of scipy.special among the names that a function uses."""
+    """Return the ufuncs of scipy.special among the names that a function uses."""
     called = [name for name in names if name in OF_SCIPY.values()]
     if not called:
         return {}
@@ -101,7 +101,7 @@ def _called_of_scipy(names: Sequence[str]) -> Mapping[str, np.ufunc]:
 
 
 def _statements(program: Program) -> Iterator[ast.stmt]:
-    """Assignments to few variables, v0, v1, ...: each is taken again after the last use of its value."""
+    """Yield assignments to few variables, v0, v1, ...: each is taken again after the last use of its value."""
     variables = {name: f"v{index}" for index, name in enumerate(program.inputs)}
     yield ast.Assign(
         [ast.Tuple([_store(v) for v in variables.values()], ast.Store(), **PLACE)], _load("inputs"), **PLACE

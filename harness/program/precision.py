@@ -40,12 +40,14 @@ class Precision:
         return distance
 
     def ratio(self, value: Fraction) -> Any:
-        """The number nearest to a rational one."""
+        """Return the number nearest to a rational one."""
         return self.number(str(value.numerator)) / self.number(str(value.denominator))
 
 
 def read_precision(text: str) -> Precision:
-    """The numbers that an option asks for: ``double``, ``extended``, ``quadruple``, or a number of decimal digits.
+    """Return the numbers that an option asks for.
+
+    ``double``, ``extended``, ``quadruple``, or a number of decimal digits.
 
     Raises
     ------

@@ -46,7 +46,7 @@ class RightHandSide:
         return NumpyFunction(replace(program, inputs=("t", *self.names)))
 
     def __call__(self, t: float, y: ArrayLike) -> NDArray[np.float64]:
-        """The velocities and accelerations."""
+        """Return the velocities and accelerations."""
         state = np.asarray(y, dtype=float)
         instants = np.broadcast_to(np.asarray(t, dtype=float), state.shape[1:])
         return np.concatenate([state[len(state) // 2 :], self._accelerations([instants, *state])])

@@ -19,7 +19,7 @@ Pattern = Mapping[str, int | str]
 
 
 def problem_in(problem: MotionProblem, pattern: Pattern) -> MotionProblem:
-    """The analytic motion of one pattern of signs.
+    """Return the analytic motion of one pattern of signs.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def problem_in(problem: MotionProblem, pattern: Pattern) -> MotionProblem:
 
 
 def program_in(problem: MotionProblem, program: Program, pattern: Pattern) -> Program:
-    """A program of the motion with the signs of a pattern.
+    """Return a program of the motion with the signs of a pattern.
 
     Its inputs are those of the motion, but for the signs.
     """
@@ -48,7 +48,7 @@ def program_in(problem: MotionProblem, program: Program, pattern: Pattern) -> Pr
 
 
 def drawing_at_any_time(problem: MotionProblem) -> Drawing:
-    """How the system looks, each sign as it is at the state drawn.
+    """Return how the system looks, each sign as it is at the state drawn.
 
     Its program takes the time, the coordinates, the velocities and the multipliers alone.
     """
@@ -68,17 +68,17 @@ def drawing_in_numbers(problem: MotionProblem) -> Drawing:
 
 
 def holdable(problem: MotionProblem, name: str) -> bool:
-    """Whether a sign can hold the motion on its surface: forces alone contain it, and linearly."""
+    """Return True if a sign can hold the motion on its surface: forces alone contain it, and linearly."""
     return problem.switching is not None and f"grip[{_index(problem, name)}]" in problem.switching.outputs
 
 
 def in_numbers(problem: MotionProblem, program: Program) -> Program:
-    """A program of the motion with the values of the open parameters put in."""
+    """Return a program of the motion with the values of the open parameters put in."""
     return with_numbers(program, problem.values) if problem.parameters else program
 
 
 def with_values_in(problem: MotionProblem) -> MotionProblem:
-    """The motion with the values of its parameters put into its programs, none left open."""
+    """Return the motion with the values of its parameters put into its programs, none left open."""
     if not problem.parameters:
         return problem
     return replace(
@@ -94,7 +94,7 @@ def with_values_in(problem: MotionProblem) -> MotionProblem:
 
 
 def at_start(problem: MotionProblem) -> MotionProblem:
-    """The motion as it begins: each table is the polynomial around the start."""
+    """Return the motion as it begins: each table is the polynomial around the start."""
     if not problem.tables:
         return problem
 
@@ -108,13 +108,13 @@ def at_start(problem: MotionProblem) -> MotionProblem:
 
 
 def _begun(motion: MotionProblem, problem: MotionProblem) -> MotionProblem:
-    """A motion that starts as another one does."""
+    """Return a motion that starts as another one does."""
     kept = ("start", "values", "correction", "moved", "nominal")
     return replace(motion, **{name: getattr(problem, name) for name in kept})
 
 
 def sharing_programs(problem: MotionProblem, known: dict[Hashable, MotionProblem]) -> MotionProblem:
-    """A motion with the numbers of its laws as values of parameters.
+    """Return a motion with the numbers of its laws as values of parameters.
 
     The pieces of a law, of a table above all, differ in their numbers alone: motions that do so are given the same
     programs, and what is compiled of them is compiled once.
@@ -153,7 +153,10 @@ def sharing_programs(problem: MotionProblem, known: dict[Hashable, MotionProblem
 
 
 def _with_names_for_numbers(expression: Expression, start: str, numbers: dict[str, Fraction]) -> Expression:
-    """The expression with a name for each of its numbers, exponents apart; the numbers are put under these names."""
+    """Return the expression with a name for each of its numbers, exponents apart.
+
+    The numbers are put under these names.
+    """
     count = 0
 
     def named(part: Expression) -> Expression:
@@ -174,7 +177,7 @@ def _with_names_for_numbers(expression: Expression, start: str, numbers: dict[st
 
 
 def _text(problem: MotionProblem) -> Hashable:
-    """What two motions have in common that differ in values and start alone."""
+    """Return what two motions have in common that differ in values and start alone."""
     programs: list[Program | None] = []
     _with_programs(problem, lambda program: programs.append(program) or program)
     return tuple((each.inputs, each.assignments, tuple(each.outputs.items())) for each in programs)
@@ -197,7 +200,7 @@ def switching_function(problem: MotionProblem, quantity: str, name: str, pattern
 
 
 def with_numbers(program: Program, numbers: Mapping[str, Fraction]) -> Program:
-    """A program with numbers for some of its inputs; what is multiplied by zero is dropped."""
+    """Return a program with numbers for some of its inputs; what is multiplied by zero is dropped."""
     known: dict[str, Expression] = dict(numbers)
     kept = []
     for name, expression in program.assignments:
@@ -215,7 +218,7 @@ def with_numbers(program: Program, numbers: Mapping[str, Fraction]) -> Program:
 
 
 def _with_programs(problem: MotionProblem, changed: Callable[[Program], Program]) -> MotionProblem:
-    """The motion with each of its programs changed, but for that of the switching."""
+    """Return the motion with each of its programs changed, but for that of the switching."""
     return replace(
         problem,
         motion=problem.motion and changed(problem.motion),
@@ -236,7 +239,7 @@ def _index(problem: MotionProblem, name: str) -> int:
 
 
 def _holding(problem: MotionProblem, name: str) -> Program:
-    """The program of a sign that holds the motion on its surface: its one output has the sign's name."""
+    """Return the program of a sign that holds the motion on its surface: its one output has the sign's name."""
     index = _index(problem, name)
     program = with_numbers(computing(problem.switching, {f"drive[{index}]", f"grip[{index}]"}), {name: ZERO})
     value = Call(Operation.DIVIDE, (
@@ -246,7 +249,7 @@ def _holding(problem: MotionProblem, name: str) -> Program:
 
 
 def _preceded(first: Program, program: Program) -> Program:
-    """A program after another one has computed one of its inputs; both take the same inputs otherwise."""
+    """Return a program after another one has computed one of its inputs; both take the same inputs otherwise."""
     (sign,) = first.outputs
     taken = {name for name, _ in program.assignments} | set(program.inputs)
     own = {name: _untaken(f"{sign}_{name}", taken) for name, _ in first.assignments if name != sign}
@@ -277,7 +280,7 @@ def _substituted(expression: Expression, known: Mapping[str, Expression]) -> Exp
 
 
 def _vanishing_weight(arguments: tuple[Expression, ...], known: Mapping[str, Expression]) -> bool:
-    """Whether a factor made of signs alone is zero: of a law in many pieces all terms but one are told by it."""
+    """Return True if a factor made of signs alone is zero: of a law in many pieces all terms but one are told by it."""
     for each in arguments:
         of_signs = isinstance(each, Call) and all(name in known for name in _names_met(each))
         if of_signs and _substituted(each, known) == ZERO:
@@ -286,7 +289,7 @@ def _vanishing_weight(arguments: tuple[Expression, ...], known: Mapping[str, Exp
 
 
 def _names_met(expression: Expression) -> Iterator[str]:
-    """Names in an expression one after another: whoever has seen enough stops here."""
+    """Yield names in an expression one after another: whoever has seen enough stops here."""
     match expression:
         case Name(text):
             yield text

@@ -27,7 +27,7 @@ class OfTime:
         self._function, self._tables = NumpyFunction(program), pieces_of_tables(tables)
 
     def __call__(self, instants: Numbers) -> Numbers:
-        """The outputs at instants, shape (outputs, ...)."""
+        """Return the outputs at instants, shape (outputs, ...)."""
         return self._function([instants, *(row for table in self._tables for row in table.at(instants))])
 
 
@@ -41,7 +41,7 @@ class PiecesOfTable:
         self._knots = np.array([float(t) for t in begins[1:]])
 
     def at(self, instants: Numbers, side: Literal["left", "right"] = "left") -> Numbers:
-        """The polynomials that count at instants in double precision, shape (5, k); one for one instant.
+        """Return the polynomials that count at instants in double precision, shape (5, k); one for one instant.
 
         At a knot it is the one that ends there, on its right side the one that begins.
         """
@@ -49,5 +49,5 @@ class PiecesOfTable:
 
 
 def pieces_of_tables(tables: Sequence[Table]) -> list[PiecesOfTable]:
-    """Those of each table, in double precision."""
+    """Return those of each table, in double precision."""
     return [PiecesOfTable(table, read_precision("double")) for table in tables]

@@ -34,18 +34,18 @@ class Timer:
         return shortest_times({0: self.batch(function, point, outputs)})[0]
 
     def batch(self, function: Compiled, point: NDArray[np.float64], outputs: int) -> Batch:
-        """A batch of calls of ``function(in, out)``."""
+        """Return a batch of calls of ``function(in, out)``."""
         result = np.empty(outputs)
         address = ctypes.cast(function, ctypes.c_void_p)
         return lambda calls: self._seconds(address, point.ctypes.data, result.ctypes.data, calls)
 
     def evaluation(self, function: CFunction, point: NDArray[np.float64]) -> Batch:
-        """A batch of evaluations of a compiled program at a point."""
+        """Return a batch of evaluations of a compiled program at a point."""
         return self.batch(function.one, point, len(function.outputs))
 
 
 def python_batch(function: Callable[[Sequence[float]], object], point: Sequence[float]) -> Batch:
-    """A batch of calls of a function of Python."""
+    """Return a batch of calls of a function of Python."""
 
     def seconds(calls: int) -> float:
         start = time.perf_counter()

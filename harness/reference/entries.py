@@ -48,12 +48,12 @@ class FunctionText:
     entries: tuple[EntryText, ...]
 
     def with_entries(self, *replacing: str) -> str:
-        """The entries of the example, those given in the place of the ones of the same names."""
+        """Return the entries of the example, those given in the place of the ones of the same names."""
         by_name = {_name_of(entry): entry for entry in (*self.context, *replacing)}
         return ",\n  ".join(by_name.values())
 
     def complete_call(self) -> str:
-        """The complete example, an expression of Maxima."""
+        """Return the complete example, an expression of Maxima."""
         first = "system, " if self.name == "holonomic_scene" else ""
         return f"{self.name}({first}\n  {self.with_entries()})"
 
@@ -102,7 +102,7 @@ def _names_used(text: str, context: Mapping[str, str]) -> list[str]:
 
 @cache
 def function_texts() -> tuple[FunctionText, ...]:
-    """The two functions with their entries."""
+    """Return the two functions with their entries."""
     described = _described()
     return tuple(_function(name, described[name]) for name in FUNCTIONS)
 

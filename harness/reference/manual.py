@@ -11,7 +11,7 @@ from .topics import command_topics
 
 
 def manual_page() -> str:
-    """The text of holonom.1."""
+    """Return the text of holonom.1."""
     return "\n".join(_lines()) + "\n"
 
 

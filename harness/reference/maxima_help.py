@@ -19,7 +19,7 @@ SYSTEM, SCENE = "system", "paid_out"  # what the examples assign
 
 
 def help_files() -> Mapping[str, str]:
-    """The text of each file, by its name; ``maxima/help.lisp`` says what each is for."""
+    """Return the text of each file, by its name; ``maxima/help.lisp`` says what each is for."""
     info, index = info_with_index()
     return {
         INFO: info,
@@ -33,7 +33,7 @@ def help_files() -> Mapping[str, str]:
 
 
 def info_with_index() -> tuple[str, str]:
-    """The info file, and the Lisp that tells Maxima where each topic stands in it."""
+    """Return the info file, and the Lisp that tells Maxima where each topic stands in it."""
     first = function_texts()[0].name
     text = f"This is {INFO}: how a system and its scenes are described.\n\n"
     text += NODE.format(info=INFO, node="Top", links=f"Next: {DEFINITIONS},  Up: (dir)")
@@ -140,6 +140,6 @@ def demonstration() -> str:
 
 
 def assignment(function: FunctionText) -> str:
-    """The complete example of a function as a statement."""
+    """Return the complete example of a function as a statement."""
     name = SYSTEM if function.name == "holonomic_system" else SCENE
     return f"{name} : {function.complete_call()}$"

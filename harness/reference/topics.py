@@ -31,7 +31,7 @@ _HOLONOM_COMPLETE=fish_source holonom | source      # in ~/.config/fish/config.f
 
 
 def topics() -> list[Topic]:
-    """All pages, group by group."""
+    """Return all pages, group by group."""
     return [
         *entry_topics(),
         *part_topics(),
@@ -46,7 +46,7 @@ def topics() -> list[Topic]:
 
 
 def entry_topics() -> Iterator[Topic]:
-    """A page for holonomic_system and for holonomic_scene, and one for each of their entries."""
+    """Yield a page for holonomic_system and for holonomic_scene, and one for each of their entries."""
     for function in function_texts():
         rows = tuple((entry.name, entry.type, entry.default) for entry in function.entries)
         parts = (
@@ -101,7 +101,7 @@ def _part_topic(group: str, kind: str, part: PartText) -> Topic:
 
 
 def command_topics() -> Iterator[Topic]:
-    """A page for the command line, and one for each command."""
+    """Yield a page for the command line, and one for each command."""
     commands = tuple((name, _first_line(command)) for name, command in sorted(group.holonom.commands.items()))
     overview = (
         *_usage(group.holonom, "holonom", ("COMMAND",)),
@@ -131,7 +131,7 @@ def command_options(command: click.Command) -> list[click.Option]:
 
 
 def option_row(option: click.Option) -> tuple[str, str, str]:
-    """An option as it is written, what it does, and what holds without it."""
+    """Return an option as it is written, what it does, and what holds without it."""
     written = ", ".join([*option.opts, *option.secondary_opts])
     if not option.is_flag:
         written += f" {option.metavar or _choices(option)}"
@@ -164,7 +164,7 @@ def _sentence(text: str | None) -> str:
 
 
 def document_topics() -> Iterator[Topic]:
-    """A page for each JSON document: its fields, and its schema."""
+    """Yield a page for each JSON document: its fields, and its schema."""
     for file in sorted(SCHEMAS.glob("*.json")):
         text = file.read_text(encoding="utf-8")
         schema = json.loads(text)
@@ -194,7 +194,7 @@ def _fields(schema: Mapping[str, Any], path: str) -> Iterator[tuple[str, str, st
 
 
 def _inside(schema: Any) -> Iterator[tuple[str, Mapping[str, Any]]]:
-    """A schema, its alternatives, and what the elements of an array are, with what their paths have in addition."""
+    """Yield a schema, its alternatives and the elements of an array, with additions to their paths."""
     if not isinstance(schema, dict):
         return  # true: anything
     yield "", schema
@@ -226,7 +226,7 @@ def _kind(field: Any) -> str:
 
 
 def python_topics() -> Iterator[Topic]:
-    """A page for each public name."""
+    """Yield a page for each public name."""
     import holonom
     from holonom.dae import Dae
     from holonom.program.right_hand_side import RightHandSide

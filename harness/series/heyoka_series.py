@@ -81,7 +81,7 @@ def expand(problem: MotionProblem, order: int, precision: Precision) -> MotionSe
 
 
 def _of_state(problem: MotionProblem) -> Program:
-    """The motion program of the time and the state alone."""
+    """Return the motion program of the time and the state alone."""
     unused = {name: Fraction(0) for name in problem.multipliers}
     return with_numbers(with_numbers(problem.motion, problem.values), unused)
 
@@ -172,7 +172,7 @@ def _integrator(
 
 
 def _reactions(problem: MotionProblem) -> list[str]:
-    """Names of what is no state: multipliers and constraint forces."""
+    """Return names of what is no state: multipliers and constraint forces."""
     return [name for name in problem.motion.outputs if not name.startswith("ddot(")]
 
 

@@ -83,7 +83,7 @@ class MotionSeries(Shown):
             return decided(found, [numbers(row) for row in self.coordinates.values()], self.program, number(self.t0))
 
     def up_to(self, order: int) -> "MotionSeries":
-        """The same series without the powers above a lower order."""
+        """Return the same series without the powers above a lower order."""
         groups = ("coordinates", "multipliers", "constraint_forces")
         kept = {group: {name: row[: order + 1] for name, row in getattr(self, group).items()} for group in groups}
         return replace(self, order=order, **kept)
@@ -141,7 +141,7 @@ def values_at(motion: MotionSeries, time: Fraction) -> Values:
 
 
 def series_document(motion: MotionSeries, values: Values | None = None) -> dict[str, Any]:
-    """What `holonom series --json` writes."""
+    """Return what `holonom series --json` writes."""
     radius = motion.radius
     t0 = float(number(motion.t0))
     content = {

@@ -94,7 +94,7 @@ def estimate_radius(series: Iterable[Sequence[mpmath.mpf]]) -> Radius:
 
 
 def described(radius: Radius) -> str:
-    """What a radius is known from."""
+    """Return what a radius is known from."""
     if radius.located:
         return "where the equations of motion are singular"
     return (
@@ -104,7 +104,7 @@ def described(radius: Radius) -> str:
 
 
 def _of_so_many(radius: Radius, coefficients: int) -> Radius:
-    """An estimate with what so many coefficients do not show."""
+    """Return an estimate with what so many coefficients do not show."""
     if radius.estimate is None:
         return replace(radius, coefficients=coefficients)
     unseen = radius.uncertainty / radius.estimate * NEARER**coefficients
@@ -283,7 +283,7 @@ def _root_tests(n: NDArray[np.int64], logarithms: Floats, stride: int, scale: Fl
 
 
 def _fitted_radii(balanced: Floats, stride: int, scale: Floats) -> list[Radius | None]:
-    """The estimates of the recurrences whose corrections agree best with fewer and with other orders."""
+    """Return the estimates of the recurrences whose corrections agree best with fewer and with other orders."""
     import numpy as np
 
     choices = [choice for lags in LAGS for choice in _compared_fits(balanced, lags)]
@@ -356,7 +356,10 @@ def _recurrence_roots(balanced: Floats, lags: int, n: NDArray[np.int64], most: i
 
 
 def _roots(recurrences: Floats) -> NDArray[np.complex128]:
-    """Where 1 + p_1 z + p_2 z^2 + ... is zero, the nearest first, shape (m, lags): the reciprocals of eigenvalues."""
+    """Return where 1 + p_1 z + p_2 z^2 + ... is zero, the nearest first, shape (m, lags).
+
+    The reciprocals of eigenvalues.
+    """
     import numpy as np
 
     lags = recurrences.shape[1]
@@ -369,7 +372,7 @@ def _roots(recurrences: Floats) -> NDArray[np.complex128]:
 
 
 def _in_time(root: complex, stride: int, scale: float) -> list[complex]:
-    """The singularities in the time that a root in its stride-th power stands for."""
+    """Return the singularities in the time that a root in its stride-th power stands for."""
     import numpy as np
 
     if stride == 1:

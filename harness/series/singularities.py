@@ -49,7 +49,7 @@ Evaluate = Callable[[Any], Sequence[Any]]
 
 
 def decided(radius: Radius, series: Sequence[Sequence[mpmath.mpf]], program: Program | None, t0: mpmath.mpf) -> Radius:
-    """The radius of convergence, by a singularity of the equations if one is nearer than the coefficients tell.
+    """Return the radius of convergence, by a singularity of the equations if one is nearer than the coefficients tell.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def _at_most(bound: float, radius: Radius) -> Radius:
 
 
 def _located(zero: complex, zeros: Sequence[complex]) -> Radius:
-    """The radius that a singularity sets, with those as far away."""
+    """Return the radius that a singularity sets, with those as far away."""
     as_far = [z for z in zeros if abs(abs(z) - abs(zero)) <= CLOSE * abs(zero)]
     kind = "a real instant" if abs(zero.imag) <= CLOSE * abs(zero) else "a complex pair"
     remark = f"the equations of motion are singular there; the nearest singularity is {kind}"
@@ -85,7 +85,10 @@ def _located(zero: complex, zeros: Sequence[complex]) -> Radius:
 
 
 def _follows_state(program: Program) -> bool:
-    """Whether the accelerations depend on the state: a motion may then be singular where its equations are not."""
+    """Return True if the accelerations depend on the state.
+
+    A motion may then be singular where its equations are not.
+    """
     return not names_used(computing(program, program.outputs)).isdisjoint(program.inputs[1:])
 
 
@@ -114,13 +117,13 @@ def _zeros(program: Program, series: Sequence[Sequence[mpmath.mpf]], t0: mpmath.
 
 
 def _names_of(program: Program, place: int) -> set[str]:
-    """A coordinate and its velocity."""
+    """Return a coordinate and its velocity."""
     n = len(program.inputs) // 2
     return {program.inputs[1 + place], program.inputs[1 + n + place]}
 
 
 def _critical_functions(program: Program) -> Program:
-    """A program of the divisors and of what stands under roots and logarithms, as far as they are not constant."""
+    """Return a program of divisors and arguments of roots and logarithms that are not constant."""
     found: dict[Expression, str] = {}
     assignments: list[tuple[str, Expression]] = []
     moving = set(program.inputs)
@@ -137,7 +140,7 @@ def _critical_functions(program: Program) -> Program:
 
 
 def _critical_arguments(call: Call) -> Iterator[Expression]:
-    """What makes a call singular where it vanishes."""
+    """Yield what makes a call singular where it vanishes."""
     one, (first, *rest) = Fraction(1), call.arguments
     square = Call(Operation.MULTIPLY, (first, first))
     match call.operation:
@@ -201,7 +204,7 @@ def _each_once(zeros: np.ndarray) -> list[complex]:
 
 
 def _at(program: Program, motion: Sequence[np.ndarray], t0: float, z: np.ndarray) -> np.ndarray:
-    """The one output of a program at complex times t0 + z, along the series."""
+    """Return the one output of a program at complex times t0 + z, along the series."""
     states = [np.polynomial.polynomial.polyval(z, row) for row in motion]
     rates = [np.polynomial.polynomial.polyval(z, np.polynomial.polynomial.polyder(row)) for row in motion]
     inputs = dict(zip(program.inputs, [t0 + z, *states, *rates], strict=True))
@@ -210,7 +213,7 @@ def _at(program: Program, motion: Sequence[np.ndarray], t0: float, z: np.ndarray
 
 
 def _in_digits(program: Program, series: Sequence[Sequence[mpmath.mpf]], t0: mpmath.mpf) -> Evaluate:
-    """All outputs of a program at a complex time t0 + z, along the series, in mpmath's numbers."""
+    """Return all outputs of a program at a complex time t0 + z, along the series, in mpmath's numbers."""
     rows = [list(reversed(row)) for row in series]
 
     def evaluate(z: Any) -> Sequence[Any]:
@@ -222,7 +225,7 @@ def _in_digits(program: Program, series: Sequence[Sequence[mpmath.mpf]], t0: mpm
 
 
 def _is_singular(program: Program, series: Sequence[Sequence[mpmath.mpf]], t0: mpmath.mpf, zero: complex) -> bool:
-    """Whether what a program computes is singular at a zero of one of its critical functions."""
+    """Return True if what a program computes is singular at a zero of one of its critical functions."""
     with mpmath.workdps(DIGITS):
         shorter = [row[: int(len(row) * SHORTER)] for row in series]
         found, others = (_negative_powers(program, rows, t0, mpmath.mpc(zero)) for rows in (series, shorter))

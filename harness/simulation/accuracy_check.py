@@ -49,7 +49,7 @@ class AccuracyViolation(NamedTuple):
 
 
 def doubts(missed: Mapping[str, float], tol: float, steps: int) -> Iterator[AccuracyViolation]:
-    """What is out of proportion to the tolerance, of what is missed by quantity, relative to its size."""
+    """Yield what is out of proportion to the tolerance, of what is missed by quantity, relative to its size."""
     most = float(expected(tol, steps))
     for quantity, value in missed.items():
         if not value <= most:
@@ -62,7 +62,7 @@ def trusted(missed: Mapping[str, Vector], tol: float, steps: NDArray[np.int64]) 
 
 
 def expected(tol: float, steps: int | NDArray[np.int64]) -> float | Vector:
-    """The most that a tolerance lets expect of an error after so many steps, relative to the size of the quantity."""
+    """Return the relative error that a tolerance lets expect after some steps, at most."""
     return MARGIN * max(tol, FINEST) * np.maximum(1, steps)
 
 
@@ -73,7 +73,7 @@ def energy_missed(
     exchanged: float | Vector,
     small: Vector,
 ) -> float | Vector:
-    """An energy error relative to the size of the energies that it is an error of; of one motion or of k.
+    """Return an energy error relative to the size of the energies that it is an error of; of one motion or of k.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ HIGH = 16  # exponents from which a power is as faint as an exponential
 
 
 def may_hide(program: Program, apart: Collection[str] = ("t",)) -> bool:
-    """Whether a program contains such a function of the state, or of any other of its inputs but those apart."""
+    """Return True if a program contains such a function of the state, or of any other of its inputs but those apart."""
     moving = set(program.inputs).difference(apart)
     for name, expression in program.assignments:
         if any(_is_faint(call) and names_in(call) & moving for call in calls_in(expression)):

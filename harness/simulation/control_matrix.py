@@ -22,7 +22,7 @@ BEHIND = 1e-9  # of the part that is looked at: how far behind a zero of the det
 
 
 def controls_may_fail(problem: MotionProblem) -> bool:
-    """Whether servo-constraints find controls, from a matrix that changes along the motion."""
+    """Return True if servo-constraints find controls, from a matrix that changes along the motion."""
     if problem.servo_matrix is None:
         return False
     known = {*problem.parameters}
@@ -53,7 +53,7 @@ class ControlMatrix(SignedFunctions):
         self._scale: Numbers | float = 1.0  # of each row
 
     def lost(self, step: Step) -> float | None:
-        """The first instant of a step at which the matrix loses rank; None where it keeps it."""
+        """Return the first instant of a step at which the matrix loses rank; None where it keeps it."""
         while True:
             self._choose_rows(step)
             found = self._first_zero(step)
@@ -68,7 +68,7 @@ class ControlMatrix(SignedFunctions):
             step = step._replace(start=behind)
 
     def values(self, instants: Numbers, states: Numbers) -> Numbers:
-        """The determinant of the rows that are followed, shape (1, k)."""
+        """Return the determinant of the rows that are followed, shape (1, k)."""
         return np.linalg.det(self._matrices(instants, states)[:, self._kept])[None]
 
     def _matrices(self, instants: Numbers, states: Numbers) -> Numbers:
@@ -89,7 +89,7 @@ class ControlMatrix(SignedFunctions):
         self._kept = np.sort(qr((matrix / self._scale).T, mode="r", pivoting=True)[1][: self._shape[1]])
 
     def _first_zero(self, step: Step) -> tuple[float, Step] | None:
-        """The first zero of the determinant in a step, with the part of the step around it."""
+        """Return the first zero of the determinant in a step, with the part of the step around it."""
         self._rows = [("", -1, 1)]
         for part, places, values in self._looked_at(step):
             zeros = [t for t in self._zeros_in(part, places, values[0]) if t is not None]
@@ -109,14 +109,17 @@ class ControlMatrix(SignedFunctions):
         ]
 
     def _changed(self, part: Step, before: float, after: float) -> float | None:
-        """Where the determinant changes its sign between two instants; None where it does so through infinity."""
+        """Return where the determinant changes its sign between two instants.
+
+        None where it does so through infinity.
+        """
         side = 1 if self._value(part, before) > 0 else -1
         bound = max(abs(self._value(part, t)) for t in (before, after))
         zero = self._last_inside(lambda at: side * self.values(at, part.states(at))[0], before, after)
         return zero if abs(self._value(part, zero)) <= bound else None
 
     def _touched(self, part: Step, place: float, places: Numbers, values: Vector, largest: float) -> float | None:
-        """A minimum of the determinant's size that is a zero, or that lies behind one."""
+        """Return a minimum of the determinant's size that is a zero, or that lies behind one."""
         instant = part.start + (part.end - part.start) * self._precision.number(repr(float(place)))
         value = self._value(part, instant)
         before = places[places <= instant][-1]
@@ -129,7 +132,7 @@ class ControlMatrix(SignedFunctions):
         return float(self.values(at, part.states(at))[0, 0])
 
     def _loses_rank(self, zero: float, nearby: Step, step: Step) -> bool:
-        """Whether all rows together move the controls in fewer directions than nearby."""
+        """Return True if all rows together move the controls in fewer directions than nearby."""
         around = np.array([zero, nearby.start, (nearby.start + nearby.end) / 2, nearby.end])
         matrices = self._matrices(around, step.states(around))
         here, *others = (float(np.linalg.svd(each, compute_uv=False)[-1]) for each in matrices)

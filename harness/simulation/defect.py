@@ -69,5 +69,5 @@ class DefectControl:
 
 
 def _size(missed: float) -> float:
-    """What is no number is larger than all that are."""
+    """Return what is no number is larger than all that are."""
     return missed if missed == missed else np.inf

@@ -24,7 +24,9 @@ class Derivations:
         self._closed: dict[tuple[object, ...], MotionProblem] = {}
 
     def motion(self, request: Request, digits: int = DOUBLE_DIGITS, also_open: Collection[str] = ()) -> MotionProblem:
-        """The motion that a request asks for. Its open parameters, if it has any, have the values of the settings.
+        """Return the motion that a request asks for.
+
+        Its open parameters, if it has any, have the values of the settings.
 
         `also_open` names more of them, with the scene's values. Raises as `motion_problem`.
         """
@@ -39,7 +41,7 @@ class Derivations:
         return self._closed[key]
 
     def _at_settings(self, request: Request, names: tuple[str, ...]) -> MotionProblem | None:
-        """The motion with its parameters open and their values set, or None where it takes numbers to derive it."""
+        """Return the motion with open parameters set, or None if it takes numbers to derive it."""
         known = self._opened.setdefault((request.scene, request.solve, names), [])
         for settings, problem in known:
             if all(
@@ -52,13 +54,13 @@ class Derivations:
 
 
 def open_names(request: Request, digits: int, also_open: Collection[str] = ()) -> tuple[str, ...]:
-    """Names of what stays open where it is a parameter: what is set or named, in double precision."""
+    """Return names of what stays open where it is a parameter: what is set or named, in double precision."""
     names = {name for name in (*request.settings, *also_open) if NAME.fullmatch(name)}
     return tuple(sorted(names)) if digits == DOUBLE_DIGITS else ()
 
 
 def stands(problem: MotionProblem) -> bool:
-    """Whether the programs of a motion, with its parameters open, solve its equations at the start.
+    """Return True if the programs of a motion, with its parameters open, solve its equations at the start.
 
     True also where no parameter is open.
     """
@@ -81,7 +83,7 @@ def stands(problem: MotionProblem) -> bool:
 
 
 def _moved(problem: MotionProblem, settings: Mapping[str, str]) -> MotionProblem | None:
-    """The motion for other settings; None where its programs do not stand, or its start does not follow."""
+    """Return the motion for other settings; None where its programs do not stand, or its start does not follow."""
     from .initial_state import at_values
 
     if not problem.parameters:

@@ -68,7 +68,7 @@ class EnergyBalance:
         return _gauss_legendre(self.inner_states, self._precision)
 
     def energy(self, instants: Numbers, states: Numbers) -> Numbers:
-        """The energy function at states of the motion."""
+        """Return the energy function at states of the motion."""
         return self._output("energy", instants, states, None)
 
     def power(self, instants: Numbers, states: Numbers) -> Numbers:
@@ -76,7 +76,7 @@ class EnergyBalance:
         return self._output("power", instants, states, self._multipliers(instants, states) if self._moving else None)
 
     def instants_between(self, starts: Sequence[Any], ends: Sequence[Any]) -> Numbers:
-        """Where `works` needs the motion in intervals: `inner_states` in each, one interval after the other.
+        """Return where `works` needs the motion in intervals: `inner_states` in each, one interval after the other.
 
         None at all where there is nothing to integrate.
         """
@@ -126,7 +126,7 @@ def _gauss_legendre(n: int, precision: Precision) -> tuple[Numbers, Numbers]:
 
 @cache
 def _in_digits(n: int, digits: int) -> tuple[list[str], list[str]]:
-    """The roots of P_n by Newton's method from doubles, and 2/((1 - x^2) P_n'(x)^2) (Abramowitz & Stegun 25.4.29)."""
+    """Return the roots of P_n, and 2/((1 - x^2) P_n'(x)^2) (Abramowitz & Stegun 25.4.29)."""
 
     def with_slope(x: mpmath.mpf) -> tuple[mpmath.mpf, mpmath.mpf]:
         before, value = mpmath.mpf(1), x

@@ -110,7 +110,7 @@ def lane_evaluation(problem: MotionProblem, program: Program) -> Evaluation:
 
 
 def in_full_vectors(function: Callable[[Numbers], Numbers]) -> Evaluation:
-    """A function of heyoka's that takes points in full vectors only, shape (inputs, points)."""
+    """Return a function of heyoka's that takes points in full vectors only, shape (inputs, points)."""
     width = import_heyoka().recommended_simd_size()
 
     def evaluate(inputs: Numbers) -> Numbers:
@@ -123,7 +123,7 @@ def in_full_vectors(function: Callable[[Numbers], Numbers]) -> Evaluation:
 
 
 def zeros(precision: Precision, *shape: int) -> Numbers:
-    """An array of zeros of these numbers."""
+    """Return an array of zeros of these numbers."""
     if precision.name == "double":
         return np.zeros(shape)
     array = np.empty(shape, dtype=np.asarray([precision.number("0")]).dtype)
@@ -132,7 +132,7 @@ def zeros(precision: Precision, *shape: int) -> Numbers:
 
 
 def as_floats(numbers: Numbers) -> NDArray[np.float64]:
-    """The same numbers in double precision."""
+    """Return the same numbers in double precision."""
     if getattr(numbers, "dtype", None) == np.float64:
         return numbers.copy()
     array = np.asarray(numbers)

@@ -79,7 +79,7 @@ class Events(SignedFunctions):
         self._evaluate = evaluation_once(problem, program, precision)
 
     def first_event(self, step: Step, sides: dict[str, int]) -> Crossing | None:
-        """The first crossing within a step.
+        """Return the first crossing within a step.
 
         `sides` are the signs that expressions have had since they left zero; what this step shows is added.
 
@@ -104,7 +104,7 @@ class Events(SignedFunctions):
         return None
 
     def _sizes_in(self, step: Step) -> Numbers:
-        """How large expressions are in a step."""
+        """Return how large expressions are in a step."""
         _, values = self._samples(step, NODES)
         return np.max(np.abs(np.where(np.isfinite(values), values, 0.0)), axis=1)
 

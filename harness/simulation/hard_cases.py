@@ -63,7 +63,7 @@ class Instant:
 def hard_cases(
     independent: Sequence[int], start: Instant, end: Instant, multipliers: Vector, steps: int
 ) -> Iterator[HardCase]:
-    """The kinds of hard case that a motion is.
+    """Yield the kinds of hard case that a motion is.
 
     Parameters
     ----------
@@ -154,19 +154,19 @@ def fastest_decay(at: Instant) -> float:
 
 
 def _held_back(start: Instant, end: Instant, steps: int) -> bool:
-    """Whether many steps were as short as a decay demands that is over long ago."""
+    """Return True if many steps were as short as a decay demands that is over long ago."""
     return steps > MANY_STEPS and fastest_decay(end) * (end.t - start.t) > DECAYED * steps
 
 
 def _free_directions(at: Matrices) -> Matrix:
-    """What the constraints leave free, in columns orthonormal in the mass metric."""
+    """Return what the constraints leave free, in columns orthonormal in the mass metric."""
     weighted = weighted_constraints(at.mass, at.jacobian)
     left, values, _ = np.linalg.svd(weighted.directions)
     return weighted.unweighted(left[:, rank_of(values) :])
 
 
 def _change_of_accelerations(at: Instant, moves: Matrix) -> Matrix:
-    """Derivatives, shape (n, k), of the accelerations along moves of the state, shape (2n, k).
+    """Return derivatives of the accelerations, shape (n, k), along moves of the state, shape (2n, k).
 
     A a - J^T lambda = h, J a = -c, differentiated: one factorization solves for all of them.
     """
@@ -215,7 +215,7 @@ def _largest(at: Matrices) -> float:
 
 
 def _free(ends: Sequence[Matrices], multipliers: Vector) -> bool:
-    """Whether the constraints made no force to speak of, although there are other forces."""
+    """Return True if the constraints made no force to speak of, although there are other forces."""
     forces = max(float(np.abs(at.force).max(initial=0.0)) for at in ends)
     reaction = max(float((np.abs(at.jacobian.T) @ multipliers).max(initial=0.0)) for at in ends)
     return 0 < forces < np.inf and len(multipliers) > 0 and reaction <= FREE * forces

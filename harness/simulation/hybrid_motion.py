@@ -244,7 +244,7 @@ class HybridMotion:
     # ---- releases ----
 
     def _first_release(self, step: Step) -> Crossing | None:
-        """Where within a step the first condition of a release crosses zero."""
+        """Return where within a step the first condition of a release crosses zero."""
         released, mode = self.problem.released, step.mode
         if not released:
             return None
@@ -293,7 +293,10 @@ class HybridMotion:
         self.switchings += [Switching(float(t), self._signs[name].of, passage) for name in names]
 
     def _sign_behind(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers, to: int | None = None) -> int | str:
-        """The sign with which a motion goes on from a surface of the state; None for `to` where it starts on it."""
+        """Return the sign with which a motion goes on from a surface of the state.
+
+        None for `to` where it starts on it.
+        """
         if sign.by is By.CONFIGURATION and not self._vanishes("switch_rate", sign, pattern, t, state):
             return to or (1 if self._output("switch_rate", sign, pattern, t, state) > 0 else -1)
         if holdable(self.problem, sign.name):
@@ -303,7 +306,7 @@ class HybridMotion:
         return to
 
     def _decided(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> int | str:
-        """What the motions on both sides of a surface say about the sign of the motion that is on it."""
+        """Return what the motions on both sides of a surface say about the sign of the motion that is on it."""
         above, below = (self._output("drive", sign, {**pattern, sign.name: to}, t, state) for to in (1, -1))
         if above * below > 0:
             return 1 if above > 0 else -1
@@ -316,7 +319,7 @@ class HybridMotion:
         return 1 if above >= 0 and below >= 0 else -1
 
     def _passed(self, before: Mode, after: Mode, sign: Sign, t: Any, state: Numbers) -> Numbers:
-        """The state behind an instant of switching."""
+        """Return the state behind an instant of switching."""
         floats, n = as_floats(state), len(state) // 2
         old, new = before.matrices(float(t), floats), after.matrices(float(t), floats)
         left = residuals(new, floats, np.zeros(n), self.nominal)["position"]
@@ -370,7 +373,7 @@ class HybridMotion:
         return pattern
 
     def _leaving(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> int | str:
-        """The sign with which a motion starts from a surface."""
+        """Return the sign with which a motion starts from a surface."""
         if sign.by is By.TIME:
             soon = t + self._precision.number(repr(SOON * self._span))
             return 1 if self._output("switch", sign, pattern, soon, state) >= 0 else -1
@@ -389,7 +392,7 @@ class HybridMotion:
         return float(self._function(name, sign, pattern)[0](self._inputs(t, state))[0])
 
     def _vanishes(self, name: str, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> bool:
-        """Whether a `switching_function` is rounding, beside what it changes by as the state and the time do."""
+        """Return True if a `switching_function` is rounding, beside what it changes by as the state and the time do."""
         function, places = self._function(name, sign, pattern)
         number = self._precision.number
         others = [(t + number(repr(share * self.nominal.time)), state) for share in LATER]
@@ -402,7 +405,7 @@ class HybridMotion:
         return abs(here) <= ZERO * float(np.sum(changes, where=np.isfinite(changes)))
 
     def _function(self, name: str, sign: Sign, pattern: Pattern) -> tuple[Evaluation, list[int]]:
-        """A `switching_function`, and the places in the state of what it contains."""
+        """Return a `switching_function`, and the places in the state of what it contains."""
         what = name, sign.name, frozenset(pattern.items())
         if what not in self._functions:
             program = switching_function(self.problem, name, sign.name, pattern)
@@ -427,12 +430,12 @@ class HybridMotion:
 
 
 def _knots_of(problem: MotionProblem, precision: Precision) -> list[tuple[Any, Fraction]]:
-    """The knots of the tables behind the start, the last first."""
+    """Return the knots of the tables behind the start, the last first."""
     behind = precision.number(problem.start["t"])
     knots = [(precision.ratio(knot), knot) for knot, _ in groupby(merge(*(table.knots for table in problem.tables)))]
     return [(t, knot) for t, knot in reversed(knots) if t > behind]
 
 
 def _close(numbers: Vector, others: Vector) -> bool:
-    """Whether two arrays of numbers differ by rounding alone."""
+    """Return True if two arrays of numbers differ by rounding alone."""
     return bool(np.max(np.abs(numbers - others), initial=0.0) <= CONTINUOUS * np.max(np.abs(others), initial=0.0))

@@ -70,7 +70,7 @@ class InitialStates:
         ]
 
     def __call__(self, values: Numbers) -> Starts:
-        """The states for many values of the open parameters.
+        """Return the states for many values of the open parameters.
 
         Parameters
         ----------
@@ -96,13 +96,19 @@ class InitialStates:
         return Starts(states, found & np.isfinite(states).all(axis=0))
 
     def correction(self, values: Numbers, states: Numbers) -> tuple[str, str] | None:
-        """The datum that was corrected most to make the state of one motion, and by how much; None if none was."""
+        """Return the datum that was corrected most to make the state of one motion, and by how much.
+
+        None if none was.
+        """
         name, size, now = self._largest_change(Origin.GIVEN, values, states)
         nominal = self._nominal.state[list(self._origins).index(name)] if name else 1.0
         return (name, f"{size:.2g}") if size > ROUNDING * max(nominal, abs(now)) else None
 
     def moved(self, values: Numbers, states: Numbers) -> tuple[str, str] | None:
-        """The value that differs most from the guess in the state of one motion, and by how much; None without one."""
+        """Return the value that differs most from the guess in the state of one motion, and by how much.
+
+        None without one.
+        """
         name, size, _ = self._largest_change(Origin.NEAR, values, states)
         return (name, f"{size:.3g}") if name else None
 
@@ -241,7 +247,7 @@ class InitialStatesBySign:
 
 
 def initial_states_of(problem: MotionProblem) -> InitialStates | InitialStatesBySign:
-    """The states that a problem's motions start from; raises as these do."""
+    """Return the states that a problem's motions start from; raises as these do."""
     begun = at_start(problem)
     return InitialStatesBySign(begun) if begun.signs else InitialStates(begun)
 
@@ -268,7 +274,7 @@ class _Group:
 
 
 def at_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionProblem:
-    """The motion for other values of its open parameters, its start good to double precision.
+    """Return the motion for other values of its open parameters, its start good to double precision.
 
     Raises
     ------
@@ -291,18 +297,18 @@ def at_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionP
 
 
 def started(problem: MotionProblem, values: Mapping[str, Fraction], state: Numbers) -> MotionProblem:
-    """The motion for values of its open parameters, from a state that belongs to them, shape (2n,)."""
+    """Return the motion for values of its open parameters, from a state that belongs to them, shape (2n,)."""
     texts = {name: repr(float(number)) for name, number in zip(problem.state, state, strict=True)}
     return replace(with_values(problem, values), start={"t": problem.start["t"], **texts})
 
 
 def with_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionProblem:
-    """The motion with values of its open parameters, its start as it was."""
+    """Return the motion with values of its open parameters, its start as it was."""
     return replace(problem, values=dict(values))
 
 
 def least_step(mass: Numbers | None, jacobian: Numbers, residual: Numbers, redundant: bool) -> Numbers:
-    """The least correction in the metric, or the only one: shapes (u, u, k), (b, u, k), (b, k) to (u, k)."""
+    """Return the least correction in the metric, or the only one: shapes (u, u, k), (b, u, k), (b, k) to (u, k)."""
     b, u, lanes = jacobian.shape
     if mass is None:
         matrix, right = np.moveaxis(jacobian, 2, 0), -residual.T
@@ -333,7 +339,7 @@ def _regular(matrix: Numbers, right: Numbers) -> Numbers:
 
 
 def _least(matrix: Numbers, right: Numbers, redundant: bool) -> Numbers:
-    """The solution of least squares; where it must be the only one, nan if it is not."""
+    """Return the solution of least squares; where it must be the only one, nan if it is not."""
     if not (np.isfinite(matrix).all() and np.isfinite(right).all()):
         return np.full(matrix.shape[1], np.nan)
     found, _, rank, _ = np.linalg.lstsq(matrix, right, rcond=None)

@@ -79,7 +79,7 @@ def initial_tangents(problem: MotionProblem, analytic: MotionProblem, directions
 
 
 def _data(problem: MotionProblem, directions: Sequence[str]) -> Numbers:
-    """How the given values move, and the numbers that a search begins with; shape (2n, p)."""
+    """Return how the given values move, and the numbers that a search begins with; shape (2n, p)."""
     moves = np.zeros((len(problem.state), len(directions)))
     for k, name in enumerate(directions):
         if name in problem.state:
@@ -129,6 +129,6 @@ def _least(at: Matrices, missed: Numbers, free: NDArray[np.int64], redundant: bo
 
 
 def _consistent(left: Numbers, at: Matrices, moves: Numbers, missed: Numbers) -> bool:
-    """Whether what constraints still miss is rounding, beside the terms that it is the sum of."""
+    """Return True if what constraints still miss is rounding, beside the terms that it is the sum of."""
     terms = np.abs(at.jacobian) @ np.abs(moves) + np.abs(missed)
     return bool((np.abs(left) <= CONSISTENT * terms).all())

@@ -36,7 +36,7 @@ class Matrices(NamedTuple):
     finite: bool | NDArray[np.bool_]  # whether all of them are numbers, none infinite
 
     def under(self, constraints: Sequence[int]) -> "Matrices":
-        """The same under some of the constraints alone, counted from 0."""
+        """Return the same under some of the constraints alone, counted from 0."""
         of_constraints = ("jacobian", "curvature", "residual", "residual_rate")
         return self._replace(**{name: getattr(self, name)[list(constraints)] for name in of_constraints})
 
@@ -123,7 +123,7 @@ class _Layout:
         self._places = np.array([_place(name, starts, n) for name in problem.matrices.outputs], dtype=int)
 
     def matrices(self, outputs: Numbers) -> Matrices:
-        """What the program computes, shape (outputs, ...), as matrices, each of its own shape and that of the rest."""
+        """Return the program's outputs, shape (outputs, ...), as matrices of shapes (..., ...)."""
         rest = outputs.shape[1:]
         values = np.zeros((self._size, *rest))
         values[self._places] = outputs
@@ -131,7 +131,7 @@ class _Layout:
         return Matrices(*(values[part].reshape(*shape, *rest) for part, shape in self._parts), finite)
 
     def matrices_at_each(self, outputs: Numbers) -> Matrices:
-        """The same of what the program computes, shape (..., outputs), each of shape (...) and its own."""
+        """Return the same of what the program computes, shape (..., outputs), each of shape (...) and its own."""
         rest = outputs.shape[:-1]
         values = np.zeros((*rest, self._size))
         values[..., self._places] = outputs

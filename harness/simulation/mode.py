@@ -57,7 +57,7 @@ class Surfaces(SignedFunctions):
         )
 
     def values(self, instants: Numbers, states: Numbers) -> Numbers:
-        """How far inside of its pattern the motion is, by each surface; negative outside."""
+        """Return how far inside of its pattern the motion is, by each surface; negative outside."""
         inputs = self._inputs(instants, states)
         found = [as_floats(function(inputs)[0]) for function in self._functions]
         inside = np.array([side for *_, side in self._rows], dtype=float)
@@ -65,7 +65,7 @@ class Surfaces(SignedFunctions):
 
 
 def _inside(problem: MotionProblem, pattern: Pattern, name: str, to: int) -> Program:
-    """The function whose sign tells on which side of a surface the motion is."""
+    """Return the function whose sign tells on which side of a surface the motion is."""
     if pattern[name] == SLIDING:
         return switching_function(problem, "drive", name, {**pattern, name: to})
     return switching_function(problem, "switch", name, pattern)

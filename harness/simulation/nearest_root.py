@@ -57,7 +57,7 @@ class NearestRoots:
         self._linearize, self._correct, self._sizes = linearize, correct, sizes
 
     def __call__(self, guess: Numbers) -> tuple[Numbers, NDArray[np.bool_]]:
-        """The roots, shape (u, k), and whether there are any."""
+        """Return the roots, shape (u, k), and whether there are any."""
         lanes = np.arange(guess.shape[1])
         roots, found = self._newton(guess, lanes)
         if len(guess) <= MOST_SEARCHED:
@@ -97,12 +97,12 @@ class NearestRoots:
         return result
 
     def _following(self, trial: Numbers, at: Linearized, lanes: NDArray[np.int64], some: NDArray[np.int64]) -> Numbers:
-        """The corrections at other points with the same matrices."""
+        """Return the corrections at other points with the same matrices."""
         residual = self._linearize(trial, lanes[some]).residual
         return self._correct(Linearized(residual, at.jacobian[..., some], at.mass[..., some]))
 
     def _contracts(self, guess: Numbers, lanes: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Whether the constraints are nearly linear along the first correction, so that a guess is next to its root."""
+        """Return True where constraints are so linear along the first correction that a guess is next to its root."""
         at = self._linearize(guess, lanes)
         change = self._correct(at)
         size, contracts = np.max(np.abs(change), axis=0), np.ones(len(lanes), dtype=bool)
@@ -114,7 +114,7 @@ class NearestRoots:
     def _search(
         self, guess: Numbers, roots: Numbers, found: NDArray[np.bool_], lanes: NDArray[np.int64]
     ) -> tuple[Numbers, NDArray[np.bool_]]:
-        """The nearest roots from starts around the guesses of some lanes."""
+        """Return the nearest roots from starts around the guesses of some lanes."""
         near, here = guess[:, lanes], self._linearize(guess[:, lanes], lanes)
         best, known = roots[:, lanes].copy(), found[lanes].copy()
         share = NEARER if len(here.residual) < len(guess) else SAME
@@ -141,7 +141,7 @@ class NearestRoots:
 
 
 def _starts(mass: Numbers, far: Numbers) -> Iterator[Numbers]:
-    """Steps from the guesses along each of the unknowns, shape (u, k), at shares of a distance in the mass metric."""
+    """Yield steps from the guesses along each unknown, shape (u, k), by distance in the mass metric."""
     u = len(mass)
     for unknown in range(u):
         own = mass[unknown, unknown]

@@ -65,25 +65,25 @@ class Nominal(NamedTuple):
         return float(np.max(mass.diagonal() * self.velocities**2, initial=0.0))
 
     def share(self, change: Vector, state: Vector) -> float:
-        """The largest change of a state, as `share_of` has it."""
+        """Return the largest change of a state, as `share_of` has it."""
         return float(share_of(change, state, self.state))
 
 
 def share_of(change: Matrix, numbers: Matrix, sizes: Vector) -> Vector:
-    """The largest change of numbers, shape (n,) or (n, k), beside the largest of them, all in terms of their sizes."""
+    """Return the largest change of numbers, shape (n,) or (n, k), relative to the largest of them."""
     change, numbers = np.abs(change.T) / sizes, np.abs(numbers.T) / sizes
     return np.max(change, axis=-1, initial=0.0) / np.max(numbers, axis=-1, initial=1.0)
 
 
 def with_nominal(problem: MotionProblem, span: float) -> MotionProblem:
-    """The motion with nominal sizes for all of its quantities, by the length of its time span."""
+    """Return the motion with nominal sizes for all of its quantities, by the length of its time span."""
     sizes = _completed(problem, span)
     named = zip(("t", *problem.state), (sizes.time, *map(float, sizes.state)), strict=True)
     return replace(problem, nominal=dict(named))
 
 
 def nominal_of(problem: MotionProblem) -> Nominal:
-    """The nominal sizes of a motion: those of `with_nominal`, or those found by the scene's own time span."""
+    """Return the nominal sizes of a motion: those of `with_nominal`, or those found by the scene's own time span."""
     known = problem.nominal
     if known.keys() >= {"t", *problem.state}:
         return Nominal(known["t"], np.array([known[name] for name in problem.state]))
@@ -92,7 +92,7 @@ def nominal_of(problem: MotionProblem) -> Nominal:
 
 
 def nominal_at_each(problem: MotionProblem, mass: Matrix, states: Matrix, span: float) -> Nominal:
-    """The nominal sizes of k motions of one problem: shapes (k,) and (2n, k).
+    """Return the nominal sizes of k motions of one problem: shapes (k,) and (2n, k).
 
     One whose coordinates all start at zero has those of the problem's own motion.
 
@@ -114,7 +114,7 @@ def nominal_at_each(problem: MotionProblem, mass: Matrix, states: Matrix, span: 
 
 
 def _completed(problem: MotionProblem, span: float) -> Nominal:
-    """The sizes that the scene gives, and those found."""
+    """Return the sizes that the scene gives, and those found."""
     if not problem.start.keys() >= {*problem.state}:  # a parameter without a value decides about the start
         return Nominal(1.0, np.ones(len(problem.state)))
     state = np.array([[float(problem.start[name])] for name in problem.state])
@@ -197,7 +197,7 @@ class _Start:
         self.roots = _roots(np.array([self._at(f"A[{s},{s}]")[:1] for s in self._places]).reshape(-1, 1))
 
     def reach(self) -> float:
-        """How far the mean force, or moving constraints, lead in the time span from rest, in the mass metric."""
+        """Return how far the mean force, or moving constraints, lead in the time span from rest, in the mass metric."""
         forces = np.array([np.abs(self._at(f"h[{s}]")) for s in self._places]) / self.roots
         largest = np.max(forces, axis=0, initial=0.0)
         known = largest[np.isfinite(largest)]
@@ -209,5 +209,5 @@ class _Start:
         return float(farthest)
 
     def _at(self, output: str) -> Vector:
-        """An output of the program at the instants; zero where it is so by structure."""
+        """Return an output of the program at the instants; zero where it is so by structure."""
         return self._values.get(output, np.zeros(INSTANTS))

@@ -119,13 +119,13 @@ def write_samples(simulation: Simulation, path: Path) -> None:
 
 
 def streams(path: Path) -> bool:
-    """Whether a file is written sample by sample, and not from all of them at once."""
+    """Return True if a file is written sample by sample, and not from all of them at once."""
     return path.suffix in BYTES_ON_DISK
 
 
 @contextmanager
 def sample_file(path: Path, digits: int) -> Iterator[Callable[[Sampled], None]]:
-    """A file of samples that are written as they come. It is there when the block has ended well, and whole.
+    """Provide a file of samples that are written as they come. It is there when the block has ended well, and whole.
 
     What it gives takes samples that follow those before.
 
@@ -140,7 +140,7 @@ def sample_file(path: Path, digits: int) -> Iterator[Callable[[Sampled], None]]:
 
 
 def sample_format(path: Path) -> Format:
-    """What writes samples into a file.
+    """Return what writes samples into a file.
 
     Raises
     ------
@@ -156,7 +156,7 @@ def sample_format(path: Path) -> Format:
 
 @contextmanager
 def _csv(file: BinaryIO) -> Iterator[Write]:
-    """A line of names, then a line for each instant; a double as the shortest text that reads back the same."""
+    """Provide a line of names, then a line for each instant; a double as the shortest text that reads back the same."""
     named = False
 
     def write(columns: Columns) -> None:
@@ -173,13 +173,13 @@ def _csv(file: BinaryIO) -> Iterator[Write]:
 
 
 def _heading(name: str) -> str:
-    """A name as a heading that no spreadsheet takes for a formula."""
+    """Return a name as a heading that no spreadsheet takes for a formula."""
     return visible_line(f"'{name}" if name.startswith(FORMULA) else name)
 
 
 @contextmanager
 def _npz(file: BinaryIO) -> Iterator[Write]:
-    """All samples of a quantity are one array: they are kept until the end."""
+    """Provide all samples of a quantity are one array: they are kept until the end."""
     kept: list[Columns] = []
     yield kept.append
     with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:  # as NumPy does, of names that it reserves, too
@@ -190,7 +190,7 @@ def _npz(file: BinaryIO) -> Iterator[Write]:
 
 @contextmanager
 def _parquet(file: BinaryIO) -> Iterator[Write]:
-    """A row group for the samples that come together."""
+    """Provide a row group for the samples that come together."""
     pyarrow, parquet = _import_parquet()
     with ExitStack() as opened:
         writer = None
@@ -226,7 +226,7 @@ BYTES_ON_DISK = {".csv": 20, ".parquet": 9}
 
 
 def simulation_document(simulation: Simulation) -> dict[str, Any]:
-    """The report, as `report_document`, and with it the samples by name under ``samples``."""
+    """Return the report, as `report_document`, and with it the samples by name under ``samples``."""
     digits = simulation.report.digits
     columns = {name: published_list(samples, digits) for name, samples in simulation.columns()}
     named = {"scene": simulation.scene, "title": simulation.title}
@@ -234,7 +234,7 @@ def simulation_document(simulation: Simulation) -> dict[str, Any]:
 
 
 def report_document(report: Report) -> dict[str, Any]:
-    """The report alone.
+    """Return the report alone.
 
     With ``trusted``, and beside legs and cases the sentences that people read, ``engine`` and ``remarks``.
     """
@@ -257,7 +257,7 @@ def report_document(report: Report) -> dict[str, Any]:
 
 
 def published_list(samples: np.ndarray, digits: int) -> list[float | str]:
-    """Samples for another program to read."""
+    """Return samples for another program to read."""
     return samples.tolist() if samples.dtype == float else [_published(sample, digits) for sample in samples]
 
 

@@ -32,7 +32,7 @@ class SampleBlock(NamedTuple):
     modes: list[Mode]  # of each
 
     def by_mode(self) -> Iterator[tuple[Mode, Numbers, Numbers]]:
-        """Runs of samples in one mode: the mode, its instants and states."""
+        """Yield runs of samples in one mode: the mode, its instants and states."""
         first = 0
         for mode, run in groupby(self.modes):
             here = slice(first, first := first + sum(1 for _ in run))
@@ -157,5 +157,5 @@ class Recording:
 
 
 def largest(numbers: Numbers | list[Any], known: float) -> float:
-    """The largest of them and of what is known; no number where one of them is none."""
+    """Return the largest of them and of what is known; no number where one of them is none."""
     return float(np.max(np.abs([*as_floats(numbers), known])))

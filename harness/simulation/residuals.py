@@ -34,7 +34,7 @@ def residuals(at: Matrices, state: Vector, accelerations: Vector, nominal: Nomin
 
 
 def constraint_residuals(at: Matrices, state: Numbers, nominal: Nominal) -> dict[str, Numbers]:
-    """The first two of them, at one state or, with a last axis more, at k of them."""
+    """Return the first two of them, at one state or, with a last axis more, at k of them."""
     coordinates, velocities = np.split(state, 2)
     return {
         "position": scaled_residual(at.residual, at.jacobian, coordinates, nominal.coordinates),
@@ -58,7 +58,7 @@ def condition(at: Matrices) -> float:
 
 
 def scaled_residual(residual: Numbers, jacobian: Numbers, moved: Numbers, sizes: Numbers) -> Numbers:
-    """How far the coordinates, or their rates, are from the constraints, relative to the largest of them.
+    """Return how far the coordinates, or their rates, are from the constraints, relative to the largest of them.
 
     All of them are taken in terms of their nominal sizes, and none counts as smaller than that.
 

@@ -136,7 +136,10 @@ class Sampled:
     sensitivities: Samples = field(default_factory=dict)  # ``d(x, m)``: derivatives at the instants
 
     def columns(self) -> Iterator[tuple[str, NDArray[Any]]]:
-        """The time, then every series of samples with its name; residuals are named ``residual.position`` and so on."""
+        """Yield the time, then every series of samples with its name.
+
+        Residuals are named ``residual.position`` and so on.
+        """
         yield "t", self.instants
         forces = self.multipliers, self.constraint_forces, self.controls
         for group in (self.coordinates, self.velocities, *forces, self.outputs, self.energy, self.sensitivities):
@@ -158,7 +161,7 @@ class Simulation(Sampled, Shown):
     drawing: "Drawing | None" = field(default=None, compare=False)  # how the system looks; None if it does not say
 
     def __getitem__(self, name: str) -> NDArray[Any]:
-        """Samples of one quantity: ``t``, a coordinate, ``dot(x)``, ``lambda1``, ``energy``, ``residual.position``.
+        """Return samples of a quantity: ``t``, a coordinate, ``dot(x)``, ``lambda1``, ``residual.position``.
 
         Raises
         ------
@@ -171,11 +174,11 @@ class Simulation(Sampled, Shown):
         return columns[name]
 
     def keys(self) -> tuple[str, ...]:
-        """Names of the quantities that have samples."""
+        """Return names of the quantities that have samples."""
         return tuple(name for name, _ in self.columns())
 
     def to_pandas(self) -> "DataFrame":
-        """All samples as a pandas DataFrame, a row an instant.
+        """Return all samples as a pandas DataFrame, a row an instant.
 
         Raises
         ------
@@ -189,7 +192,7 @@ class Simulation(Sampled, Shown):
         return DataFrame(dict(self.columns())).set_index("t")
 
     def plot(self, curves: Sequence[str] | None = None) -> "Picture":
-        """The motion as a picture, for a notebook or a file.
+        """Return the motion as a picture, for a notebook or a file.
 
         Parameters
         ----------
@@ -221,7 +224,7 @@ class Simulation(Sampled, Shown):
 
 
 def joined(parts: Sequence[Sampled]) -> Sampled:
-    """Samples that follow one another as one."""
+    """Return samples that follow one another as one."""
     groups = {
         name: {each: np.concatenate([getattr(part, name)[each] for part in parts]) for each in getattr(parts[0], name)}
         for name in vars(parts[0])

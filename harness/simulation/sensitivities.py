@@ -293,7 +293,7 @@ class Sensitivities:
             raise HolonomError(Failure.NO_SENSITIVITY, detail=f"steps become too coarse at t = {self._time:.10g}")
 
     def _at_knot(self, step: Step) -> bool:
-        """Whether a table's next polynomial begins with a step."""
+        """Return True if a table's next polynomial begins with a step."""
         values = self._here.inputs.open_values
         start = np.array(float(step.start))
         return bool(self._problem.tables) and not np.array_equal(values(start, "left"), values(start, "right"))

@@ -93,7 +93,10 @@ def _require_steps(problem: MotionProblem, request: SimulationRequest) -> None:
 
 
 def end_of(problem: MotionProblem, request: SimulationRequest) -> tuple[Any, Ending | None]:
-    """The last instant of a motion, and whether an event makes it so; raises as `last_instant` and `first_event`."""
+    """Return the last instant of a motion, and whether an event makes it so.
+
+    Raises as `last_instant` and `first_event`.
+    """
     precision = read_precision(str(request.precision))
     end = last_instant(problem, request.until, precision)
     if not problem.until:
@@ -109,7 +112,7 @@ def end_of(problem: MotionProblem, request: SimulationRequest) -> tuple[Any, End
 
 
 def parametrized_problem(problem: MotionProblem, request: SimulationRequest) -> MotionProblem:
-    """The motion with its parameters open where the engines take them so, else with their values put in.
+    """Return the motion with its parameters open where the engines take them so, else with their values put in.
 
     What follows a motion in double precision, as it is or projected, is compiled once for all values.
     """
@@ -122,7 +125,7 @@ def parametrized_problem(problem: MotionProblem, request: SimulationRequest) -> 
 
 
 def last_instant(problem: MotionProblem, until: Fraction | None, precision: Precision) -> Any:
-    """The instant at which a simulation ends: what is asked for, or the end of the scene's time span.
+    """Return the instant at which a simulation ends: what is asked for, or the end of the scene's time span.
 
     Raises
     ------
@@ -255,7 +258,7 @@ class _Simulation:
         return _named(self.problem.controls, [mode.controls(t, states) for mode, t, states in stretch.by_mode()])
 
     def _motion(self, states: Numbers, solutions: Solutions) -> Mapping[str, Samples]:
-        """Samples of what the scene observes."""
+        """Return samples of what the scene observes."""
         observe, names = self.problem.observe, self.problem.coordinates
         followed = states if "trajectory" in observe else states[:0]
         reactions = solutions.multipliers if "multipliers" in observe else solutions.multipliers[:0]
@@ -268,7 +271,7 @@ class _Simulation:
         }
 
     def _sensitivity_samples(self, stretch: SampleBlock) -> Samples:
-        """Derivatives of what the scene observes."""
+        """Return derivatives of what the scene observes."""
         if self.sensitivities is None:
             return {}
         found = self._observed_derivatives(self.sensitivities.samples(stretch))
@@ -340,13 +343,13 @@ class _Simulation:
         )
 
     def _undetermined(self, end: Instant, mode: Mode) -> tuple[str, ...]:
-        """Outputs that are not unique at the end, where some constraints may have ended."""
+        """Return outputs that are not unique at the end, where some constraints may have ended."""
         known = dict(zip(self.problem.multipliers, self.solutions.multipliers[:, -1], strict=True))
         multipliers = as_floats(np.array([known[name] for name in mode.problem.multipliers]))
         return undetermined_outputs(mode.problem, end, as_floats(self.solutions.accelerations[:, -1]), multipliers)
 
     def _missed(self, left: Mapping[str, float], start: Instant, end: Instant) -> Mapping[str, float]:
-        """What is missed of each quantity that the tolerance speaks of, relative to its size."""
+        """Return what is missed of each quantity that the tolerance speaks of, relative to its size."""
         within = {} if self.steps is None else {"acceleration": self.steps.missed}
         kept = {name: left[name] for name in ("position", "velocity")}
         if not np.isfinite(self.reactions).all():
@@ -357,7 +360,7 @@ class _Simulation:
         return {**kept, "energy": float(energy_missed(*ends, self.exchange.error, exchanged, small)), **within}
 
     def _cases(self, start: Instant, end: Instant) -> tuple[HardCase, ...]:
-        """Those that the robust engine was called for, then those that the ends tell; each once."""
+        """Return those that the robust engine was called for, then those that the ends tell; each once."""
         called_for = [leg.case for leg in self.motion.legs if leg.case is not None]
         if self.problem.released:
             end = start  # other constraints may hold at the end
@@ -368,7 +371,7 @@ class _Simulation:
 
 
 def _named(program: Program | None, parts: Sequence[Numbers]) -> Samples:
-    """Samples by the names of a program's outputs."""
+    """Return samples by the names of a program's outputs."""
     return dict(zip(() if program is None else program.outputs, np.concatenate(parts, axis=1), strict=True))
 
 
@@ -377,7 +380,7 @@ def _residuals(at: Instant, accelerations: Numbers) -> Mapping[str, float]:
 
 
 def _side_by_side(parts: Sequence[Numbers]) -> Numbers:
-    """Rows that all parts have: the robust engine adds constraint forces that the scene does not observe."""
+    """Return rows that all parts have: the robust engine adds constraint forces that the scene does not observe."""
     shared = min(len(rows) for rows in parts)
     return np.concatenate([rows[:shared] for rows in parts], axis=1)
 

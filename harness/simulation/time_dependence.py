@@ -68,7 +68,7 @@ def time_dependence(program: Program, start: float, end: float, tables: Sequence
 
 
 def time_expressions(program: Program, tables: Sequence[Table] = ()) -> Program:
-    """What a program computes from the time alone, as far as anything else is computed from it.
+    """Return what a program computes from the time alone, as far as anything else is computed from it.
 
     Its inputs are ``t`` and those of the tables.
     """
@@ -94,7 +94,7 @@ def time_expressions(program: Program, tables: Sequence[Table] = ()) -> Program:
 
 
 def largest_parts(expression: Expression, known: Set[str]) -> Iterator[Expression]:
-    """The largest parts of an expression that are of the time alone."""
+    """Yield the largest parts of an expression that are of the time alone."""
     names = names_in(expression)
     if names and names <= known:
         yield expression
@@ -139,7 +139,10 @@ class _Scan:
         return TimeDependence(stops, end and float(end), reason, self._unresolved)
 
     def _rounding_of(self, instants: Vector, values: np.ndarray) -> Vector:
-        """What rounding makes of each expression, shape (expressions,): its changes over the least steps of time."""
+        """Return what rounding makes of each expression, shape (expressions,).
+
+        Its changes over the least steps of time.
+        """
         with np.errstate(all="ignore"):
             changes = np.abs(self._function(np.nextafter(instants, np.inf)) - values)
         changes[~np.isfinite(changes)] = 0.0
@@ -177,7 +180,7 @@ class _Scan:
                 return
 
     def _starts(self, owners: np.ndarray, places: np.ndarray, level: int) -> tuple[Vector, Vector]:
-        """Starts and lengths of parts."""
+        """Return starts and lengths of parts."""
         lengths = self._spans[owners] / 2**level
         return self._bases[owners] + places * lengths, lengths
 
@@ -232,7 +235,7 @@ class _Scan:
             return
 
     def _look_between(self, parts: list[tuple[float, float]]) -> None:
-        """A jump at the boundary of two parts is in neither of them; nearer to it a steep function changes less."""
+        """Tell a jump at the boundary of two parts from a steep function, which changes less nearby."""
         starts, lengths = np.array(parts).T
         beside = BESIDE * np.minimum(lengths[:-1], lengths[1:])
         seen = NEARER * beside > EPSILON * np.abs(starts[1:])
@@ -251,7 +254,7 @@ class _Scan:
             return np.abs(self._function(edges + beside) - self._function(edges - beside))
 
     def _last_value(self, before: float, cell: float) -> float:
-        """The last instant at which all is finite, from one at which it is to one at which it is not."""
+        """Return the last instant at which all is finite, from one at which it is to one at which it is not."""
         after = self._start + (self._last - self._start) * cell
         while before < (middle := (before + after) / 2) < after:
             if np.isfinite(self._function(np.array([middle]))).all():

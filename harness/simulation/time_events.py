@@ -46,7 +46,7 @@ def time_events(problem: MotionProblem) -> Mapping[str, TimeEvent]:
 
 
 def _affine(program: Program) -> Affine | None:
-    """The one output of a program as a function of t; None where it is no such function."""
+    """Return the one output of a program as a function of t; None where it is no such function."""
     used = set().union(
         *(names_in(expression) for _, expression in program.assignments), *map(names_in, program.outputs.values())
     )

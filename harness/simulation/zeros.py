@@ -53,7 +53,7 @@ class SignedFunctions(ABC):
 
     @abstractmethod
     def values(self, instants: Numbers, states: Numbers) -> Numbers:
-        """Each function times its sign, negative behind its crossing, at instants (k,) and states (2n, k).
+        """Return each function times its sign, negative behind its crossing, at instants (k,) and states (2n, k).
 
         Returns
         -------
@@ -61,7 +61,7 @@ class SignedFunctions(ABC):
         """
 
     def first_crossing(self, step: Step, left: Sequence[str]) -> Crossing | None:
-        """Where the motion first leaves its pattern within a step.
+        """Return where the motion first leaves its pattern within a step.
 
         Parameters
         ----------
@@ -77,7 +77,7 @@ class SignedFunctions(ABC):
         return None
 
     def _looked_at(self, step: Step) -> Iterator[tuple[Step, Numbers, Numbers]]:
-        """The parts of a step in order, each with its samples."""
+        """Yield the parts of a step in order, each with its samples."""
         waiting = list(reversed(self._cut(step, ceil(float(step.end - step.start) / self._span * PARTS))))
         while waiting:
             part = waiting.pop()
@@ -88,7 +88,7 @@ class SignedFunctions(ABC):
                 yield part, places, values
 
     def _cut(self, step: Step, count: int) -> list[Step]:
-        """A step in parts of the same length."""
+        """Return a step in parts of the same length."""
         if count <= 1:
             return [step]
         numbers = np.array([self._precision.ratio(Fraction(place, count)) for place in range(count)])
@@ -145,7 +145,7 @@ class SignedFunctions(ABC):
         return instants, self.values(instants, step.states(instants))
 
     def _last_inside(self, values: Callable[[Numbers], Vector], before: Any, after: Any) -> Any:
-        """The last instant before a function of instants is negative, between one where it is not and one where it is.
+        """Return the last instant before a function is negative, between one where it is not and one where it is.
 
         A look at several instants takes as long as one at one.
         """
@@ -161,7 +161,7 @@ class SignedFunctions(ABC):
 
 
 def _is_resolved(values: Numbers) -> bool:
-    """Whether polynomials through the samples, shape (functions, samples), are near the functions everywhere."""
+    """Return True if polynomials through the samples, shape (functions, samples), are near the functions everywhere."""
     inner = values[:, 1:-1]
     if not np.isfinite(inner).all():
         return False
@@ -170,7 +170,10 @@ def _is_resolved(values: Numbers) -> bool:
 
 
 def _narrow_dip(coefficients: Vector, between: Vector, end: float) -> Vector | None:
-    """A place and a later one where a polynomial that no sample shows negative is so: the first minimum below zero."""
+    """Return a place and a later one where a polynomial that no sample shows negative is so.
+
+    The first minimum below zero.
+    """
     for low, place in minima(coefficients, between, above_zero=True):
         if chebyshev.chebval(place, coefficients) < 0 and (1 + place) / 2 < end:
             return (1 + np.array([low, place])) / 2

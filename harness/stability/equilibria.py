@@ -276,7 +276,9 @@ class _Search:
         )
 
     def _stiffness(self, q: Vector, multipliers: Vector) -> Matrix | None:
-        """The change of the forces along the constraint manifold, shape (m, m); None in a singular configuration.
+        """Return the change of the forces along the constraint manifold, shape (m, m).
+
+        None in a singular configuration.
 
         For forces with a potential it is the second variation.
         """
@@ -292,7 +294,7 @@ class _Search:
         return tangent.basis.T @ here["equation_by_q"] @ tangent.basis
 
     def _starts(self, count: int, random: np.random.Generator) -> Matrix:
-        """The scene's own start and random ones around it and around zero, shape (n, count)."""
+        """Return the scene's own start and random ones around it and around zero, shape (n, count)."""
         spreads = np.resize(SPREADS, count - 1) * self._sizes[:, None]
         around = np.outer(self._first, np.arange(count - 1) % 2)
         return np.column_stack([self._first, around + spreads * random.normal(size=(self._n, count - 1))])
@@ -314,7 +316,10 @@ class _Search:
             yield self._zeroed(q[:, place]), multipliers[:, place]
 
     def _newton(self, q: Matrix, multipliers: Matrix) -> tuple[Matrix, Vector, Vector]:
-        """Steps of k points, shape (n + g, k), their sizes, and what is out of balance; in terms of nominal sizes."""
+        """Return steps of k points, shape (n + g, k), their sizes, and what is out of balance.
+
+        In terms of nominal sizes.
+        """
         here, k = self._at(q, multipliers), q.shape[1]
         J, K = (np.moveaxis(here[name], -1, 0) for name in ("constraint_by_q", "equation_by_q"))
         g, n = J.shape[1], self._n
@@ -367,7 +372,7 @@ class _Solution(NamedTuple):
         return bool(values.min(initial=np.inf) > LEAST_STIFFNESS * values.max(initial=0.0))
 
     def same_family(self, other: "_Solution") -> bool:
-        """Whether neither is isolated, and multipliers and principal stiffnesses are the same."""
+        """Return True if neither is isolated, and multipliers and principal stiffnesses are the same."""
         alike = _same(self.multipliers, other.multipliers) and _same(self._principal, other._principal)
         return alike and not self.isolated and not other.isolated
 

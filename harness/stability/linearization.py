@@ -279,7 +279,7 @@ def state_at(problem: MotionProblem, at: Fraction | None) -> tuple[float, Vector
 
 
 def motion_at(problem: MotionProblem, equations: LinearEquations, t: float, state: Vector) -> Point:
-    """The state with its accelerations and multipliers, which are zero where constraints follow from the others."""
+    """Return the state with accelerations and multipliers, zero for constraints that follow from others."""
     n, kept, multipliers = len(equations.coordinates), list(problem.independent), np.zeros(len(equations.multipliers))
     at_rest = Point(t, state, np.zeros(n), multipliers, equations.controls_at(t))
     here = equations.at(at_rest, kept)
@@ -290,7 +290,7 @@ def motion_at(problem: MotionProblem, equations: LinearEquations, t: float, stat
 
 
 def _state_space(here: Mapping[str, Matrix], tangent: Tangent) -> tuple[Matrix, dict[str, Matrix], Matrix, dict]:
-    """A, B, C, D. Deviations are matrices whose columns belong to xi, eta, du, du' and du''."""
+    """Return A, B, C, D from deviations, whose columns belong to xi, eta, du, du' and du''."""
     mass, mass_rate, U = here["equation_by_a"], here["A_rate"], here["constraint_by_u"]
     N, n, m, r = tangent.basis, *tangent.basis.shape, U.shape[1]
 
@@ -322,7 +322,7 @@ def _by_deviations(here: Mapping[str, Matrix], row: str, q: Matrix, v: Matrix, c
 
 
 def _reachable(A: Matrix, B: Matrix) -> int:
-    """The dimension of the span of B, A B, A^2 B, ..., rounding apart."""
+    """Return the dimension of the span of B, A B, A^2 B, ..., rounding apart."""
     balanced, (scale, _) = scipy.linalg.matrix_balance(A, permute=False, separate=True)
     A, B = balanced / or_one(np.linalg.norm(balanced)), B / scale[:, None]
     B = B / or_one(np.linalg.norm(B, axis=0))

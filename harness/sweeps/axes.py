@@ -44,7 +44,7 @@ class Grid:
     text: str  # how they were asked for
 
     def at(self, places: NDArray[np.intp]) -> NDArray[np.float64]:
-        """The numbers at some places, from zero."""
+        """Return the numbers at some places, from zero."""
         inside = self.first + places * ((self.last - self.first) / max(1, self.count - 1))
         return np.where((places == self.count - 1) & (places > 0), self.last, inside)
 
@@ -63,7 +63,7 @@ class Listed:
         return len(self.numbers)
 
     def at(self, places: NDArray[np.intp]) -> NDArray[np.float64]:
-        """The numbers at some places, from zero."""
+        """Return the numbers at some places, from zero."""
         return np.array(self.numbers)[places]
 
 
@@ -111,7 +111,7 @@ class Axes:
         return self.size * math.prod(axis.count for axis in self.values)
 
     def numbers(self, first: int, last: int) -> NDArray[np.float64]:
-        """The parameters of the rows from the first up to the last, which is not among them.
+        """Return the parameters of the rows from the first up to the last, which is not among them.
 
         Returns
         -------

@@ -43,7 +43,7 @@ class Chunk:
         return f"part-{self.index:07d}.parquet"
 
     def entry(self, content: bytes) -> dict[str, Any]:
-        """What the manifest says of the file."""
+        """Return what the manifest says of the file."""
         checksum = hashlib.sha256(content).hexdigest()
         return {"part": self.name, "first": self.first, "last": self.last - 1, "sha256": checksum}
 
@@ -119,7 +119,7 @@ class SweepFolder:
         append_line(self.path / MANIFEST, json.dumps(chunk.entry(content)))
 
     def _listed(self) -> dict[str, dict[str, Any]]:
-        """The last line of the manifest for each file; what cannot be read of it is as if it were not there."""
+        """Return the last line of the manifest for each file; what cannot be read of it is as if it were not there."""
         listed: dict[str, dict[str, Any]] = {}
         with suppress(FileNotFoundError):
             for line in (self.path / MANIFEST).read_bytes().splitlines():
@@ -142,7 +142,7 @@ class SweepFolder:
 
 
 def read_document(folder: Path) -> dict[str, Any]:
-    """The document of a sweep.
+    """Return the document of a sweep.
 
     Raises
     ------
@@ -158,13 +158,13 @@ def read_document(folder: Path) -> dict[str, Any]:
 
 
 def chunks_of(document: Mapping[str, Any]) -> list[Chunk]:
-    """The chunks that a sweep is made of."""
+    """Return the chunks that a sweep is made of."""
     rows, size = document["rows"], document["chunk"]
     return [Chunk(k, first, min(first + size, rows)) for k, first in enumerate(range(0, rows, size))]
 
 
 def part_of(table: "pyarrow.Table") -> bytes:
-    """A table as the bytes of a Parquet file."""
+    """Return a table as the bytes of a Parquet file."""
     import pyarrow.parquet
 
     buffer = BytesIO()
@@ -174,7 +174,7 @@ def part_of(table: "pyarrow.Table") -> bytes:
 
 
 def without_places(value: Any) -> Any:
-    """What is compared of an entry."""
+    """Return what is compared of an entry."""
     return {k: v for k, v in value.items() if k not in UNCOMPARED} if isinstance(value, Mapping) else value
 
 

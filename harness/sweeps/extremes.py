@@ -37,21 +37,21 @@ class Steps(NamedTuple):
     least: float  # x runs from this, 0 or -1, to 1
 
     def negative(self) -> "Steps":
-        """The quantity with the opposite sign."""
+        """Return the quantity with the opposite sign."""
         return self._replace(coefficients=-self.coefficients)
 
     def resolved(self) -> NDArray[np.bool_]:
-        """Whether polynomials are near the quantity, their last coefficients small, in each lane, shape (lanes,)."""
+        """Return where the last coefficients of polynomials are small, shape (lanes,)."""
         sizes = np.abs(self.coefficients)
         return sizes[-LAST:].max(axis=(0, 1)) <= RESOLVED * sizes.max(axis=(0, 1))
 
     def of(self, lanes: Any) -> "Steps":
-        """Some of the lanes."""
+        """Return some of the lanes."""
         return Steps(self.coefficients[:, :, lanes], self.middle[:, lanes], self.length[:, lanes], self.least)
 
 
 def largest(steps: Steps) -> Floats:
-    """The largest value on the way, for each lane.
+    """Return the largest value on the way, for each lane.
 
     Returns
     -------
@@ -61,7 +61,7 @@ def largest(steps: Steps) -> Floats:
 
 
 def largest_size(steps: Steps) -> Floats:
-    """The largest absolute value on the way, for each lane.
+    """Return the largest absolute value on the way, for each lane.
 
     Returns
     -------
@@ -71,7 +71,7 @@ def largest_size(steps: Steps) -> Floats:
 
 
 def first_zero(steps: Steps) -> Floats:
-    """The first instant at which the quantity changes its sign, for each lane; nan where it does not.
+    """Return the first instant at which the quantity changes its sign, for each lane; nan where it does not.
 
     Zeros that are close together count, but for rounding. What begins at zero, but for rounding, has no sign there.
 
@@ -111,17 +111,17 @@ class _Parts(NamedTuple):
     half: Floats
 
     def of(self, places: Any) -> "_Parts":
-        """Some of the parts."""
+        """Return some of the parts."""
         return _Parts(*(each[..., places] for each in self))
 
     def half_of(self, side: float) -> "_Parts":
-        """The lower half of each part, or the upper one: side -1 or 1."""
+        """Return the lower half of each part, or the upper one: side -1 or 1."""
         halved = half_of(len(self.coefficients), side)(self.coefficients)
         return self._replace(coefficients=halved, middle=self.middle + side / 2 * self.half, half=self.half / 2)
 
 
 def _without_turns(steps: Steps, rounding: Floats) -> _Parts:
-    """Parts in which a quantity has one sign, rises or falls all over, or is no more than rounding, lane by lane."""
+    """Return parts in which a quantity has one sign, is monotonic, or is rounding, lane by lane."""
     powers, *shape = steps.coefficients.shape
     step, lane = np.indices(shape).reshape(2, -1)
     waiting = _Parts(steps.coefficients.reshape(powers, -1), step, lane, np.zeros(step.shape), np.ones(step.shape))
@@ -145,7 +145,10 @@ def _joined(parts: Sequence[_Parts]) -> _Parts:
 
 
 def _largest(steps: Steps, size: Callable[[Floats], Floats]) -> Floats:
-    """The largest size of a value: at the ends of the steps, or inside of those that can hold one that is larger."""
+    """Return the largest size of a value.
+
+    At the ends of the steps, or inside of those that can hold one that is larger.
+    """
     polynomials, places = steps.coefficients, _places(steps.least)
     found = size(_values(polynomials, (steps.least, 1.0))).max(axis=(0, 1))
     reach, turns = _bounds(polynomials)
@@ -167,13 +170,13 @@ def _places(least: float) -> tuple[float, ...]:
 
 
 def _values(polynomials: Floats, places: tuple[float, ...]) -> Floats:
-    """Values of polynomials, shape (powers, ...), at some places: shape (places, ...)."""
+    """Return values of polynomials, shape (powers, ...), at some places: shape (places, ...)."""
     powers, *shape = polynomials.shape
     return values_at(powers, places)(polynomials.reshape(powers, -1)).reshape(len(places), *shape)
 
 
 def _bounds(polynomials: Floats) -> tuple[Floats, NDArray[np.bool_]]:
-    """How far from its constant a polynomial can be for |x| <= 1, and whether its slope can vanish there."""
+    """Return how far from its constant a polynomial can be for |x| <= 1, and whether its slope can vanish there."""
     powers, *shape = polynomials.shape
     reach, bend = sizes_of(powers)(polynomials.reshape(powers, -1)).reshape(2, *shape)
     sizes = np.abs(polynomials[:2])

@@ -85,7 +85,7 @@ def read_kept(texts: Iterable[str]) -> tuple[Kept, ...]:
 
 
 def items_of(text: str) -> Iterator[str]:
-    """The parts between commas that no bracket encloses."""
+    """Yield the parts between commas that no bracket encloses."""
     depth, begin = 0, 0
     for place, letter in enumerate(text):
         depth += (letter in "([") - (letter in ")]")

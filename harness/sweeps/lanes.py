@@ -72,7 +72,7 @@ class _Batch(NamedTuple):
     steps: list[Steps]
 
     def of(self, lanes: slice) -> "_Batch":
-        """Some of the motions."""
+        """Return some of the motions."""
         steps = [part.of(lanes) for part in self.steps]
         return _Batch(self.reached[:, :, lanes], self.well[lanes], self.shortest[lanes], self.taken[lanes], steps)
 
@@ -188,7 +188,7 @@ class LaneEngine:
         return found, ~(distance(states, found, self._nominal.state) <= STRAYED)
 
     def _batch(self, starts: Floats, pars: Floats, stops: Stops) -> _Batch:
-        """A batch, and again without lanes that fail."""
+        """Return a batch, and again without lanes that fail."""
         count = starts.shape[1]
         if count == self._lanes:
             failing, batch = self._run(starts, pars, stops)
@@ -252,7 +252,7 @@ class LaneEngine:
 
 
 def _of(stops: Stops, lanes: Any) -> Stops:
-    """The stops of some of the lanes."""
+    """Return the stops of some of the lanes."""
     return [stop if isinstance(stop, float) else stop[lanes] for stop in stops]
 
 
@@ -286,7 +286,7 @@ class _Along:
         return True
 
     def steps(self) -> list[Steps]:
-        """Each quantity along the lanes."""
+        """Return each quantity along the lanes."""
         series, length, time = (each[: self._taken] for each in self._kept)
         rates = np.moveaxis(series[:, :, 1:], 0, 2)  # of the integrals: quantities, powers, steps, lanes
         scales = np.concatenate([np.ones((1, *length.shape)), np.repeat(length[None], rates.shape[1] - 1, axis=0)])

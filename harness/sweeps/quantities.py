@@ -22,7 +22,7 @@ def require_known(problem: MotionProblem, quantities: Sequence[Expression]) -> N
 
 
 def observed_names(problem: MotionProblem) -> tuple[str, ...]:
-    """Controls where the scene observes them, and outputs of its own."""
+    """Return controls where the scene observes them, and outputs of its own."""
     programs = (problem.controls, problem.outputs)
     return tuple(name for program in programs if program is not None for name in program.outputs)
 
@@ -76,5 +76,5 @@ def constraint_forces(problem: MotionProblem) -> list[Expression]:
 
 
 def other_forces(problem: MotionProblem) -> list[Expression]:
-    """The components of h."""
+    """Return the components of h."""
     return [Name(f"h[{s}]") for s in range(1, len(problem.coordinates) + 1)]

@@ -113,7 +113,7 @@ class RowMaker:
         return tuple(dict.fromkeys(name for group in names for name in group if name != Kind.RESIDUAL))
 
     def table(self, first: int, last: int) -> "pyarrow.Table":
-        """The rows from the first up to the last, which is not among them."""
+        """Return the rows from the first up to the last, which is not among them."""
         import pyarrow as pa
 
         groups = [self._group(begin, min(begin + GROUP, last)) for begin in range(first, last, GROUP)]
@@ -234,7 +234,7 @@ class RowMaker:
     def _keep(
         self, rows: "_Rows", there: NDArray, ends: Floats, states: Floats, points: Mapping[float, Floats]
     ) -> None:
-        """What is kept at the ends, shape (k,), and at instants; at those after them there is nothing."""
+        """Keep numbers at the ends, shape (k,), and at instants that are not after them."""
         place = 0
         for kept in self.plan.kept:
             if kept.kind is Kind.FINAL:
@@ -246,14 +246,17 @@ class RowMaker:
                 place += 1
 
     def _keep_along(self, rows: "_Rows", there: NDArray, seen: Floats) -> None:
-        """What is kept of quantities along the motion, shape (numbers, k)."""
+        """Keep numbers of quantities along the motion, shape (numbers, k)."""
         for kept, numbers in zip(self._looks, seen, strict=False):
             rows.keep(kept.text, there, numbers, there_is=(kept.kind is not Kind.ZERO) | ~np.isnan(numbers))
         if any(self._free):
             rows.kept[str(Kind.FREE)][there] = seen[-1]
 
     def _seen(self, steps: list[Steps]) -> Floats:
-        """The numbers made of quantities along motions, shape (numbers, lanes): the last says whether they are free."""
+        """Return the numbers made of quantities along motions, shape (numbers, lanes).
+
+        The last says whether they are free.
+        """
         looks, fields = steps[: len(self._looks)], steps[len(self._looks) :]
         made = [self._made(kept.kind, along) for kept, along in zip(self._looks, looks, strict=True)]
         if fields:
@@ -294,7 +297,7 @@ class RowMaker:
         return instant
 
     def _at(self, instants: Floats, states: Floats, values: Floats) -> Floats:
-        """The quantities kept at instants, shape (quantities, k)."""
+        """Return the quantities kept at instants, shape (quantities, k)."""
         if not self._points:
             return np.empty((0, states.shape[1]))
         return self._evaluate(np.concatenate([instants[None], states, values]))
@@ -365,7 +368,10 @@ def _require_directions(problem: MotionProblem, derivatives: Sequence[Kept]) -> 
 
 
 def _has_kinks(program: Program) -> bool:
-    """Whether a program computes what polynomials of steps go beyond: they know one side of a sign, or of a cut."""
+    """Return True if a program computes what polynomials of steps go beyond.
+
+    They know one side of a sign, or of a cut.
+    """
     expressions = [*(expression for _, expression in program.assignments), *program.outputs.values()]
     return any(call.operation in KINKED for expression in expressions for call in calls_in(expression))
 
@@ -396,7 +402,7 @@ class _Rows:
 
 
 def _mean(along: Steps) -> Floats:
-    """The integral of the polynomials, by the time that they take."""
+    """Return the integral of the polynomials, by the time that they take."""
     powers = range(1, len(along.coefficients) + 1)
     integral = sum((c * ((1.0 - along.least**k) / k) for k, c in zip(powers, along.coefficients, strict=True)))
     return reduce(np.add, integral * along.length) / reduce(np.add, along.length * (1.0 - along.least))

@@ -69,11 +69,11 @@ class Sweep:
         return dict(sorted(counts.items()))
 
     def to_pandas(self) -> "DataFrame":
-        """All rows as a pandas DataFrame, by their numbers."""
+        """Return all rows as a pandas DataFrame, by their numbers."""
         return self.dataset.to_table().to_pandas().set_index("row")
 
     def plot(self, quantity: str | None = None) -> "Picture":
-        """A map over two parameters, or a curve over one.
+        """Return a map over two parameters, or a curve over one.
 
         Parameters
         ----------
@@ -133,7 +133,10 @@ def run_sweep(
 
 
 def _derived(source: Source, request: Request, axes: Axes) -> str:
-    """The document of the motion with its parameters open; where it takes values to derive it, the middle ones."""
+    """Return the document of the motion with its parameters open.
+
+    Where it takes values to derive it, the middle ones.
+    """
     try:
         return problem_document(source, request, source.limits, DOUBLE_DIGITS, axes.names)
     except HolonomError as refused:

@@ -42,7 +42,7 @@ def lane_radii(problem: MotionProblem, states: Floats, values: Floats) -> Floats
 
 
 def _solves(problem: MotionProblem, series: Floats, values: Floats) -> NDArray[np.bool_]:
-    """Whether polynomials, shape (n + g, orders, k), satisfy the equations of motion at some complex instants."""
+    """Return where polynomials, shape (n + g, orders, k), satisfy the equations at complex instants."""
     n, z = len(problem.coordinates), PROBES * np.exp(1j * PROBES)
     powers = z[:, None] ** np.arange(series.shape[1])
     rows = np.moveaxis(series[:n], 1, 2)
@@ -58,7 +58,7 @@ def _solves(problem: MotionProblem, series: Floats, values: Floats) -> NDArray[n
 
 
 def _rates(powers: NDArray[np.complex128], z: NDArray[np.complex128], order: int) -> NDArray[np.complex128]:
-    """What each coefficient contributes to a derivative of a polynomial at complex places."""
+    """Return what each coefficient contributes to a derivative of a polynomial at complex places."""
     n = np.arange(powers.shape[1])
     falling = np.prod([n - k for k in range(order)], axis=0) if order else 1.0
     return powers * falling / z[:, None] ** order

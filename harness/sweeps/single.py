@@ -73,7 +73,7 @@ class SingleMotions:
         return look.motion(report)
 
     def _values(self, problem: MotionProblem, mode: Mode, instants: Floats, states: Floats) -> Floats:
-        """All quantities at states of a mode, shape (quantities, k)."""
+        """Return all quantities at states of a mode, shape (quantities, k)."""
         if self._quantities is None:
             return np.empty((0, len(instants)))
         solutions = mode.engine.solutions(instants, states)
@@ -115,14 +115,17 @@ class _Look:
         self._reached, self._mode = step.end, step.mode
 
     def motion(self, report: Report) -> SingleMotion:
-        """What came of it."""
+        """Return what came of it."""
         end, state = float(report.t), np.array([*report.coordinates.values(), *report.velocities.values()])
         last = self._values(self._mode, np.array([end]), state[:, None])[self._along :, 0]
         points = np.array([self._points[stop] if stop < end else last for stop in self._stops])
         return SingleMotion(report, state, points, _steps(self._taken))
 
     def _polynomials(self, step: Step) -> list[tuple]:
-        """The quantities on parts of a step so short that coefficients fall off: middle, half length, coefficients."""
+        """Return the quantities on parts of a step so short that coefficients fall off.
+
+        Middle, half length, coefficients.
+        """
         count, found = PARTS, self._in_parts(step, PARTS)
         while count < MOST_PARTS and not all(each.resolved().all() for each in _steps(found)):
             count *= FINER

@@ -66,7 +66,7 @@ class TimeWatch:
         return alone[which.ravel()], ()
 
     def _of(self, row: Floats) -> tuple[bool, tuple[float, ...]]:
-        """Whether a motion is to be followed by itself, and where it is to stop otherwise."""
+        """Return whether a motion is to be followed by itself, and where it is to stop otherwise."""
         key = tuple(row[self._involved])
         if key not in self._known:
             numbers = {name: Fraction(float(x)) for name, x in zip(self._problem.parameters, row, strict=True)}

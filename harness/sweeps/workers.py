@@ -69,7 +69,7 @@ def compute(plan: Plan, chunks: Sequence[Chunk], take: Take, workers: int, sched
 
 
 def make_parts(plan: bytes, chunks: Sequence[Chunk]) -> list[bytes]:
-    """What a worker does.
+    """Return what a worker does.
 
     Parameters
     ----------
@@ -86,7 +86,10 @@ def make_parts(plan: bytes, chunks: Sequence[Chunk]) -> list[bytes]:
 
 
 def _parts(plan: bytes, chunks: Sequence[Chunk]) -> list[bytes]:
-    """The same, in a thread of its own: on the stack of Dask's, compiled code takes a fifth more time, as measured."""
+    """Return the same, in a thread of its own.
+
+    On the stack of Dask's, compiled code takes a fifth more time, as measured.
+    """
     with one_blas_thread():
         return [part_of(_maker(plan).table(chunk.first, chunk.last)) for chunk in chunks]
 
@@ -129,7 +132,7 @@ def _submitted(client: "Client", plan: bytes, chunks: Sequence[Chunk]) -> Any:
 
 @contextmanager
 def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
-    """A client of the scheduler, or of one that is started here with its workers, and ended."""
+    """Provide a client of the scheduler, or of one that is started here with its workers, and ended."""
     import dask
     import distributed  # noqa: F401
 
@@ -163,7 +166,7 @@ def _connected(place: "LocalCluster | str") -> "Client":
 
 
 def _cluster(workers: int) -> "LocalCluster":
-    """A scheduler with its workers. It is started anew where one of them ends while it starts."""
+    """Return a scheduler with its workers. It is started anew where one of them ends while it starts."""
     from distributed import LocalCluster
 
     for _ in range(STARTS):

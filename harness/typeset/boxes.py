@@ -47,7 +47,7 @@ def word(latex: str, letters: int) -> Box:
 
 
 def digits(number: str) -> Box:
-    """A number."""
+    """Return a number."""
     return Box(number, len(number))
 
 
@@ -68,34 +68,34 @@ def separated(boxes: Iterable[Box], *separator: Box) -> Box:
 
 
 def over(numerator: Box, denominator: Box) -> Box:
-    """A fraction."""
+    """Return a fraction."""
     width = max(numerator.width, denominator.width) + 0.5
     return Box(rf"\frac{{{numerator.latex}}}{{{denominator.latex}}}", width, numerator.height + denominator.height)
 
 
 def below(base: Box, index: Box) -> Box:
-    """A box with a subscript."""
+    """Return a box with a subscript."""
     return replace(base, latex=f"{base.latex}_{{{index.latex}}}", width=base.width + SCRIPT * index.width)
 
 
 def above(base: Box, exponent: Box) -> Box:
-    """A box with a superscript."""
+    """Return a box with a superscript."""
     width, height = base.width + SCRIPT * exponent.width, max(base.height, SCRIPT * exponent.height)
     return replace(base, latex=f"{base.latex}^{{{exponent.latex}}}", width=width, height=height)
 
 
 def dotted(letter: Box, dots: int) -> Box:
-    """A letter under up to three dots."""
+    """Return a letter under up to three dots."""
     return replace(letter, latex=rf"\{ACCENTS[dots]}{{{letter.latex}}}") if dots else letter
 
 
 def root(radicand: Box) -> Box:
-    """A square root."""
+    """Return a square root."""
     return Box(rf"\sqrt{{{radicand.latex}}}", radicand.width + 2, radicand.height)
 
 
 def bracketed(inner: Box, opening: str = "(", closing: str = ")") -> Box:
-    """A box in brackets as high as it is, and larger than those in it."""
+    """Return a box in brackets as high as it is, and larger than those in it."""
     if inner.height > 1:
         opening, closing = rf"\left{opening} ", rf" \right{closing}"
     elif inner.brackets:
@@ -104,7 +104,7 @@ def bracketed(inner: Box, opening: str = "(", closing: str = ")") -> Box:
 
 
 def coloured(inner: Box, colour: str) -> Box:
-    """A box in a colour known by a name."""
+    """Return a box in a colour known by a name."""
     return replace(inner, latex=rf"\textcolor{{{colour}}}{{{inner.latex}}}") if inner.latex else inner
 
 
@@ -117,7 +117,7 @@ def stacked(rows: Sequence[Box]) -> Box:
 
 
 def aligned(lines: Iterable[str]) -> str:
-    """Lines of LaTeX below each other, each with its mark &."""
+    """Return lines of LaTeX below each other, each with its mark &."""
     return "\\begin{aligned}\n" + " \\\\\n".join(map(_guarded, lines)) + "\n\\end{aligned}"
 
 

@@ -100,7 +100,7 @@ def _description(system: System) -> str:
 
 
 def _heading(what: str, effect: str) -> str:
-    """What the system has, and which effect gives it, if that has a name of its own."""
+    """Return what the system has, and which effect gives it, if that has a name of its own."""
     return what if _words(effect) == what.lower() else f"{what}, {_words(effect)}"
 
 

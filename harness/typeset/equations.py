@@ -24,7 +24,7 @@ def latex_equation(equation: Equation, width: float = inf) -> tuple[str, ...]:
 
 
 def blocks(equation: Equation, width: float = inf) -> list[list[str]]:
-    """The same as lines with the mark & of LaTeX's alignments."""
+    """Return the same as lines with the mark & of LaTeX's alignments."""
     runs = groupby(equation.relations, _array)
     return [
         _plain_rows(list(relations), width) if name is None else _array_rows(name, list(relations), width)
@@ -53,7 +53,7 @@ def _plain_rows(relations: Sequence[Relation], width: float) -> list[str]:
 
 
 def _array_rows(name: str, entries: Sequence[Relation], width: float) -> list[str]:
-    """The entries between brackets where they are easy to read there, else below each other without the zeros."""
+    """Return the entries between brackets if they are easy to read there, else listed without zeros."""
     whole = _has_all_indices(entries)
     if whole and _suits_brackets(entries) and (matrix := _matrix(entries)).width <= width:
         letter = "A^{-1}" if name == "A_inverse" else letter_box(name).latex
@@ -65,7 +65,7 @@ def _array_rows(name: str, entries: Sequence[Relation], width: float) -> list[st
 
 
 def _has_all_indices(entries: Sequence[Relation]) -> bool:
-    """Whether none was left out for being zero."""
+    """Return True if none was left out for being zero."""
     return len(entries) == prod(max(places) for places in zip(*(entry.left.indices for entry in entries), strict=True))
 
 

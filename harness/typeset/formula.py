@@ -104,7 +104,7 @@ def relation_box(left: Tree, right: Tree, room: float = inf) -> Box:
 
 
 def relation_lines(left: Tree, right: Tree, room: float = inf) -> list[Box]:
-    """The lines of a relation, all but the first set in."""
+    """Return the lines of a relation, all but the first set in."""
     whole = beside(formula_box(left), EQUALS, formula_box(right))
     if whole.width <= room:
         return [whole]
@@ -114,14 +114,14 @@ def relation_lines(left: Tree, right: Tree, room: float = inf) -> list[Box]:
 
 
 def relation_rows(left: Tree, right: Tree, room: float = inf) -> list[str]:
-    """The lines of a relation with a short left side, with the mark & of LaTeX's alignments at the equals sign."""
+    """Return the lines of a relation with a short left side, aligned at the equals sign by LaTeX's &."""
     start = formula_box(left)
     first, *others = sum_lines(right, room - start.width - EQUALS.width - INDENT.width)
     return [f"{start.latex} &= {first.latex}", *(f"& {row.latex}" for row in map(_indented, others))]
 
 
 def is_long(left: Box, room: float) -> bool:
-    """Whether the left side of a relation leaves too little room for the right one beside it."""
+    """Return True if the left side of a relation leaves too little room for the right one beside it."""
     return left.width > room / 3
 
 
@@ -134,7 +134,7 @@ def sum_lines(tree: Tree, room: float) -> list[Box]:
 
 
 def signed_terms(tree: Tree) -> list[SignedTerm]:
-    """The terms of a sum with their signs; anything else is its own only term."""
+    """Return the terms of a sum with their signs; anything else is its own only term."""
     match tree:
         case ["Marked", colour, inner]:
             return [_marked_term(term, colour) for term in signed_terms(inner)]
@@ -161,13 +161,13 @@ def _summand(term: Tree) -> list[SignedTerm]:
 
 
 def _sign(term: SignedTerm, place: int) -> Box:
-    """The sign of a term, which is left out before a first term that is added."""
+    """Return the sign of a term, which is left out before a first term that is added."""
     mark = SIGNS[term.sign] if place else PREFIX_MINUS if term.sign == "-" else NOTHING
     return coloured(mark, term.sign_colour) if term.sign_colour else mark
 
 
 def _term_lines(term: SignedTerm, place: int, room: float) -> list[Box]:
-    """A term, on several lines if it is a product to be broken or its brackets would be too high."""
+    """Return a term, on several lines if it is a product to be broken or its brackets would be too high."""
     sign = _sign(term, place)
     first, *others = _factor_lines(term.content, room - sign.width)
     if others or first.height <= TALLEST:
@@ -182,7 +182,7 @@ def _term_lines(term: SignedTerm, place: int, room: float) -> list[Box]:
 
 
 def _around_brackets(term: Tree) -> tuple[Tree, Tree | None, list[Tree]]:
-    """What stands before, between and behind the brackets of the longest sum among the factors of a term."""
+    """Return what stands before, between and behind the brackets of the longest sum among the factors of a term."""
     match term:
         case ["Divide", ["Multiply", *factors], denominator]:
             factors = [["Divide", 1, denominator], *factors]
@@ -209,7 +209,7 @@ def _indented(row: Box) -> Box:
 
 
 def _filled(boxes: Sequence[Box], room: float) -> list[Box]:
-    """Lines of boxes side by side, as many on each as there is room for."""
+    """Return lines of boxes side by side, as many on each as there is room for."""
     rows: list[Box] = []
     for box in boxes:
         rows = _followed_by(rows, [box], room)
@@ -217,19 +217,19 @@ def _filled(boxes: Sequence[Box], room: float) -> list[Box]:
 
 
 def _followed_by(rows: list[Box], more: list[Box], room: float) -> list[Box]:
-    """Lines and more lines, one of which goes onto the last line if it is alone and there is room."""
+    """Return lines and more lines, one of which goes onto the last line if it is alone and there is room."""
     if rows and len(more) == 1 and rows[-1].width + more[0].width <= room:
         return [*rows[:-1], beside(rows[-1], more[0])]
     return [*rows, *more]
 
 
 def _head(tree: Tree) -> str | None:
-    """What a tree is an application of, a mark upon it set aside."""
+    """Return what a tree is an application of, a mark upon it set aside."""
     return tree[0] if isinstance(tree, list) else None
 
 
 def _content(tree: Tree) -> Tree:
-    """A tree without the mark upon it."""
+    """Return a tree without the mark upon it."""
     return _content(tree[2]) if _head(tree) == "Marked" else tree
 
 
@@ -293,7 +293,7 @@ def _product(room: float, *factors: Tree) -> Box:
 
 
 def _product_lines(factors: Sequence[Tree], room: float) -> list[Box]:
-    """A product on one line, its widest factor broken if there is room enough for that one; else on several."""
+    """Return a product on one line, its widest factor broken if there is room enough for that one; else on several."""
     boxes = [_factor(factor, inf) for factor in factors]
     widest = max(range(len(boxes)), key=lambda place: boxes[place].width)
     rest = sum(box.width for box in boxes) - boxes[widest].width
@@ -360,7 +360,7 @@ def _function(name: Box, arguments: Sequence[Tree], room: float) -> Box:
 
 
 def _of_an_order(letter: str, order: Tree, argument: Tree, room: float) -> Box:
-    """A function that carries its order as an index; its argument always stands in brackets."""
+    """Return a function that carries its order as an index; its argument always stands in brackets."""
     name = below(word(letter, 1), formula_box(order))
     return beside(name, bracketed(formula_box(argument, room - name.width - 2)))
 

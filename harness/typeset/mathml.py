@@ -21,7 +21,7 @@ ElementTree.register_namespace("", NAMESPACE)
 
 
 def mathml(latex: str, alt: str = "") -> str:
-    """Formula on lines of its own, a <math display="block"> element; what is marked has the class of its colour.
+    """Return formula on lines of its own, a <math display="block"> element; what is marked has the class of its colour.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def mathml(latex: str, alt: str = "") -> str:
 
 
 def inline_mathml(latex: str, alt: str = "") -> str:
-    """Formula within a line of text; otherwise like `mathml`."""
+    """Return formula within a line of text; otherwise like `mathml`."""
     return _converted(latex, alt, "inline")
 
 
@@ -77,7 +77,7 @@ def _to_core(element: Element) -> None:
 
 
 def _bind_signs(row: Element) -> None:
-    """A sign behind an equals sign or a bracket belongs to the term after it."""
+    """Join a sign behind an equals sign or a bracket to the term after it."""
     for before, sign in pairwise(row):
         if sign.text in SIGNS and before.text in BEFORE_A_PREFIX:
             sign.set("form", "prefix")

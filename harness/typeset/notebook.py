@@ -19,7 +19,7 @@ class Letter(Symbol):
     """A real quantity of a system that prints as its letter: dot(q1) with a dot and an index."""
 
     def __new__(cls, name: str) -> "Letter":
-        """The one letter of that name."""
+        """Return the one letter of that name."""
         return Symbol.__new__(cls, name, real=True)
 
     def __getnewargs_ex__(self) -> tuple[tuple[str], dict[str, Any]]:
@@ -35,12 +35,12 @@ class Letter(Symbol):
 
 
 def in_letters(expression: Expr) -> Expr:
-    """An expression with `Letter` in the place of every symbol."""
+    """Return an expression with `Letter` in the place of every symbol."""
     return expression.xreplace({symbol: Letter(symbol.name) for symbol in expression.free_symbols})
 
 
 def letters(names: Iterable[str]) -> Mapping[str, Letter]:
-    """Each name with its letter."""
+    """Return each name with its letter."""
     return {name: Letter(name) for name in names}
 
 

@@ -54,7 +54,7 @@ def _signed(expression: Expr) -> tuple[int, Tree]:
 
 
 def _signed_quotient(numerator: Expr, denominator: Expr) -> tuple[int, Tree]:
-    """A sum in the numerator is written behind the fraction if there is something else to write there."""
+    """Return a sum in the numerator is written behind the fraction if there is something else to write there."""
     (up, factors), (down, divisors) = _factors(numerator), _factors(denominator)
     number = up / down
     sums = [factor for factor in factors if isinstance(factor, Add)]

@@ -18,12 +18,12 @@ GREEK = {name.replace("lamda", "lambda") for name in greeks}
 
 @cache
 def name_box(name: str, dots: int = 0) -> Box:
-    """A quantity under as many dots as it is differentiated, with the indices in its name."""
+    """Return a quantity under as many dots as it is differentiated, with the indices in its name."""
     return indexed_box(name, [], dots)
 
 
 def indexed_box(name: str, indices: list[Box], dots: int = 0) -> Box:
-    """The same with further indices, which come before those in its name: q_0[s] has the indices s and 0."""
+    """Return the same with further indices, which come before those in its name: q_0[s] has the indices s and 0."""
     if name == "A_inverse":
         return above(letter_box("A"), beside(*indices))
     if name == "christoffel":
@@ -45,7 +45,7 @@ def _letter_and_number(stem: str) -> tuple[str, str]:
 
 
 def letter_box(letter: str) -> Box:
-    """A letter, Latin or Greek, or a word."""
+    """Return a letter, Latin or Greek, or a word."""
     letter = spelled_out(letter)
     if letter.lower() in GREEK or letter in OPEN:
         return word(OPEN.get(letter) or tex_greek_dictionary.get(letter, rf"\{letter}"), 1)
@@ -55,7 +55,7 @@ def letter_box(letter: str) -> Box:
 
 
 def spelled_out(letter: str) -> str:
-    """The name of a Greek letter that is written as itself."""
+    """Return the name of a Greek letter that is written as itself."""
     match unicodedata.name(letter, "").split() if len(letter) == 1 else []:
         case ["GREEK", "SMALL", "LETTER", name]:
             return name.lower().replace("lamda", "lambda")
@@ -72,7 +72,7 @@ def _index(part: str) -> Box:
 
 
 def _christoffel(first: Box, second: Box, third: Box) -> Box:
-    """The symbol [k, m; s] of the first kind."""
+    """Return the symbol [k, m; s] of the first kind."""
     return bracketed(beside(first, COMMA, second, SEMICOLON, third), "[", "]")
 
 

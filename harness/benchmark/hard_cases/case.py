@@ -87,19 +87,19 @@ class CaseReport:
 
 
 def examined(case: Case, extent: Extent) -> CaseReport:
-    """A case with what is found of it."""
+    """Return a case with what is found of it."""
     found = list(case.examine(extent))
     sweep = next((each for each in found if isinstance(each, Sweep)), None)
     return CaseReport(case, tuple(each for each in found if isinstance(each, Result)), sweep)
 
 
 def ours(method: str, quantity: str, digits: float, needed: float) -> Result:
-    """A method of Holonom's, which has to keep so many digits."""
+    """Return a method of Holonom's, which has to keep so many digits."""
     return Result(method, quantity, digits, Outcome.HOLDS if digits >= needed else Outcome.FAILS)
 
 
 def theirs(method: str, quantity: str, digits: float, needed: float) -> Result:
-    """A method for comparison, which may keep fewer."""
+    """Return a method for comparison, which may keep fewer."""
     return Result(method, quantity, digits, Outcome.HOLDS if digits >= needed else Outcome.LOSES)
 
 

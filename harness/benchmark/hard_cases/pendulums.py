@@ -116,7 +116,7 @@ def long_run(extent: Extent) -> Findings:
 
 @certified
 def _after(periods: int) -> tuple[int, list[mpf]]:
-    """The second nearest to the end of so many periods, and x and y of the pendulum then."""
+    """Return the second nearest to the end of so many periods, and x and y of the pendulum then."""
     amplitude = pi / 13
     until = round(periods * period(amplitude, FREQUENCY))
     x, depth = swing(amplitude, FREQUENCY, mpf(until))

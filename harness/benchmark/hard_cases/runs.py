@@ -46,7 +46,7 @@ class Arrived(NamedTuple):
 
 @cache
 def problem(file: str, scene: str | None = None, solve: Solve = Solve.DIRECT) -> MotionProblem:
-    """The motion of a scene among the examples; without a name, of the last one in the file."""
+    """Return the motion of a scene among the examples; without a name, of the last one in the file."""
     return motion_problem(EXAMPLES / file, Request(scene, solve), Limits())
 
 
@@ -80,7 +80,7 @@ def _numbers(values: Mapping[str, float]) -> Vector:
 def places_kept(
     quantity: str, plain: Vector, motion: Arrived, truth: Sequence[mpf], needed: float, scale: float | None = None
 ) -> Iterator[Result]:
-    """What the plain way and ours keep of the first coordinates."""
+    """Yield what the plain way and ours keep of the first coordinates."""
     first = slice(len(truth))
     yield theirs(PLAIN, quantity, digits_kept(plain[first], truth, scale), needed)
     yield ours(motion.engine, quantity, digits_kept(motion.coordinates[first], truth, scale), needed)

@@ -33,7 +33,9 @@ SolveAt = Callable[[float, Vector], Solved]
 
 
 def every_solve(file: str, scene: str | None = None) -> Mapping[str, SolveAt]:
-    """Each way to solve the equations of motion of a scene among the examples; without a name, of the file's last one.
+    """Return each way to solve the equations of motion of a scene among the examples.
+
+    Without a name, of the file's last one.
 
     Each takes the instant and the state of shape (2n,), coordinates and then velocities.
     """
@@ -49,7 +51,7 @@ def every_solve(file: str, scene: str | None = None) -> Mapping[str, SolveAt]:
 def solves_kept(
     quantity: str, digits: Mapping[str, float], needed: float, compared: tuple[str, ...] = (TEXTBOOK, DIRECT)
 ) -> Iterator[Result]:
-    """What each solve keeps; those that are there for comparison may lose it."""
+    """Yield what each solve keeps; those that are there for comparison may lose it."""
     for name, kept in digits.items():
         yield (theirs if name in compared else ours)(name, quantity, kept, needed)
 

@@ -17,13 +17,13 @@ ENGINE = "taylor"
 
 
 def vanishing_length(extent: Extent) -> Findings:
-    """Whether the runs stop, and when, where and why they say that they do."""
+    """Return whether the runs stop, and when, where and why they say that they do."""
     for scene in SCENES:
         yield from results_of(scene)
 
 
 def results_of(scene: str) -> Iterator[Result]:
-    """What the refusal to follow a scene holds."""
+    """Yield what the refusal to follow a scene holds."""
     refused = refusal(scene)
     facts = refused.facts if refused else {}
     digits = digits_kept([facts.get("instant", nan)], [VANISHES])
@@ -34,7 +34,7 @@ def results_of(scene: str) -> Iterator[Result]:
 
 
 def refusal(scene: str) -> HolonomError | None:
-    """What a run stops with, if it does."""
+    """Return what a run stops with, if it does."""
     try:
         simulated(problem(FILE, scene), UNTIL)
     except HolonomError as error:

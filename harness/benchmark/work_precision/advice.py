@@ -34,7 +34,7 @@ class Price:
 
 
 def cheapest_methods(measurements: Sequence[Measurement]) -> Iterator[Advice]:
-    """The shortest run to the end of the motion that keeps 3, 6, 9, 12, 15, 30 digits."""
+    """Yield the shortest run to the end of the motion that keeps 3, 6, 9, 12, 15, 30 digits."""
     whole = [m for m in measurements if m.group in WHOLE_MOTION]
     for digits in ASKED_DIGITS:
         enough = [m for m in whole if m.error <= 10.0**-digits]
@@ -62,7 +62,7 @@ def line_of(measurements: Sequence[Measurement]) -> tuple[list[float], float]:
 
 
 def _falling(measurements: Sequence[Measurement]) -> list[Measurement]:
-    """Those whose error is smaller than that of any before."""
+    """Return those whose error is smaller than that of any before."""
     kept: list[Measurement] = []
     for m in measurements:
         if 0 < m.error < (kept[-1].error if kept else math.inf):

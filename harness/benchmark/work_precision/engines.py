@@ -32,7 +32,7 @@ HARDWARE = ("double", "extended")  # numbers for which the way of compiling matt
 def taylor_ladder(
     problem: MotionProblem, until: Fraction, precision: str, tolerances: Sequence[float]
 ) -> Iterator[Candidate]:
-    """The Taylor engine in one precision, tolerance by tolerance."""
+    """Yield the Taylor engine in one precision, tolerance by tolerance."""
     for tol in tolerances:
         prepare = partial(prepare_taylor, problem, until, precision, tol, Stabilization.PROJECTION)
         yield Candidate(Group.TAYLOR, taylor_name(precision), f"tol {tol:g}", until, prepare)
@@ -51,14 +51,14 @@ def solve_name(solve: Solve) -> str:
 
 
 def stabilizations(problem: MotionProblem, until: Fraction, tol: float) -> Iterator[Candidate]:
-    """The stabilizations at one tolerance, in double precision; arguments as of `taylor_ladder`."""
+    """Yield the stabilizations at one tolerance, in double precision; arguments as of `taylor_ladder`."""
     for drift in Stabilization:
         prepare = partial(prepare_taylor, problem, until, "double", tol, drift)
         yield Candidate(Group.DRIFT, translatable("drift: %(cure)s", cure=drift), f"tol {tol:g}", until, prepare)
 
 
 def the_two_solves(problems: Sequence[MotionProblem], until: Fraction, tol: float) -> Iterator[Candidate]:
-    """The same motion by each of its programs at one tolerance, in double precision."""
+    """Yield the same motion by each of its programs at one tolerance, in double precision."""
     for problem in problems:
         prepare = partial(prepare_taylor, problem, until, "double", tol, Stabilization.PROJECTION)
         yield Candidate(Group.SOLVE, solve_name(problem.motion.solve), f"tol {tol:g}", until, prepare)
@@ -97,12 +97,12 @@ def operations_of_a_step(problem: MotionProblem, tol: float) -> int:
 
 
 def state_of(numbers: Precision, values: Any) -> State:
-    """A state in numbers of some precision, digit by digit."""
+    """Return a state in numbers of some precision, digit by digit."""
     return numbers_of(map(numbers.text, values))
 
 
 def _compact(problem: MotionProblem, precision: str) -> bool | None:
-    """Whether compact code is compiled, once and for all; the engine's own choice beyond hardware numbers."""
+    """Return whether compact code is compiled, once and for all; the engine's own choice beyond hardware numbers."""
     return problem.motion.operations > LARGEST_UNROLLED if precision in HARDWARE else None
 
 
@@ -110,7 +110,7 @@ RUNGE_KUTTA = translatable("Runge-Kutta engine")
 
 
 def runge_kutta_ladder(problem: MotionProblem, until: Fraction, tolerances: Sequence[float]) -> Iterator[Candidate]:
-    """The Runge-Kutta engine, tolerance by tolerance."""
+    """Yield the Runge-Kutta engine, tolerance by tolerance."""
     for tol in tolerances:
         prepare = partial(_prepare_runge_kutta, problem, until, tol)
         yield Candidate(Group.RUNGE_KUTTA, RUNGE_KUTTA, f"tol {tol:g}", until, prepare)

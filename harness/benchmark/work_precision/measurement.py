@@ -34,7 +34,7 @@ def numbers_of(texts: Iterable[str]) -> State:
 
 
 def doubles(values: Iterable[float]) -> State:
-    """A state in double precision, digit by digit."""
+    """Return a state in double precision, digit by digit."""
     return numbers_of(map(repr, map(float, values)))
 
 

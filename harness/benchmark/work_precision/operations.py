@@ -20,7 +20,7 @@ LINEAR = frozenset({Operation.ADD, Operation.SUBTRACT, Operation.NEGATE, Operati
 
 
 def acceleration_program(problem: MotionProblem) -> Program:
-    """The part of a motion program that computes the accelerations alone."""
+    """Return the part of a motion program that computes the accelerations alone."""
     return computing(problem.motion, {f"ddot({name})" for name in problem.coordinates})
 
 

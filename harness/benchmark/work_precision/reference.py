@@ -40,7 +40,7 @@ class Reference:
     difference: float  # the largest relative difference of the two
 
     def can_tell(self, error: float) -> bool:
-        """Whether an error is larger than what the reference may be wrong by."""
+        """Return True if an error is larger than what the reference may be wrong by."""
         return error > SURER * self.difference
 
 

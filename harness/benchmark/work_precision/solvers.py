@@ -58,7 +58,7 @@ class CompiledRates:
 
 
 def compiled_rates(problem: MotionProblem) -> CompiledRates:
-    """The motion program of a problem, compiled by the system's C compiler.
+    """Return the motion program of a problem, compiled by the system's C compiler.
 
     Raises as `holonom.program.c_function.compile_c`.
     """
@@ -73,7 +73,7 @@ Solver = Callable[[CompiledRates, tuple[float, float], Floats, float], Floats]
 
 
 def scipy_solver(method: str, motion: CompiledRates, span: tuple[float, float], start: Floats, tol: float) -> Floats:
-    """The state at the end, by one of the methods of `scipy.integrate.solve_ivp`.
+    """Return the state at the end, by one of the methods of `scipy.integrate.solve_ivp`.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def scipy_solver(method: str, motion: CompiledRates, span: tuple[float, float], 
 
 
 def sundials_solver(method: str, motion: CompiledRates, span: tuple[float, float], start: Floats, tol: float) -> Floats:
-    """The state at the end, by CVODE of SUNDIALS, ``Adams`` or ``BDF``; arguments as for `scipy_solver`.
+    """Return the state at the end, by CVODE of SUNDIALS, ``Adams`` or ``BDF``; arguments as for `scipy_solver`.
 
     Raises
     ------
@@ -123,7 +123,7 @@ SOLVERS: Mapping[str, Solver] = {
 
 
 def solver_ladder(problem: MotionProblem, until: Fraction, tolerances: Sequence[float]) -> Iterator[Candidate]:
-    """Each solver on the compiled motion program, tolerance by tolerance."""
+    """Yield each solver on the compiled motion program, tolerance by tolerance."""
     for name, solver in SOLVERS.items():
         for tol in tolerances:
             prepare = partial(_prepare, problem, until, solver, tol)

@@ -128,7 +128,7 @@ def study(
 
 
 def _problems(source: Source, request: Request, plan: Plan) -> tuple[list[MotionProblem], list[Omission]]:
-    """The problem with the solve that is asked for, then with the other one where that solves it."""
+    """Return the problem with the solve that is asked for, then with the other one where that solves it."""
     digits = plan.most_digits + MORE_DIGITS
     problem = motion_problem(source, request, source.limits, digits)
     if problem.obstacle is not None:
@@ -142,7 +142,7 @@ def _problems(source: Source, request: Request, plan: Plan) -> tuple[list[Motion
 
 
 def _end_of(problem: MotionProblem, plan: Plan) -> Fraction:
-    """The last instant, exactly; refused where a simulation refuses it."""
+    """Return the last instant, exactly; refused where a simulation refuses it."""
     last_instant(problem, plan.until, read_precision("double"))
     if problem.until and plan.until is None:
         raise HolonomError(Failure.NO_COMMON_END, problem.scene)
@@ -150,7 +150,7 @@ def _end_of(problem: MotionProblem, plan: Plan) -> Fraction:
 
 
 def _within_reach(plan: Plan, problem: MotionProblem, until: Fraction) -> tuple[Plan, list[Omission]]:
-    """The plan without the precisions whose reference would take too long."""
+    """Return the plan without the precisions whose reference would take too long."""
     rehearsal = TaylorEngine(problem, drift=Stabilization.NONE)
     rehearsal.advance(float(until))
     tolerances, beyond = dict(plan.tolerances), []
@@ -217,7 +217,7 @@ def _candidates(
 
 
 def study_document(done: Study) -> dict[str, Any]:
-    """What `holonom accuracy --json` writes; `schemas/accuracy.json` describes it."""
+    """Return what `holonom accuracy --json` writes; `schemas/accuracy.json` describes it."""
     reference = done.reference
     content = {
         "scene": done.scene,

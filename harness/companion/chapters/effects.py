@@ -24,7 +24,7 @@ SAMPLES = 1801
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """What the chapter needs."""
+    """Return what the chapter needs."""
     file = root / SPHERICAL_PENDULUM
     return {
         "pendulum": derived(file),
@@ -36,7 +36,7 @@ def runs(root: Path) -> dict[str, Run]:
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """The page that results make."""
+    """Return the page that results make."""
     turning, still = results["turning"], results["still"]
     return Page(
         {
@@ -60,7 +60,7 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
 
 
 def costs(file: Path, scene: str) -> MeasuredCosts:
-    """What a scene pays for, as `holonom effects` says it."""
+    """Return what a scene pays for, as `holonom effects` says it."""
     return scene_costs(file, Request(scene), Limits())
 
 
@@ -70,17 +70,17 @@ def titles(record: Record) -> dict[str, str]:
 
 
 def called(record: Record, name: str) -> tuple[str, ...]:
-    """The effects that a scene calls for."""
+    """Return the effects that a scene calls for."""
     return next(scene.effects for scene in record.scenes if scene.name == name)
 
 
 def rate_of_the_frame(record: Record) -> Any:
-    """The rate at which the frame of the Foucault pendulum turns."""
+    """Return the rate at which the frame of the Foucault pendulum turns."""
     return next(scene.parameter_values["Omega"] for scene in record.scenes if scene.name == TURNING)
 
 
 def turning_point(motion: Simulation) -> tuple[float, float]:
-    """The last instant at which the bob turns on the side where it began, and the angle of its place from the start."""
+    """Return the last turning instant on the side where the bob began, and its angle from the start."""
     x, y = motion.coordinates["x"], motion.coordinates["y"]
     away = np.hypot(x, y)
     turns = np.flatnonzero((away[1:-1] >= away[:-2]) & (away[1:-1] > away[2:]) & (x[1:-1] * x[0] > 0)) + 1

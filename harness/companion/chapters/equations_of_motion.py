@@ -21,7 +21,7 @@ NUMBERS = ("2", "3a", "3", "4", "5", "6", "7", "8", "9")
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """What the chapter needs."""
+    """Return what the chapter needs."""
     return {
         "paper": derived(root / PAPER),
         "bob": derived(root / BOB),
@@ -33,7 +33,7 @@ def runs(root: Path) -> dict[str, Run]:
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """The page that results make."""
+    """Return the page that results make."""
     paper = results["paper"]
     cards = derivation_cards(NUMBERS, [results["bob"], paper], results["printed"], root)
     conditions = [printed_card(results["printed"], name) for name in CONDITIONS]
@@ -58,7 +58,7 @@ def momentum(motion: Simulation) -> NDArray[np.float64]:
 
 
 def panels(motion: Simulation) -> list[Panel]:
-    """What changes as the string is drawn in, and what does not."""
+    """Return what changes as the string is drawn in, and what does not."""
     shown = {
         gettext("length r"): motion.coordinates["r"],
         gettext("angular velocity φ̇"): motion.velocities["dot(phi)"],

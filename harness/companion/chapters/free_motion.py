@@ -21,7 +21,7 @@ UNPUSHED = "Lagrange's equations on a free motion"
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """What the chapter needs."""
+    """Return what the chapter needs."""
     return {
         "paper": derived(root / PAPER),
         "bob": derived(root / BOB),
@@ -38,7 +38,7 @@ def runs(root: Path) -> dict[str, Run]:
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """The page that results make."""
+    """Return the page that results make."""
     paper, cabin = results["paper"], results["cabin"]
     cards = derivation_cards(["10"], [paper, results["bob"]], results["printed"], root)
     scenes = scene_cards(["10"], [(paper, FREE_SCENE), (paper, INITIAL_SCENE)], (), root, "law")
@@ -67,7 +67,7 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
 
 
 def panels(unpushed: Simulation, pushed: Simulation, balance: EnergyBalance) -> list[Panel]:
-    """The multiplier under both laws, and where the energy goes under the second."""
+    """Return the multiplier under both laws, and where the energy goes under the second."""
     multipliers = {"u = u₀ exp(t)": unpushed, "u = u₀ + t": pushed}
     work = {
         gettext("kinetic energy gained"): balance.gained,

@@ -12,7 +12,7 @@ EXHIBITS = table("gallery")["exhibit"]
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """What the chapter needs."""
+    """Return what the chapter needs."""
     return {
         each["name"]: motion(
             root / each["file"], each.get("scene"), Fraction(each["until"]) if "until" in each else None
@@ -22,7 +22,7 @@ def runs(root: Path) -> dict[str, Run]:
 
 
 def page(root: Path, results: Mapping[str, Motion]) -> Page:
-    """The page that results make."""
+    """Return the page that results make."""
     return Page(
         {"exhibits": [(exhibit, results[exhibit["name"]]) for exhibit in EXHIBITS]},
         figures=figures_of(results.items()),

@@ -11,12 +11,12 @@ from ..runs import drawn
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """What the chapter needs."""
+    """Return what the chapter needs."""
     return {case.name: Run(examined, (case, Extent.SHORT)) for case in REGISTER}
 
 
 def page(root: Path, results: Mapping[str, CaseReport]) -> Page:
-    """The page that results make."""
+    """Return the page that results make."""
     reports = list(results.values())
     return Page(
         {
@@ -29,7 +29,7 @@ def page(root: Path, results: Mapping[str, CaseReport]) -> Page:
 
 
 def best_gain(reports: Sequence[CaseReport]) -> CaseReport:
-    """The case in which the best method keeps most digits more than the worst."""
+    """Return the case in which the best method keeps most digits more than the worst."""
     return max(reports, key=lambda report: _spread([r.digits for r in report.results if r.digits is not None]))
 
 

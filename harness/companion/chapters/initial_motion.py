@@ -26,7 +26,7 @@ SHOWN = "q1"  # the coordinate that is drawn
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """What the chapter needs."""
+    """Return what the chapter needs."""
     return {
         "paper": derived(root / PAPER),
         "bob": derived(root / BOB),
@@ -36,7 +36,7 @@ def runs(root: Path) -> dict[str, Run]:
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """The page that results make."""
+    """Return the page that results make."""
     paper, bob = results["paper"], results["bob"]
     eliminated = derivation_cards(["11"], [paper, bob], results["printed"], root)
     cards = scene_cards(["12", "19", "13", "18"], [(paper, INITIAL_SCENE), (bob, BOB_SCENE)], results["printed"], root)
@@ -59,7 +59,7 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
 
 
 def values_in_numbers(equation: Equation, scene: Scene) -> dict[str, Expr]:
-    """The right sides of a scene's equation with its initial state and parameters put in, by their left sides."""
+    """Return right sides of a scene's equation at its start and parameters, by their left sides."""
     values = {f"{name}_0": value for name, value in scene.initial_state.items()} | dict(scene.parameter_values)
     numbers = {Symbol(name, real=True): value for name, value in values.items()}
     return {str(each.left): each.right.subs(numbers) for each in equation.relations}
@@ -76,12 +76,12 @@ def compared(expanded: MotionSeries) -> list[tuple[str, mpmath.mpf, mpmath.mpf]]
 
 
 def partial_sum(coefficients: NumberTexts, step: mpmath.mpf) -> mpmath.mpf:
-    """The sum of a power series as far as its coefficients go."""
+    """Return the sum of a power series as far as its coefficients go."""
     return mpmath.polyval(numbers(coefficients)[::-1], step)
 
 
 def beginning(expanded: MotionSeries) -> Panel:
-    """The first instants of a coordinate: the motion, and what the lowest orders make of it."""
+    """Return the first instants of a coordinate: the motion, and what the lowest orders make of it."""
     with mpmath.workdps(expanded.digits):
         coefficients = [float(each) for each in numbers(expanded.coordinates[SHOWN])]
     times = np.linspace(0, float(LAST), 101)

@@ -20,12 +20,12 @@ EXAMPLE, FIRST_OF_EXAMPLE = "worked-example", "14"
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """What the chapter needs."""
+    """Return what the chapter needs."""
     return {"printed": printed()}
 
 
 def page(root: Path, results: Mapping[str, tuple[PrintedEquation, ...]]) -> Page:
-    """The page that results make."""
+    """Return the page that results make."""
     equations = results["printed"]
     return Page(
         {
@@ -38,7 +38,7 @@ def page(root: Path, results: Mapping[str, tuple[PrintedEquation, ...]]) -> Page
 
 
 def rows(equations: tuple[PrintedEquation, ...]) -> list[tuple[PrintedEquation, str]]:
-    """Each printed equation with the link to its card."""
+    """Return each printed equation with the link to its card."""
     general = list(takewhile(_before_the_example, equations))
     example = equations[len(general) :]
     return [
@@ -52,7 +52,7 @@ def _before_the_example(each: PrintedEquation) -> bool:
 
 
 def _pages(general: Iterable[PrintedEquation]) -> Iterator[str]:
-    """The page of each general equation; one without a number is on that of the equation before it."""
+    """Yield the page of each general equation; one without a number is on that of the equation before it."""
     page_of = {number: page for page, numbers in PAGES.items() for number in numbers}
     page = ""
     for each in general:

@@ -22,7 +22,7 @@ UNTIL, SAMPLES = Fraction(2), 201
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """What the chapter needs."""
+    """Return what the chapter needs."""
     file = root / PRESCRIBED_TENSION
     return (
         {"tension": derived(file)}
@@ -33,7 +33,7 @@ def runs(root: Path) -> dict[str, Run]:
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """The page that results make."""
+    """Return the page that results make."""
     system = results["tension"].record.system
     return Page(
         {
@@ -51,7 +51,7 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
 
 
 def panels(results: Mapping[str, Simulation]) -> list[Panel]:
-    """What is prescribed, and what the winch does."""
+    """Return what is prescribed, and what the winch does."""
     motions = {name: results[f"{name} motion"] for name in SCENES[1:]}
     labels = {name: gettext("steady") if name == SCENES[1] else gettext("growing") for name in motions}
     return [

@@ -28,7 +28,7 @@ SWING = "swing_scene"
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """What the chapter needs."""
+    """Return what the chapter needs."""
     return {
         "paper": derived(root / PAPER),
         "initial": series(root / PAPER, INITIAL_SCENE, ORDER),
@@ -40,7 +40,7 @@ def runs(root: Path) -> dict[str, Run]:
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """The page that results make."""
+    """Return the page that results make."""
     paper = results["paper"]
     scene = scene_named(paper, INITIAL_SCENE)
     exact = singular_instants(paper, INITIAL_SCENE)
@@ -68,7 +68,7 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
 
 
 def denominator(paper: Derived) -> Expr:
-    """What the accelerations (11) are divided by."""
+    """Return what the accelerations (11) are divided by."""
     accelerations = named_equations(paper)["accelerations"].relations
     return sympy.fraction(sympy.together(accelerations[0].right))[1]
 
@@ -82,7 +82,7 @@ def singular_instants(paper: Derived, name: str) -> list[Expr]:
 
 
 def partial_sums(expanded: MotionSeries, motion: Simulation) -> str:
-    """The figure of the partial sums of one coordinate, as SVG."""
+    """Return the figure of the partial sums of one coordinate, as SVG."""
     with mpmath.workdps(expanded.digits):
         coefficients = [float(each) for each in numbers(expanded.coordinates[COORDINATE])]
         times = motion.instants - float(number(expanded.t0))

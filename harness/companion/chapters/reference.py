@@ -10,12 +10,12 @@ from ..chapter import Page, Run
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """What the chapter needs."""
+    """Return what the chapter needs."""
     return {}
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """The page that results make."""
+    """Return the page that results make."""
     found = topics()
     groups = [(title, list(pages)) for title, pages in groupby(found, key=lambda topic: topic.group)]
     return Page({"groups": groups}, topics=tuple(found))

@@ -14,7 +14,7 @@ from . import CABIN, FREE_SCENE, LINKAGE, PAPER, PENDULUM
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """What the chapter needs."""
+    """Return what the chapter needs."""
     return {
         "paper": derived(root / PAPER),
         "pendulum": derived(root / PENDULUM),
@@ -25,7 +25,7 @@ def runs(root: Path) -> dict[str, Run]:
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """The page that results make."""
+    """Return the page that results make."""
     paper = results["paper"]
     cards = derivation_cards(["1"], [paper, results["pendulum"]], results["printed"], root)
     scene = scene_named(paper, FREE_SCENE)

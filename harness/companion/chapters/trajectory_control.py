@@ -29,14 +29,14 @@ SCENES = {"paper": INITIAL_SCENE}  # of other files, the last
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """What the chapter needs."""
+    """Return what the chapter needs."""
     return {name: derived(root / file) for name, file in FILES.items()} | {
         f"{name} free": free(root / file, SCENES.get(name)) for name, file in FILES.items()
     }
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """The page that results make."""
+    """Return the page that results make."""
     return Page(
         {
             "answers": {name: results[f"{name} free"].trajectory for name in FILES},
@@ -49,7 +49,7 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
 
 
 def lengths(results: Mapping[str, FreeMotion]) -> Panel:
-    """The lengths of two strings that never pull."""
+    """Return the lengths of two strings that never pull."""
     shown = {gettext("pendulum: thrown, and falling"): "pendulum", gettext("bob on the table: straight on"): "bob"}
     curves = {
         label: np.array(results[f"{name} free"].trajectory.samples, dtype=float).T for label, name in shown.items()

@@ -40,7 +40,7 @@ UNDAMPED = (("c", "1"),)  # a damping other than the paper's
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """What the chapter needs."""
+    """Return what the chapter needs."""
     file = root / KNOB
     return {
         "knob": derived(file),
@@ -53,7 +53,7 @@ def runs(root: Path) -> dict[str, Run]:
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """The page that results make."""
+    """Return the page that results make."""
     found = results["knob"]
     motions = {law: results[law] for law in LAWS}
     balances = {
@@ -90,7 +90,7 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
 
 
 def models(file: Path) -> dict[str, Model]:
-    """The scenes as models whose parameters are open, by law."""
+    """Return the scenes as models whose parameters are open, by law."""
     found = {}
     for law, scene in LAWS.items():
         given = [name for name in OPEN if name != "omega" or law == "swinging"]
@@ -99,7 +99,7 @@ def models(file: Path) -> dict[str, Model]:
 
 
 def drawing_of(file: Path, scene: str) -> tuple[tuple[str, ...], Program]:
-    """The shapes of the system's drawing, and the program of their numbers."""
+    """Return the shapes of the system's drawing, and the program of their numbers."""
     drawing = motion_problem(file, Request(scene), Limits()).drawing
     return tuple(map(str, drawing.shapes)), drawing.program
 
@@ -107,7 +107,7 @@ def drawing_of(file: Path, scene: str) -> tuple[tuple[str, ...], Program]:
 def script(
     found: Derived, models: Mapping[str, Model], drawing: tuple[tuple[str, ...], Program], free: FreeMotion
 ) -> str:
-    """The script of the page."""
+    """Return the script of the page."""
     shapes, program = drawing
     model = models["linear"]
     data = {
@@ -132,7 +132,7 @@ def script(
 
 
 def free_setting(free: FreeMotion, model: Model) -> dict[str, Any]:
-    """The law and the damping for which it is proved that every motion is free, and so without singularities."""
+    """Return the law and the damping for which it is proved that every motion is free, and so without singularities."""
     if free.motion.verdict is not Free.FREE or free.motion.states != "all states":
         raise ValueError("the paper's law does not make every motion free")
     return {"law": "exponential", "c": float(model.values["c"])}

@@ -24,7 +24,7 @@ SCENES = {"paper": INITIAL_SCENE}  # of other files, the last
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """What the chapter needs."""
+    """Return what the chapter needs."""
     files = {"paper": PAPER, **OTHERS}
     return (
         {name: derived(root / file) for name, file in files.items()}
@@ -34,7 +34,7 @@ def runs(root: Path) -> dict[str, Run]:
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """The page that results make."""
+    """Return the page that results make."""
     answers: dict[str, FreeMotion] = {name: results[f"{name} free"] for name in ("paper", *OTHERS)}
     return Page(
         {
@@ -49,7 +49,7 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
 
 
 def under_dampings(results: Mapping[str, Simulation]) -> Panel:
-    """The multiplier under the paper's law, for some dampings."""
+    """Return the multiplier under the paper's law, for some dampings."""
     motions = {f"c = {c}": results[f"c = {c}"] for c in DAMPINGS}
     curves = {name: (motion.instants, motion.multipliers["lambda1"]) for name, motion in motions.items()}
     return Panel(gettext("multiplier λ₁ (dimensionless)"), curves)

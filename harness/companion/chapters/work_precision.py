@@ -33,7 +33,7 @@ SWING, TOLERANCE, UNTIL, SAMPLES = "swing_scene", 1e-6, Fraction(100), 401
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """What the chapter needs."""
+    """Return what the chapter needs."""
     return {
         "study": Run(short_study, (root / PAPER, INITIAL_SCENE)),
         "drift": Run(drifting, (root / PENDULUM, SWING)),
@@ -41,7 +41,7 @@ def runs(root: Path) -> dict[str, Run]:
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """The page that results make."""
+    """Return the page that results make."""
     measured, motions = results["study"], results["drift"]
     return Page(
         {
@@ -67,12 +67,12 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
 
 
 def short_study(file: Path, scene: str) -> Study:
-    """The study of `holonom accuracy`, with fewer settings."""
+    """Return the study of `holonom accuracy`, with fewer settings."""
     return study(file, Request(scene), Limits(), Plan(**SHORT_PLAN))
 
 
 def drifting(file: Path, scene: str) -> dict[Stabilization, Simulation]:
-    """A motion at a coarse tolerance, under each cure of drift."""
+    """Return a motion at a coarse tolerance, under each cure of drift."""
     problem = replace(motion_problem(file, Request(scene), Limits()), observe=("trajectory", "energy", "residuals"))
     return {
         cure: simulate(problem, SimulationRequest(tol=TOLERANCE, drift=cure, until=UNTIL, samples=SAMPLES))

@@ -67,7 +67,7 @@ SECTIONS = {
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """What the chapter needs."""
+    """Return what the chapter needs."""
     return {
         "paper": derived(root / PAPER),
         "printed": printed(),
@@ -77,7 +77,7 @@ def runs(root: Path) -> dict[str, Run]:
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """The page that results make."""
+    """Return the page that results make."""
     paper = results["paper"]
     example = list(dropwhile(lambda each: each.number != FIRST_NUMBER, results["printed"]))
     cards = _cards(example, paper, results["free"].universal.laws, root)
@@ -112,7 +112,7 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
 
 
 def in_sum(expression: Expr) -> Expr:
-    """An expression of the example in S = q1 + q2, where it depends on q1 and q2 by their sum alone."""
+    """Return an expression of the example in S = q1 + q2, where it depends on q1 and q2 by their sum alone."""
     replaced = {
         Symbol(name("q2"), real=True): Symbol(name("S"), real=True) - Symbol(name("q1"), real=True) for name in RATES
     }
@@ -123,7 +123,7 @@ def in_sum(expression: Expr) -> Expr:
 
 
 def worked(paper: Derived, found: FreeMotion, pushed: Simulation) -> dict[str, Any]:
-    """What the derivation with a pencil shows beyond the equations of the record."""
+    """Return what the derivation with a pencil shows beyond the equations of the record."""
     equations = named_equations(paper)
     laws = {name: scene_named(paper, name) for name in (FREE_SCENE, INITIAL_SCENE)}
     multiplier = in_sum(equations["multipliers"].relations[0].right)
@@ -147,7 +147,7 @@ def worked(paper: Derived, found: FreeMotion, pushed: Simulation) -> dict[str, A
 
 
 def printed_and_derived(paper: Derived, printed: Expr, pushed: Simulation) -> Panel:
-    """The multiplier along the second task's motion, as derived and by the formula in print."""
+    """Return the multiplier along the second task's motion, as derived and by the formula in print."""
     values = values_along(printed, scene_named(paper, INITIAL_SCENE), pushed)
     shown = {gettext("as derived"): pushed.multipliers["lambda1"], gettext("by the formula in print"): values}
     return Panel(
@@ -164,7 +164,10 @@ def _cards(example: list[PrintedEquation], paper: Derived, laws: tuple, root: Pa
 
 
 def _derived(each: PrintedEquation, paper: Derived, laws: tuple, root: Path) -> tuple[tuple, tuple]:
-    """The instance against a printed equation and the lines that derive it; none where it is given, not derived."""
+    """Return the instance against a printed equation and the lines that derive it.
+
+    None where it is given, not derived.
+    """
     if each.number == "15":
         universal = "maxima/free_motion/universal.mac"
         lines = tuple(
@@ -180,7 +183,7 @@ def _derived(each: PrintedEquation, paper: Derived, laws: tuple, root: Path) -> 
 
 
 def _law(laws: tuple, paper: Derived) -> Instance:
-    """The law found, with the verdict that it leaves nothing of the condition (10)."""
+    """Return the law found, with the verdict that it leaves nothing of the condition (10)."""
     relations = tuple(Relation(control, from_sympy(value)) for law in laws for control, value in law.controls.items())
     condition = named_equations(paper, FREE_SCENE)["free_motion_residual"]
     verdicts = verdicts_on(paper, condition, FREE_SCENE)

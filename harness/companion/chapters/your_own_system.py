@@ -18,7 +18,7 @@ FITTING, CONTRADICTING = "y = -cos(%pi/13)", "y = -1"
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """What the chapter needs."""
+    """Return what the chapter needs."""
     return {
         "pendulum": derived(root / PENDULUM),
         "refusal": Run(refusal_of_the_change, (root / PENDULUM, FITTING, CONTRADICTING)),
@@ -26,7 +26,7 @@ def runs(root: Path) -> dict[str, Run]:
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """The page that results make."""
+    """Return the page that results make."""
     return Page(
         {
             "record": results["pendulum"].record,
@@ -42,7 +42,7 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
 
 
 def refusal_of_the_change(file: Path, given: str, changed: str) -> str:
-    """What Holonom says to a scene file in which one entry is changed."""
+    """Return what Holonom says to a scene file in which one entry is changed."""
     text = file.read_text(encoding="utf-8").replace(given, changed)
     with private_directory() as directory:
         copy = directory / file.name
@@ -55,6 +55,6 @@ def refusal_of_the_change(file: Path, given: str, changed: str) -> str:
 
 
 def _loading_the_library(text: str) -> str:
-    """The text with the library loaded by its name, for the file is not where it was."""
+    """Return the text with the library loaded by its name, for the file is not where it was."""
     load = next(line for line in text.splitlines() if line.startswith("load("))
     return text.replace(load, 'load("holonom.mac")$')

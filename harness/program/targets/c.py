@@ -49,7 +49,7 @@ def write_model(model: Model, name: str) -> dict[str, str]:
 
 
 def explanation(model: Model) -> str:
-    """What is an input and what is not, in a paragraph."""
+    """Return what is an input and what is not, in a paragraph."""
     inputs = [
         f"the controls {', '.join(model.controls)}, each with its rate and second rate" if model.controls else "",
         f"the parameters {', '.join(model.parameters)}" if model.parameters else "",
@@ -59,7 +59,7 @@ def explanation(model: Model) -> str:
 
 
 def comment_text_of(paragraph: str) -> str:
-    """A paragraph as lines of a comment."""
+    """Return a paragraph as lines of a comment."""
     return fill(comment_text(paragraph), 112, initial_indent="   ", subsequent_indent="   ")
 
 
@@ -130,14 +130,14 @@ def _body(lines: Iterable[str], parameters: str) -> str:
 
 
 def _places(model: Model, item: str, instant: str) -> list[str]:
-    """Where the inputs of the model's programs stand, in their order."""
+    """Return where the inputs of the model's programs stand, in their order."""
     lengths = {"q": len(model.coordinates), "v": len(model.coordinates), "u": 3 * len(model.controls)}
     lengths["p"] = len(model.parameters)
     return [instant, *(item.format(array=array, index=i) for array, length in lengths.items() for i in range(length))]
 
 
 def _results(model: Model, item: str) -> list[str]:
-    """Where the outputs of the motion program go, in their order."""
+    """Return where the outputs of the motion program go, in their order."""
     lengths = {"a": len(model.coordinates), "lambda": len(model.multipliers)}
     return [item.format(array=array, index=i) for array, length in lengths.items() for i in range(length)]
 
@@ -150,7 +150,7 @@ def _names(model: Model, name: str) -> Iterator[str]:
 
 
 def c_string(text: str) -> str:
-    """A string literal of C that holds the text as UTF-8."""
+    """Return a string literal of C that holds the text as UTF-8."""
     plain = "".join(
         chr(byte) if 32 <= byte < 127 and byte not in b'"\\?' else f"\\{byte:03o}" for byte in text.encode()
     )
@@ -167,7 +167,7 @@ def _start(model: Model) -> Iterator[str]:
 
 
 def _tables(model: Model) -> Iterator[str]:
-    """The tables of the law as data, with the search for the polynomial that counts."""
+    """Yield the tables of the law as data, with the search for the polynomial that counts."""
     for number, table in enumerate(model.tables):
         rows = ",\n".join(f"    {{{', '.join(map(repr, row))}}}" for row in table.rows)
         yield f"static const double table{number}[][{len(table.inputs)}] = {{\n{rows}}};\n\n"

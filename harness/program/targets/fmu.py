@@ -125,7 +125,7 @@ def _histories(model: Model) -> list[str]:
 
 
 def _inputs_at_start(model: Model) -> list[str]:
-    """The control law's values at the start; 0 for a control without a law."""
+    """Return the control law's values at the start; 0 for a control without a law."""
     values = {}
     if model.law is not None:
         from ..numpy_function import NumpyFunction

@@ -43,5 +43,5 @@ def write(program: Program, name: str = "motion") -> str:
 
 
 def _listed(names: Iterable[str]) -> str:
-    """The names as an array of strings, in which nothing can end a script element."""
+    """Return the names as an array of strings, in which nothing can end a script element."""
     return json.dumps(list(names)).replace("</", "<\\/")

@@ -76,14 +76,14 @@ def weighted_constraints(mass: Matrix, jacobian: Matrix) -> WeightedConstraints:
 
 
 def dependent_constraints(weighted: WeightedConstraints, rank: int) -> tuple[int, ...]:
-    """Which of the constraints, of that rank, a vanishing combination of directions involves, in order."""
+    """Return which of the constraints, of that rank, a vanishing combination of directions involves, in order."""
     combinations = np.linalg.svd(weighted.directions)[2][rank:]
     involved = np.max(np.abs(combinations), axis=0, initial=0.0) > INVOLVED
     return tuple(int(beta) for beta in np.flatnonzero(involved))
 
 
 def rank_of(singular_values: Vector, negligible: float = DEPENDENT) -> int:
-    """How many of the constraints are independent, rounding apart.
+    """Return how many of the constraints are independent, rounding apart.
 
     Parameters
     ----------

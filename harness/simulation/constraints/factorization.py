@@ -50,7 +50,7 @@ class FactoredConstraints(ABC):
 
     @abstractmethod
     def distances(self, residual: Vector) -> Vector:
-        """How far away each constraint is in the mass metric, to first order."""
+        """Return how far away each constraint is in the mass metric, to first order."""
 
     @abstractmethod
     def accelerations(self, force: Vector, curvature: Vector) -> Vector:
@@ -58,7 +58,7 @@ class FactoredConstraints(ABC):
 
     @abstractmethod
     def correction(self, residual: Vector) -> Vector:
-        """The change d, least in the mass metric, with J d = -residual, as far as one solve gives it."""
+        """Return the change d, least in the mass metric, with J d = -residual, as far as one solve gives it."""
 
     @abstractmethod
     def multipliers(self, force: Vector, curvature: Vector) -> Vector:
@@ -104,7 +104,7 @@ class IndependentConstraints(FactoredConstraints):
         return self._refined(force, curvature)[1]
 
     def _factored(self, mass: Matrix, roots: Matrix, directions: Matrix) -> Any:
-        """What SuperLU makes of the system of k states; None where it is singular."""
+        """Return what SuperLU makes of the system of k states; None where it is singular."""
         (k, g, n), size = directions.shape, sum(directions.shape[1:])
         s, r = np.nonzero((mass != 0).any(axis=0))
         beta, q = np.nonzero((directions != 0).any(axis=0))
@@ -169,7 +169,7 @@ class DependentConstraints(FactoredConstraints):
         return np.abs(self._weighted.scale * residual)
 
     def accelerations(self, force: Vector, curvature: Vector) -> Vector:
-        """Those across Q by the forces, those along Q by the constraints."""
+        """Return those across Q by the forces, those along Q by the constraints."""
         free = self._complement.T @ self._weighted_force(force, curvature)
         return self._weighted.unweighted(self._basis @ self._along(curvature) + self._complement @ free)
 

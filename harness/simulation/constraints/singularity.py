@@ -42,7 +42,7 @@ NEGLIGIBLE = 1e-6  # of a gradient, or of a residual beside what the gradient ma
 
 
 def probed(matrices: MotionMatrices, t: float, state: Vector) -> tuple[int, float]:
-    """How many constraints are independent along the motion, and how near a singular configuration is.
+    """Return how many constraints are independent along the motion, and how near a singular configuration is.
 
     Constraints that are dependent at a state may be so everywhere, or in a singular configuration; the next state
     tells. A small way on, what was lost to a singular configuration has grown like the way, and what rounding and the
@@ -84,7 +84,7 @@ def extrapolated_zero(before: float, last: float, now: float, least: float) -> f
 
 
 def least_of(singular_values: Vector, rank: int) -> float:
-    """The least singular value that counts; without constraints, one."""
+    """Return the least singular value that counts; without constraints, one."""
     return float(singular_values[rank - 1]) if rank else 1.0
 
 
@@ -114,7 +114,7 @@ class Watch:
         self._least = self.least(t, state)
 
     def singular_ahead(self, t: float, state: Numbers) -> bool:
-        """Whether the next steps, if they are like the last one, reach a singular configuration.
+        """Return True if the next steps, if they are like the last one, reach a singular configuration.
 
         Parameters
         ----------
@@ -130,7 +130,7 @@ class Watch:
         return float(self._constraints(t, state).singular_values().min(initial=1.0))
 
     def vanished(self, t: float, state: Numbers) -> str | None:
-        """The multiplier whose constraint has lost its gradient, if there is one."""
+        """Return the multiplier whose constraint has lost its gradient, if there is one."""
         left = self._scale / self._constraints(t, state).scale
         return self._names[left.argmin()] if left.min(initial=1.0) < VANISHED else None
 
@@ -157,17 +157,17 @@ def require_gradient(problem: MotionProblem, t: float, at: Instant) -> None:
 
 
 def shortly_before(t: float, start: float) -> float:
-    """An instant just before another, where the equations of motion are still regular."""
+    """Return an instant just before another, where the equations of motion are still regular."""
     return t - SHORTLY * (t - start)
 
 
 def no_gradient(t: float, multiplier: str) -> HolonomError:
-    """The refusal to follow a motion to where the gradient of a constraint vanishes."""
+    """Return the refusal to follow a motion to where the gradient of a constraint vanishes."""
     return HolonomError(Failure.NO_GRADIENT, instant=float(t), multiplier=multiplier)
 
 
 def no_controls(t: float) -> HolonomError:
-    """The refusal to follow a motion to where servo-constraints leave their controls without values."""
+    """Return the refusal to follow a motion to where servo-constraints leave their controls without values."""
     reason = "the controls move what servo-constraints prescribe in fewer directions"
     return HolonomError(Failure.NO_WAY_ON, detail=f"{t:.10g}, where {reason}")
 
@@ -195,7 +195,7 @@ def zeros_of_controls(problem: MotionProblem, start: float, end: float) -> list[
 
 
 def _without_gradient(matrices: MotionMatrices, instants: list[float], state: Vector, beta: int) -> Iterator[float]:
-    """Those of the instants at which a constraint is kept by a point where it has no gradient."""
+    """Yield those of the instants at which a constraint is kept by a point where it has no gradient."""
     first, sizes = matrices(instants[0], state), matrices.nominal.coordinates
     size, n = np.linalg.norm(first.jacobian[beta] * sizes), len(state) // 2
     point = state
@@ -209,7 +209,7 @@ def _without_gradient(matrices: MotionMatrices, instants: list[float], state: Ve
 
 
 def _critical_point(matrices: MotionMatrices, t: float, state: Vector, beta: int, negligible: float) -> Vector | None:
-    """A state where a constraint has no gradient, by Newton's method; None where it finds none."""
+    """Return a state where a constraint has no gradient, by Newton's method; None where it finds none."""
     n, point, sizes = len(state) // 2, state.copy(), matrices.nominal.coordinates
     moves = DIFFERENCE * np.diag(matrices.nominal.state)[:n]
     for _ in range(ITERATIONS):

@@ -24,7 +24,7 @@ Equations = list[tuple[Any, Any]]
 
 
 def equations_of_motion(problem: MotionProblem, program: Program, precision: Precision) -> Equations:
-    """The first-order equations as they are.
+    """Return the first-order equations as they are.
 
     Each coordinate and each velocity with its rate; what is open are heyoka's parameters.
     """
@@ -34,7 +34,7 @@ def equations_of_motion(problem: MotionProblem, program: Program, precision: Pre
 def stabilized_equations(
     problem: MotionProblem, program: Program, precision: Precision, drift: Stabilization, decay: float
 ) -> Equations:
-    """The first-order equations with the stabilization of Baumgarte, or of Gear, Gupta and Leimkuhler.
+    """Return the first-order equations with the stabilization of Baumgarte, or of Gear, Gupta and Leimkuhler.
 
     Parameters
     ----------

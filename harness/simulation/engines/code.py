@@ -38,14 +38,14 @@ HARDWARE = ("double", "extended")
 
 
 def better_code(code: Code, precision: Precision) -> Code | None:
-    """The next better code, if there is one in these numbers."""
+    """Return the next better code, if there is one in these numbers."""
     if code is Code.UNROLLED or precision.name not in HARDWARE:
         return None
     return Code.COMPACT if code is Code.QUICK else Code.UNROLLED
 
 
 def pays(code: Code, better: Code, operations: int, steps: float, tol: float) -> bool:
-    """Whether the steps that are left of a run earn back the compilation of better code."""
+    """Return True if the steps that are left of a run earn back the compilation of better code."""
     gained = running(code, operations, steps, tol) - running(better, operations, steps, tol)
     return gained > compilation(better, operations)
 
@@ -61,5 +61,5 @@ def compilation(code: Code, operations: int) -> float:
 
 
 def _order(tol: float) -> float:
-    """The order that heyoka takes for a tolerance."""
+    """Return the order that heyoka takes for a tolerance."""
     return 1 - log(tol) / 2

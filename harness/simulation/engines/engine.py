@@ -106,7 +106,7 @@ class Engine(Protocol):
 
     @classmethod
     def comparable(cls, tol: float | None) -> bool:
-        """Whether it may begin a motion of that tolerance where no engine is asked for."""
+        """Return True if it may begin a motion of that tolerance where no engine is asked for."""
 
     @classmethod
     def expected_seconds(cls, steps: int, operations: int, tol: float, between: Between) -> float:
@@ -133,7 +133,7 @@ class Engine(Protocol):
         """
 
     def solutions(self, instants: Numbers, states: Numbers) -> Solutions:
-        """What the equations of motion determine at instants, shape (k,), and states, shape (2n, k)."""
+        """Return what the equations of motion determine at instants, shape (k,), and states, shape (2n, k)."""
 
     def close(self) -> None:
         """Give back what is held outside of Python; the motion is not followed any more."""

@@ -115,7 +115,7 @@ class FallbackEngine:
         return self._followed(until, _with_steps)
 
     def solutions(self, instants: Numbers, states: Numbers) -> Solutions:
-        """What the equations of motion determine, by the engine that followed the motion there or is at work."""
+        """Return what the equations of motion determine, by the engine that followed the motion there or is at work."""
         second = self._second
         if second is None:
             return self._first.solutions(instants, states)
@@ -157,7 +157,7 @@ class FallbackEngine:
             return first
 
     def _fallback(self) -> Engine:
-        """The engine that goes on where the first one cannot."""
+        """Return the engine that goes on where the first one cannot."""
         if self._second is None:
             problem, request, _, _, matrices = self._task
             self._second = engine_class(FALLBACK)(problem, FINE if request.tol is None else request.tol, matrices)
@@ -173,7 +173,7 @@ class FallbackEngine:
         return [self._first] if self._second is None else [self._first, self._second]
 
     def _by(self, engine: Engine, instants: Numbers) -> Numbers:
-        """Which of the instants an engine has followed the motion to."""
+        """Return which of the instants an engine has followed the motion to."""
         legs = [leg for leg in self.legs if leg.engine is engine.name]
         spans = [(leg.start, leg.end) for leg in legs]
         if engine is self._current:
@@ -192,7 +192,7 @@ class FallbackEngine:
                 yield from self._past(obstacle, self._fallback(), until)
 
     def _past(self, obstacle: Obstacle, second: Engine, until: Any) -> Iterator[Step]:
-        """The motion past an obstacle, or to an instant before that."""
+        """Yield the motion past an obstacle, or to an instant before that."""
         second.restart(self._first.time, self._first.state.copy())
         self._current = second
 

@@ -142,7 +142,7 @@ class ProgramEngine:
             require_reach(self.steps - steps, self.time - begun, until - self.time)
 
     def solutions(self, instants: Numbers, states: Numbers) -> Solutions:
-        """What the equations of motion determine at instants, shape (k,), and states, shape (2n, k)."""
+        """Return what the equations of motion determine at instants, shape (k,), and states, shape (2n, k)."""
         n, g = len(self._problem.coordinates), len(self._problem.multipliers)
         if self._evaluate is None:
             begun = time.perf_counter()
@@ -161,7 +161,7 @@ class ProgramEngine:
         """Project the state; nothing where the integrator does so."""
 
     def _prepare_next(self, until: Any) -> None:
-        """What has to be done after a block that is not the last."""
+        """Prepare the next block."""
 
     def _with_states(self, until: Any, most: int) -> tuple[Taken, list[Step]]:
         """Take steps as the integrator does, each with its states."""
@@ -236,7 +236,7 @@ class ProgramEngine:
         return dense_steps
 
     def _found_ahead(self, until: Any) -> HolonomError | None:
-        """What the constraints' directions, the gradients and the length of the last step say about the next ones."""
+        """Return the obstacle that the constraints and the length of the last step show ahead, or None."""
         t = float(self.time)
         if self.watch.singular_ahead(t, self.state):
             return self._obstacle_here(HardCase.SINGULAR_PASSAGE, NEARS_SINGULAR)
@@ -262,7 +262,7 @@ class ProgramEngine:
         return float(error) if np.isfinite(error) else np.inf
 
     def _obstacle_here(self, case: HardCase, reason: str) -> Obstacle:
-        """An obstacle that is passed where the constraints are more independent again than here."""
+        """Return an obstacle that is passed where the constraints are more independent again than here."""
         least = self.watch.least(self.time, self.state)
         return Obstacle(float(self.time), case, reason, lambda t, state: self.watch.least(t, state) > least)
 
@@ -272,11 +272,11 @@ class ProgramEngine:
 
 
 def decay_until(end: Any, problem: MotionProblem, precision: Precision) -> float:
-    """The rate gamma of Baumgarte's and Gear's stabilization for a motion to an instant."""
+    """Return the rate gamma of Baumgarte's and Gear's stabilization for a motion to an instant."""
     return DECAYS_IN_A_RUN / float(end - precision.number(problem.start["t"]))
 
 
 def decay_in(problem: MotionProblem, decay: float | None) -> float:
-    """The rate gamma: what is asked for, or `DECAYS_IN_A_RUN` by the time span's length, one without a span."""
+    """Return the rate gamma: what is asked for, or `DECAYS_IN_A_RUN` by the time span's length, one without a span."""
     first, last = map(float, problem.time_span or (0, 1))
     return DECAYS_IN_A_RUN / (last - first) if decay is None else decay

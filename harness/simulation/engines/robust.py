@@ -145,12 +145,12 @@ class RobustEngine:
         return [instant for arc in self._arcs if (instant := self._place(arc)) <= self.time]
 
     def solutions(self, instants: Vector, states: Matrix) -> Solutions:
-        """What the equations of motion determine at instants, shape (k,), and states that keep the constraints."""
+        """Return the solutions at instants, shape (k,), and states that keep the constraints."""
         found = [self.solution(t, state) for t, state in zip(instants, states.T, strict=True)]
         return Solutions(*(np.array(each).T for each in zip(*found, strict=True)))
 
     def solution(self, t: float, state: Vector) -> Solutions:
-        """The same at one instant and state: vectors."""
+        """Return the same at one instant and state: vectors."""
         at = self.matrices(t, state)
         singular_values = weighted_constraints(at.mass, at.jacobian).singular_values()
         factored = factored_constraints(at.mass, at.jacobian, min(self.rank, rank_of(singular_values, UNTRUSTED)))
@@ -255,7 +255,10 @@ class RobustEngine:
             self._vanishing = self._met
 
     def _kept(self, t: float | Vector, state: Vector) -> tuple[Vector, Vector]:
-        """The nearest state that keeps the constraints, and its accelerations; of states, shape (k, 2n), each."""
+        """Return the nearest state that keeps the constraints, and its accelerations.
+
+        Of states, shape (k, 2n), each.
+        """
         try:
             kept, factored = settle(self.matrices, t, state, self.rank)
         except InconsistentConstraints:
@@ -267,7 +270,7 @@ class RobustEngine:
         return kept, factored.accelerations(at.force, at.curvature)
 
     def _least_at(self, t: float, state: Vector) -> float:
-        """The least singular value that counts."""
+        """Return the least singular value that counts."""
         return least_of(singular_values_at(self.matrices, t, state), self.rank)
 
     def _require_rank(self, t: float | Vector, state: Vector) -> None:
@@ -291,7 +294,7 @@ class RobustEngine:
         return self._arc is not None
 
     def _arc_over(self, ahead: float) -> Arc | None:
-        """An arc whose end is clear of the singular configuration; None where there is none of that length."""
+        """Return an arc whose end is clear of the singular configuration; None where there is none of that length."""
         guess = np.tile(self._solver.f[self.n :], (NODES, 1))
         for longer in LONGER:
             arc = arc_over(
@@ -309,7 +312,7 @@ class RobustEngine:
         return None
 
     def _arc_away(self) -> Arc:
-        """An arc from a singular configuration, along the branch that the velocities point to."""
+        """Return an arc from a singular configuration, along the branch that the velocities point to."""
         rank = rank_of(singular_values_at(self.matrices, self.time, self.state), NEARLY_SINGULAR)
         state, factored = settle(self.matrices, self.time, self.state, rank)
         at = self.matrices(self.time, state)
@@ -323,7 +326,7 @@ class RobustEngine:
         raise HolonomError(Failure.NO_WAY_ON, detail=f"{self.time:.10g}, a singular configuration that it starts from")
 
     def _place(self, arc: Arc) -> float:
-        """The instant of an arc at which the least singular value that counts vanishes."""
+        """Return the instant of an arc at which the least singular value that counts vanishes."""
         from scipy.optimize import minimize_scalar
 
         def least(t: float) -> float:
@@ -338,7 +341,7 @@ class RobustEngine:
         return arc
 
     def _trusted(self, arc: Arc) -> bool:
-        """Whether the arc is as smooth as the tolerance asks, and ends on the constraints."""
+        """Return True if the arc is as smooth as the tolerance asks, and ends on the constraints."""
         if arc.error(self.matrices.nominal.coordinates) > max(self.tol, ARC_ERROR):
             return False
         try:
@@ -362,7 +365,7 @@ class RobustEngine:
 
 
 def _is_at_boundary(solver: DOP853) -> bool:
-    """Whether the last step was as long as the method's stability allows."""
+    """Return True if the last step was as long as the method's stability allows."""
     step, last = solver.t - solver.t_old, solver.n_stages - 1
     before = solver.y_old + step * (solver.K[:last].T @ solver.A[last, :last])
     states, rates = np.linalg.norm(solver.y - before), np.linalg.norm(solver.f - solver.K[last])

@@ -111,7 +111,7 @@ class RungeKuttaEngine(ProgramEngine):
 
     @classmethod
     def comparable(cls, tol: float | None) -> bool:
-        """Whether it holds the tolerance and can be compiled here."""
+        """Return True if it holds the tolerance and can be compiled here."""
         return tol is not None and FINEST <= tol < 1 and has_compiler()
 
     @classmethod
@@ -284,7 +284,7 @@ def _source(problem: MotionProblem, drift: Stabilization, decay: float) -> Itera
 
 
 def _keeping(drift: Stabilization, decay: float) -> Iterator[str]:
-    """How the constraints are kept."""
+    """Yield how the constraints are kept."""
     if drift is Stabilization.PROJECTION:
         yield f"#define PROJECTED {PROJECTED}"
     else:

@@ -55,7 +55,7 @@ class Arc:
         return legendre.legval(place, legendre.legder(self.velocities, scl=1 / half))
 
     def error(self, sizes: Vector) -> float:
-        """What the coefficients left out make of the coordinates, relative to them, told by the last ones.
+        """Return what the coefficients left out make of the coordinates, relative to them, told by the last ones.
 
         `sizes` are the nominal ones of the coordinates, shape (n,).
         """
@@ -70,7 +70,7 @@ class Arc:
 def arc_over(
     compute: Accelerations, start: float, end: float, state: Vector, guess: Matrix, sizes: Vector
 ) -> Arc | None:
-    """The motion from a state over a singular configuration, to an instant behind it.
+    """Return the motion from a state over a singular configuration, to an instant behind it.
 
     None where the iteration finds no motion.
 

@@ -147,7 +147,7 @@ class TaylorEngine(ProgramEngine):
         return tuple(taken), [Step(*step, lambda instants: between(instants).T.copy()) for step in steps]
 
     def _one_by_one(self, until: Any, most: int) -> tuple[Taken, list[Step]]:
-        """Each step with its Taylor polynomials."""
+        """Return each step with its Taylor polynomials."""
         integrator, dense_steps = self._integrator, []
         shortest, longest, outcome = inf, 0, None
         for _ in range(most):
@@ -269,7 +269,7 @@ def block_within(allowed: float, steps: int, drift: float) -> int:
 
 
 def held(tol: float, precision: Precision) -> float:
-    """A tolerance, if the numbers can hold it.
+    """Return a tolerance, if the numbers can hold it.
 
     Raises
     ------
