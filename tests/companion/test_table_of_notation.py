@@ -13,12 +13,12 @@ SYMBOLS = table("notation")["symbols"]
 RECORD = {
     name: {each.name for each in fields(kind)} | {*vars(kind)} for name, kind in (("system", System), ("scene", Scene))
 }
-FILES = [path.relative_to(REPOSITORY) for path in sorted((REPOSITORY / "maxima").rglob("*.mac"))]
+LIBRARY = [path.read_text(encoding="utf-8") for path in sorted((REPOSITORY / "maxima").rglob("*.[ml]*"))]
 
 
 @pytest.mark.parametrize("function", [each["maxima"] for each in SYMBOLS if each["maxima"]])
 def test_maxima_functions_are_defined(function):
-    assert any(f"\n{function}(" in (REPOSITORY / file).read_text() for file in FILES)
+    assert any(f"\n{function}(" in text or f"(defun ${function} (" in text for text in LIBRARY)
 
 
 @pytest.mark.parametrize("path", [each["python"] for each in SYMBOLS])
