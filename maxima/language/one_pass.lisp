@@ -71,12 +71,12 @@
 
 (defun table-of (names values)
   (let ((table (mfuncall '$make_array '$hashed 1)))
-    (mapc #'(lambda (name value) (marrayset value table name)) names values)
+    (mapc #'(lambda (name value) (setf (gethash name table) value)) names values)
     table))
 
-(defun $values_in (table names) (mlist-of (mapcar #'(lambda (name) (marrayref table name)) (cdr names))))
-(defun $names_inside (table names) (mlist-of (remove-if-not #'(lambda (name) (marrayref table name)) (cdr names))))
-(defun $names_outside (table names) (mlist-of (remove-if #'(lambda (name) (marrayref table name)) (cdr names))))
+(defun $values_in (table names) (mlist-of (mapcar #'(lambda (name) (gethash name table)) (cdr names))))
+(defun $names_inside (table names) (mlist-of (remove-if-not #'(lambda (name) (gethash name table)) (cdr names))))
+(defun $names_outside (table names) (mlist-of (remove-if #'(lambda (name) (gethash name table)) (cdr names))))
 
 (defun $without_repeats (items)
   (let ((met (make-hash-table :test 'equal :size 16)) (others nil) (kept nil))
@@ -86,7 +86,7 @@
 
 (defun $items_inside (table items)
   "Of  name = value  those whose name the table has."
-  (mlist-of (remove-if-not #'(lambda (item) (marrayref table (second item))) (cdr items))))
+  (mlist-of (remove-if-not #'(lambda (item) (gethash (second item) table)) (cdr items))))
 
 (defun $contains_floats (e) (some-part-p #'(lambda (part) (or (floatp part) (bigfloatp part))) e))
 
