@@ -37,7 +37,7 @@ from .recording import SampleBlock
 from .variation import TIME, Variation, seeds_of, size_of
 
 BLOCK = 128  # steps of the motion after which X is put back onto the constraints
-FOLLOWED = 1e-6  # relative: by how much the state beside X may differ from the motion's
+FOLLOWED, TOLERATED = 1e-6, 1e4  # relative, and in tolerances: how far the state beside X may be off the motion's
 CONTINUOUS = 1e-9  # relative change of a state that is none
 
 
@@ -221,7 +221,7 @@ class Sensitivities:
         self._here = self._of(begun)
         self._time, self._state = float(problem.start["t"]), None
         self._moves = initial_tangents(problem, begun.problem, self.directions)
-        self._steps, self._reached = 0, self._time
+        self._steps, self._reached, self._last = 0, self._time, None
         self._pieces: list[_Piece] = []
 
     def take(self, step: Step) -> None:
@@ -236,6 +236,8 @@ class Sensitivities:
             self._require_followed(state)
             self._state = state
         self._steps, self._reached = self._steps + 1, float(step.end)
+        if self._problem.signs or self._problem.released:
+            self._last = step.states(np.array([step.end]))[:, 0]
 
     def samples(self, stretch: SampleBlock) -> dict[str, Numbers]:
         """Return the derivatives at samples by name, ``d(x, m)``, zeros for multipliers of constraints that ended."""
@@ -270,6 +272,8 @@ class Sensitivities:
             if inside.any():
                 rows = np.array(piece.states(instants[inside]))[:, len(states) :]
                 moves[:, :, inside] = rows.T.reshape(*self._moves.shape, -1)
+        if np.isnan(moves).any():
+            raise HolonomError(Failure.NO_SENSITIVITY, detail=f"they are not known to t = {instants[-1]:.10g}")
         return here.derivatives(instants, states, moves)
 
     def _of(self, mode: Mode) -> _ModeVariation:
@@ -289,7 +293,8 @@ class Sensitivities:
 
     def _require_followed(self, state: Numbers) -> None:
         """Refuse derivatives beside another motion than the one that is recorded."""
-        if self._state is not None and self._nominal.share(state - self._state, state) > FOLLOWED:
+        allowed = max(FOLLOWED, TOLERATED * (self._tol or 0.0))
+        if self._state is not None and self._nominal.share(state - self._state, state) > allowed:
             raise HolonomError(Failure.NO_SENSITIVITY, detail=f"steps become too coarse at t = {self._time:.10g}")
 
     def _at_knot(self, step: Step) -> bool:
@@ -304,7 +309,7 @@ class Sensitivities:
         """Jump with the instant of a switching."""
         before, after = self._here, self._of(step.mode)
         t, state = self._time, step.states(np.array([step.start]))[:, 0]
-        if self._nominal.share(state - self._state, state) > CONTINUOUS:
+        if self._nominal.share(state - self._last, state) > CONTINUOUS:
             raise HolonomError(Failure.NO_SENSITIVITY, detail=f"the velocities jump at t = {t:.10g}")
         surface = self._surface(before.mode, after.mode)
         if surface is not None:

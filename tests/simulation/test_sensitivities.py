@@ -149,6 +149,15 @@ def test_friction_that_stops_a_body():
     assert motion["d(dot(x), v)"][-1] == pytest.approx(0, abs=1e-12)
 
 
+@pytest.mark.parametrize("tol", [1e-4, 1e-8])
+def test_coarse_tolerances(tol):
+    """Friction stops the body at the same place, and the pendulum swings on."""
+    slid = holonom.system(SLIDE).simulate(samples=3, sensitivities="v", tol=tol)
+    assert slid["d(x, v)"][-1] == pytest.approx(3 / 2.5, rel=100 * tol)
+    swung, fine = (GIVEN.simulate(samples=3, sensitivities="g", tol=each) for each in (tol, 1e-14))
+    assert swung["d(x, g)"] == pytest.approx(fine["d(x, g)"], abs=1000 * tol)
+
+
 def test_the_instant_of_a_law_that_switches():
     """x = P T (t - T/2)/m after the push is over."""
     motion = holonom.system(PUSH).simulate(samples=4, sensitivities=["T", "P"])
