@@ -43,6 +43,8 @@ class Equations(Sequence["Equation"]):
     def solved_for(self, name: str) -> Any:
         """Return the right side of the relation whose left side is the quantity of that name, in SymPy.
 
+        Of several, it is the first without multipliers: (11) for an acceleration, not (4).
+
         Raises
         ------
         KeyError
@@ -50,11 +52,13 @@ class Equations(Sequence["Equation"]):
         """
         from .typeset.notebook import in_letters
 
-        for equation in self._equations:
-            for relation in equation.relations:
-                if str(relation.left) == name:
-                    return in_letters(relation.right)
-        raise KeyError(name)
+        relations = [(equation.id, relation) for equation in self._equations for relation in equation.relations]
+        multipliers = {str(relation.left) for id_, relation in relations if id_ == "multipliers"}
+        found = [relation.right for _, relation in relations if str(relation.left) == name]
+        if not found:
+            raise KeyError(name)
+        solved = (each for each in found if not multipliers & {str(symbol) for symbol in each.free_symbols})
+        return in_letters(next(solved, found[0]))
 
     def __repr__(self) -> str:
         return "\n".join(self.titles())

@@ -99,6 +99,13 @@ def test_the_multiplier_is_the_closed_form(pendulum):
     assert sympy.simplify(pendulum.equations.solved_for("lambda1") - expected) == 0
 
 
+def test_an_acceleration_is_that_of_eq_11(pendulum):
+    found = pendulum.equations.solved_for("ddot(x)")
+    assert found == pendulum.equations["11"].solved_for("ddot(x)")
+    assert "lambda1" not in map(str, found.free_symbols)
+    assert "lambda1" in map(str, pendulum.equations["4"].solved_for("ddot(x)").free_symbols)
+
+
 def test_symbols_print_as_dotted_letters(pendulum):
     rate = pendulum.symbols["dot(x)"]
     assert sympy.latex(rate + 1) == r"\dot{x} + 1"
