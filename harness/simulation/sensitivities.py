@@ -212,9 +212,9 @@ class Sensitivities:
         self, problem: MotionProblem, directions: Sequence[str], begun: Mode, tol: float | None, end: float
     ) -> None:
         self._problem, self.directions, self._tol, self._end = problem, tuple(directions), tol, end
-        known = *problem.parameters, *problem.state
-        if unknown := [name for name in directions if name not in known]:
-            raise HolonomError(Failure.NO_SENSITIVITY, detail=f"{unknown[0]} is none of {', '.join(known)}")
+        if unknown := [name for name in directions if name not in (*problem.parameters, *problem.state)]:
+            detail = f"{unknown[0]} is no parameter and none of {', '.join(problem.state)}"
+            raise HolonomError(Failure.NO_SENSITIVITY, detail=detail)
         self._sizes = np.array([float(size_of(problem, name)) for name in directions])
         self._modes: dict[Mode, _ModeVariation] = {}
         self._nominal = nominal_of(begun.problem)
