@@ -249,7 +249,30 @@ def test_refusals(scene, options):
     assert refused.value.failure is Failure.NO_SENSITIVITY
 
 
-@pytest.mark.parametrize("start", ["initial_state = [x = 3/5, y = -4/5, dot(x) = 0]"])
+def test_no_numbers_are_refused():
+    """The pivots of the program vanish in the linkage's dead centres."""
+    with pytest.raises(HolonomError) as refused:
+        holonom.load("examples/linkage.mac").simulate(sensitivities="g")
+    assert refused.value.failure is Failure.NO_SENSITIVITY
+
+
+def test_a_start_near_a_guess_that_fits_follows():
+    """With l the point nearest to (0, -1) moves along the string."""
+    motion = circle("initial_state = [], initial_guess = [x = 0, y = -1, dot(x) = 0, dot(y) = 0]").simulate(
+        samples=3, sensitivities=["l", "g"]
+    )
+    assert motion["d(y, l)"] == pytest.approx([-1, -1, -1], rel=1e-12)
+    assert motion["d(x, g)"] == pytest.approx([0, 0, 0], abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    "start",
+    [
+        "initial_state = [x = 3/5, y = -4/5, dot(x) = 0]",
+        "initial_state = [dot(x) = 0], initial_guess = [x = 1, y = -1]",
+    ],
+    ids=["given", "nearest of many"],
+)
 def test_a_start_that_does_not_follow_is_refused(start):
     with pytest.raises(HolonomError) as refused:
         circle(start).simulate(sensitivities="l")
