@@ -109,7 +109,7 @@ class _ModeVariation:
         integrator.state[:] = np.concatenate([state, moves.ravel()])
         contained = len(integrator.pars)
         integrator.pars[:] = self.inputs.open_values(start, "right")[:contained]
-        outcome, *_, steps, between, _ = integrator.propagate_until(end, c_output=True)
+        *_, steps, between, _ = integrator.propagate_until(end, c_output=True)
         if integrator.time != end or not np.isfinite(integrator.state).all():
             raise HolonomError(Failure.NO_SENSITIVITY, detail=f"they are no numbers beyond t = {start:.10g}")
         piece = _Piece(start, end, self, between)
@@ -161,9 +161,8 @@ class _ModeVariation:
 
     def delays(self, zero: "_Zero", t: float, state: Numbers, moves: Numbers) -> Numbers:
         """Return how the instant of a zero moves, shape (p,)."""
-        instants, states, multipliers = np.array([t]), state[:, None], self.problem.multipliers
-        along_it = np.concatenate([moves, self.rates(t, state)[:, None]], axis=1)[:, :, None]
-        derivatives = self.derivatives(instants, states, along_it, TIME)
+        instants, states, along_it = self._along_motion(t, state, moves)
+        derivatives, multipliers = self.derivatives(instants, states, along_it, TIME), self.problem.multipliers
         along_it = np.concatenate([along_it, *(derivatives[name][None] for name in multipliers)])
         variation = Variation(zero.problem, zero.program, (zero.output,), (*self._directions, TIME), multipliers)
         solved = self.mode.engine.solutions(instants, states).multipliers
@@ -174,9 +173,13 @@ class _ModeVariation:
 
     def at_moving_instant(self, t: float, state: Numbers, moves: Numbers, delays: Numbers) -> dict[str, Numbers]:
         """Return `derivatives` at an instant that moves, each of shape (p,)."""
-        along_it = np.concatenate([moves, self.rates(t, state)[:, None]], axis=1)[:, :, None]
-        found = self.derivatives(np.array([t]), state[:, None], along_it, TIME)
+        found = self.derivatives(*self._along_motion(t, state, moves), TIME)
         return {name: rows[:-1, 0] + rows[-1, 0] * delays for name, rows in found.items()}
+
+    def _along_motion(self, t: float, state: Numbers, moves: Numbers) -> tuple[Numbers, Numbers, Numbers]:
+        """Return an instant, its state and the derivatives with the rates behind them, as `derivatives` takes them."""
+        moves = np.concatenate([moves, self.rates(t, state)[:, None]], axis=1)
+        return np.array([t]), state[:, None], moves[:, :, None]
 
     def _compile_if_it_pays(self, steps: float) -> None:
         better = better_code(self._code, read_precision("double"))
