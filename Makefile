@@ -14,12 +14,12 @@ unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := paper
 .DELETE_ON_ERROR:
-.PHONY: paper companion book catalog check check-long check-lisps mutants tampering bench setup install pictures clean help have-programs have-chinese-letters
+.PHONY: paper companion book catalog check check-long check-lisps mutants tampering bench dist setup install pictures clean help have-programs have-chinese-letters
 
 paper: $(RECORDS) build/check.json build/errata.json companion ## Derive and check every scene, compare the paper as printed (the default)
-	@echo "The derivations are in build/examples/, the verdicts in build/check.json, the misprints in build/errata.json, the textbook companion in build/companion/index.html."
+	@echo "The derivations are in build/examples/, the verdicts in build/check.json, the misprints in build/errata.json, the book and the manual in build/site/index.html."
 
-companion: build/companion/index.html build/holonom.1 ## Make the textbook companion: build/companion/index.html, in Chinese build/companion/zh/index.html
+companion: build/site/index.html build/holonom.1 ## Make the book and the manual: build/site/index.html, in Chinese build/site/zh/index.html
 
 build/check.json: $(SCENES) $(SOURCES) | setup
 	$(BIN)/holonom check $(SCENES) --json $@
@@ -27,20 +27,19 @@ build/check.json: $(SCENES) $(SOURCES) | setup
 build/errata.json: $(PRINTED) $(SCENES) $(SOURCES) | setup
 	$(BIN)/holonom errata --json $@
 
-build/companion/index.html: $(PRINTED) $(SCENES) $(HARD) $(SOURCES) | setup
+build/site/index.html: $(PRINTED) $(SCENES) $(HARD) $(SOURCES) | setup
 	$(BIN)/holonom companion --language en --language zh -o $(@D)
 
 book: build/book.pdf ## Print the textbook companion, with Chromium: build/book.pdf, build/book.zh.pdf
 
 build/book.pdf: $(PRINTED) $(SCENES) $(HARD) $(SOURCES) | setup have-chinese-letters
-	$(BIN)/holonom companion --language en --language zh -o build/companion --pdf $@
+	$(BIN)/holonom companion --language en --language zh -o build/site --pdf $@
 
 catalog: setup ## Collect the messages to be translated: harness/locale/, and say which have no translation yet
 	$(BIN)/python tests/catalog.py
 
-build/holonom.1: $(SOURCES) | setup
-	@mkdir -p $(@D)
-	$(BIN)/python -m holonom.reference.manual $@
+build/holonom.1: build/site/index.html
+	$(BIN)/sphinx-build -q -W -b man -D language=en -d build/site/.doctrees harness/companion $(@D)
 
 check: setup ## Lint, then run the tests, Maxima's own rtest files among them
 	$(BIN)/ruff check .
@@ -64,6 +63,17 @@ setup: have-programs $(STAMP) ## Install what is missing: Maxima, a C compiler, 
 
 install: setup ## Put Holonom into Maxima's user directory, where load(holonom) finds it
 	$(BIN)/holonom maxima-path
+
+dist: setup ## Build the sdist and the wheel, check them, install the wheel on each Python at hand: dist/
+	$(BIN)/pip install --quiet --disable-pip-version-check build twine
+	rm -rf dist && $(BIN)/python -m build --outdir dist .
+	$(BIN)/twine check --strict dist/*
+	for python in python3.11 python3.12 python3.13 python3.14; do \
+	  $$python -c '' 2>/dev/null || continue; \
+	  rm -rf build/dist-venv && $$python -m venv build/dist-venv && \
+	  build/dist-venv/bin/pip install --quiet --disable-pip-version-check --constraint constraints.txt dist/*.whl && \
+	  build/dist-venv/bin/holonom --help > /dev/null && echo "$$python: installed" || exit 1; done
+	cd dist && sha256sum *.whl *.tar.gz > SHA256SUMS && cat SHA256SUMS
 
 bench: export OPENBLAS_NUM_THREADS = 1
 bench: setup ## Time the motion program, power series, simulations and sweeps against their peers: tables and figures

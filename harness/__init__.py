@@ -1,10 +1,12 @@
-"""Holonom: controllable holonomic systems, derived by Maxima, checked by SymPy, followed in numbers.
+"""Holonom derives, checks and simulates controllable holonomic systems.
+
+Maxima derives the equations, SymPy checks them, and they are integrated numerically.
 
     import holonom
     scene = holonom.load("pendulum.mac")
     scene.equations, scene.check(), scene.free(), scene.series(), scene.simulate(until=10)
 
-Importing the package imports nothing else and changes nothing; what a name needs is imported when it is first used.
+Importing the package imports no other module and has no side effect; a name imports its modules at its first use.
 """
 
 from importlib import import_module

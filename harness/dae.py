@@ -1,11 +1,11 @@
-"""The equations of motion as a differential-algebraic system F(t, y, y') = 0, for anyone's solver.
+"""The equations of motion as a differential-algebraic system F(t, y, y') = 0.
 
 With r the left side of Lagrange's equations less the right one, and y = (q, v, lambda),
 
     index 3    q' - v = 0,  r(t, q, v, v', lambda) = 0,  f(t, q) = 0
     index 2    the same with df/dt for f
     index 1    the same with d2f/dt2, v' its accelerations, for f
-    ggl        q' - v - J^T mu = 0,  r = 0,  df/dt = 0,  f = 0,  y = (q, v, lambda, mu): index 2, and nothing drifts
+    ggl        q' - v - J^T mu = 0,  r = 0,  df/dt = 0,  f = 0,  y = (q, v, lambda, mu): index 2 without drift
 
 (Gear, Leimkuhler & Gupta, J. Comput. Appl. Math. 12 (1985) 77; Brenan, Campbell & Petzold, chapter 6).
 """
@@ -68,13 +68,13 @@ class Dae:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What the components of y are."""
+        """Names of the components of y."""
         multipliers = [self.equations.multipliers[beta] for beta in self._kept]
         return (*self.problem.state, *multipliers, *(f"mu{k}" for k in range(1, self._added + 1)))
 
     @property
     def t0(self) -> float:
-        """The initial instant."""
+        """The initial time."""
         return self._start.t
 
     @property
@@ -94,14 +94,28 @@ class Dae:
 
     @property
     def algebraic(self) -> NDArray[np.bool_]:
-        """Which components are algebraic: their derivatives do not enter.
+        """True for algebraic components, whose derivatives do not enter.
 
-        Beyond index 1 solvers are to leave them out of their error test.
+        Beyond index 1 solvers should leave them out of their error test.
         """
         return np.arange(len(self.names)) >= 2 * self._n
 
     def residual(self, t: float, y: ArrayLike, yp: ArrayLike) -> Floats:
-        """Return F(t, y, y'), of the shape of y."""
+        """Return the residual F(t, y, y').
+
+        Parameters
+        ----------
+        t : float
+            Time, in the scene's unit.
+        y : array_like, shape (N,)
+            Components in the order of `names`.
+        yp : array_like, shape (N,)
+            Their rates.
+
+        Returns
+        -------
+        ndarray, shape (N,)
+        """
         (q, v, _, mu), (q_rate, *_), here = self._evaluated(t, y, yp)
         rows = [q_rate - v, here["equation"], here[KEPT[self.index]]]
         if self.index is Index.GGL:
@@ -110,7 +124,23 @@ class Dae:
         return np.concatenate(rows)
 
     def jacobian(self, t: float, y: ArrayLike, yp: ArrayLike, factor: float = 0.0) -> Floats:
-        """Return dF/dy + factor*dF/dy', shape (N, N), as IDA and DASSL take it."""
+        """Return dF/dy + factor*dF/dy', as IDA and DASSL take it.
+
+        Parameters
+        ----------
+        t : float
+            Time, in the scene's unit.
+        y : array_like, shape (N,)
+            Components in the order of `names`.
+        yp : array_like, shape (N,)
+            Their rates.
+        factor : float
+            Factor of dF/dy', per unit of time.
+
+        Returns
+        -------
+        ndarray, shape (N, N)
+        """
         (*_, mu), _, here = self._evaluated(t, y, yp)
         n, g, h = self._n, len(self._kept), self._added
         J, kept = here["constraint_by_q"], KEPT[self.index]
@@ -127,7 +157,10 @@ class Dae:
         return np.block(parts)
 
     def _curvature(self, t: float, y: ArrayLike, yp: ArrayLike, mu: Floats) -> Floats:
-        """d(J^T mu)/dq: the multipliers enter the equations of motion by -J^T lambda alone."""
+        """Return d(J^T mu)/dq.
+
+        The multipliers enter the equations of motion by -J^T lambda alone.
+        """
         found = []
         for multipliers in (np.zeros_like(mu), mu):
             changed = np.array(y, dtype=float)
@@ -145,13 +178,16 @@ class Dae:
 
     @property
     def _added(self) -> int:
-        """How many multipliers mu there are."""
+        """Number of multipliers mu."""
         return len(self._kept) if self.index is Index.GGL else 0
 
     def _evaluated(
         self, t: float, y: ArrayLike, yp: ArrayLike
     ) -> tuple[list[Floats], list[Floats], Mapping[str, Floats]]:
-        """Return the parts q, v, lambda, mu of y and of y', and the equations with their gradients."""
+        """Return the parts q, v, lambda, mu of y and of y', and the evaluated equations.
+
+        The gradients of the equations are included.
+        """
         ends = np.cumsum([self._n, self._n, len(self._kept)])
         parts, rates = (np.split(np.asarray(each, dtype=float), ends) for each in (y, yp))
         multipliers = np.zeros(len(self.equations.multipliers))

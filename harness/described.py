@@ -1,6 +1,6 @@
-"""A system as it is described, before anything is derived: T, V, Q and f, in names and trees (`holonom.trees`).
+"""A described system before the derivation: T, V, Q and f as names and trees.
 
-SymPy expressions are made of the trees when they are first asked for, and SymPy is imported then.
+Trees are those of `holonom.trees`. SymPy expressions are made of them, and SymPy is imported, at the first use.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -45,7 +45,7 @@ class ForceEffect:
 
 @dataclass(frozen=True)
 class System:
-    """A system as its scene file describes it, before anything is derived."""
+    """A system as its scene file describes it, before the derivation."""
 
     title: str  # what the system is
     source: str | None  # where it is published
@@ -103,12 +103,34 @@ class Values(Mapping[str, "Expr"]):
 
 
 def expression(tree: Tree) -> "Expr":
-    """Make a SymPy expression of a tree."""
+    """Make a SymPy expression of a tree.
+
+    Parameters
+    ----------
+    tree : Tree
+        A tree of `holonom.trees`.
+
+    Returns
+    -------
+    SymPy expression
+    """
     from .mathjson import to_sympy
 
     return to_sympy(tree)
 
 
 def each(read: Callable[[Any], Result], items: Sequence[Any]) -> tuple[Result, ...]:
-    """Read each item of a sequence."""
+    """Read each item of a sequence.
+
+    Parameters
+    ----------
+    read : callable
+        Takes an item to its value.
+    items : sequence
+        Parts of a document.
+
+    Returns
+    -------
+    tuple
+    """
     return tuple(read(item) for item in items)

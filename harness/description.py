@@ -1,8 +1,8 @@
-"""The description: all that a scene file says, as a value.
+"""The description: the whole content of a scene file, as a value.
 
-It is the one document that crosses from the process that ran the scene file to those that derive, and the check takes
-its premises from it. So it is read strictly: its schema states it down to the last leaf of its expressions, and titles
-hold no characters that hide or reverse text.
+It is the one document that passes from the process that ran the scene file to those that derive, and the check takes
+its premises from it. It is therefore read strictly: its schema states it down to the last leaf of its expressions,
+and titles hold no characters that hide or reverse text.
 """
 
 import json
@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .described import System, Values, each, expression
-from .failures import Failure, HolonomError
+from .failures import ErrorKind, HolonomError
 from .formats import Document, read
 from .hidden import hidden_character
 from .structs import key, structured
@@ -32,14 +32,17 @@ TIME = "t"
 
 @dataclass(frozen=True)
 class Table:
-    """Points of a cubic spline in the time; `ends` are the rates at both ends, None for the natural spline."""
+    """Points of a cubic spline in the time.
+
+    `ends` are the derivatives at both ends, None for the natural spline.
+    """
 
     points: tuple[tuple[Tree, Tree], ...]
     ends: tuple[Tree, Tree] | None
 
 
 class DescribedRelease(NamedTuple):
-    """Constraints, by their multipliers, that end where an expression first crosses zero."""
+    """Constraints, by their multipliers, released at the first zero of an expression."""
 
     condition: Tree
     multipliers: tuple[str, ...]
@@ -47,12 +50,14 @@ class DescribedRelease(NamedTuple):
 
 @dataclass(frozen=True)
 class DescribedScene:
-    """A scene as its file states it. All numbers are exact; nothing is corrected or solved for.
+    """A scene as its file states it, with exact numbers.
+
+    No value is corrected or solved for.
 
     Attributes
     ----------
     name, title : str
-        The name it is assigned to, and what it is.
+        The name it is assigned to, and its title.
     effects : tuple of str
         Names of the effects it calls for, in the order of the system's.
     control_law : mapping of str to Expr
@@ -60,21 +65,21 @@ class DescribedScene:
     prescribed_reactions : mapping of str to Expr
         Multipliers as functions of the time, by name.
     servo_trees : tuple of trees
-        Servo-constraints: what the controls without a law are to keep at zero.
+        Servo-constraints: expressions that the controls without a law keep at zero.
     parameter_values : mapping of str to Expr
         The parameters that have values; settings are among them.
     initial_state, initial_guess : mapping of str to Expr
-        Coordinates and velocities that the scene gives, and those near which it wants the others.
+        Coordinates and velocities that the scene gives, and guesses of the others.
     span_trees : pair of trees or None
-        First and last instant.
+        First and last time.
     until_trees : tuple of trees
         Expressions whose zeros end the motion.
     released : tuple of DescribedRelease
         Constraints that end.
     observe : tuple of str
-        What to compute.
+        Kinds of quantities to compute.
     outputs : mapping of str to Expr
-        What to compute under names of its own: of t, the state, accelerations, controls, multipliers and ``energy``.
+        Named quantities to compute, of t, the state, accelerations, controls, multipliers and ``energy``.
     nominal : mapping of str to Expr
         Sizes of coordinates, velocities and the time ``t``.
     """
@@ -97,18 +102,18 @@ class DescribedScene:
 
     @cached_property
     def time_span(self) -> "tuple[Expr, Expr] | None":
-        """First and last instant."""
+        """First and last time."""
         return None if self.span_trees is None else (expression(self.span_trees[0]), expression(self.span_trees[1]))
 
     @cached_property
     def servo_constraints(self) -> "tuple[Expr, ...]":
-        """What the controls without a law are to keep at zero."""
+        """Expressions that the controls without a law keep at zero."""
         return each(expression, self.servo_trees)
 
 
 @dataclass(frozen=True)
 class Description:
-    """What one scene file says under certain settings.
+    """The description in one scene file under certain settings.
 
     Attributes
     ----------
@@ -151,7 +156,7 @@ class Description:
 
     @property
     def joints(self) -> Mapping[str, str]:
-        """Of multipliers the name, in the file, of the joint or body that wrote the constraint."""
+        """Name, in the file, of the joint or body that wrote each multiplier's constraint."""
         return self.content.get("joints", {})
 
     @property
@@ -167,7 +172,18 @@ class Description:
         return json.dumps(self.content, ensure_ascii=False, separators=(",", ":"))
 
     def with_settings(self, settings: Mapping[str, str]) -> "Description":
-        """Return the description with other values of parameters, which is what a setting can be once the file has run.
+        """Return the description with other values of parameters.
+
+        This is possible after the file has run.
+
+        Parameters
+        ----------
+        settings : mapping of str to str
+            Numbers, by name of the parameter.
+
+        Returns
+        -------
+        Description
 
         Raises
         ------
@@ -181,12 +197,33 @@ class Description:
 
 
 def is_description(text: str) -> bool:
-    """Tell a description from a scene file."""
+    """Return True for a description, False for a scene file.
+
+    Parameters
+    ----------
+    text : str
+        Content of a file.
+
+    Returns
+    -------
+    bool
+    """
     return BEGINS.match(text) is not None
 
 
 def read_description(text: str, file: Path) -> Description:
     """Read a description.
+
+    Parameters
+    ----------
+    text : str
+        JSON document.
+    file : Path
+        Its file, for messages.
+
+    Returns
+    -------
+    Description
 
     Raises
     ------
@@ -194,18 +231,21 @@ def read_description(text: str, file: Path) -> Description:
         It is too large, it is no description, or it holds characters that hide or reverse text.
     """
     if len(text) > LARGEST:
-        raise HolonomError(Failure.DESCRIPTION_TOO_LARGE, file, f"{LARGEST // 2**20} MiB")
+        raise HolonomError(ErrorKind.DESCRIPTION_TOO_LARGE, file, f"{LARGEST // 2**20} MiB")
     content = read(Document.DESCRIPTION, text)
     if len(content["scenes"]) > MOST_SCENES:
-        raise HolonomError(Failure.TOO_MANY_SCENES, file, str(len(content["scenes"])))
+        raise HolonomError(ErrorKind.TOO_MANY_SCENES, file, str(len(content["scenes"])))
     for said in _texts(content):
         if hidden := hidden_character(said):
-            raise HolonomError(Failure.HIDDEN_CHARACTER, file, hidden)
+            raise HolonomError(ErrorKind.HIDDEN_CHARACTER, file, hidden)
     return Description(file, content)
 
 
 def _texts(content: dict[str, Any]) -> Iterator[str]:
-    """Yield what a description holds in words; its names are of letters and digits, as the schema says."""
+    """Yield the prose texts of a description.
+
+    By its schema, names consist of letters and digits.
+    """
     for part in (content["system"], *content["scenes"]):
         yield part["title"]
         yield part.get("source") or ""
@@ -241,7 +281,7 @@ def _with_value(content: dict[str, Any], name: str, value: Tree, file: Path) -> 
     declared = name in content["system"]["parameters"]
     having = [scene for scene in content["scenes"] if declared or name in scene["parameter_values"]]
     if not declared and not having:
-        raise HolonomError(Failure.NOT_SETTABLE, file, name)
+        raise HolonomError(ErrorKind.NOT_SETTABLE, file, name)
     return content | {
         "settings": content["settings"] | {name: value},
         "scenes": [
@@ -252,7 +292,10 @@ def _with_value(content: dict[str, Any], name: str, value: Tree, file: Path) -> 
 
 
 def _number(text: str) -> Tree:
-    """Return the tree of a number, exactly as it is written; a quotient may be one of decimals."""
+    """Return the tree of a number, exactly as it is written.
+
+    A quotient may be one of decimals.
+    """
     numerator, _, denominator = text.partition("/")
     value = Fraction(numerator) / Fraction(denominator or 1)
     parts = [part if abs(part) < JSON_INTEGERS else {"num": str(part)} for part in value.as_integer_ratio()]

@@ -6,7 +6,7 @@ from pathlib import Path
 from re import compile as pattern
 from typing import NamedTuple
 
-from .failures import Failure, HolonomError
+from .failures import ErrorKind, HolonomError
 from .formats import Document
 from .maxima import DEFAULT_LIMITS, NO_SETTINGS, run_batch, run_description
 from .sandbox import Limits
@@ -19,13 +19,27 @@ Argument = None | int | Fraction | str | Sequence["Argument"]
 
 
 class Question(NamedTuple):
-    """A document that is asked for, and what its writer in Maxima takes behind the name of the file that it writes."""
+    """A request for a document, with the arguments of its writer in Maxima.
+
+    The arguments follow the name of the file that it writes.
+    """
 
     document: Document
     arguments: tuple[Argument, ...] = ()
 
     def writer(self) -> str:
-        """Maxima's function of the name of the file; raises where a string can be no name."""
+        """Return Maxima's function of the file name.
+
+        Returns
+        -------
+        str
+            A lambda expression in Maxima's notation.
+
+        Raises
+        ------
+        HolonomError
+            A string among the arguments is not a name.
+        """
         call = ", ".join(["file", *map(_maxima_text, self.arguments)])
         return f"lambda([file], {self.document.writer}({call}))"
 
@@ -37,18 +51,30 @@ def ask(
     settings: Mapping[str, str] = NO_SETTINGS,
     limits: Limits = DEFAULT_LIMITS,
 ) -> str:
-    """Ask Maxima for a document about a scene file, which is run first unless it was before.
+    """Ask Maxima for one document about a scene file.
 
-    Raises as `ask_all`, and where there is no document.
+    The file is run first unless it was before.
 
     Parameters
     ----------
     document : Document
         The document.
-    file, settings, limits
+    file : Source or Path
         As for `ask_all`.
     *arguments : None, int, Fraction, str or sequence of these
-        Arguments of the writer in Maxima, behind the name of the file that it writes; a string is a name.
+        Arguments of the writer in Maxima, after the name of the file that it writes; a string is a name.
+    settings, limits : mapping of str to str, Limits
+        As for `ask_all`.
+
+    Returns
+    -------
+    str
+        The document.
+
+    Raises
+    ------
+    HolonomError
+        As `ask_all`, or there is no document.
     """
     question = Question(document, arguments)
     if document in NO_SCENE:
@@ -62,20 +88,28 @@ def ask_all(
     settings: Mapping[str, str] = NO_SETTINGS,
     limits: Limits = DEFAULT_LIMITS,
 ) -> list[str | HolonomError]:
-    """Ask one process for several documents; of each, the text, or why there is none.
-
-    Raises as `holonom.source.describe` and `holonom.maxima.run_description`; and where a string can be no name.
+    """Ask one process for several documents; return each text, or the error.
 
     Parameters
     ----------
     questions : sequence of Question
         The documents.
     file : Source or Path
-        A path is run; of a source, what it has described before serves, and its limits hold.
+        A path is run; a source reuses its earlier description and has its own limits.
     settings : mapping of str to str
-        Numbers in Maxima's notation, for what the file leaves open and for parameters.
+        Numbers in Maxima's notation, for open names of the file and for parameters.
     limits : Limits
         Limits of a run of Maxima about a path.
+
+    Returns
+    -------
+    list of str or HolonomError
+        The text of each document, or the error.
+
+    Raises
+    ------
+    HolonomError
+        As `holonom.source.describe` and `holonom.maxima.run_description`; or a string is not a name.
     """
     if not questions:
         return []
@@ -89,7 +123,22 @@ def ask_all(
 
 
 def written(answer: str | HolonomError) -> str:
-    """Return a document; raises where there is none."""
+    """Return a document, or raise its error.
+
+    Parameters
+    ----------
+    answer : str or HolonomError
+        An item of the result of `ask_all`.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    HolonomError
+        There is no document.
+    """
     if isinstance(answer, HolonomError):
         raise answer
     return answer
@@ -104,6 +153,6 @@ def _maxima_text(argument: Argument) -> str:
         case str() if NAME.fullmatch(argument):
             return f"'{argument}"
         case str():
-            raise HolonomError(Failure.NOT_A_SCENE_NAME, detail=argument)
+            raise HolonomError(ErrorKind.NOT_A_SCENE_NAME, detail=argument)
         case _:
             return f"[{', '.join(map(_maxima_text, argument))}]"

@@ -1,6 +1,7 @@
-"""Jacobi's elliptic functions sn, cn, dn of (u, m), as Maxima writes them, for SymPy, which has none.
+"""Jacobi's elliptic functions sn, cn, dn of (u, m) for SymPy, which lacks them.
 
-Their rates by u are polynomials in themselves (DLMF 22.13.1-3); numbers are mpmath's.
+The notation is Maxima's. Their derivatives by u are polynomials in themselves (DLMF 22.13.1-3); mpmath evaluates
+them.
 """
 
 from mpmath import mp
@@ -15,7 +16,7 @@ class _Jacobi(Function):
     kind: str
 
     def fdiff(self, argindex: int = 1) -> Expr:
-        """Return derivative by u; none by the parameter m is known here."""
+        """Return the derivative by u; that by the parameter m is not supported."""
         if argindex != 1:
             raise ArgumentIndexError(self, argindex)
         return self._rate(*self.args)

@@ -14,6 +14,11 @@ class Equations(Sequence["Equation"]):
 
     ``equations[0]`` is the first; ``equations["8"]`` are those with the paper's number (8), and
     ``equations["multipliers"]`` the one with that id.
+
+    Examples
+    --------
+    >>> scene.equations[0].id
+    'constraints'
     """
 
     def __init__(self, equations: Iterable["Equation"]) -> None:
@@ -37,13 +42,27 @@ class Equations(Sequence["Equation"]):
         return Equations(found)
 
     def titles(self) -> Iterator[str]:
-        """Return number, id and name of each."""
+        """Return number, id and name of each equation.
+
+        Returns
+        -------
+        iterator of str
+        """
         return (f"({equation.number}) {equation.id}: {equation.name}" for equation in self._equations)
 
     def solved_for(self, name: str) -> Any:
-        """Return the right side of the relation whose left side is the quantity of that name, in SymPy.
+        """Return the right side for a quantity on the left side, in SymPy.
 
         Of several, it is the first without multipliers: (11) for an acceleration, not (4).
+
+        Parameters
+        ----------
+        name : str
+            Name of the quantity, such as ``ddot(x)``.
+
+        Returns
+        -------
+        SymPy expression
 
         Raises
         ------

@@ -1,6 +1,6 @@
 """The paper as printed, compared with the derivation.
 
-Maxima does all of it, from `examples/paper/printed.mac`; this module runs that and reads the answer.
+Maxima does the comparison, in `examples/paper/printed.mac`; this module runs that and reads the result.
 """
 
 from dataclasses import dataclass
@@ -16,7 +16,10 @@ PRINTED = shared("examples") / "paper" / "printed.mac"
 
 @dataclass(frozen=True)
 class PrintedEquation:
-    """An equation of the paper and the verdict on its print in our copy. Equations are Maxima text, on one line."""
+    """An equation of the paper, with the verdict on its printed form.
+
+    The print is that of our copy. Equations are Maxima text, on one line.
+    """
 
     number: str  # the paper's number, without brackets; empty for an equation that has none
     name: str  # what the equation is
@@ -25,7 +28,7 @@ class PrintedEquation:
     # left side less right side as printed, less the same as derived; None where the print agrees
     difference: str | None
     corrected: str | None  # the printed equation, mended; None where the print agrees
-    remark: str | None  # what there is to say about the transcription
+    note: str | None  # what there is to say about the transcription
     # printed_tree, difference_tree, corrected_tree: the same equations as trees that `holonom.typeset` sets in type, in
     # their own order; None where there is none
     printed_tree: Tree
@@ -34,12 +37,17 @@ class PrintedEquation:
 
 
 def errata() -> tuple[PrintedEquation, ...]:
-    """Compare every equation and condition that the paper prints with the derived one, in the paper's order.
+    """Compare every printed equation and condition with the derived one.
+
+    Returns
+    -------
+    tuple of PrintedEquation
+        In the paper's order.
 
     Raises
     ------
     HolonomError
-        Maxima is missing or refuses.
+        Maxima is missing or raises an error.
     """
     document = read(Document.ERRATA, ask(Document.ERRATA, PRINTED))
     return tuple(structured(PrintedEquation, equation) for equation in document["equations"])

@@ -1,17 +1,28 @@
-"""Packages of the extras: which extra installs a package, and the refusal to go on without one."""
+"""Extras: the extra that installs a package, and the error without it."""
 
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from .failures import Failure, HolonomError
+from .failures import ErrorKind, HolonomError
 
 REQUIREMENT = re.compile(r"(?P<package>[\w.-]+)[^;]*(?:;.*extra\s*==\s*['\"](?P<extra>\w+)['\"])?")
 NO_ROOM = ("failed to map segment", "annot allocate memory")  # what the loader of libraries says
 
 
 def extra_of(package: str) -> str | None:
-    """Return the extra that installs a package; None where none does."""
+    """Return the extra that installs a package.
+
+    Parameters
+    ----------
+    package : str
+        Name of the package, in any case of letters.
+
+    Returns
+    -------
+    str or None
+        None if no extra installs it.
+    """
     from importlib import metadata  # takes longer to import than all else here
 
     found = (REQUIREMENT.match(requirement) for requirement in metadata.requires("holonom") or ())
@@ -19,19 +30,38 @@ def extra_of(package: str) -> str | None:
 
 
 def missing_package(package: str) -> HolonomError:
-    """Return the refusal to go on without a package, with the command that installs the extra that it belongs to."""
+    """Return the error for a missing package.
+
+    It names the command that installs the package's extra.
+
+    Parameters
+    ----------
+    package : str
+        Name of the package.
+
+    Returns
+    -------
+    HolonomError
+    """
     extra = extra_of(package)
     named = f"holonom[{extra}]" if extra else package
-    return HolonomError(Failure.EXTRA_MISSING, detail=f"{package}, which is not installed; run `pip install '{named}'`")
+    return HolonomError(
+        ErrorKind.EXTRA_MISSING, detail=f"{package}, which is not installed; run `pip install '{named}'`"
+    )
 
 
 def require_room(error: ImportError) -> None:
-    """Tell a package that memory was too short to load from one that is not there.
+    """Raise if a package is present but memory is too short to load it.
+
+    Parameters
+    ----------
+    error : ImportError
+        Error of the import.
 
     Raises
     ------
     MemoryError
-        It was.
+        There is no room to load it.
     """
     if any(sign in str(error) for sign in NO_ROOM):
         raise MemoryError(str(error)) from error
@@ -39,7 +69,13 @@ def require_room(error: ImportError) -> None:
 
 @contextmanager
 def naming_the_extra() -> Iterator[None]:
-    """Around what needs the packages of an extra, also as a decorator: where one is missing, say which and the remedy.
+    """Name the extra in the error if one of its packages is missing.
+
+    This is a context manager and a decorator.
+
+    Yields
+    ------
+    None
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What can go wrong, each way with its sentence and its remedy."""
+"""Errors: every kind with its message and hints, and the package's one exception."""
 
 from collections.abc import Callable, Collection, Iterable, Iterator
 from enum import Enum
@@ -14,16 +14,16 @@ LIMITS = frozenset({"--time-limit", "--memory-limit", "--sandbox"})  # options t
 INPUT, MACHINE = 2, 3  # exit statuses: bad input, and a machine that lacks something
 
 
-class Failure(Enum):
-    """A way to fail: the sentence that names it, and its remedies. {detail} and other names stand for the case's own.
+class ErrorKind(Enum):
+    """Kinds of errors: a reason, then hints, with placeholders such as {detail}.
 
-    A remedy that takes an option of the command line has its name in braces, such as {--until}. The exit status of a
-    command that fails so is 2, or `MACHINE` where that comes first.
+    Option names in the braces of a hint, such as {--until}, become arguments in Python. The exit status of a command is
+    2, or `MACHINE` if that comes first.
     """
 
     def __init__(self, first: str | int, *more: str) -> None:
         self.status = first if isinstance(first, int) else INPUT
-        self.said, *self.remedies = more if isinstance(first, int) else (first, *more)
+        self.reason, *self.hints = more if isinstance(first, int) else (first, *more)
 
     FILE_MISSING = ("there is no such file{detail}", "give the path of a scene, for instance examples/paper/paper.mac")
     FILE_UNREADABLE = ("the file cannot be read: {detail}", "give the path of a readable Maxima file")
@@ -38,7 +38,7 @@ class Failure(Enum):
         "put a Maxima that works first in PATH, free space for temporary files",
         "lift a limit on memory",
     )
-    TORN = (
+    OUTPUT_TRUNCATED = (
         MACHINE,
         "what Maxima left behind is not whole: its {detail}",
         "free space for temporary files, and run it again",
@@ -71,7 +71,7 @@ class Failure(Enum):
     )
     REFUSED = "{detail}"
     QUESTION = (
-        "Maxima asks what nobody is there to answer: {detail}",
+        "Maxima asks a question that a batch run cannot answer: {detail}",
         "answer it in the file, for instance by assume(...)",
     )
     SYNTAX = "Maxima cannot read this: {detail}"
@@ -104,12 +104,12 @@ class Failure(Enum):
     DISK_FULL = (MACHINE, "the output cannot be written: {detail}", "free space, and run it again")
     COMPILER_UNUSABLE = (MACHINE, "the C compiler cannot be run: {detail}", "name one that works in the variable CC")
     OUTPUT_TAKEN = ("this output would take the place of {detail}", "give it a name of its own")
-    FOREIGN_FILE = (
+    UNRELATED_FILE = (
         "there is a file of that name, which is not replaced unasked",
         "give another name",
         "replace it with {--force}",
     )
-    FOREIGN_IN_MAXIMA = (
+    UNRELATED_IN_MAXIMA = (
         "Maxima's user directory has a file that Holonom did not put there: {detail}",
         "move it away",
         "name another directory in the variable MAXIMA_USERDIR",
@@ -125,12 +125,21 @@ class Failure(Enum):
     NO_NAME_IN_TEXT = (
         "the form {detail} has the scene's values, and no names of its own",
         "leave {--name} and {--parameters} out",
-        "write it as c or fmu",
+        "write it as c, fmu or matlab, or as python with {--module}",
+    )
+    NO_SUCH_MODULE = (
+        "there is no module {detail}",
+        "{--module} goes with python, and is numpy, jax or casadi",
+    )
+    NO_TABLES = (
+        "the control law has a table, which the expressions of {detail} do not hold",
+        "write it for numpy, jax, matlab or c",
+        "give the law as a formula",
     )
     NOT_A_FILE = ("this form is no text for the terminal", "say where it goes: -o DIR for C, -o FILE.fmu for FMI")
     NOT_A_CHOICE = "there is no {detail}"
-    NOT_AN_INSTANT = (
-        "{detail} is no instant",
+    NOT_A_TIME = (
+        "invalid time '{detail}'",
         "write a number such as 0.75 or 3/4, of a size that a double can have",
     )
     NOT_IN_RANGE = "the value is out of range: {detail}"
@@ -165,15 +174,15 @@ class Failure(Enum):
     BEYOND_RADIUS = ("{detail}", "ask for an earlier time", "continue the motion with {--until}")
     ORDER_TOO_HIGH = ("{detail}", "ask for a lower order", "ask for digits")
     NOT_A_PRECISION = ("{detail}", "take another one", "ask for {--digits}, which Maxima computes with")
-    NO_CONTINUATION = ("{detail}", "ask for an earlier instant")
-    NO_SUCH_FORMAT = ("no such file can be written", "give a name that ends in one of {detail}")
+    NO_CONTINUATION = ("{detail}", "ask for an earlier time")
+    NO_SUCH_FORMAT = ("unsupported file format", "use {detail}")
     NO_CURVE = ("the motion has no samples of {detail}", "observe the quantity, or choose another curve")
     NOT_FILMED = (
         "the motion cannot be filmed: {detail}",
         "observe the trajectory, take {--samples}, and give the system a drawing, which bodies and joints have",
     )
     NO_FFMPEG = ("ffmpeg, which writes .mp4, is not installed", "install it, or take .svg, .html or .gif")
-    START_UNFOLLOWED = "the start does not follow these parameters: {detail}"
+    NO_INITIAL_STATE = "the start does not follow these parameters: {detail}"
     NOTHING_VARIES = ("no parameter varies", "name one with {--grid}, {--list} or {--sample}")
     NOT_AN_AXIS = (
         "{detail}",
@@ -182,7 +191,7 @@ class Failure(Enum):
     NOT_KEPT = ("{detail}", "keep for instance final, x, at(x,2), max(abs(lambda1)), zero(y), radius, free")
     NOT_PLOTTED = "this cannot be drawn: {detail}"
     OTHER_SWEEP = ("the folder holds another sweep: {detail}", "give another folder")
-    FOREIGN_FOLDER = ("the folder holds other things than a sweep", "give the name of a new folder")
+    UNRELATED_FOLDER = ("the folder holds other things than a sweep", "give the name of a new folder")
     FOLDER_TAKEN = ("another command is at work in this folder", "wait until it ends")
     NOTHING_TO_RESUME = ("there is no sweep to resume", "leave {--resume} out to begin one")
     WORKERS_LOST = (MACHINE, "the workers are gone: {detail}", "run the same command again; what is finished stays")
@@ -195,19 +204,19 @@ class Failure(Enum):
         "a process that computes was ended",
         "see what ends it, perhaps a lack of memory, and run the same command again",
     )
-    NO_END = ("the scene has no time span", "give it one", "the last instant with {--until}")
+    NO_END = ("the scene has no time span", "add time_span", "pass the final time with {--until}")
     NO_COMMON_END = (
-        "the scene ends where an expression of its until vanishes, and methods are compared at one instant",
+        "the scene ends where an expression of its until vanishes, and methods are compared at one time",
         "say which with {--until}",
     )
-    NOT_AFTER_START = ("the last instant is not after the start: {detail}", "give a later one with {--until}")
+    NOT_AFTER_START = ("the last time is not after the start: {detail}", "give a later one with {--until}")
     NO_EVENT_VALUE = (
         "an expression in 'until' has no real, finite value: {detail}",
         "give one that has values along the whole motion",
     )
     SERIES_SWITCHED = (
-        "where {detail} changes its sign the motion is another than the series, perhaps before the instant asked for",
-        "take holonom simulate, which steps to such instants",
+        "where {detail} changes its sign the motion is another than the series, perhaps before the time asked for",
+        "take holonom simulate, which steps to such times",
     )
     LAW_ENDS = (
         "the drives end at t = {detail}, with a table or, of special functions, with the scene's time span",
@@ -223,6 +232,10 @@ class Failure(Enum):
         "the Runge-Kutta engine computes in double precision, not {detail}",
         "take {--engine} auto or taylor for more digits",
     )
+    REACTING = (
+        "forces contain multipliers, {detail}",
+        "follow the motion with {--engine} auto, without derivatives, where its constraints are independent",
+    )
     ROBUST_IS_DOUBLE = (
         "this takes the robust engine, which computes in double precision: {detail}",
         "leave {--precision} out",
@@ -236,7 +249,7 @@ class Failure(Enum):
     NO_MOTION_PROGRAM = ("there is no motion program to measure: {detail}", "take constraints that are independent")
     NOT_ANALYTIC = (
         "the motion is not analytic where {detail} changes its sign",
-        "follow it with `holonom simulate`, which steps to such instants",
+        "follow it with `holonom simulate`, which steps to such times",
     )
     NO_LAW = ("a control has no law", "give every control a control_law")
     NEVER_AT_REST = (
@@ -245,11 +258,11 @@ class Failure(Enum):
     )
     NOT_A_CONTROL = ("{detail} is no control of the system", "name one of its controls")
     NO_SUCH_EQUILIBRIUM = ("no equilibrium {detail} was found", "take one that `holonom equilibria` names")
-    TWO_STATES = ("an instant and an equilibrium exclude one another", "give one of {--at} and {--equilibrium}")
-    NOT_REACHED = ("the motion does not lead to t = {instant:.10g}: {detail}", "choose another instant")
+    TWO_STATES = ("a time and an equilibrium exclude one another", "give one of {--at} and {--equilibrium}")
+    NOT_REACHED = ("the motion does not lead to t = {time:.10g}: {detail}", "choose another time")
     NOT_LINEARIZED = (
-        "the constraints lose rank at t = {instant:.10g}: there is no tangent space to linearise in",
-        "choose another instant",
+        "the constraints lose rank at t = {time:.10g}: there is no tangent space to linearise in",
+        "choose another time",
     )
     METHOD_GAVE_UP = ("{detail}", "ask for a larger tolerance", "take another method")
     MASS_INDEFINITE = (
@@ -267,7 +280,7 @@ class Failure(Enum):
         "remove the constraint that contradicts the others",
     )
     NO_GRADIENT = (
-        "the motion cannot be followed beyond t = {instant:.10g}, where the gradient of the constraint of {multiplier} "
+        "the motion cannot be followed beyond t = {time:.10g}, where the gradient of the constraint of {multiplier} "
         "vanishes and no reaction can act",
         "end the run before it",
         "choose a law that keeps the length away from zero",
@@ -280,8 +293,11 @@ class Failure(Enum):
     NO_WAY_ON = ("the motion cannot be followed beyond t = {detail}", "end the run before it")
 
 
+ALIASES = {"failure": "kind", "said": "reason", "sentence": "message"}  # names in version 0.1, kept until 1.1
+
+
 class HolonomWarning(UserWarning):
-    """What a scene file says without effect, and what is done all the same."""
+    """A statement of a scene file that has no effect."""
 
 
 class HolonomError(Exception):
@@ -289,25 +305,34 @@ class HolonomError(Exception):
 
     Parameters
     ----------
-    failure : Failure
-        The way to fail.
+    kind : ErrorKind
+        Kind of the error, with its reason and hints.
     place : str or Path
-        Where: a file, with the line of the statement where it is known (``scene.mac:12``).
+        A file, with the line of the statement if it is known (``scene.mac:12``).
     detail : str
-        What the sentence of the failure says about this case.
+        Text for ``{detail}`` in the reason and the hints.
     refusal : str or None
-        The id of a refusal of the library in Maxima, a row of ``maxima/refusals.mac``.
+        Id of an error of the library in Maxima, a row of ``maxima/refusals.mac``.
     last_lines : tuple of str
-        The last lines that Maxima printed.
+        Last lines that Maxima printed.
     command : str
-        A shell command that repeats the failure with Maxima alone.
+        Shell command that repeats the error with Maxima alone.
     **facts : object
-        What else the sentence names, by its placeholders.
+        Values of the other placeholders.
+
+    Examples
+    --------
+    >>> import holonom
+    >>> try:
+    ...     holonom.load("nowhere.mac")
+    ... except holonom.HolonomError as error:
+    ...     print(error.reason, error.kind.status)
+    there is no such file 2
     """
 
     def __init__(
         self,
-        failure: Failure,
+        kind: ErrorKind,
         place: str | Path = "",
         detail: str = "",
         *,
@@ -316,8 +341,8 @@ class HolonomError(Exception):
         command: str = "",
         **facts: Any,
     ) -> None:
-        super().__init__(failure, place, detail)
-        self.failure = failure
+        super().__init__(kind, place, detail)
+        self.kind = kind
         self.place = str(place)
         self.detail = detail
         self.refusal = refusal
@@ -326,35 +351,46 @@ class HolonomError(Exception):
         self.facts = facts
 
     def __str__(self) -> str:
-        """As Python says it: what are options on the command line are arguments here."""
-        return self._told(self._remedies(_argument))
+        """Return the message with options spelt as arguments in Python."""
+        return self._message(self._hints(_argument))
 
-    def sentence(self, options: Collection[str] | None = None) -> str:
-        """Return what went wrong, where, and what to do, as the command line says it.
+    def __getattr__(self, name: str) -> Any:
+        if name in ALIASES:
+            return getattr(self, ALIASES[name])
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+
+    def message(self, options: Collection[str] | None = None) -> str:
+        """Return the message of the command line: the place, the reason, the hints.
 
         Parameters
         ----------
         options : collection of str or None
-            Options of the command that is told, such as ``--until``: advice to use others is left out.
+            Options of the command, such as ``--until``. Hints that name other options are left out.
+
+        Returns
+        -------
+        str
+            One line, without a line break at its end.
         """
-        return self._told(self._remedies(str, options))
+        return self._message(self._hints(str, options))
 
     @property
-    def said(self) -> str:
-        """What went wrong, without where and what to do."""
-        return self.failure.said.format(detail=self.detail, **self.facts)
+    def reason(self) -> str:
+        """Description of the error, without the place and the hints."""
+        return self.kind.reason.format(detail=self.detail, **self.facts)
 
-    def _remedies(self, spelt: Callable[[str], str], options: Collection[str] | None = None) -> Iterator[str]:
-        """Yield the remedies that take no other options, each option as it is spelt."""
+    def _hints(self, spelt: Callable[[str], str], options: Collection[str] | None = None) -> Iterator[str]:
+        """Yield the hints that name no other options, each option as it is spelt."""
         facts = {"detail": self.detail, **self.facts}
-        for remedy in self.failure.remedies:
-            named = {name for _, name, *_ in Formatter().parse(remedy) if name and name not in facts}
+        for hint in self.kind.hints:
+            named = {name for _, name, *_ in Formatter().parse(hint) if name and name not in facts}
             if options is None or named <= set(options):
-                yield remedy.format(**facts, **{name: spelt(name) for name in named})
+                yield hint.format(**facts, **{name: spelt(name) for name in named})
 
-    def _told(self, remedies: Iterable[str]) -> str:
-        located = f"{self.place}: {self.said}" if self.place else self.said
-        return visible("; ".join(filter(None, [located.rstrip("."), ", or ".join(remedies)])) + ".")
+    def _message(self, hints: Iterable[str]) -> str:
+        located = f"{self.place}: {self.reason}" if self.place else self.reason
+        todo = ", or ".join(hints)
+        return visible(" ".join(f"{part.rstrip('.')}." for part in (located, todo[:1].upper() + todo[1:]) if part))
 
 
 def _argument(option: str) -> str:

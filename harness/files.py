@@ -1,4 +1,4 @@
-"""Files and directories that appear whole or not at all."""
+"""Files and directories that are written completely or not at all."""
 
 import errno
 import os
@@ -9,7 +9,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
 
-from .failures import Failure, HolonomError
+from .failures import ErrorKind, HolonomError
 from .temporary import remove_tree
 
 MANIFEST = ".holonom-written"
@@ -18,18 +18,36 @@ LINKS = 40  # that lead from one to the next, which is what Linux follows
 
 
 def shared(folder: str) -> Path:
-    """Return a folder that travels with the package, ``maxima`` or ``examples``: inside it where a wheel has put it.
+    """Return a folder of the package.
 
-    In the repository, where the package is used in place, it lies beside the package.
+    A wheel has it inside the package. In the repository, it is next to the package.
+
+    Parameters
+    ----------
+    folder : str
+        ``maxima`` or ``examples``.
+
+    Returns
+    -------
+    Path
     """
     inside = Path(__file__).resolve().with_name("share") / folder
     return inside if inside.is_dir() else Path(__file__).resolve().parents[1] / folder
 
 
 def scene_file(path: str | Path) -> Path:
-    """Return a scene file as it is named.
+    """Return a scene file by its name.
 
-    Where there is none, the example of that name that travels with the package.
+    If it does not exist, return the example of that name in the package.
+
+    Parameters
+    ----------
+    path : str or Path
+        Name of the file.
+
+    Returns
+    -------
+    Path
     """
     file = Path(path)
     if not file.exists() and file.parts[:1] == ("examples",):
@@ -39,9 +57,17 @@ def scene_file(path: str | Path) -> Path:
 
 
 def near_file(missing: Path) -> str:
-    """Return what a file that is missing may have been meant to be, as the end of a sentence.
+    """Return a suggestion for a missing file, as the end of a sentence.
 
-    Empty where nothing is near.
+    Parameters
+    ----------
+    missing : Path
+        Name of the missing file.
+
+    Returns
+    -------
+    str
+        Empty if no name in its folder is similar.
     """
     try:
         names = [file.name for file in missing.parent.iterdir()]
@@ -54,12 +80,17 @@ def near_file(missing: Path) -> str:
 
 
 def require_writable(path: Path) -> None:
-    """Refuse a file that cannot be written, before there is anything to write.
+    """Raise if a file cannot be written, before its content is computed.
+
+    Parameters
+    ----------
+    path : Path
+        File to be written.
 
     Raises
     ------
     HolonomError
-        It is a directory, or nothing can be put beside it.
+        It is a directory, or its folder cannot be written to.
     """
     try:
         if path.is_dir():
@@ -73,19 +104,19 @@ def require_writable(path: Path) -> None:
 
 
 def write_whole(path: Path, content: str | bytes) -> None:
-    """Write a file so that nobody ever sees half of it.
+    """Write a file that is never seen incomplete.
 
     Parameters
     ----------
     path : Path
-        The file. What it held is replaced, and its permissions stay. A device or a pipe is written to as it is.
+        The file. Its former content is replaced, and its permissions stay. A device or a pipe is written to directly.
     content : str or bytes
-        What it is to hold; text becomes UTF-8.
+        The new content; text becomes UTF-8.
 
     Raises
     ------
     HolonomError
-        The file cannot be written; what it held is still there.
+        The file cannot be written; its former content is still there.
     """
     with whole_file(path) as file:
         file.write(content if isinstance(content, bytes) else content.encode())
@@ -93,17 +124,22 @@ def write_whole(path: Path, content: str | bytes) -> None:
 
 @contextmanager
 def whole_file(path: Path) -> Iterator[BinaryIO]:
-    """Provide a file that is written piece by piece, and of which nobody ever sees a part.
+    """Yield a file that is written in parts and is never seen incomplete.
 
     Parameters
     ----------
     path : Path
         As for `write_whole`.
 
+    Yields
+    ------
+    BinaryIO
+        Open for writing.
+
     Raises
     ------
     HolonomError
-        The file cannot be written; what it held is still there, as after any other exception of the block.
+        The file cannot be written. Its former content is still there, as after any other exception of the block.
     """
     try:
         if path.exists() and not path.is_file():
@@ -120,7 +156,16 @@ def whole_file(path: Path) -> Iterator[BinaryIO]:
 
 
 def append_line(path: Path, line: str) -> None:
-    """Append a line to a file, which is made where it is missing. A line that was cut off before ends here.
+    """Append a line to a file, which is created if missing.
+
+    A truncated last line is ended first.
+
+    Parameters
+    ----------
+    path : Path
+        The file; a link is not followed.
+    line : str
+        Text without a line feed.
 
     Raises
     ------
@@ -137,7 +182,16 @@ def append_line(path: Path, line: str) -> None:
 
 
 def write_files(directory: Path, files: Mapping[str, str]) -> None:
-    """Write files into a directory, each whole or not at all; what else the directory holds stays.
+    """Write files into a directory, each completely or not at all.
+
+    Other files of the directory stay.
+
+    Parameters
+    ----------
+    directory : Path
+        It is created if it is missing.
+    files : mapping of str to str
+        Content of each file by its name.
 
     Raises
     ------
@@ -154,7 +208,18 @@ def write_files(directory: Path, files: Mapping[str, str]) -> None:
 
 
 def written_before(directory: Path) -> frozenset[str]:
-    """Return the files of a directory that its manifest lists, by their paths in it."""
+    """Return the files of a directory that its manifest lists.
+
+    Parameters
+    ----------
+    directory : Path
+        Directory with or without a manifest.
+
+    Returns
+    -------
+    frozenset of str
+        Paths in the directory, of files that exist.
+    """
     try:
         listed = (directory / MANIFEST).read_text(encoding="utf-8").splitlines()
     except (OSError, UnicodeDecodeError):
@@ -163,29 +228,44 @@ def written_before(directory: Path) -> frozenset[str]:
 
 
 def require_own_files(directory: Path, names: Iterable[str]) -> None:
-    """Refuse to replace files of a directory, given by their paths in it, that its manifest does not list."""
-    listed = written_before(directory)
-    for name in names:
-        if os.path.lexists(directory / name) and name not in listed:
-            raise HolonomError(Failure.FOREIGN_FILE, directory / name)
-
-
-def write_whole_directory(path: Path, files: Mapping[str, str | bytes]) -> None:
-    """Write a directory; a new one appears whole or not at all.
-
-    In a directory that is there, the files that its manifest lists are replaced or removed, each at once and only when
-    all new ones are on the disk. The others stay as they are.
+    """Raise if files of a directory are not in its manifest.
 
     Parameters
     ----------
-    files : mapping of str to str or bytes
-        What each file holds, text in UTF-8, by its path in the directory.
+    directory : Path
+        Directory with or without a manifest.
+    names : iterable of str
+        Paths in the directory.
 
     Raises
     ------
     HolonomError
-        The directory cannot be written, or holds a file of one of the names that its manifest does not list; what was
-        there still is.
+        A file exists that is not in the manifest.
+    """
+    listed = written_before(directory)
+    for name in names:
+        if os.path.lexists(directory / name) and name not in listed:
+            raise HolonomError(ErrorKind.UNRELATED_FILE, directory / name)
+
+
+def write_whole_directory(path: Path, files: Mapping[str, str | bytes]) -> None:
+    """Write a directory; a new one appears completely or not at all.
+
+    In an existing directory, the files that its manifest lists are replaced or removed, each at once and only when
+    all new ones are on the disk. The others stay unchanged.
+
+    Parameters
+    ----------
+    path : Path
+        The directory; its parent exists.
+    files : mapping of str to str or bytes
+        Content of each file, text in UTF-8, by its path in the directory.
+
+    Raises
+    ------
+    HolonomError
+        The directory cannot be written, or holds a file of one of the names that its manifest does not list. Its former
+        content is still there.
     """
     target = path.resolve()
     require_own_files(path, files)
@@ -205,7 +285,7 @@ def write_whole_directory(path: Path, files: Mapping[str, str | bytes]) -> None:
 
 
 def _target(path: Path) -> Path:
-    """Return the file that a name leads to; no link is followed that somebody else made."""
+    """Return the file that a name leads to; links of other users are not followed."""
     link = path
     for _ in range(LINKS):
         if not link.is_symlink():
@@ -217,16 +297,16 @@ def _target(path: Path) -> Path:
 
 
 def _status(path: Path) -> os.stat_result | None:
-    """Return what there is of a name; None where there is nothing."""
+    """Return the status of a name; None if it does not exist."""
     with suppress(FileNotFoundError):
         return path.lstat()
     return None
 
 
 def _unnamed(folder: Path) -> BinaryIO:
-    """Return a file on the disk of a folder that has no name.
+    """Return an unnamed file on the disk of a folder.
 
-    It is gone when it is closed, also by the end of the process.
+    It disappears when it is closed, also by the end of the process.
     """
     with suppress(AttributeError, OSError):  # a system, or a file system, without O_TMPFILE
         return os.fdopen(os.open(folder, os.O_TMPFILE | os.O_RDWR, 0o600), "w+b")
@@ -239,7 +319,7 @@ def _to_disk(file: BinaryIO) -> None:
 
 
 def _put_in_place(file: BinaryIO, target: Path) -> None:
-    """Give a file without a name that of another one, in its place and with its permissions."""
+    """Give an unnamed file the name, place and permissions of another file."""
     _take_permissions(file.fileno(), _status(target))
     with _opened(target.parent) as folder:
         draft = _draft_name()
@@ -253,13 +333,16 @@ def _put_in_place(file: BinaryIO, target: Path) -> None:
 
 
 def _take_permissions(descriptor: int, replaced: os.stat_result | None) -> None:
-    """Give a file the owner and the permissions of the one that it replaces; a new one those that the umask leaves."""
+    """Give a file the owner and the permissions of the one that it replaces.
+
+    A new file has the permissions of the umask.
+    """
     if replaced is None:
         mask = os.umask(0o077)
         os.umask(mask)
         os.fchmod(descriptor, 0o666 & ~mask)
         return
-    with suppress(PermissionError):  # it is somebody else's, in a folder that both may write to
+    with suppress(PermissionError):  # it belongs to another user, in a folder that both may write to
         os.fchown(descriptor, replaced.st_uid, replaced.st_gid)
     os.fchmod(descriptor, replaced.st_mode & 0o777)
 
@@ -278,7 +361,10 @@ def _draft_name() -> str:
 
 
 def _give_name(file: BinaryIO, name: str, folder: int) -> None:
-    """Give a file without a name a new one; where the system cannot, copy it to a file that nobody else has made."""
+    """Give an unnamed file a new name.
+
+    If the system cannot, it is copied to a file that only this process can have created.
+    """
     try:
         os.link(f"/proc/self/fd/{file.fileno()}", name, dst_dir_fd=folder)
     except OSError:
@@ -304,7 +390,7 @@ def _new_directory(target: Path, files: Mapping[str, BinaryIO]) -> None:
 
 
 def _put_into(directory: Path, files: Mapping[str, BinaryIO]) -> None:
-    """Put files without names into a directory, and remove files that its manifest alone names."""
+    """Put unnamed files into a directory, and remove others that its manifest lists."""
     gone = written_before(directory) - files.keys()
     write_whole(directory / MANIFEST, _manifest({*gone, *files}))
     for name, file in files.items():
@@ -320,12 +406,12 @@ def _manifest(names: Iterable[str]) -> str:
 
 
 def _unwritable(path: Path, error: OSError) -> Exception:
-    """Return the refusal to write a file.
+    """Return the error for a file that cannot be written.
 
-    A lack of descriptors or memory, or a broken disk, is no matter of the file.
+    A lack of descriptors or memory, or a broken disk, is not an error of the file.
     """
     if error.errno in (errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EIO):
         return error
     full = error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-    failure = Failure.DISK_FULL if full else Failure.UNWRITABLE
+    failure = ErrorKind.DISK_FULL if full else ErrorKind.UNWRITABLE
     return HolonomError(failure, path, error.strerror or str(error))

@@ -11,18 +11,21 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .failures import Failure, HolonomError
+from .failures import ErrorKind, HolonomError
 
 if TYPE_CHECKING:
     from jsonschema_rs import Draft202012Validator
 
 SCHEMAS = Path(__file__).with_name("schemas")
-VERSION = 1
+VERSION = 2
 SHOWN = 200  # characters of what a validator says
 
 
 class Document(StrEnum):
-    """What Maxima writes; the value names format and schema, and `write_...` in Maxima writes it."""
+    """A document that Maxima writes.
+
+    The value names format and schema, and `write_...` in Maxima writes it.
+    """
 
     DESCRIPTION = "description"
     RECORD = "record"
@@ -44,7 +47,7 @@ class Document(StrEnum):
 
 
 class Publication(StrEnum):
-    """What a command publishes with ``--json`` and Maxima does not write."""
+    """A document that a command publishes with ``--json`` and Maxima does not write."""
 
     CHECK = "check"
     SERIES = "series"
@@ -63,7 +66,18 @@ FORMATS = tuple(f"holonom-{name}" for name in (*Document, *Publication))
 
 
 def read(document: Document, text: str) -> dict[str, Any]:
-    """Read a document as Maxima writes it.
+    """Read a document that Maxima writes.
+
+    Parameters
+    ----------
+    document : Document
+        Kind of the document.
+    text : str
+        JSON text.
+
+    Returns
+    -------
+    dict
 
     Raises
     ------
@@ -79,7 +93,20 @@ def read(document: Document, text: str) -> dict[str, Any]:
 
 
 def require(document: Document | Publication, content: Any) -> None:
-    """Refuse what has not the shape of a document."""
+    """Raise unless the value has the shape of a document.
+
+    Parameters
+    ----------
+    document : Document or Publication
+        Kind of the document.
+    content : object
+        Value that was read from JSON.
+
+    Raises
+    ------
+    HolonomError
+        The value has another shape.
+    """
     try:
         errors = list(_validator(document).iter_errors(content))
     except UnicodeEncodeError as error:  # half of a character, which JSON can write
@@ -93,12 +120,34 @@ def _json_path(steps: Iterable[str | int]) -> str:
 
 
 def published(name: Document | Publication, content: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what a command publishes, with its format and version."""
+    """Return a published document with its format and version.
+
+    Parameters
+    ----------
+    name : Document or Publication
+        Kind of the document.
+    content : mapping of str to object
+        The other entries.
+
+    Returns
+    -------
+    dict
+    """
     return {"format": f"holonom-{name}", "version": VERSION, **content}
 
 
 def is_document(content: bytes) -> bool:
-    """Return True if it is a document, by its format and version, or a list of documents."""
+    """Return True for a document, by its format and version, or a list of documents.
+
+    Parameters
+    ----------
+    content : bytes
+        Content of a file.
+
+    Returns
+    -------
+    bool
+    """
     try:
         found = json.loads(content)
     except (ValueError, RecursionError):
@@ -110,7 +159,17 @@ def is_document(content: bytes) -> bool:
 
 
 def schema(name: str) -> dict[str, Any]:
-    """Return the JSON schema of a format, given its name without ``holonom-``."""
+    """Return the JSON schema of a format.
+
+    Parameters
+    ----------
+    name : str
+        Name of the format without ``holonom-``.
+
+    Returns
+    -------
+    dict
+    """
     return json.loads((SCHEMAS / f"{name}.json").read_text(encoding="utf-8"))
 
 
@@ -122,4 +181,4 @@ def _validator(name: str) -> "Draft202012Validator":
 
 
 def _refusal(document: Document | Publication, detail: str) -> HolonomError:
-    return HolonomError(Failure.NOT_A_DOCUMENT, detail=f"holonom-{document}: {detail}")
+    return HolonomError(ErrorKind.NOT_A_DOCUMENT, detail=f"holonom-{document}: {detail}")

@@ -1,6 +1,6 @@
-"""Free motion of a scene: its condition, the verdict on its motion, universal controls, the control for one trajectory.
+"""Free motion of a scene: condition, verdict, universal and trajectory controls.
 
-And the motion under prescribed reactions, of which free motion is the case zero.
+Free motion is the case zero of motion under prescribed reactions, which is also here.
 """
 
 from collections.abc import Mapping
@@ -11,13 +11,14 @@ from pathlib import Path
 
 from sympy import Add, Expr, Mul, Symbol
 
-from .crosscheck.report import Judgement
+from .crosscheck.report import CheckResult
 from .crosscheck.system import described_system
 from .described import System, Values, each
 from .documents import ask
 from .formats import Document, read
 from .free_verdicts import FreeMotionTrial
 from .mathjson import to_sympy
+from .maxima_reasons import translatable_reason
 from .sandbox import Limits
 from .shown import Shown
 from .source import Source
@@ -27,8 +28,8 @@ from .trees import Tree
 Law = Mapping[str, Expr]
 
 
-class Free(StrEnum):
-    """What is known of a motion."""
+class FreeMotionVerdict(StrEnum):
+    """Verdicts on whether a motion is free."""
 
     FREE = "free"
     NOT_FREE = "not free"
@@ -37,7 +38,7 @@ class Free(StrEnum):
 
 @dataclass(frozen=True)
 class FirstCoefficient:
-    """The first coefficient of a multiplier's power series that is not zero."""
+    """The first nonzero coefficient of a multiplier's power series."""
 
     multiplier: str
     order: int  # the power of t - t0
@@ -46,9 +47,9 @@ class FirstCoefficient:
 
 @dataclass(frozen=True)
 class MotionVerdict:
-    """Whether the motion of the scene is free."""
+    """The verdict on whether the motion of the scene is free."""
 
-    verdict: Free  # free only where that is proved
+    verdict: FreeMotionVerdict  # free only where that is proved
     # ``all states``, where every motion under the scene's law is free, or ``this state``
     states: str = key("for")
     evidence: str  # what shows it, or what is in the way of a proof: one sentence
@@ -66,12 +67,12 @@ class UniversalLaw:
     free: tuple[str, ...]  # controls that stay free functions of the time
     positive: tuple[Expr, ...]  # what must be positive where the law holds; empty where it always holds
     # what SymPy found when it tried the law on the equations of motion; None before that
-    check: Judgement | None = None
+    check: CheckResult | None = None
 
 
 @dataclass(frozen=True)
 class ControlCondition:
-    """What must vanish if every motion is to be free."""
+    """Expressions that must vanish if every motion is to be free."""
 
     expression: Expr  # in the time, the controls and their rates
     place: Expr  # the function of the state that it is the coefficient of in (10)
@@ -95,14 +96,14 @@ class TrajectoryControl:
     """The control under which one motion is free."""
 
     # ``closed form`` (in letters, the initial data q1_0, dot(q1)_0, or in the scene's numbers), ``numeric`` (with the
-    # scene's numbers, along its time span), ``series`` (with the scene's numbers, at the initial instant), ``any
+    # scene's numbers, along its time span), ``series`` (with the scene's numbers, at the initial time), ``any
     # control``, ``none`` (there is none) or ``not determined``
     kind: str
     # by control; where there is an order a truncated series, an unevaluated sum, lowest power first
     law: Values
     free: tuple[str, ...]  # controls that stay free functions of the time; a closed form may contain them
     motion: Values  # the free motion by coordinate, where its closed form is known
-    # instants of the scene's time span with the values of the controls, as far as there are such controls
+    # times of the scene's time span with the values of the controls, as far as there are such controls
     samples: tuple[tuple[float, ...], ...]
     reason: str
     order: int | None = None  # to which the law is a series; None where it is closed
@@ -110,7 +111,10 @@ class TrajectoryControl:
 
 @dataclass(frozen=True)
 class PrescribedReactions:
-    """The multipliers that a scene prescribes, by name, and what the controls do then: ``ddot(u)`` by name."""
+    """The multipliers that a scene prescribes, and the resulting controls.
+
+    The multipliers are given by name, the controls as ``ddot(u)`` by name.
+    """
 
     reactions: Values
     controls: Values
@@ -118,7 +122,7 @@ class PrescribedReactions:
 
 @dataclass(frozen=True)
 class OpenAccelerations:
-    """What the forces leave open where the mass matrix is singular."""
+    """Accelerations that the forces do not determine if the mass matrix is singular."""
 
     rank: int  # of the mass matrix
     # directions that it turns into zero, each by the accelerations in it; empty where they were not worked out
@@ -128,7 +132,7 @@ class OpenAccelerations:
 
 @dataclass(frozen=True)
 class Premises:
-    """What the answers are about: the system with the scene's effects, and the scene's numbers."""
+    """Premises of the results: the system with the scene's effects, and its numbers."""
 
     system: System
     effects: tuple[str, ...]
@@ -138,7 +142,12 @@ class Premises:
     time_span: tuple[Tree, Tree] | None
 
     def trial(self) -> FreeMotionTrial:
-        """Return what the verdicts are tried on."""
+        """Return the data for trials of the verdicts.
+
+        Returns
+        -------
+        FreeMotionTrial
+        """
         return FreeMotionTrial(
             described_system(self.system, self.effects).without(self.redundant),
             {Symbol(name, real=True): value for name, value in self.parameter_values.items()},
@@ -148,11 +157,11 @@ class Premises:
 
 @dataclass(frozen=True, repr=False)
 class FreeMotion(Shown):
-    """The answers about one scene.
+    """The results about free motion of one scene.
 
-    ``condition_trees`` is None where (10) is not written out, and ``left_out`` says why; ``prescribed`` is None where
-    the scene prescribes no reactions, ``open`` where the mass matrix is regular. ``redundant`` are the multipliers of
-    the constraints that follow from the others: (10) is that of the others, and a motion is free where it has no
+    ``condition_trees`` is None if (10) is not written out, and ``left_out`` gives the reason. ``prescribed`` is None
+    if the scene prescribes no reactions, ``open`` if the mass matrix is regular. ``redundant`` are the multipliers of
+    the constraints that follow from the others: (10) is that of the others, and a motion is free if it has no
     constraint forces.
     """
 
@@ -169,7 +178,10 @@ class FreeMotion(Shown):
 
     @cached_property
     def condition(self) -> tuple[Expr, ...] | None:
-        """What vanishes where a motion is free, for each constraint; None where it is not written out."""
+        """Expressions that vanish on a free motion, for each constraint.
+
+        None if (10) is not written out.
+        """
         return None if self.condition_trees is None else each(to_sympy, self.condition_trees)
 
 
@@ -180,13 +192,21 @@ def free_motion(
 
     Parameters
     ----------
+    file : Source or Path
+        Scene file.
     scene : str or None
         Name of the scene; None for the last one.
     settings : mapping of str to str
-        Numbers for what the file leaves open.
+        Numbers for parameters and for what the file leaves open.
+    limits : Limits
+        Limits of each run of Maxima.
     order : int or None
-        Up to which order the power series of the multipliers are looked at, 2 or more; None for Maxima's
-        ``verdict_order``.
+        Highest order of the multipliers' power series, at least 2; None for Maxima's ``verdict_order``.
+
+    Returns
+    -------
+    FreeMotion
+        With verdicts that `judged` has checked.
 
     Raises
     ------
@@ -201,7 +221,16 @@ def free_motion(
 
 
 def read_free_motion(text: str) -> FreeMotion:
-    """Read what Maxima wrote; its verdicts are not judged yet (`judged`).
+    """Read the results that Maxima wrote; `judged` checks their verdicts.
+
+    Parameters
+    ----------
+    text : str
+        JSON document.
+
+    Returns
+    -------
+    FreeMotion
 
     Raises
     ------
@@ -210,6 +239,8 @@ def read_free_motion(text: str) -> FreeMotion:
     """
     document = read(Document.FREE_MOTION, text)
     series = document["trajectory"]["series"]
+    for part, reason in (("motion", "evidence"), ("universal", "reason"), ("trajectory", "reason")):
+        document[part][reason] = translatable_reason(document[part][reason])
     found = structured(
         FreeMotion, document, universal=_universal(document["universal"]), premises=structured(Premises, document)
     )
@@ -220,15 +251,27 @@ def read_free_motion(text: str) -> FreeMotion:
 
 
 def judged(found: FreeMotion) -> FreeMotion:
-    """Try each verdict on the equations of motion; one that they contradict becomes undecided."""
+    """Check each verdict with the equations of motion.
+
+    A contradicted verdict becomes undecided.
+
+    Parameters
+    ----------
+    found : FreeMotion
+        Results of Maxima.
+
+    Returns
+    -------
+    FreeMotion
+    """
     trial = found.premises.trial()
     motion, universal = found.motion, found.universal
     contradiction = ""
-    if motion.verdict is Free.FREE and motion.states == "all states" and found.premises.control_law:
+    if motion.verdict is FreeMotionVerdict.FREE and motion.states == "all states" and found.premises.control_law:
         contradiction = trial.contradiction_of_free_motion(found.premises.control_law)
     if contradiction:
         evidence = f"{motion.evidence}; but {contradiction}"
-        motion = replace(motion, verdict=Free.UNDECIDED, states="this state", evidence=evidence)
+        motion = replace(motion, verdict=FreeMotionVerdict.UNDECIDED, states="this state", evidence=evidence)
     laws = tuple(replace(law, check=trial.of_law(law.controls, law.positive)) for law in universal.laws)
     verdict, contradiction = trial.verdict_on_laws(universal.verdict, [law.check for law in laws])
     reason = contradiction or universal.reason
@@ -236,8 +279,11 @@ def judged(found: FreeMotion) -> FreeMotion:
 
 
 def _truncated_law(series: dict) -> Law:
-    """Power series of controls as sums in the order of their powers: evaluated, 3/2 + (t - 1) would be t + 1/2."""
-    step = Symbol("t", real=True) - to_sympy(series["instant"])
+    """Return power series of controls as sums in the order of their powers.
+
+    SymPy's evaluation would turn 3/2 + (t - 1) into t + 1/2.
+    """
+    step = Symbol("t", real=True) - to_sympy(series["time"])
 
     def added_up(coefficients: tuple[Expr, ...]) -> Expr:
         terms = [Mul(c, step**k, evaluate=k != 1 or c == 1) for k, c in enumerate(coefficients) if c != 0]

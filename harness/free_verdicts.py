@@ -1,7 +1,7 @@
-"""Consistency of the verdicts on free motion: each is tried against the equations of motion and against the others.
+"""Consistency of the verdicts on free motion, with motions and with each other.
 
 A law that is listed must make random motions free. A motion that is free for all states is tried likewise, under the
-scene's law. The statement that there is no law must survive a random search for one. If a verdict fails, it becomes
+scene's law. The verdict that there is no law is tested by a random search for one. If a verdict fails, it becomes
 undecided, and its reason reports the contradiction.
 """
 
@@ -14,7 +14,7 @@ from typing import TypeVar
 from sympy import Expr, Symbol
 
 from .crosscheck.law_search import find_free_law
-from .crosscheck.report import Judgement
+from .crosscheck.report import CheckResult
 from .crosscheck.seed import fresh_seed
 from .crosscheck.system import MechanicalSystem
 from .crosscheck.universal_laws import LawOfControls, judge_law
@@ -26,23 +26,60 @@ Law = Mapping[str, Expr]
 
 @dataclass(frozen=True)
 class FreeMotionTrial:
-    """What verdicts on free motion are tried on."""
+    """The data for trials of verdicts on free motion."""
 
     system: MechanicalSystem
     values: Mapping[Symbol, Expr]  # of the parameters
-    span: tuple[Expr, Expr] | None  # first and last instant
+    span: tuple[Expr, Expr] | None  # first and last time
 
-    def of_law(self, law: Law, positive: Sequence[Expr] = ()) -> Judgement:
-        """Judge a law by random motions on the time span."""
+    def of_law(self, law: Law, positive: Sequence[Expr] = ()) -> CheckResult:
+        """Judge a law by random motions on the time span.
+
+        Parameters
+        ----------
+        law : mapping of str to SymPy expression
+            Controls as functions of the time, by name.
+        positive : sequence of SymPy expression
+            The law holds only if these are positive.
+
+        Returns
+        -------
+        CheckResult
+        """
         return judge_law(self.system, self.values, LawOfControls(_symbols(law), tuple(positive)), self.span)
 
     def contradiction_of_free_motion(self, law: Law) -> str:
-        """Return how a random motion under the law contradicts that all are free; empty if none does."""
+        """Return the first contradiction of a random motion to free motion for all states.
+
+        Parameters
+        ----------
+        law : mapping of str to SymPy expression
+            Law that the random motion follows.
+
+        Returns
+        -------
+        str
+            Empty if there is no contradiction.
+        """
         found = self.of_law(law)
         return f"under the scene's law {found.detail}" if found.verdict is Verdict.DISAGREES else ""
 
-    def verdict_on_laws(self, verdict: str, checks: Sequence[Judgement]) -> tuple[str, str]:
-        """Return the verdict that the checks of the laws leave, and the reason for a change."""
+    def verdict_on_laws(self, verdict: str, checks: Sequence[CheckResult]) -> tuple[str, str]:
+        """Return the verdict on laws after their checks.
+
+        Parameters
+        ----------
+        verdict : str
+            Verdict of Maxima, as in `UniversalControls`.
+        checks : sequence of CheckResult
+            One for each law.
+
+        Returns
+        -------
+        verdict : str
+        reason : str
+            Reason for a change; empty without a change.
+        """
         found = [check.verdict for check in checks]
         if Verdict.DISAGREES in found:
             detail = next(check.detail for check in checks if check.verdict is Verdict.DISAGREES)
@@ -51,7 +88,7 @@ class FreeMotionTrial:
             left = "some" if Verdict.AGREES in found else "undecided"
             return left, "a law was not confirmed on the time span by the equations of motion"
         if verdict == "none" and (law := self._law_found()):
-            return "undecided", f"the search of closed forms found no law, a search in numbers did: {law}"
+            return "undecided", f"the search of closed forms found no law, a numerical search did: {law}"
         return verdict, ""
 
     def _law_found(self) -> str:
@@ -60,7 +97,7 @@ class FreeMotionTrial:
         if found is None:
             return ""
         numbers = ", ".join(f"{name} = {value:.6g}" for name, value in {**found.controls, **found.parameters}.items())
-        return f"{numbers} near t = {found.instant:.6g}"
+        return f"{numbers} near t = {found.time:.6g}"
 
 
 def _symbols(law: Mapping[str, T]) -> dict[Symbol, T]:

@@ -1,4 +1,4 @@
-"""The functions that expressions may have, a row each: their names in every notation."""
+"""The functions of expressions, each with its names in every notation."""
 
 from typing import NamedTuple
 
@@ -16,12 +16,12 @@ class Function(NamedTuple):
 
     @property
     def in_sympy(self) -> str:
-        """Its name in SymPy or in `holonom.elliptic`."""
+        """Name in SymPy or in `holonom.elliptic`."""
         return self.sympy or self.scene
 
     @property
     def operator(self) -> str:
-        """Its name in LaTeX."""
+        """Name in LaTeX."""
         return self.latex if self.latex.startswith("\\") else rf"\operatorname{{{self.latex}}}"
 
 

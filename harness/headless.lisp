@@ -1,7 +1,7 @@
 ;;; Headless Maxima: one file, one call, no prompts, one outcome
 ;;;
 ;;; Maxima in batch mode leaves with status 0 whatever happened, goes on after a Lisp error and repeats a
-;;; question for ever when nobody answers. A job loads this file first and then calls one of
+;;; question for ever without an answer. A job loads this file first and then calls one of
 ;;;
 ;;;   RUN-FILE         reads a file statement by statement, as batchload does, remembering where each one starts, and
 ;;;                    evaluates a closing call, for instance write_record("record.json");
@@ -29,7 +29,7 @@
 ;;; What would stop or prompt
 
 (defun retrieve (message flag)
-  "Maxima's one door for questions: there is nobody to answer."
+  "Maxima's only function for questions; a batch run cannot answer."
   (declare (ignore flag))
   (error 'unanswered-question :text (plain-text message)))
 

@@ -1,4 +1,4 @@
-"""Characters that hide or reverse the text around them, or steer what shows it."""
+"""Characters that hide or reverse the text around them, or control a terminal."""
 
 import re
 import unicodedata
@@ -14,17 +14,49 @@ UNSEEN = re.compile(
 
 
 def hidden_character(text: str) -> str:
-    """Name the first character that hides or reverses text, as ``U+202E``; empty where there is none."""
+    """Return the first character that hides or reverses text, as ``U+202E``.
+
+    Parameters
+    ----------
+    text : str
+        Any text.
+
+    Returns
+    -------
+    str
+        Empty if there is no such character.
+    """
     return next((f"U+{ord(each):04X}" for each in text if unicodedata.category(each) in HIDDEN), "")
 
 
 def visible(text: str) -> str:
-    """Return a text of any number of lines in which each character is seen."""
+    """Return a text with hidden characters made visible.
+
+    Parameters
+    ----------
+    text : str
+        Any number of lines.
+
+    Returns
+    -------
+    str
+        Line feeds and tabs are kept.
+    """
     return UNSEEN.sub(_code, text)
 
 
 def visible_line(text: str) -> str:
-    """Return a text as one line in which each character is seen: nothing in it looks like a line of its own."""
+    """Return a text as one line, with hidden characters and line ends made visible.
+
+    Parameters
+    ----------
+    text : str
+        Any number of lines.
+
+    Returns
+    -------
+    str
+    """
     return visible(text).replace("\n", "\\n").replace("\t", " ")
 
 

@@ -1,4 +1,4 @@
-"""What is installed: what is missing and the command that installs it; the library where Maxima finds it."""
+"""Installed and missing components, and the library in Maxima's search path."""
 
 import os
 import shutil
@@ -9,7 +9,7 @@ from pathlib import Path
 
 from .documents import ask
 from .extras import REQUIREMENT
-from .failures import Failure, HolonomError
+from .failures import ErrorKind, HolonomError
 from .files import shared, write_files, write_whole, written_before
 from .formats import Document, read
 from .maxima import LIBRARY
@@ -35,25 +35,30 @@ NEEDED = "maxima"
 
 @dataclass(frozen=True)
 class Component:
-    """Something that Holonom uses."""
+    """A program or package that Holonom uses."""
 
     name: str
     version: str | None  # None where it is missing or does not run; empty where it does not tell
     purpose: str  # what it serves
     needed: bool  # nothing works without it
-    remedy: str  # the command that installs it, or what else is to be done
+    hint: str  # the command that installs it, or what else is to be done
 
 
 def components() -> Iterator[Component]:
-    """Yield all that Holonom uses, programs of the system first."""
+    """Yield all components, programs of the system first.
+
+    Yields
+    ------
+    Component
+    """
     for program, purpose in PROGRAMS.items():
         version = None if shutil.which(program) is None else ""
-        remedy = _install_program(program)
+        hint = _install_program(program)
         if program == "maxima" and version is not None:
             version = maxima_version()
         elif program == "bwrap" and version is not None and (hindrance := _hindrance_of_sandbox()):
-            version, remedy = None, hindrance
-        yield Component(program, version, purpose, program == NEEDED, remedy)
+            version, hint = None, hindrance
+        yield Component(program, version, purpose, program == NEEDED, hint)
     for requirement in metadata.requires("holonom") or ():
         found = REQUIREMENT.match(requirement)
         package, extra = found["package"], found["extra"]
@@ -64,7 +69,7 @@ def components() -> Iterator[Component]:
 
 
 def _hindrance_of_sandbox() -> str:
-    """Return what to do so that bubblewrap works; empty if it does."""
+    """Return the hint to make bubblewrap work; empty if it works."""
     try:
         return "" if has_sandbox() else ALLOW
     except HolonomError as error:
@@ -72,7 +77,13 @@ def _hindrance_of_sandbox() -> str:
 
 
 def maxima_version() -> str | None:
-    """Maxima's version and its Lisp's; None where it does not run."""
+    """Return the versions of Maxima and its Lisp.
+
+    Returns
+    -------
+    str or None
+        None if Maxima does not run.
+    """
     try:
         document = read(Document.VERSIONS, ask(Document.VERSIONS, LIBRARY / "holonom.mac"))
     except HolonomError:
@@ -81,7 +92,13 @@ def maxima_version() -> str | None:
 
 
 def versions() -> dict[str, str]:
-    """Versions that decide what Holonom computes, by name; what is missing is said to be."""
+    """Return the versions that affect Holonom's results.
+
+    Returns
+    -------
+    dict of str to str
+        By name; ``not installed`` for a missing component.
+    """
     packages = {name: _version(name.lower()) for name in ("heyoka", "SymPy")}
     found = {"holonom": _version("holonom"), "Maxima": maxima_version(), **packages}
     return {name: version or "not installed" for name, version in found.items()}
@@ -107,15 +124,29 @@ MARK = "/* Holonom, put here by `holonom maxima-path`, which puts it here anew w
 
 
 def user_directory() -> Path:
-    """Return the directory that Maxima calls maxima_userdir."""
+    """Return the directory that Maxima calls maxima_userdir.
+
+    Returns
+    -------
+    Path
+        An absolute path; it may not exist.
+    """
     named = os.environ.get("MAXIMA_USERDIR")
     return Path(named or Path.home() / ".maxima").absolute()
 
 
 def put_into_maxima(directory: Path) -> Path:
-    """Let Maxima find the library, and its help, from a directory that it searches, made where it is missing.
+    """Install the library and its help in a directory that Maxima searches.
 
-    Returns the file that ``load(holonom)`` loads.
+    Parameters
+    ----------
+    directory : Path
+        A directory that Maxima searches; it is created if it is missing.
+
+    Returns
+    -------
+    Path
+        The file that ``load(holonom)`` loads.
 
     Raises
     ------
@@ -124,17 +155,29 @@ def put_into_maxima(directory: Path) -> Path:
     """
     stub, helping, files = directory / STUB, directory / HELP, help_files()
     if stub.exists() and not _is_ours(stub):
-        raise HolonomError(Failure.FOREIGN_IN_MAXIMA, detail=str(stub))
+        raise HolonomError(ErrorKind.UNRELATED_IN_MAXIMA, detail=str(stub))
     for name in files.keys() - written_before(helping):
         if (helping / name).exists():
-            raise HolonomError(Failure.FOREIGN_IN_MAXIMA, detail=str(helping / name))
+            raise HolonomError(ErrorKind.UNRELATED_IN_MAXIMA, detail=str(helping / name))
     write_files(helping, files)
     write_whole(stub, stub_text(shared("maxima"), helping))
     return stub
 
 
 def stub_text(library: Path, helping: Path) -> str:
-    """Return the Maxima file that loads the library and tells Maxima of its help."""
+    """Return the Maxima file that loads the library and its help.
+
+    Parameters
+    ----------
+    library : Path
+        Folder of the library.
+    helping : Path
+        Folder of the help.
+
+    Returns
+    -------
+    str
+    """
     return (
         f"{MARK}\n\n"
         f"load({_maxima_text(library / 'holonom.mac')})$\n"

@@ -1,11 +1,11 @@
-"""The language in which a reader is addressed: messages are written in English, and a catalog translates them.
+"""Translation of messages, which are written in English, by catalogs.
 
     with speaking("zh"):
         gettext("Chapter %(label)s", label=5)
 
-What is made before the language is known, a title or a reason in a result, is marked with `translatable` and translated
-with `translated` where it is shown. Catalogs are ``locale/LANGUAGE/LC_MESSAGES/holonom.po``; `make catalog` collects
-their messages from the sources.
+Texts that are made before the language is known, such as a title or a reason in a result, are marked with
+`translatable` and translated with `translated` when they are shown. Catalogs are
+``locale/LANGUAGE/LC_MESSAGES/holonom.po``; `make catalog` collects their messages from the sources.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _spoken: ContextVar[str] = ContextVar("spoken", default=ENGLISH)
 
 
 class Message(str):
-    """A message in English that remembers what it was made of, so that it can still be translated."""
+    """A message in English that keeps its parts, so that it can be translated later."""
 
     pattern: str  # the message with its named placeholders, ``%(name)s``
     values: dict[str, Any]  # what stands in their places; messages among them are translated with it
@@ -53,7 +53,17 @@ translatable = Message
 
 @contextmanager
 def speaking(language: str) -> Iterator[None]:
-    """Translate into a language inside the block."""
+    """Translate into a language inside the block.
+
+    Parameters
+    ----------
+    language : str
+        A key of `LANGUAGES`.
+
+    Yields
+    ------
+    None
+    """
     token = _spoken.set(language)
     try:
         yield
@@ -62,38 +72,96 @@ def speaking(language: str) -> Iterator[None]:
 
 
 def spoken() -> str:
-    """Return the language that messages are translated into."""
+    """Return the current language of messages.
+
+    Returns
+    -------
+    str
+        A key of `LANGUAGES`.
+    """
     return _spoken.get()
 
 
 def gettext(message: str, **values: Any) -> str:
-    """Return a message in the language spoken, with values in its placeholders where some are given."""
+    """Return a message in the current language, with values in its placeholders.
+
+    Parameters
+    ----------
+    message : str
+        English message, with placeholders such as ``%(name)s``.
+    **values : object
+        Values of the placeholders, by name.
+
+    Returns
+    -------
+    str
+    """
     found = _catalog(spoken()).gettext(message) if message else message
     return found % values if values else found
 
 
 def ngettext(singular: str, plural: str, count: int, **values: Any) -> str:
-    """Return the form of a message that fits a count."""
+    """Return the form of a message that fits a count.
+
+    Parameters
+    ----------
+    singular : str
+        English message for one.
+    plural : str
+        English message for any other count.
+    count : int
+        It selects the form.
+    **values : object
+        Values of the placeholders, by name.
+
+    Returns
+    -------
+    str
+    """
     found = _catalog(spoken()).ngettext(singular, plural, count)
     return found % values if values else found
 
 
 def translated(text: str) -> str:
-    """Return a text in the language spoken: a `Message` with its values, any other where the catalog knows it."""
+    """Return a text in the current language.
+
+    A `Message` keeps its values; any other text is translated if the catalog has it.
+
+    Parameters
+    ----------
+    text : str
+        English text, perhaps a `Message`.
+
+    Returns
+    -------
+    str
+    """
     if not isinstance(text, Message):
         return gettext(str(text))
     values = {name: translated(each) if isinstance(each, str) else each for name, each in text.values.items()}
     return gettext(text.pattern, **values)
 
 
-def catalog_file(language: str) -> Path:
-    """Return the catalog of a language."""
-    return LOCALE / language / "LC_MESSAGES" / f"{DOMAIN}.po"
+def catalog_file(language: str, name: str = DOMAIN) -> Path:
+    """Return the path of a catalog of a language.
+
+    Parameters
+    ----------
+    language : str
+        A key of `LANGUAGES`.
+    name : str, optional
+        Name of the catalog; messages of the program by default.
+
+    Returns
+    -------
+    Path
+    """
+    return LOCALE / language / "LC_MESSAGES" / f"{name}.po"
 
 
 @cache
 def _catalog(language: str) -> catalogs.NullTranslations:
-    """Return the messages of a language; of English none, for they are English.
+    """Return the messages of a language; empty for English.
 
     Raises
     ------

@@ -1,4 +1,7 @@
-"""MathJSON trees (`holonom.trees`) to SymPy expressions and back; nothing in a tree is ever evaluated as code."""
+"""Convert MathJSON trees (`holonom.trees`) to SymPy expressions and back.
+
+No part of a tree is ever evaluated as code.
+"""
 
 from collections.abc import Callable
 from operator import neg, sub, truediv
@@ -43,7 +46,18 @@ VARIADIC: dict[str, Callable[..., Expr]] = {"Add": sympy.Add, "Multiply": sympy.
 
 
 def to_sympy(tree: Tree) -> Expr:
-    """Convert a MathJSON tree to a SymPy expression. It is simplified as SymPy does by itself; every symbol is real.
+    """Convert a MathJSON tree to a SymPy expression.
+
+    It has only SymPy's automatic simplifications; every symbol is real.
+
+    Parameters
+    ----------
+    tree : Tree
+        A tree of `holonom.trees`.
+
+    Returns
+    -------
+    SymPy expression
 
     Raises
     ------
@@ -54,9 +68,18 @@ def to_sympy(tree: Tree) -> Expr:
 
 
 def from_sympy(expression: Expr) -> Tree:
-    """Convert a SymPy expression, in real symbols and functions that MathJSON shares with SymPy, to a MathJSON tree.
+    """Convert a SymPy expression to a MathJSON tree.
 
-    `to_sympy` makes the expression of it again.
+    `to_sympy` converts it back.
+
+    Parameters
+    ----------
+    expression : SymPy expression
+        It consists of real symbols and functions that MathJSON shares with SymPy.
+
+    Returns
+    -------
+    Tree
 
     Raises
     ------
@@ -156,7 +179,7 @@ def _written_integer(value: int) -> Tree:
 
 
 def _digits(value: Float) -> str:
-    """Decimal digits enough to give the same number back."""
+    """Return enough decimal digits to restore the same number."""
     if value._prec <= DOUBLE_BITS:
         return f"{float(value):.{DOUBLE_DIGITS - 1}e}"
     return sympy.sstr(value, full_prec=True)

@@ -1,11 +1,11 @@
-"""One headless run of Maxima: no prompts, no init files, errors that say where.
+"""One headless run of Maxima: no prompts, no init files, located errors.
 
-This is the only module that knows Maxima is a process. A run has a private directory; `headless.lisp`, loaded before
-anything else, makes errors of questions and leaves the ending in a file, for Maxima's exit status says nothing. What
-Maxima prints is kept for people and not read, with one exception: the count of Maxima's own test runner.
+This is the only module that handles Maxima as a process. A run has a private directory; `headless.lisp`, loaded
+first, turns questions into errors and writes the ending to a file, because Maxima's exit status is not reliable. The
+output of Maxima is kept for people and not read, with one exception: the count of Maxima's own test runner.
 
-A scene file is a program, perhaps a stranger's. One process runs it and writes down what it described, and others,
-which never see the file and begin when the first is gone, derive from that description.
+A scene file is a program, perhaps an untrusted one. One process runs it and writes its description. Other processes,
+which start after the first has ended and never see the file, derive from that description.
 """
 
 import os
@@ -21,7 +21,7 @@ from itertools import chain
 from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
-from .failures import Failure, HolonomError
+from .failures import ErrorKind, HolonomError
 from .files import near_file, shared
 from .hidden import visible_line
 from .preloaded import ARGUMENTS, ENVIRONMENT, JOBS, QUIET, preloaded_image, quoted, remove_if_broken
@@ -56,10 +56,10 @@ LONGEST_OUTCOME = MIB  # bytes
 REFUSAL = re.compile(r"\w*")
 STARTED, FINISHED = "STARTED", "FINISHED"
 ENDINGS = {
-    "FAULT": Failure.REFUSED,
-    "QUESTION": Failure.QUESTION,
-    "SYNTAX": Failure.SYNTAX,
-    "LISP": Failure.LISP_ERROR,
+    "FAULT": ErrorKind.REFUSED,
+    "QUESTION": ErrorKind.QUESTION,
+    "SYNTAX": ErrorKind.SYNTAX,
+    "LISP": ErrorKind.LISP_ERROR,
 }
 
 # What may stand in Maxima text, inside a comment (they nest) and outside: a hidden character, a string, a terminator.
@@ -69,9 +69,9 @@ IN_CODE = re.compile(r'/\*|\\.|"(?:[^"\\]|\\.)*"|[;$]', re.DOTALL)
 
 @dataclass(frozen=True)
 class Ending:
-    """How a run ended before its time, and where."""
+    """The way and the place in which a run ended early."""
 
-    failure: Failure
+    kind: ErrorKind
     place: str
     detail: str = ""
     refusal: str | None = None  # its id in maxima/refusals.mac
@@ -90,23 +90,46 @@ class Run:
     left_behind: tuple[str, ...]
 
     def leaves(self, what: str) -> Path:
-        """Return the file that the run is to leave behind."""
+        """Return the file that the run must leave.
+
+        Parameters
+        ----------
+        what : str
+            ``outcome``, ``document`` or another name that the run leaves.
+
+        Returns
+        -------
+        Path
+        """
         return self.directory / f"{what}-{self.mark}"
 
 
 class Ended(NamedTuple):
-    """A run that is over, or one part of it: how it ended if that was before its time, and what Maxima printed."""
+    """A run that is over, or one part of it, with its early ending and output."""
 
     ending: Ending | None
     printed: str
 
     def require_finished(self, run: Run, writer: str) -> None:
-        """Raise where it ended before its time."""
+        """Raise if the run ended early.
+
+        Parameters
+        ----------
+        run : Run
+            The run, for the command that repeats it.
+        writer : str
+            Maxima's function that was to write the document.
+
+        Raises
+        ------
+        HolonomError
+            The run ended early.
+        """
         if self.ending is None:
             return
         command = "" if run.settings is None else _repeating_command(run.file, f'{writer}("document")$', run.settings)
         raise HolonomError(
-            self.ending.failure,
+            self.ending.kind,
             self.ending.place,
             self.ending.detail,
             refusal=self.ending.refusal,
@@ -116,9 +139,21 @@ class Ended(NamedTuple):
 
 
 def get_ready(file: Path, limits: Limits) -> None:
-    """Do beforehand what a run about a file begins with, and what takes ten times as long beside a busy thread.
+    """Do the first steps of a run about a file beforehand.
 
-    Raises as `run_scene` where the file cannot be read, or Maxima is missing.
+    They would take ten times as long next to a busy thread.
+
+    Parameters
+    ----------
+    file : Path
+        Scene file.
+    limits : Limits
+        Limits of the run.
+
+    Raises
+    ------
+    HolonomError
+        The file cannot be read, or Maxima is missing.
     """
     read_maxima_text(file)
     is_isolated(limits)
@@ -126,17 +161,24 @@ def get_ready(file: Path, limits: Limits) -> None:
 
 
 def run_scene(file: Path, limits: Limits, settings: Mapping[str, str], document: str) -> str:
-    """Run a scene file, and have it written down what it described.
+    """Run a scene file, and return its description.
 
     Parameters
     ----------
     file : Path
         A Maxima file that describes one system and any number of scenes. ``load("holonom.mac")`` in it finds this
         project's library.
+    limits : Limits
+        Limits of the run, and its sandbox.
     settings : mapping of str to str
         Numbers in Maxima's notation, for what the file leaves open and for parameters.
     document : str
         Name of the document, for the command that repeats the run.
+
+    Returns
+    -------
+    str
+        JSON text.
 
     Raises
     ------
@@ -147,31 +189,33 @@ def run_scene(file: Path, limits: Limits, settings: Mapping[str, str], document:
         left = run.leaves(DOCUMENT)
         ended = _run(run, f"run-scene {_copy(run)} {quoted(left.name)}")
         if ended.ending is None and left.is_file() and left.stat().st_size > LARGEST:
-            raise HolonomError(Failure.DESCRIPTION_TOO_LARGE, file, f"{LARGEST // MIB} MiB")
+            raise HolonomError(ErrorKind.DESCRIPTION_TOO_LARGE, file, f"{LARGEST // MIB} MiB")
         return _finished_document(run, ended, f"write_{document}")
 
 
 def run_description(
     text: str, file: Path, writers: Sequence[str], limits: Limits, settings: Mapping[str, str] | None
 ) -> list[str | HolonomError]:
-    """Have documents derived from a description, by one process, which never sees the file.
+    """Derive documents from a description in one process, without its file.
 
     Parameters
     ----------
     text : str
         The description.
     file : Path
-        The file that it is of, for messages.
+        The file of the description, for messages.
     writers : sequence of str
-        Of each document the library's function that writes it, given the name of the file to write.
+        For each document the library's function that writes it, given the name of the file to write.
+    limits : Limits
+        Limits of the run, and its sandbox.
     settings : mapping of str to str, or None
-        What the file was run with, for the command that repeats the run; None if no file was run.
+        The settings of the file's run, for the command that repeats the run; None if no file was run.
 
     Returns
     -------
     list of str or HolonomError
-        The documents; or why there is none: the description is refused, a limit is exceeded. Those written before a
-        limit is exceeded are there.
+        The documents, or the errors: the description is rejected, a limit is exceeded. Documents written before a
+        limit is exceeded are included.
 
     Raises
     ------
@@ -191,8 +235,8 @@ def run_description(
 
 
 def _written(run: Run, ended: Ended, writer: str, outcome: str, document: str) -> str | HolonomError:
-    """One of the documents of a run, or why there is none."""
-    broken_off = ended.ending or Ending(Failure.TORN, str(run.file), OUTCOME)
+    """Return one document of a run, or its error."""
+    broken_off = ended.ending or Ending(ErrorKind.OUTPUT_TRUNCATED, str(run.file), OUTCOME)
     own = Ended(_read_ending(run, outcome, broken_off), ended.printed)
     try:
         return _finished_document(run, own, writer, document)
@@ -203,14 +247,23 @@ def _written(run: Run, ended: Ended, writer: str, outcome: str, document: str) -
 def run_batch(
     file: Path, writer: str, limits: Limits = DEFAULT_LIMITS, settings: Mapping[str, str] = NO_SETTINGS
 ) -> str:
-    """Run a Maxima file in the open, then one Maxima function that writes a document, perhaps one of the file's.
+    """Run a Maxima file outside the sandbox, then one function that writes a document.
+
+    The function may be one of the file's.
 
     Parameters
     ----------
-    file, limits, settings
+    file : Path
         As for `run_scene`.
     writer : str
         As for `run_description`.
+    limits, settings : Limits, mapping of str to str
+        As for `run_scene`.
+
+    Returns
+    -------
+    str
+        The document.
 
     Raises
     ------
@@ -222,7 +275,21 @@ def run_batch(
 
 
 def statement_ends(text: str, position: int = 0) -> Iterator[int]:
-    """Yield where statements end in Maxima text: the positions just past a terminator, ``;`` or ``$``."""
+    """Yield the positions after the terminators of statements in Maxima text.
+
+    Terminators are ``;`` and ``$``.
+
+    Parameters
+    ----------
+    text : str
+        Maxima text.
+    position : int
+        Place outside of comments at which the search begins.
+
+    Yields
+    ------
+    int
+    """
     depth = 0
     while match := (IN_COMMENT if depth else IN_CODE).search(text, position):
         position = match.end()
@@ -255,7 +322,18 @@ def _copy(run: Run) -> str:
 
 
 def limited(opened: BinaryIO, file: Path | str) -> bytes:
-    """Read what is not larger than a scene file may be.
+    """Read a file up to the size limit of scene files.
+
+    Parameters
+    ----------
+    opened : BinaryIO
+        File open for reading.
+    file : Path or str
+        Its name, for messages.
+
+    Returns
+    -------
+    bytes
 
     Raises
     ------
@@ -264,65 +342,79 @@ def limited(opened: BinaryIO, file: Path | str) -> bytes:
     """
     content = opened.read(LARGEST + 1)
     if len(content) > LARGEST:
-        raise HolonomError(Failure.FILE_TOO_LARGE, file, f"{LARGEST // MIB} MiB")
+        raise HolonomError(ErrorKind.FILE_TOO_LARGE, file, f"{LARGEST // MIB} MiB")
     return content
 
 
 def _require_short_names(text: str, file: Path) -> None:
-    """Refuse names that Maxima's reader would take minutes for: its time grows as the square of their length."""
+    """Raise for names that Maxima's reader would take minutes for.
+
+    Its time grows as the square of their length.
+    """
     for found in LONG_NAME.finditer(text):
         if found["name"]:
             line = text.count("\n", 0, found.start()) + 1
-            raise HolonomError(Failure.NAME_TOO_LONG, f"{file}:{line}", found["name"][:SHOWN])
+            raise HolonomError(ErrorKind.NAME_TOO_LONG, f"{file}:{line}", found["name"][:SHOWN])
 
 
 def read_maxima_text(file: Path) -> str:
-    """Read a Maxima file, with or without a byte order mark, its lines ended in any way; with line feeds then.
+    """Read a Maxima file, with all line ends converted to line feeds.
+
+    A byte order mark is removed.
+
+    Parameters
+    ----------
+    file : Path
+        A file in UTF-8.
+
+    Returns
+    -------
+    str
 
     Raises
     ------
     HolonomError
-        There is no such file, it is no regular one, it is too large, it cannot be read, or it is not UTF-8.
+        There is no such file, it is not a regular one, it is too large, it cannot be read, or it is not UTF-8.
     """
     try:
         if not stat.S_ISREG(file.stat().st_mode):
-            raise HolonomError(Failure.FILE_UNREADABLE, file, "it is no regular file")
+            raise HolonomError(ErrorKind.FILE_UNREADABLE, file, "it is no regular file")
         with file.open("rb") as opened:
             content = limited(opened, file)
     except FileNotFoundError:
-        raise HolonomError(Failure.FILE_MISSING, file, near_file(file)) from None
+        raise HolonomError(ErrorKind.FILE_MISSING, file, near_file(file)) from None
     except OSError as error:
-        raise HolonomError(Failure.FILE_UNREADABLE, file, error.strerror or str(error)) from None
+        raise HolonomError(ErrorKind.FILE_UNREADABLE, file, error.strerror or str(error)) from None
     try:
         text = content.decode()
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
-        raise HolonomError(Failure.NOT_UTF8, f"{file}:{line}", f"0x{content[error.start]:02x}") from None
+        raise HolonomError(ErrorKind.NOT_UTF8, f"{file}:{line}", f"0x{content[error.start]:02x}") from None
     if "\0" in text:
-        raise HolonomError(Failure.FILE_UNREADABLE, file, "it holds null characters and is no text")
+        raise HolonomError(ErrorKind.FILE_UNREADABLE, file, "it holds null characters and is no text")
     return text.removeprefix(BYTE_ORDER_MARK).replace("\r\n", "\n").replace("\r", "\n")
 
 
 def _call(writer: str, run: Run, document: str = DOCUMENT) -> str:
-    """Maxima text that writes a document, as Lisp text."""
+    """Return Maxima text that writes a document, as Lisp text."""
     return quoted(f"{writer}({quoted(run.leaves(document).name)})$")
 
 
 def _run(run: Run, start: str) -> Ended:
-    """Do what `start` says."""
+    """Execute the steps of `start`."""
     maxima = _maxima()
     image = _image(maxima)
     place = _place(run, Path(maxima))
     output = bytearray()
     ending = _attempt(run, start, maxima, image, place, output)
-    if ending is not None and ending.failure is Failure.NOT_MAXIMA and image:  # broken, or removed by another command
+    if ending is not None and ending.kind is ErrorKind.NOT_MAXIMA and image:  # broken, or removed by another command
         remove_if_broken(image, place)
         ending = _attempt(run, start, maxima, None, place, output)
     return Ended(ending, output.decode(errors="replace"))
 
 
 def _attempt(run: Run, start: str, maxima: str, image: Path | None, place: Place, output: bytearray) -> Ending | None:
-    """Run Maxima, or an image of it; return how it ended before its time, if it did."""
+    """Run Maxima, or an image of it; return its early ending, if any."""
     preparation = f"(holonom_print : false, {_set(run.settings or NO_SETTINGS)})$"
     facts = (run.file.resolve(), LIBRARY, preparation, run.leaves(OUTCOME).name, run.mark)
     known = [] if image else [each.read_text(encoding="utf-8") for each in JOBS]
@@ -332,17 +424,17 @@ def _attempt(run: Run, start: str, maxima: str, image: Path | None, place: Place
     try:
         status = run_process([*program, *QUIET, "--preload-lisp=job.lisp"], place, output)
     except LimitExceeded as exceeded:
-        return Ending(exceeded.failure, str(run.file), exceeded.detail)
+        return Ending(exceeded.kind, str(run.file), exceeded.detail)
     except OSError as error:
-        return Ending(Failure.NOT_MAXIMA, maxima, error.strerror or str(error))
+        return Ending(ErrorKind.NOT_MAXIMA, maxima, error.strerror or str(error))
     begun = _read_left(run.leaves(OUTCOME), LONGEST_OUTCOME)
-    not_begun = Ending(Failure.NOT_MAXIMA, maxima, f"exit status {status}")
+    not_begun = Ending(ErrorKind.NOT_MAXIMA, maxima, f"exit status {status}")
     return _read_ending(run, OUTCOME, _unfinished(run, status) if begun else not_begun)
 
 
 def _maxima() -> str:
     if (found := shutil.which("maxima")) is None:
-        raise HolonomError(Failure.MAXIMA_MISSING)
+        raise HolonomError(ErrorKind.MAXIMA_MISSING)
     return found
 
 
@@ -355,7 +447,10 @@ def _passed_on() -> dict[str, str]:
 
 
 def _place(run: Run, maxima: Path) -> Place:
-    """Return a private directory for what Maxima keeps, with English messages and no settings of this machine."""
+    """Return a private directory and an environment without local settings.
+
+    Maxima's messages are in English.
+    """
     directory = str(run.directory)
     environment = ENVIRONMENT | _passed_on()
     environment |= {
@@ -385,17 +480,17 @@ def _memory_of_the_machine() -> int:
 
 
 def _read_ending(run: Run, what: str, broken_off: Ending) -> Ending | None:
-    """Return the ending that `headless.lisp` wrote; None of what is finished."""
+    """Return the ending that `headless.lisp` wrote; None for finished parts."""
     lines = (_read_left(run.leaves(what), LONGEST_OUTCOME) or b"").decode(errors="replace").split("\n")
     if lines == [""]:
         return broken_off
     if len(lines) < 8 or [lines[0], *lines[-2:]] != [run.mark, run.mark, ""]:
-        return Ending(Failure.TORN, str(run.file), OUTCOME)
+        return Ending(ErrorKind.OUTPUT_TRUNCATED, str(run.file), OUTCOME)
     kind, running, line, refusal, message = *lines[1:5], " ".join(lines[5:-2])
     if kind in (FINISHED, STARTED):
         return None if kind == FINISHED else broken_off
     if kind not in ENDINGS or not line.isdigit() or not REFUSAL.fullmatch(refusal):
-        return Ending(Failure.TORN, str(run.file), OUTCOME)
+        return Ending(ErrorKind.OUTPUT_TRUNCATED, str(run.file), OUTCOME)
     own = running in (str(run.file.resolve()), str((run.directory / "file.mac").resolve()))
     shown = str(run.file) if own else visible_line(running)
     place = shown if line == "0" else f"{shown}:{line}"
@@ -404,27 +499,30 @@ def _read_ending(run: Run, what: str, broken_off: Ending) -> Ending | None:
 
 
 def _unfinished(run: Run, status: int) -> Ending:
-    """Return the ending of a run that did not come to its end: it ended itself, or was ended by a signal."""
+    """Return the ending of an incomplete run, by itself or by a signal."""
     number = -status if status < 0 else status - SIGNALLED
     if number not in SIGNALS:
-        return Ending(Failure.ENDED_EARLY, str(run.file))
-    return Ending(Failure.KILLED, str(run.file), signal.Signals(number).name)
+        return Ending(ErrorKind.ENDED_EARLY, str(run.file))
+    return Ending(ErrorKind.KILLED, str(run.file), signal.Signals(number).name)
 
 
 def _finished_document(run: Run, ended: Ended, writer: str, document: str = DOCUMENT) -> str:
-    """Return what a run left; raise where it did not come to its end."""
+    """Return the document of a run; raise if the run is incomplete."""
     ended.require_finished(run, writer)
     last_lines = _last_lines(ended.printed)
     content = _read_left(run.leaves(document), run.limits.file_mib * MIB)
     if not content:
-        raise HolonomError(Failure.NOTHING_WRITTEN, run.file, last_lines=last_lines)
+        raise HolonomError(ErrorKind.NOTHING_WRITTEN, run.file, last_lines=last_lines)
     if not content.endswith(b"\n"):
-        raise HolonomError(Failure.TORN, run.file, DOCUMENT, last_lines=last_lines)
+        raise HolonomError(ErrorKind.OUTPUT_TRUNCATED, run.file, DOCUMENT, last_lines=last_lines)
     return content.decode(errors="replace")
 
 
 def _read_left(path: Path, most: int) -> bytes | None:
-    """Return what a process left in a regular file, or None; a link is not followed, nor a pipe waited for."""
+    """Return the content of a regular file that a process left, or None.
+
+    Links and pipes are not opened.
+    """
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
     except OSError:

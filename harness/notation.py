@@ -1,7 +1,7 @@
-"""MathJSON trees (`holonom.trees`) as one line of text, in the notation of the scene files.
+"""Write MathJSON trees as one line of text, in the notation of the scene files.
 
-The order of terms and factors is the tree's. A minus sign stands once before a term, negative powers and denominators
-stand once below a stroke.
+Trees are those of `holonom.trees`, and give the order of terms and factors. A minus sign stands once before a term,
+negative powers and denominators stand once below a stroke.
 """
 
 from collections.abc import Callable, Sequence
@@ -37,7 +37,17 @@ Expanded = tuple[Callable[..., Formula], list[Tree]]
 
 
 def scene_text(tree: Tree) -> str:
-    """Write a tree as scene files have it.
+    """Write a tree in the notation of scene files.
+
+    Parameters
+    ----------
+    tree : Tree
+        A tree of `holonom.trees`.
+
+    Returns
+    -------
+    str
+        One line.
 
     Raises
     ------
@@ -88,7 +98,7 @@ def _expanded(tree: Tree) -> Expanded:
 
 
 def _parted(tree: Tree) -> tuple[bool, Tree]:
-    """Return whether a minus sign stands before a tree, and the tree without it."""
+    """Return True if a minus sign stands before a tree, and the tree without it."""
     match tree:
         case bool():
             return False, tree
@@ -147,7 +157,7 @@ def _product(tree: Tree) -> Expanded:
 
 
 def _fraction(factor: Tree) -> tuple[Tree, Tree]:
-    """Return what of a factor stands above the stroke and what below it."""
+    """Return the parts of a factor above and below the stroke."""
     match factor:
         case ["Rational", numerator, denominator]:
             _digits(numerator), _digits(denominator)  # which are refused where they are no whole numbers
@@ -160,7 +170,7 @@ def _fraction(factor: Tree) -> tuple[Tree, Tree]:
 
 
 def _below(tree: Tree) -> Tree | None:
-    """Return what stands below a stroke, where that is all of a tree, or its denominator."""
+    """Return the part below a stroke, if it is all of a tree or its denominator."""
     match tree:
         case ["Rational" | "Divide", _, denominator]:
             return denominator

@@ -1,7 +1,7 @@
-"""Options of requests: the command line, the arguments in Python and the reference are made of a request's fields.
+"""Options as fields of requests, for the command line, Python and the reference.
 
-An option is a field of a dataclass. Its type is an enumeration, ``Fraction`` (an instant), ``bool``, ``int``,
-``float``, ``str`` or a tuple of names, written with commas between; ``| None`` where it may be left out.
+An option is a field of a dataclass. Its type is an enumeration, ``Fraction`` (a time), ``bool``, ``int``, ``float``,
+``str`` or a tuple of names, written with commas between; ``| None`` if it may be left out.
 """
 
 import inspect
@@ -15,11 +15,11 @@ from functools import wraps
 from types import NoneType
 from typing import Any, TypeVar, get_origin
 
-from .failures import Failure, HolonomError
+from .failures import ErrorKind, HolonomError
 
 LONGEST = 200  # digits of a number that an option gives
 LARGEST_EXPONENT = 307  # of a double
-SHOWN = 40  # letters of an instant that is refused
+SHOWN = 40  # letters of a time that is refused
 NAMES = {
     bool: "bool",
     int: "int",
@@ -35,11 +35,12 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 @dataclass(frozen=True)
 class Option:
-    """How an option is written, and which values it takes."""
+    """The spelling of an option and its allowed values."""
 
     help: str  # one sentence, on the command line and in Python
     metavar: str | None = None  # placeholder of the value on the command line
-    spelt: tuple[str, ...] = ()  # on the command line, where it is not the name of the field
+    spelt: tuple[str, ...] = ()  # on the command line, if it is not the name of the field
+    alias: str = ""  # former name, accepted for one release
     least: float | None = None
     most: float | None = None
     above: float | None = None  # a bound that is not among the values
@@ -55,20 +56,47 @@ def option(default: Any, help: str, **details: Any) -> Any:
     ----------
     default : object
         Default of the field.
-    help, **details
+    help, **details : str, object
         Fields of `Option`.
+
+    Returns
+    -------
+    dataclasses.Field
     """
     return field(default=default, metadata={"option": Option(help, **details)})
 
 
 def options_of(request: type, *names: str) -> tuple[Field, ...]:
-    """Return the fields of a request that are options: all, or those named."""
+    """Return the fields of a request that are options.
+
+    Parameters
+    ----------
+    request : type
+        Dataclass of the request.
+    *names : str
+        Names of fields; without any, all options.
+
+    Returns
+    -------
+    tuple of Field
+    """
     found = {each.name: each for each in fields(request) if "option" in each.metadata}
     return tuple(found[name] for name in names) if names else tuple(found.values())
 
 
 def kind_of(each: Field) -> type:
-    """Return the type of an option's values other than None; of int | str, str."""
+    """Return the type of an option's values other than None.
+
+    Parameters
+    ----------
+    each : Field
+        Field of an option.
+
+    Returns
+    -------
+    type
+        str for int
+    """
     return [kind for kind in _types(each) if kind is not NoneType][-1]
 
 
@@ -77,7 +105,18 @@ def _types(each: Field) -> tuple[type, ...]:
 
 
 def choices_of(each: Field) -> tuple[str, ...]:
-    """Return the values of an option that is an enumeration, as text; of any other, none."""
+    """Return the values of an option that is an enumeration.
+
+    Parameters
+    ----------
+    each : Field
+        Field of an option.
+
+    Returns
+    -------
+    tuple of str
+        Empty for any other option.
+    """
     kind = kind_of(each)
     return tuple(map(str, each.metadata["option"].choices or kind)) if issubclass(kind, StrEnum) else ()
 
@@ -85,20 +124,31 @@ def choices_of(each: Field) -> tuple[str, ...]:
 def read(each: Field, value: Any) -> Any:
     """Return the value of an option as the request holds it.
 
+    Parameters
+    ----------
+    each : Field
+        Field of an option.
+    value : object
+        Value from the command line or from Python.
+
+    Returns
+    -------
+    object
+
     Raises
     ------
     HolonomError
-        The value is not one of the choices, not in the range, or no instant.
+        The value is not one of the choices, not in the range, or no time.
     """
     kind, stated = kind_of(each), each.metadata["option"]
     if value is None:
         return () if kind is tuple else None
     if choices := choices_of(each):
         if str(value) not in choices:
-            raise HolonomError(Failure.NOT_A_CHOICE, detail=f"{value}; there are {', '.join(choices)}")
+            raise HolonomError(ErrorKind.NOT_A_CHOICE, detail=f"{value}; there are {', '.join(choices)}")
         return kind(str(value))
     if kind is Fraction:
-        return read_instant(value)
+        return read_time(value)
     if kind is str:
         return value
     if kind is tuple:
@@ -112,26 +162,47 @@ def read(each: Field, value: Any) -> Any:
         bound = f"at most {stated.most:g}"
     else:
         return value
-    raise HolonomError(Failure.NOT_IN_RANGE, detail=f"{each.name} is {bound}, not {value}")
+    raise HolonomError(ErrorKind.NOT_IN_RANGE, detail=f"{each.name} is {bound}, not {value}")
 
 
-def read_instant(value: Any) -> Fraction:
-    """Return an instant, exactly as it is written: an integer, a decimal or a quotient of integers.
+def read_time(value: Any) -> Fraction:
+    """Return a time exactly.
+
+    Parameters
+    ----------
+    value : object
+        An integer, a decimal or a quotient of integers, as a number or text.
+
+    Returns
+    -------
+    Fraction
 
     Raises
     ------
     HolonomError
-        It is none, or no double holds it.
+        It has none of these forms, or exceeds a double.
     """
     text = str(value)
     with suppress(ValueError, ZeroDivisionError):
         if within_reach(text):
             return Fraction(text)
-    raise HolonomError(Failure.NOT_AN_INSTANT, detail=text if len(text) <= SHOWN else f"{text[:SHOWN]}...")
+    raise HolonomError(ErrorKind.NOT_A_TIME, detail=text if len(text) <= SHOWN else f"{text[:SHOWN]}...")
 
 
 def within_reach(number: str) -> bool:
-    """Return True if a double holds the parts of a decimal number or quotient, told without computing them."""
+    """Return True if a double holds the parts of a decimal number or quotient.
+
+    The parts are not computed.
+
+    Parameters
+    ----------
+    number : str
+        Decimal number, or quotient of two.
+
+    Returns
+    -------
+    bool
+    """
     for part in number.lower().split("/"):
         digits, _, exponent = part.partition("e")
         if len(digits) > LONGEST or len(exponent) > 4 or not abs(int(exponent or 0)) + len(digits) <= LARGEST_EXPONENT:
@@ -140,17 +211,31 @@ def within_reach(number: str) -> bool:
 
 
 def takes_options(*taken: Field) -> Callable[[Function], Function]:
-    """Give a function options as arguments, passed on as the mapping `options`; ``{options}`` in its docstring too."""
+    """Give a function options as keyword arguments.
+
+    They are passed on as the mapping `options`, and replace ``{options}`` in the docstring.
+
+    Parameters
+    ----------
+    *taken : Field
+        Fields that are options.
+
+    Returns
+    -------
+    callable
+        Decorator.
+    """
 
     def decorate(function: Function) -> Function:
         own = inspect.signature(function)
         rest = {each.kind: each for each in own.parameters.values() if each.kind is each.VAR_KEYWORD}
         before = [each for each in own.parameters.values() if each.name != "options" and each.kind not in rest]
+        aliases = {stated.alias: each.name for each in taken if (stated := each.metadata["option"]).alias}
         signature = own.replace(parameters=[*before, *map(_parameter, taken), *rest.values()])
 
         @wraps(function)
         def called(*arguments: Any, **keywords: Any) -> Any:
-            given = signature.bind(*arguments, **keywords)
+            given = signature.bind(*arguments, **{aliases.get(name, name): value for name, value in keywords.items()})
             given.apply_defaults()
             values = dict(given.arguments)
             options = {each.name: read(each, values.pop(each.name)) for each in taken}
@@ -172,7 +257,7 @@ def _parameter(each: Field) -> inspect.Parameter:
 
 
 def _documented(taken: Iterable[Field]) -> str:
-    """Return the options as the section "Parameters" of a docstring has them."""
+    """Return the options as entries of the section "Parameters" of a docstring."""
     return "\n".join(f"{each.name} : {_type_name(each)}\n    {each.metadata['option'].help}" for each in taken)
 
 

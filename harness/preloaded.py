@@ -1,9 +1,9 @@
-"""Maxima with the library already loaded, kept as an image in the user's cache: each run is spared the loading.
+"""Images of Maxima with the library loaded, cached to spare each run the loading.
 
-In it the library's Lisp functions, and those that runs are made of, are compiled (`preload.lisp`). The name of an image
-is the hash of all that it depends on: the program, the library's text, this file. An image is written whole, after it
-ran once, and is used as it is. If there is none, or none can be made, a run loads the library, and finds the same.
-Only GCL 2.6, on which Maxima of Debian 12 runs, makes them here.
+In an image the library's Lisp functions, and those that runs are made of, are compiled (`preload.lisp`). The name of
+an image is the hash of its dependencies: the program, the library's text, this file. An image is written completely,
+after it ran once, and is used unchanged. If there is none, or none can be made, a run loads the library, with the
+same results. Only GCL 2.6, on which Maxima of Debian 12 runs, makes them here.
 """
 
 import fcntl
@@ -24,7 +24,7 @@ ENVIRONMENT = {"GCL_GC_PAGE_THRESH": "0.2", "GCL_GC_ALLOC_MIN": "0.01", "GCL_GC_
 ARGUMENTS = ("-eval", "(cl-user::run)", "-f", "--")
 QUIET = ("--init=/dev/null", "--very-quiet")
 
-KEPT = 8  # images, of so many versions or installations: a gigabyte
+KEPT = 8  # images, of several versions or installations: a gigabyte
 FREE_SPACE = 1024 * MIB  # on a fuller disk none is made
 MAKING = Limits(seconds=100.0, sandbox=Sandbox.TRUSTED)  # only the library is run
 PRELOAD = Path(__file__).with_name("preload.lisp")
@@ -34,7 +34,9 @@ _known: dict[tuple[str, Path, frozenset], Path] = {}
 
 
 def preloaded_image(maxima: str, library: Path, environment: frozenset[tuple[str, str]]) -> Path | None:
-    """Return the program that is Maxima with the library loaded. It takes `ARGUMENTS` before Maxima's own.
+    """Return the program that is Maxima with the library loaded.
+
+    It takes `ARGUMENTS` before Maxima's own.
 
     Parameters
     ----------
@@ -62,14 +64,32 @@ def preloaded_image(maxima: str, library: Path, environment: frozenset[tuple[str
 
 
 def remove_if_broken(image: Path, place: Place) -> None:
-    """Remove an image that does not run any more, with any limits; the next run makes it again."""
+    """Remove an image that no longer runs under any limits; the next run remakes it.
+
+    Parameters
+    ----------
+    image : Path
+        The image.
+    place : Place
+        Surroundings in which it has failed.
+    """
     with suppress(LimitExceeded, OSError):
         if not _runs(image, replace(place, limits=MAKING)):
             image.unlink()
 
 
 def quoted(text: str | Path) -> str:
-    """Return a string literal, for Lisp and for Maxima alike."""
+    """Return a string literal, for Lisp and for Maxima alike.
+
+    Parameters
+    ----------
+    text : str or Path
+        Any text.
+
+    Returns
+    -------
+    str
+    """
     return '"' + str(text).replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
@@ -93,7 +113,9 @@ def _name(maxima: str, library: Path, environment: frozenset[tuple[str, str]]) -
 
 
 def _make_alone(image: Path, maxima: str, library: Path, environment: frozenset[tuple[str, str]]) -> None:
-    """Make an image unless another process is making one; several would make the same, each the slower for the others.
+    """Make an image unless another process is making one.
+
+    Several processes would make the same image and slow each other down.
 
     Raises
     ------
@@ -112,7 +134,10 @@ def _make_alone(image: Path, maxima: str, library: Path, environment: frozenset[
 
 
 def _make(image: Path, maxima: str, library: Path, environment: Mapping[str, str]) -> None:
-    """Have Maxima save itself with the library; an empty file tells that it cannot, or that the image does not run."""
+    """Have Maxima save an image with the library.
+
+    An empty file records that it cannot, or that the image does not run.
+    """
     with private_directory() as directory:
         inside = {"HOME": str(directory), "TMPDIR": str(directory), "MAXIMA_USERDIR": str(directory), "LC_ALL": "C"}
         place = Place(directory, {**environment, **ENVIRONMENT, **inside}, MAKING)
@@ -124,7 +149,7 @@ def _make(image: Path, maxima: str, library: Path, environment: Mapping[str, str
 
 
 def _saves(saved: Path, maxima: str, library: Path, place: Place) -> bool:
-    """Have Maxima save itself; return True if it did, and what it saved runs."""
+    """Have Maxima save itself; return True if that succeeds and the image runs."""
     asked = f"{PRELOAD.read_text(encoding='utf-8')}\n(save-with-library {' '.join(map(quoted, (library, *JOBS)))})\n"
     (place.directory / "save.lisp").write_text(asked, encoding="utf-8")
     with suppress(LimitExceeded):
@@ -138,7 +163,7 @@ def _runs(image: Path, place: Place) -> bool:
 
 
 def _put(saved: Path, image: Path) -> None:
-    """Write an image whole, and remove the oldest ones of too many."""
+    """Write an image completely, and remove the oldest ones beyond the limit."""
     draft = image.with_suffix(".draft")  # of the one process that holds the lock
     shutil.copy(saved, draft)
     with draft.open("rb") as file:

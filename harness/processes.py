@@ -1,6 +1,6 @@
-"""Processes that end together: with their parent, or with the command that started them.
+"""Processes that end together, with their parent or with their command.
 
-Linux gives the orphans of a subreaper to it, so it can end each process that was started below it, also those in
+Linux assigns orphans to the subreaper above them, so it can end each process that was started below it, also those in
 sessions of their own. Run as a program, this module is such a subreaper: it runs one command under resource limits,
 and ends everything that the command started when the command ends, or when its own standard input does.
 """
@@ -22,12 +22,18 @@ HELD = re.compile(r"^(?:VmRSS|VmSwap|VmPTE|HugetlbPages):\s*(\d+) kB$", re.MULTI
 
 
 def die_with_parent(parent: int) -> None:
-    """Have this process killed when its parent ends. Parameters as for `signal_without_parent`."""
+    """End this process when its parent ends.
+
+    Parameters
+    ----------
+    parent : int
+        Process number of the parent, as for `signal_without_parent`.
+    """
     signal_without_parent(parent, signal.SIGKILL)
 
 
 def signal_without_parent(parent: int, number: int) -> None:
-    """Have this process sent a signal when its parent ends, by the kernel or else by a thread.
+    """Send this process a signal when its parent ends, by the kernel or a thread.
 
     Parameters
     ----------
@@ -49,12 +55,23 @@ def signal_without_parent(parent: int, number: int) -> None:
 
 
 def become_subreaper() -> None:
-    """Adopt the orphans among the processes that this one starts, where the kernel can arrange that."""
+    """Adopt orphans among the descendants of this process, if the kernel supports it."""
     _control_process(PR_SET_CHILD_SUBREAPER, 1)
 
 
 def children(pid: int) -> list[int]:
-    """Return the processes that a process has started, by any of its threads."""
+    """Return the processes that a process has started, by any of its threads.
+
+    Parameters
+    ----------
+    pid : int
+        Process number.
+
+    Returns
+    -------
+    list of int
+        Process numbers; empty if the process has ended.
+    """
     if not os.path.exists(f"/proc/self/task/{os.getpid()}/children"):
         lines = map(str.split, _printed_by("ps", "-axo", "ppid=,pid="))
         return [int(child) for parent, child in lines if int(parent) == pid]
@@ -67,15 +84,39 @@ def children(pid: int) -> list[int]:
 
 
 def descendants(pid: int) -> list[int]:
-    """Return all processes below a process."""
+    """Return all processes below a process.
+
+    Parameters
+    ----------
+    pid : int
+        Process number.
+
+    Returns
+    -------
+    list of int
+        Process numbers.
+    """
     found = children(pid)
-    for each in found:  # the list grows meanwhile
+    for each in found:  # the list grows during the loop
         found += children(each)
     return found
 
 
 def held_memory(pid: int) -> int:
-    """Return the memory of a process in bytes, its page tables and what is swapped out included; 0 if it has ended."""
+    """Return the memory of a process.
+
+    Page tables and swapped pages are included.
+
+    Parameters
+    ----------
+    pid : int
+        Process number.
+
+    Returns
+    -------
+    int
+        In bytes; 0 if the process has ended.
+    """
     if not os.path.exists("/proc/self/status"):
         return sum(1024 * int(kib) for kib in _printed_by("ps", "-o", "rss=", "-p", str(pid)))
     with suppress(OSError), open(f"/proc/{pid}/status", encoding="utf-8", errors="replace") as file:
@@ -84,7 +125,18 @@ def held_memory(pid: int) -> int:
 
 
 def count_threads(pid: int) -> int:
-    """Return the number of threads of a process, 1 where the kernel does not tell."""
+    """Return the number of threads of a process.
+
+    Parameters
+    ----------
+    pid : int
+        Process number.
+
+    Returns
+    -------
+    int
+        1 if the number is unknown.
+    """
     try:
         return len(os.listdir(f"/proc/{pid}/task"))
     except OSError:
@@ -98,7 +150,10 @@ def _printed_by(*command: str) -> list[str]:
 
 
 def end_children() -> None:
-    """Kill all that this process has started until it has no children; it adopts those of the ended ones."""
+    """Kill all children of this process until none is left.
+
+    It adopts the children of those that end.
+    """
     for _ in range(ROUNDS):
         for each in descendants(os.getpid()):
             with suppress(ProcessLookupError, PermissionError):
@@ -117,7 +172,10 @@ def _control_process(option: int, value: int) -> bool:
 
 
 def _run(file_size: int, command: list[str]) -> int:
-    """Run a command to its end, with all that it starts; return its exit status as a shell does."""
+    """Run a command with all its descendants to the end.
+
+    Return its exit status as a shell does.
+    """
     import resource
 
     become_subreaper()
@@ -140,7 +198,13 @@ def _kill_at_end_of_input(child: int) -> None:
 
 
 def usable_cores() -> int:
-    """Return those that this process may use, where the system can tell; else those that there are."""
+    """Return the number of cores that this process may use.
+
+    Returns
+    -------
+    int
+        The number of all cores if the system does not report it.
+    """
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 

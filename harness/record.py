@@ -1,8 +1,7 @@
-"""The derivation record: what Maxima derived from one scene file, typed and frozen.
+"""The derivation record: typed, frozen results of Maxima for one scene file.
 
-This is the only module that knows the record's wire format. Its expressions are trees (`holonom.trees`): data, of
-which nothing is evaluated as code. SymPy expressions are made of them when they are first asked for, and SymPy is
-imported then.
+This is the only module that reads the record's format. Its expressions are trees (`holonom.trees`): data that are
+never evaluated as code. SymPy expressions are made of them, and SymPy is imported, at the first use.
 """
 
 from collections.abc import Mapping
@@ -13,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from .described import Correction, System, Values, expression
 from .documents import ask
-from .failures import Failure, HolonomError
+from .failures import ErrorKind, HolonomError
 from .formats import Document, read
 from .maxima import DEFAULT_LIMITS, NO_SETTINGS
 from .sandbox import Limits
@@ -57,11 +56,12 @@ LARGEST_SIZE = 10**300  # predicted sizes beyond are said to be this
 
 
 class LeftOut(NamedTuple):
-    """Equations that were not made."""
+    """Equations that were left out."""
 
     numbers: tuple[str, ...]  # the paper's
-    # size, limit: how long their closed forms were predicted to be, and the `closed_form_size` that this is beyond
-    size: int
+    # size, limit: how long their closed forms were predicted to be, None where forces contain multipliers, and the
+    # `closed_form_size` that this is beyond
+    size: int | None
     limit: int
 
 
@@ -86,12 +86,12 @@ class Derivation:
 
 @dataclass(frozen=True)
 class Scene:
-    """A system put to work.
+    """A system with control law, parameter values and initial state.
 
     Parameters
     ----------
     name, title : str
-        The name it is assigned to and what it is.
+        The name it is assigned to and its title.
     derivation : int
         Index of its derivation in the record.
     effects : tuple of str
@@ -99,21 +99,21 @@ class Scene:
     control_law, parameter_values : mapping of str to Expr
         The controls as functions of the time and the parameters as numbers, by name.
     initial_state : mapping of str to Expr
-        All coordinates and velocities at the initial instant, by name.
+        All coordinates and velocities at the initial time, by name.
     given : tuple of str
         Coordinates and velocities whose initial values the scene gives; the others follow from the constraints.
     correction : Correction or None
-        That of the given value that missed the constraints in its last digits and was corrected most.
+        The largest correction of a given value that violated the constraints in its last digits.
     span_trees : pair of trees or None
-        First and last instant.
+        First and last time.
     observe : tuple of str
-        What to compute.
+        Kinds of quantities to compute.
     equations : tuple of Equation
         The equations of its initial motion.
     left_out : LeftOut or None
-        Those of them that were not made.
+        Equations of the initial motion that were left out.
     law_around_start : bool
-        Whether the control law is switched, as by a table, and held as it is around the initial instant.
+        True if the control law is switched, as by a table, and recorded in its form around the initial time.
     """
 
     name: str
@@ -133,13 +133,13 @@ class Scene:
 
     @cached_property
     def time_span(self) -> "tuple[Expr, Expr] | None":
-        """First and last instant."""
+        """First and last time."""
         return None if self.span_trees is None else (expression(self.span_trees[0]), expression(self.span_trees[1]))
 
 
 @dataclass(frozen=True)
 class Record:
-    """Everything that Maxima derived from one scene file."""
+    """All results of Maxima's derivation for one scene file."""
 
     maxima: str
     system: System
@@ -153,20 +153,52 @@ def derived_record(
     limits: Limits = DEFAULT_LIMITS,
     closed_form_size: int | None = None,
 ) -> "Record":
-    """Derive a scene file; raises as `holonom.documents.ask` and `read_record`."""
-    return read_record(ask(Document.RECORD, file, closed_form_size, settings=settings, limits=limits))
+    """Derive the record of a scene file.
 
+    Parameters
+    ----------
+    file : Source or Path
+        Scene file.
+    settings : mapping of str to str
+        Numbers in Maxima's notation, for what the file leaves open and for parameters.
+    limits : Limits
+        Limits of each run of Maxima.
+    closed_form_size : int or None
+        Number of terms beyond which closed forms are left out; None for the file's own.
 
-def read_record(text: str) -> Record:
-    """Read a derivation record; an expression in it that is malformed is refused when it is asked for.
+    Returns
+    -------
+    Record
 
     Raises
     ------
     HolonomError
-        The text is not JSON, or has not the shape of a record.
+        As `holonom.documents.ask` and `read_record`.
+    """
+    return read_record(ask(Document.RECORD, file, closed_form_size, settings=settings, limits=limits))
+
+
+def read_record(text: str) -> Record:
+    """Read a derivation record.
+
+    A malformed expression raises at its first use.
+
+    Parameters
+    ----------
+    text : str
+        JSON document.
+
+    Returns
+    -------
+    Record
+
+    Raises
+    ------
+    HolonomError
+        The text is not JSON, or does not have the shape of a record.
     """
     record = structured(Record, read(Document.RECORD, text))
     for scene in record.scenes:
         if scene.derivation >= len(record.derivations):
-            raise HolonomError(Failure.NOT_A_RECORD, detail=f"the scene {scene.name} has no derivation")
+            raise HolonomError(ErrorKind.NOT_A_RECORD, detail=f"the scene {scene.name} has no derivation")
     return record

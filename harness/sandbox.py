@@ -22,7 +22,7 @@ from functools import cache
 from pathlib import Path
 
 from . import processes
-from .failures import Failure, HolonomError
+from .failures import ErrorKind, HolonomError
 from .system_calls import call_filter
 
 MIB = 1024 * 1024
@@ -30,7 +30,7 @@ CHUNK = 65536
 WATCH_INTERVAL = 0.05  # seconds between two looks at the memory: a fast process gains about 100 MiB in between
 LEAVING_TIME = 5.0  # seconds for a process that has closed its output to end
 PROBE_TIME = 10.0  # seconds for bubblewrap to show that it works here
-SCRATCH = 16  # one part in so many of the memory limit is for files in the sandbox
+SCRATCH = 16  # one part in this many of the memory limit is for files in the sandbox
 INODE = 1024  # bytes of memory that a file in the sandbox takes besides its content, at least
 OPEN_FILES = 256  # descriptors of one process in the sandbox
 
@@ -51,11 +51,17 @@ UNCONFINED = (
 
 
 class Sandbox(Enum):
-    """When a scene file runs in the sandbox: always, if this machine has one, or never because it is trusted.
+    """When a scene file runs in the sandbox: always, if possible, or never.
 
     In it, the file sees the system's programs, the library, copies of the files that its text names below its own
     folder, and copies of the ``.mac``, ``.lisp`` and ``.csv`` files beside it; `Limits.allow` adds others. It has no
     network, no sockets, no privileges, and limited memory, processes and time.
+
+    Examples
+    --------
+    >>> import holonom
+    >>> holonom.Limits(sandbox=holonom.Sandbox.TRUSTED).sandbox.name
+    'TRUSTED'
     """
 
     REQUIRED = "required"
@@ -83,6 +89,12 @@ class Limits:
         When the process runs in the sandbox.
     allow : tuple of Path
         Files that a scene may read in the sandbox besides those beside it.
+
+    Examples
+    --------
+    >>> import holonom
+    >>> holonom.Limits(seconds=10).seconds
+    10
     """
 
     seconds: float = 120.0
@@ -99,15 +111,15 @@ class LimitExceeded(Exception):
 
     Parameters
     ----------
-    failure : Failure
+    kind : ErrorKind
         The limit.
     detail : str
         Its value, with its unit.
     """
 
-    def __init__(self, failure: Failure, detail: str) -> None:
-        super().__init__(failure, detail)
-        self.failure = failure
+    def __init__(self, kind: ErrorKind, detail: str) -> None:
+        super().__init__(kind, detail)
+        self.kind = kind
         self.detail = detail
 
 
@@ -140,7 +152,7 @@ class Place:
 
 
 def run_process(command: Sequence[str], place: Place, printed: bytearray) -> int:
-    """Run a command to its end, or end it with all that it started when it exceeds a limit.
+    """Run a command, and end all its processes if it exceeds a limit.
 
     Parameters
     ----------
@@ -190,6 +202,15 @@ def run_process(command: Sequence[str], place: Place, printed: bytearray) -> int
 def is_isolated(limits: Limits) -> bool:
     """Return True if a process with these limits runs in the sandbox.
 
+    Parameters
+    ----------
+    limits : Limits
+        Limits of the process.
+
+    Returns
+    -------
+    bool
+
     Raises
     ------
     HolonomError
@@ -197,19 +218,36 @@ def is_isolated(limits: Limits) -> bool:
     """
     isolated = limits.sandbox is not Sandbox.TRUSTED and has_sandbox()
     if limits.sandbox is Sandbox.REQUIRED and not isolated:
-        raise HolonomError(Failure.NO_SANDBOX)
+        raise HolonomError(ErrorKind.NO_SANDBOX)
     return isolated
 
 
 def warn_unconfined(limits: Limits) -> None:
-    """Warn if nothing but limits will confine a scene file, and nobody trusts it. Raises as `is_isolated`."""
+    """Warn if a scene file is not trusted and will run without a sandbox.
+
+    Parameters
+    ----------
+    limits : Limits
+        Limits of the process.
+
+    Raises
+    ------
+    HolonomError
+        As `is_isolated`.
+    """
     if limits.sandbox is not Sandbox.TRUSTED and not is_isolated(limits):
         warnings.warn(UNCONFINED, stacklevel=3)
 
 
 @cache
 def has_sandbox() -> bool:
-    """Return False if bubblewrap is not installed, or the kernel or a container forbids it.
+    """Return True if bubblewrap is installed and works on this machine.
+
+    False if it is missing, or the kernel or a container forbids it.
+
+    Returns
+    -------
+    bool
 
     Raises
     ------
@@ -222,20 +260,20 @@ def has_sandbox() -> bool:
     try:
         tried = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, timeout=PROBE_TIME, check=False)
     except (OSError, subprocess.TimeoutExpired) as error:
-        raise HolonomError(Failure.SANDBOX_FAILED, bubblewrap, str(error)) from None
+        raise HolonomError(ErrorKind.SANDBOX_FAILED, bubblewrap, str(error)) from None
     said = tried.stderr.decode(errors="replace").strip()
     if tried.returncode and not any(words in said for words in FORBIDDEN):
-        raise HolonomError(Failure.SANDBOX_FAILED, bubblewrap, said or f"exit status {tried.returncode}")
+        raise HolonomError(ErrorKind.SANDBOX_FAILED, bubblewrap, said or f"exit status {tried.returncode}")
     return tried.returncode == 0
 
 
 def _subreaper(limits: Limits) -> list[str]:
-    """Return what runs a command with limits outside the sandbox."""
+    """Return the command prefix that sets limits outside the sandbox."""
     return [sys.executable, "-I", "-S", processes.__file__, str(limits.file_mib * MIB)]
 
 
 def _sandbox(command: Sequence[str], place: Place, filters: Sequence[int]) -> list[str]:
-    """Return what runs a command in the sandbox."""
+    """Return the command prefix that starts the sandbox."""
     limits = place.limits
     own = str(place.directory.resolve())
     mounts: list[str] = [*ISOLATION, *KERNEL]
@@ -256,7 +294,20 @@ def _sandbox(command: Sequence[str], place: Place, filters: Sequence[int]) -> li
 
 
 def surroundings(program: Path) -> list[Path]:
-    """Return what a program outside /usr needs: itself, the programs beside it, and the libraries of Lisps."""
+    """Return the files that a program outside /usr needs.
+
+    These are the program, the programs beside it, and the libraries of Lisps.
+
+    Parameters
+    ----------
+    program : Path
+        Path of the program.
+
+    Returns
+    -------
+    list of Path
+        Files and folders; empty for a program in /usr.
+    """
     real = program.resolve()
     if real.is_relative_to("/usr"):
         return []
@@ -269,7 +320,7 @@ def surroundings(program: Path) -> list[Path]:
 
 @contextmanager
 def _filter_descriptors(isolated: bool) -> Iterator[tuple[int, ...]]:
-    """Yield the descriptor from which bubblewrap reads the filter of system calls, if there is one."""
+    """Yield the descriptor with the filter of system calls for bubblewrap, if any."""
     program = call_filter() if isolated else b""
     if not program:
         yield ()
@@ -284,7 +335,7 @@ def _filter_descriptors(isolated: bool) -> Iterator[tuple[int, ...]]:
 
 
 def _watch(process: subprocess.Popen[bytes], place: Place, printed: bytearray) -> None:
-    """Collect the output until its end; look at the clock, the memory and the processes on the way."""
+    """Collect the output until its end, and check time, memory and processes."""
     output, limits = process.stdout, place.limits
     deadline = time.monotonic() + limits.seconds
     next_look = 0.0
@@ -295,9 +346,9 @@ def _watch(process: subprocess.Popen[bytes], place: Place, printed: bytearray) -
             chunk = os.read(output.fileno(), CHUNK) if selector.select(WATCH_INTERVAL) else None
             printed += chunk or b""
             if len(printed) > limits.output_mib * MIB:
-                raise LimitExceeded(Failure.TOO_MUCH_TEXT, f"{limits.output_mib} MiB")
+                raise LimitExceeded(ErrorKind.TOO_MUCH_TEXT, f"{limits.output_mib} MiB")
             if (now := time.monotonic()) > deadline:
-                raise LimitExceeded(Failure.TOO_LONG, f"{limits.seconds:g} s, holding {memory // MIB} MiB of memory")
+                raise LimitExceeded(ErrorKind.TOO_LONG, f"{limits.seconds:g} s, holding {memory // MIB} MiB of memory")
             if chunk == b"":
                 return
             if now > next_look:
@@ -306,18 +357,24 @@ def _watch(process: subprocess.Popen[bytes], place: Place, printed: bytearray) -
 
 
 def _require_little(pid: int, place: Place) -> int:
-    """Return the memory that a process and all that it started take, in bytes, if it is within the limits."""
+    """Return the memory of a process and its descendants in bytes.
+
+    Raise if they exceed the limits.
+    """
     found = [pid, *processes.descendants(pid)]
     memory = sum(map(processes.held_memory, found)) + _files_in_memory(found[:2][-1], place)
     if memory > place.limits.memory_mib * MIB:
-        raise LimitExceeded(Failure.TOO_LARGE, f"{place.limits.memory_mib} MiB")
+        raise LimitExceeded(ErrorKind.TOO_LARGE, f"{place.limits.memory_mib} MiB")
     if sum(map(processes.count_threads, found)) > place.limits.processes:
-        raise LimitExceeded(Failure.TOO_MANY_PROCESSES, f"{place.limits.processes}")
+        raise LimitExceeded(ErrorKind.TOO_MANY_PROCESSES, f"{place.limits.processes}")
     return memory
 
 
 def _files_in_memory(pid: int, place: Place) -> int:
-    """Return the memory that the files in the sandbox take; 0 if its first process is not, or not yet, in one."""
+    """Return the memory of the files in the sandbox.
+
+    It is 0 if the first process is not, or not yet, in a sandbox.
+    """
     try:
         found = os.statvfs(f"/proc/{pid}/root{place.directory.resolve()}")
     except OSError:
@@ -329,7 +386,7 @@ def _files_in_memory(pid: int, place: Place) -> int:
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:
-    """End a process and all that it started.
+    """End a process and all its descendants.
 
     Both the subreaper and bubblewrap end last: each waits until nothing is left below it.
     """

@@ -1,6 +1,6 @@
-"""The front door: a scene as one object that can be asked for all that Holonom finds.
+"""High-level API: a scene as one object with all results of Holonom.
 
-What is asked for is computed when it is asked for, once; a scene does not change.
+Each result is computed once, at its first use; a scene does not change.
 """
 
 import re
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from . import display  # noqa: F401  # results show their tables
 from .equations import Equations
 from .extras import naming_the_extra
-from .failures import Failure, HolonomError
+from .failures import ErrorKind, HolonomError
 from .files import near_file, scene_file
 from .options import Number, options_of, takes_options
 from .program.forms import MotionProgram
@@ -39,11 +39,12 @@ if TYPE_CHECKING:
     from .record import Record
     from .series.power_series import MotionSeries
     from .simulation.result import Simulation
+    from .stability.branches import Branches
     from .stability.equilibria import Equilibria
     from .stability.linear_equations import LinearEquations
     from .stability.linearization import Linearization
     from .sweeps.run import Sweep
-    from .typeset.notebook import Letter
+    from .typeset.notebook import TypesetSymbol
 
 LOADS_THE_LIBRARY = re.compile(r"\bload\s*\(.*?holonom")
 
@@ -63,6 +64,11 @@ def load(path: str | Path, scene: str | None = None, limits: Limits | None = Non
     **settings : int, float, Fraction, Decimal or str
         Numbers for what the file leaves open and for parameters; a float counts as the decimal that prints it.
 
+    Returns
+    -------
+    Scene
+        The scene; the file runs at the first use of a result.
+
     Raises
     ------
     HolonomError
@@ -72,10 +78,16 @@ def load(path: str | Path, scene: str | None = None, limits: Limits | None = Non
     -----
     UserWarning
         This machine has no sandbox, and the limits do not trust the file.
+
+    Examples
+    --------
+    >>> import holonom
+    >>> holonom.load("examples/pendulum.mac", m=2).settings
+    {'m': '2'}
     """
     file = scene_file(path)
     if not file.is_file():
-        raise HolonomError(Failure.FILE_MISSING, file, near_file(file))
+        raise HolonomError(ErrorKind.FILE_MISSING, file, near_file(file))
     return _opened(file, scene, settings, limits)
 
 
@@ -89,10 +101,23 @@ def system(text: str, scene: str | None = None, limits: Limits | None = None, **
     scene, limits, **settings
         As for `load`.
 
+    Returns
+    -------
+    Scene
+        The scene; the file runs at the first use of a result.
+
     Raises
     ------
     HolonomError
         A setting is no number.
+
+    Examples
+    --------
+    >>> import holonom
+    >>> text = "system : holonomic_system(coordinates = [x], kinetic_energy = m*dot(x)^2/2, parameters = [m])$"
+    >>> one = holonom.system(text)
+    >>> one.system.coordinates
+    ('x',)
     """
     directory = KeptDirectory()
     file = directory.path / "system.mac"
@@ -110,7 +135,7 @@ def _opened(file: Path, scene: str | None, settings: Mapping[str, Number], limit
 
 
 @takes_options(
-    *options_of(SweepRequest, "tol", "until", "drift"),
+    *options_of(SweepRequest, "tol", "until", "stabilization"),
     *options_of(Request, "solve"),
     *options_of(SweepRequest, "chunk", "workers", "scheduler"),
 )
@@ -162,7 +187,7 @@ def sweep(
     of them imports it.
     """
     from .sweeps import axes
-    from .sweeps.kept import read_kept
+    from .sweeps.outputs import read_quantities
     from .sweeps.run import run_sweep
 
     opened = scene if isinstance(scene, Scene) else load(scene)
@@ -170,7 +195,7 @@ def sweep(
     varied += [axes.listed(name, numbers) for name, numbers in (values or {}).items()]
     drawn = [axes.sample(name, text) for name, text in (sample or {}).items()]
     request = opened._request(options.pop("solve"))
-    wanted = SweepRequest(axes.make_axes(varied, drawn, size, seed), read_kept(keep), **options)
+    wanted = SweepRequest(axes.make_axes(varied, drawn, size, seed), read_quantities(keep), **options)
     directory = KeptDirectory() if output is None else None
     folder = directory.path if directory is not None else Path(output)
     found = run_sweep(opened._source, request, wanted, folder, opened.limits)
@@ -178,7 +203,17 @@ def sweep(
 
 
 class Scene:
-    """A system put to work."""
+    """A system with control law, parameter values and initial state, from a file.
+
+    Results are computed at first use, and kept. A scene does not change. In the examples of the methods `scene` is
+    ``holonom.load("examples/pendulum.mac")``.
+
+    Examples
+    --------
+    >>> import holonom
+    >>> holonom.load("examples/pendulum.mac")
+    <Scene 'examples/pendulum.mac'>
+    """
 
     def __init__(self, file: Path, name: str | None, settings: Mapping[str, str], limits: Limits) -> None:
         self.file, self.settings, self.limits = file, dict(settings), limits
@@ -188,7 +223,30 @@ class Scene:
         self._derived = Derivations(self._source)
 
     def with_settings(self, settings: Mapping[str, Number] | None = None, **more: Number) -> "Scene":
-        """Return the same scene with other numbers for what the file leaves open and for parameters."""
+        """Return the scene with other parameter values.
+
+        Parameters
+        ----------
+        settings : mapping of str to number or None
+            Values of parameters and of names that the file leaves open.
+        **more : number
+            Values by name, which take precedence over `settings`.
+
+        Returns
+        -------
+        Scene
+            A new scene; this one does not change.
+
+        Raises
+        ------
+        HolonomError
+            A setting is no number.
+
+        Examples
+        --------
+        >>> scene.with_settings(m=2).settings
+        {'m': '2'}
+        """
         other = Scene(self.file, self._name, self.settings | _settings({**(settings or {}), **more}), self.limits)
         other._directory, other._source, other._derived = self._directory, self._source, self._derived
         return other
@@ -197,26 +255,49 @@ class Scene:
 
     @property
     def description(self) -> "Description":
-        """All that the file says. It is run when the first question is put to it, once for each choice of settings."""
+        """Description in the file, which runs once for each choice of settings.
+
+        Examples
+        --------
+        >>> [each.name for each in scene.description.scenes]
+        ['lengthening_scene', 'swing_scene']
+        """
         return self._source.description(self.settings)
 
     @cached_property
     def record(self) -> "Record":
-        """All that Maxima derives from the file."""
+        """Derivation record: all equations that Maxima derives from the file.
+
+        Examples
+        --------
+        >>> scene.record.system.multipliers
+        ('lambda1',)
+        """
         from .record import derived_record
 
         return derived_record(self._source, self.settings, self.limits)
 
     @property
     def system(self) -> "System":
-        """The system as it is described, before anything is derived."""
+        """System as described, before the derivation.
+
+        Examples
+        --------
+        >>> scene.system.coordinates
+        ('x', 'y')
+        """
         return self.description.system
 
     @cached_property
     def equations(self) -> Equations:
-        """The equations of the system with the scene's effects, (2) to (11), then those of its initial motion.
+        """Equations (2) to (11) with the scene's effects, and of the initial motion.
 
-        Of a scene that prescribes reactions, those of the system as it is described.
+        For a scene that prescribes reactions, these are the equations of the system as described.
+
+        Examples
+        --------
+        >>> scene.equations["8"][0].name
+        'equations for the multipliers'
         """
         record = self.record
         names = [scene.name for scene in record.scenes]
@@ -229,24 +310,46 @@ class Scene:
         return Equations((*record.derivations[chosen.derivation].equations, *chosen.equations))
 
     def _name_among(self, names: Sequence[str]) -> str | None:
-        """Return the scene's name: the last one where none is given, None where there is no scene."""
+        """Return the scene's name, by default the last one; None without a scene."""
         if self._name is not None and self._name not in names:
             said = f"{self._name}; the file has {', '.join(names) or 'none'}"
-            raise HolonomError(Failure.NO_SUCH_SCENE, self.file, said)
+            raise HolonomError(ErrorKind.NO_SUCH_SCENE, self.file, said)
         return self._name or next(reversed(names), None)
 
     @cached_property
-    def symbols(self) -> Mapping[str, "Letter"]:
-        """SymPy symbols of the equations, by name: ``scene.symbols["dot(q1)"]``."""
-        from .typeset.notebook import letters
+    def symbols(self) -> Mapping[str, "TypesetSymbol"]:
+        """SymPy symbols of the equations, by name.
+
+        Examples
+        --------
+        >>> scene.symbols["x"]
+        x
+        """
+        from .typeset.notebook import typeset_symbols
 
         described = self.record.system
         groups = ("coordinates", "velocities", "accelerations", "controls", "control_rates", "control_accelerations")
         names = [name for group in (*groups, "parameters", "multipliers") for name in getattr(described, group)]
-        return letters([described.time, *names])
+        return typeset_symbols([described.time, *names])
 
     def check(self) -> "CheckReport":
-        """Compare every equation of the file with an independent SymPy evaluation."""
+        """Compare every equation of the file with an independent SymPy evaluation.
+
+        Returns
+        -------
+        CheckReport
+            A verdict for each equation, and for the programs of motions.
+
+        Raises
+        ------
+        HolonomError
+            The file cannot be derived.
+
+        Examples
+        --------
+        >>> scene.check().disagreements
+        0
+        """
         from .crosscheck.check import check_record
         from .crosscheck.motions import motion_verdicts, read_motions
         from .crosscheck.questions import ask_for_check
@@ -256,14 +359,46 @@ class Scene:
         return report.with_verdicts(motion_verdicts(self.description, motions, report.seed))
 
     def free(self) -> "FreeMotion":
-        """When the motion is free: as it is, under which laws always, under which for one trajectory."""
+        """Find whether the motion is free, and the control laws under which it is.
+
+        Returns
+        -------
+        FreeMotion
+            Verdicts on this motion, on laws for every motion and on laws for one trajectory.
+
+        Raises
+        ------
+        HolonomError
+            The file cannot be derived.
+
+        Examples
+        --------
+        >>> print(scene.free().motion.verdict)
+        not free
+        """
         from .free_motion import free_motion
 
         return free_motion(self._source, self._name, self.settings, self.limits)
 
     @naming_the_extra()
     def effects(self) -> "MeasuredCosts":
-        """Return which terms and effects there are, and what each costs in operations and in measured time."""
+        """Measure the cost of each term and effect.
+
+        Returns
+        -------
+        MeasuredCosts
+            Terms and effects with their operations and seconds.
+
+        Raises
+        ------
+        HolonomError
+            The file cannot be derived.
+
+        Examples
+        --------
+        >>> len(scene.effects().terms)
+        17
+        """
         from .program.effects import scene_costs
 
         return scene_costs(self._source, self._request(), self.limits)
@@ -279,10 +414,20 @@ class Scene:
         ----------
         {options}
 
+        Returns
+        -------
+        MotionSeries
+            Coefficients of the coordinates, velocities and multipliers, and the radius of convergence.
+
         Raises
         ------
         HolonomError
             The control law is not analytic at t0, G is singular there, or the digits cannot be had.
+
+        Examples
+        --------
+        >>> scene.series(order=4).coordinates["x"][1]
+        '0'
         """
         from .series.compute import compute_series
 
@@ -292,7 +437,7 @@ class Scene:
     @naming_the_extra()
     @takes_options(*options_of(SimulationRequest), *options_of(Request, "solve"))
     def simulate(self, options: dict[str, Any], **parameters: Number) -> "Simulation":
-        """Follow the motion in numbers.
+        """Integrate the motion numerically.
 
         Parameters
         ----------
@@ -311,6 +456,12 @@ class Scene:
         ------
         HolonomError
             The request cannot be met, or the motion cannot be followed so far.
+
+        Examples
+        --------
+        >>> motion = scene.simulate(until=1, samples=3)
+        >>> motion["x"].shape, motion.report.trusted
+        ((3,), True)
         """
         if parameters:
             return self.with_settings(parameters).simulate(**options)
@@ -341,26 +492,33 @@ class Scene:
         HolonomError
             A control has no law, a parameter no value; the motion is not analytic or cannot be followed so far; the
             constraints lose rank there.
+
+        Examples
+        --------
+        >>> scene.linearize(at=0).A.shape
+        (2, 2)
         """
         from .program.motion_problem import DOUBLE_DIGITS
         from .stability.linearization import linearize
 
         if (name := options["equilibrium"]) is not None:
             if options["at"] is not None:
-                raise HolonomError(Failure.TWO_STATES)
+                raise HolonomError(ErrorKind.TWO_STATES)
             return self.equilibria()[name].linearization
         return linearize(self._problem("direct", DOUBLE_DIGITS), self._linear_equations, options["at"])
 
     @naming_the_extra()
     @takes_options(*options_of(EquilibriaRequest))
     def equilibria(self, options: dict[str, Any], **controls: float) -> "Equilibria":
-        """Look for states at rest for constant controls; others than those found may exist.
+        """Look for states at rest for constant controls.
+
+        Others than those found may exist.
 
         Parameters
         ----------
         {options}
         **controls : float
-            Values of controls; the others have those of their law at the first instant.
+            Values of controls; the others have those of their law at the first time.
 
         Returns
         -------
@@ -371,6 +529,11 @@ class Scene:
         ------
         HolonomError
             The equations contain the time; a control or a parameter has no value; the motion is not analytic.
+
+        Examples
+        --------
+        >>> len(scene.equilibria())
+        2
         """
         from .program.motion_problem import DOUBLE_DIGITS
         from .stability.equilibria import find_equilibria
@@ -378,9 +541,47 @@ class Scene:
         return find_equilibria(self._problem("direct", DOUBLE_DIGITS), self._linear_equations, controls, **options)
 
     @naming_the_extra()
+    @takes_options(*options_of(EquilibriaRequest))
+    def branches(self, control: str, values: Sequence[float], options: dict[str, Any], **controls: float) -> "Branches":
+        """Look for states at rest over the values of a control.
+
+        Others than those found may exist.
+
+        Parameters
+        ----------
+        control : str
+            Name of the control that varies.
+        values : sequence of float
+            At least one. The states found at one value are starts at the next.
+        {options}
+        **controls : float
+            Constant values of the other controls, as for `equilibria`.
+
+        Returns
+        -------
+        Branches
+            ``found.to_pandas()``, ``found.plot()``.
+
+        Raises
+        ------
+        HolonomError
+            As `equilibria`.
+
+        Examples
+        --------
+        >>> scene.branches("u", [1.0]).to_pandas().shape
+        (2, 5)
+        """
+        from .program.motion_problem import DOUBLE_DIGITS
+        from .stability.branches import find_branches
+
+        problem = self._problem("direct", DOUBLE_DIGITS)
+        return find_branches(problem, self._linear_equations, control, values, controls, **options)
+
+    @naming_the_extra()
     @takes_options(*options_of(DaeRequest))
     def dae(self, options: dict[str, Any]) -> "Dae":
-        """Return the equations of motion as F(t, y, y') = 0, with its Jacobian, for any solver of such systems.
+        """Return the equations of motion as F(t, y, y') = 0, with the Jacobian.
 
         Parameters
         ----------
@@ -395,6 +596,11 @@ class Scene:
         ------
         HolonomError
             A control has no law, a parameter no value; the motion is not analytic.
+
+        Examples
+        --------
+        >>> scene.dae().y0.shape
+        (6,)
         """
         from .dae import Dae
         from .program.motion_problem import DOUBLE_DIGITS
@@ -404,15 +610,30 @@ class Scene:
     @naming_the_extra()
     @takes_options(*options_of(Request, "solve"))
     def rhs(self, options: dict[str, Any]) -> "RightHandSide":
-        """Return the equations of motion as f(t, y) for any integrator, y the coordinates and then the velocities.
+        """Return the equations of motion as y' = f(t, y) for any integrator.
 
-        The control law and the parameters are put in; nothing keeps the constraints but the accelerations.
+        y holds the coordinates, then the velocities. The control law and the parameters are put in. The constraints
+        are kept by the accelerations only.
+
+        Parameters
+        ----------
+        {options}
+
+        Returns
+        -------
+        RightHandSide
+            A function of t and y, shape (2n,), that returns an array of the same shape.
 
         Raises
         ------
         HolonomError
             No order of pivots solves the equations of motion, as where constraints are redundant; the motion is not
             analytic everywhere.
+
+        Examples
+        --------
+        >>> scene.rhs()(0.0, [0.6, -0.8, 0, 0]).shape
+        (4,)
         """
         from .program.motion_problem import DOUBLE_DIGITS
         from .program.right_hand_side import RightHandSide
@@ -422,7 +643,27 @@ class Scene:
 
     @takes_options(*options_of(Request, "solve"))
     def program(self, options: dict[str, Any]) -> MotionProgram:
-        """Return the motion program: accelerations and multipliers of (t, q, dot q, u, dot u, ddot u)."""
+        """Return the motion program: accelerations and multipliers of a state.
+
+        Parameters
+        ----------
+        {options}
+
+        Returns
+        -------
+        MotionProgram
+            A function of (t, q, dot q, u, dot u, ddot u), in the forms in which it can be written.
+
+        Raises
+        ------
+        HolonomError
+            The scene does not exist.
+
+        Examples
+        --------
+        >>> scene.program().document[:26]
+        '{"format":"holonom-program'
+        """
         return MotionProgram(self._source, self._request(**options), self.limits)
 
     @cached_property
@@ -450,6 +691,6 @@ class Scene:
 
 
 def _settings(settings: Mapping[str, Number]) -> dict[str, str]:
-    """Numbers in Maxima's notation."""
+    """Return the settings as numbers in Maxima's notation."""
     texts = {name: repr(float(value)) if isinstance(value, float) else str(value) for name, value in settings.items()}
     return read_settings(f"{name}={text.replace('e+', 'e').replace('E+', 'e')}" for name, text in texts.items())

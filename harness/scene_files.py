@@ -1,4 +1,4 @@
-"""The files that a scene may read in the sandbox, as copies.
+"""Copies of the files that a scene may read in the sandbox.
 
 They are the regular files below the scene's folder that its text names, and those beside it that end in .mac, .lisp
 or .csv. Links are not followed, nor is a hidden file or folder entered, and their size is limited.
@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
 
-from .failures import Failure, HolonomError
+from .failures import ErrorKind, HolonomError
 
 SUFFIXES = (".mac", ".lisp", ".csv")
 STRING = re.compile(r'"((?:[^"\\\n]|\\.)*+)')  # also one that does not end, or a search takes the square of the time
@@ -68,7 +68,7 @@ class _Copies:
         self._left -= len(content)
         if self._left < 0 or len(self.of) == MOST_FILES:
             detail = f"more than {MOST_FILES} files or {MOST_BYTES // 2**20} MiB"
-            raise HolonomError(Failure.TOO_MUCH_BESIDE, scene, detail)
+            raise HolonomError(ErrorKind.TOO_MUCH_BESIDE, scene, detail)
         self.of[path] = self._folder / str(len(self.of))
         self.of[path].write_bytes(content)
 
@@ -91,7 +91,7 @@ def _beside(folder: Path) -> list[str]:
 
 
 def _open_below(folder: Path, name: str) -> int:
-    """Open a regular file below a folder; neither it nor a folder on the way may be a link.
+    """Open a regular file below a folder, without following links.
 
     Raises
     ------
@@ -114,7 +114,7 @@ def _open_allowed(file: Path) -> int:
     try:
         return _regular(os.open(file, os.O_RDONLY | os.O_NONBLOCK))
     except OSError as error:
-        raise HolonomError(Failure.FILE_UNREADABLE, file, error.strerror or str(error)) from None
+        raise HolonomError(ErrorKind.FILE_UNREADABLE, file, error.strerror or str(error)) from None
 
 
 def _regular(descriptor: int) -> int:

@@ -5,9 +5,10 @@ from typing import Any, ClassVar
 
 
 class Shown:
-    """A result with a table. `holonom.display` makes it, and sets these functions; it imports results, never they it.
+    """A result with a table, which `holonom.display` makes.
 
-    A dataclass among them takes ``repr=False``, or it would print its fields instead.
+    `holonom.display` sets these functions; it imports results, never the reverse. A dataclass with this base takes
+    ``repr=False``, because it would print its fields otherwise.
     """
 
     as_text: ClassVar[Callable[[Any], str]] = object.__repr__

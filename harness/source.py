@@ -1,4 +1,7 @@
-"""Where a description comes from: a scene file, which is run in the sandbox, or a description that was kept."""
+"""Sources of descriptions: a scene file, or a stored description.
+
+A scene file runs in the sandbox.
+"""
 
 import warnings
 from collections.abc import Mapping
@@ -13,14 +16,14 @@ from .sandbox import Limits
 
 
 class Source:
-    """A scene file that is run once for each choice of settings, or the document of a description.
+    """A scene file that is run once for each choice of settings, or a description.
 
     Parameters
     ----------
     file : Path
         A scene file in Maxima's language, or a description in JSON.
     limits : Limits
-        What a run of Maxima may take.
+        Limits of each run of Maxima.
     """
 
     def __init__(self, file: Path, limits: Limits = DEFAULT_LIMITS) -> None:
@@ -28,7 +31,22 @@ class Source:
         self._described: dict[tuple[tuple[str, str], ...], Description] = {}
 
     def description(self, settings: Mapping[str, str] = NO_SETTINGS) -> Description:
-        """Return what the file says under these settings; raises as `describe`."""
+        """Return the description of the file under settings.
+
+        Parameters
+        ----------
+        settings : mapping of str to str
+            Numbers in Maxima's notation, for what the file leaves open and for parameters.
+
+        Returns
+        -------
+        Description
+
+        Raises
+        ------
+        HolonomError
+            As `describe`.
+        """
         key = tuple(sorted(settings.items()))
         if key not in self._described:
             self._described[key] = describe(self.file, settings, self.limits)
@@ -36,12 +54,26 @@ class Source:
 
 
 def source_of(file: Source | Path, limits: Limits) -> Source:
-    """Return a source of a file; a source as it is."""
+    """Return the source of a file.
+
+    Parameters
+    ----------
+    file : Source or Path
+        A source is returned unchanged.
+    limits : Limits
+        Limits of each run of Maxima, for a path.
+
+    Returns
+    -------
+    Source
+    """
     return file if isinstance(file, Source) else Source(file, limits)
 
 
 def describe(file: Path, settings: Mapping[str, str] = NO_SETTINGS, limits: Limits = DEFAULT_LIMITS) -> Description:
-    """Run a scene file, and read what it described; of a description, read it and put in the settings.
+    """Run a scene file and read its description, or read a description.
+
+    Settings are put into a description after it is read.
 
     Parameters
     ----------
@@ -49,6 +81,12 @@ def describe(file: Path, settings: Mapping[str, str] = NO_SETTINGS, limits: Limi
         A scene file in Maxima's language, or a description in JSON.
     settings : mapping of str to str
         Numbers in Maxima's notation, for what the file leaves open and for parameters.
+    limits : Limits
+        Limits of the run, and its sandbox.
+
+    Returns
+    -------
+    Description
 
     Raises
     ------

@@ -1,6 +1,6 @@
-"""Typed values of documents: a dataclass of what JSON holds, by the annotations of its fields.
+"""Typed values of documents: dataclasses read from JSON by their annotations.
 
-A document has the shape of its schema when it comes here (`holonom.formats.read`): nothing is checked a second time.
+A document has the shape of its schema when it comes here (`holonom.formats.read`); it is not checked a second time.
 """
 
 from collections.abc import Callable, Mapping
@@ -14,7 +14,17 @@ AS_IT_IS = (bool, int, str)
 
 
 def key(name: str) -> Any:
-    """Make a field of a dataclass that has another name in the document."""
+    """Make a field of a dataclass that has another name in the document.
+
+    Parameters
+    ----------
+    name : str
+        Name in the document.
+
+    Returns
+    -------
+    dataclasses.Field
+    """
     return field(metadata={"key": name})
 
 
@@ -27,10 +37,15 @@ def structured(kind: type[Struct], content: Mapping[str, Any], **given: Any) -> 
         The type. Of its fields those of dataclasses, named tuples, ``tuple[...]`` and ``Mapping[str, ...]`` are read in
         the same way; a class that has ``of_document`` reads itself; other classes are called, as enumerations are.
         Fields that the object does not have keep their defaults.
-    content : mapping
+    content : mapping of str to object
         The object.
-    **given
+    **given : object
         Values of fields that are not read.
+
+    Returns
+    -------
+    object
+        An instance of the type.
     """
     read = {
         name: _value(annotation, content[place])
@@ -55,7 +70,18 @@ def _value(kind: Any, content: Any) -> Any:
 
 @cache
 def reader_of(kind: Any) -> Callable[[Any], Any] | None:
-    """Return the function that reads a part of a document as a type; None if the part is kept as it is."""
+    """Return the function that reads a part of a document as a type.
+
+    Parameters
+    ----------
+    kind : type
+        Annotation of a field.
+
+    Returns
+    -------
+    callable or None
+        None if the part is kept unchanged.
+    """
     origin, inside = get_origin(kind), get_args(kind)
     if origin is UnionType:
         reader = reader_of(inside[0]) if len(inside) == 2 and inside[1] is NoneType else None

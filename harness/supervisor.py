@@ -1,9 +1,10 @@
-"""A command under supervision: everything that it started ends with it, and no temporary file stays.
+"""A supervised command: its processes and temporary files end with it.
 
-The command runs in a process below the supervisor, which waits for it or for a signal, ends what is left, and removes
-the directory for temporary files. The supervisor is itself a child of the process that was started, and learns of its
-end: even if that is killed, all is ended and removed. The kernel alone does not see to that: bubblewrap, killed at the
-wrong instant, leaves a child that waits for it for ever. The next command removes the files of a killed supervisor.
+The command runs in a process below the supervisor, which waits for it or for a signal, ends the remaining processes,
+and removes the directory for temporary files. The supervisor is itself a child of the process that was started, and
+is notified of its end: even if that is killed, all is ended and removed. The kernel alone does not do that:
+bubblewrap, killed at the wrong time, leaves a child that waits for it for ever. The next command removes the files of
+a killed supervisor.
 """
 
 import math
@@ -30,7 +31,7 @@ BOARD = 512  # bytes of memory in which the command leaves what it is doing
 
 _board: mmap.mmap | None = None
 _time_limit = math.inf  # seconds
-_deadline = math.inf  # the instant, of the monotonic clock, at which they are over
+_deadline = math.inf  # the time, of the monotonic clock, at which they are over
 
 
 @dataclass(frozen=True)
@@ -38,11 +39,22 @@ class Ending:
     """The ending of a command."""
 
     status: int  # its exit status; 128 + n if signal n ended it; 2 if its time was over; 3 if it crashed
-    sentence: str = ""  # the message to print; empty if the command printed its own
+    message: str = ""  # the message to print; empty if the command printed its own
 
 
 def supervise(command: Callable[[], int]) -> Ending:
-    """Run a command in a child of a child of this process; only the child, the supervisor, comes back from here.
+    """Run a command in a child of a child of this process.
+
+    Only the child, the supervisor, returns from this function.
+
+    Parameters
+    ----------
+    command : callable
+        Takes nothing; returns its exit status.
+
+    Returns
+    -------
+    Ending
 
     Raises
     ------
@@ -77,7 +89,10 @@ def supervise(command: Callable[[], int]) -> Ending:
 
 
 def _go_on_in_child(heeded: Collection[int]) -> None:
-    """Come back in a child, in a process group of its own; this process passes signals on, and ends as it does."""
+    """Return in a child, in a process group of its own.
+
+    This process passes signals on, and ends with the child's status.
+    """
     parent = os.getpid()
     child = os.fork()
     if child == 0:
@@ -96,9 +111,14 @@ def _go_on_in_child(heeded: Collection[int]) -> None:
 
 
 def limit_time(seconds: float) -> None:
-    """Limit the time of the command from now on; without supervision it is not limited.
+    """Limit the time of the command from now on.
 
-    The kernel ends the command by SIGALRM, whatever it computes.
+    The kernel ends the command by SIGALRM, independent of its state. Without supervision there is no limit.
+
+    Parameters
+    ----------
+    seconds : float
+        Wall-clock time.
     """
     global _time_limit, _deadline
     if _board is not None:
@@ -109,19 +129,40 @@ def limit_time(seconds: float) -> None:
 
 
 def limit_expected_time() -> None:
-    """Limit the time of a command that has no limit: what takes longer than expected is to be asked for with one."""
+    """Limit the time of a command without a limit.
+
+    A command that takes longer than expected needs an explicit limit.
+    """
     if math.isinf(_time_limit):
         limit_time(EXPECTED)
 
 
 def time_to_limit() -> float:
-    """Return the seconds until the command is ended; infinite if nothing limits it."""
+    """Return the time until the command is ended.
+
+    Returns
+    -------
+    float
+        In seconds; infinite without a limit.
+    """
     return math.inf if _board is None else _deadline - time.monotonic()
 
 
 @contextmanager
 def doing(what: str) -> Iterator[None]:
-    """Leave word of what the command does in the block, for the message if it crashes or runs out of time."""
+    """Record the activity of the command in the block.
+
+    The message names it if the command crashes or runs out of time.
+
+    Parameters
+    ----------
+    what : str
+        Activity, such as "compiling the motion".
+
+    Yields
+    ------
+    None
+    """
     before = _written()
     _write(what)
     try:
@@ -135,7 +176,7 @@ def _written() -> str:
 
 
 def _left_word() -> tuple[str, str]:
-    """Return the time limit and what the command does, as the command wrote them."""
+    """Return the recorded time limit and activity of the command."""
     text = "" if _board is None else _board[:].rstrip(b"\0").decode(errors="replace")
     limit, _, what = text.partition("\n")
     return limit, what
@@ -154,7 +195,7 @@ def _run(command: Callable[[], int], directory: Path, supervisor: int) -> int:
 
 
 def _wait(child: int, heeded: Collection[int]) -> Ending:
-    """Wait until the command ends, or a signal asks for its end."""
+    """Wait until the command ends or a signal requests its end."""
     while True:
         number = signal.sigwait(heeded)
         if number != signal.SIGCHLD:
@@ -170,8 +211,8 @@ def _ending_of(status: int) -> Ending:
     limit, what = _left_word()
     during = f" while {what}" if what else ""
     if -status == signal.SIGALRM:
-        sentence = f"this took longer than {limit} s, and ran out of them{during}; ask for less, or raise --time-limit."
-        return Ending(OUT_OF_TIME, sentence)
+        message = f"this took longer than {limit} s, and ran out of them{during}. Ask for less, or raise --time-limit."
+        return Ending(OUT_OF_TIME, message)
     if -status in QUIET_ENDS:
         return Ending(SIGNALLED - status)
     name = next((each.name for each in signal.Signals if each == -status), f"signal {-status}")

@@ -1,6 +1,6 @@
 """The filter of system calls in the sandbox, made by libseccomp.
 
-It refuses what a derivation needs no more than an attacker may have it: memory that no limit counts (in files without
+It rejects calls that a derivation does not need and that are dangerous: memory that no limit counts (in files without
 a name, in pages that a pipe holds, in attributes and locks of files), sockets, keys, namespaces, mounts, other
 processes, and interfaces of the kernel with a history of faults.
 """
@@ -28,7 +28,7 @@ ALLOW, REFUSE, MASKED_EQUAL = 0x7FFF0000, 0x00050000, 7  # of seccomp.h
 
 
 class _Condition(ctypes.Structure):
-    """Struct scmp_arg_cmp: argument number `argument`, masked, equals a value."""
+    """Struct scmp_arg_cmp: a masked argument, by its number, equals a value."""
 
     _fields_ = (
         ("argument", ctypes.c_uint),
@@ -40,7 +40,13 @@ class _Condition(ctypes.Structure):
 
 @cache
 def call_filter() -> bytes:
-    """Return the filter as a program of the kernel; empty if libseccomp is not installed."""
+    """Return the filter as a program of the kernel.
+
+    Returns
+    -------
+    bytes
+        Empty if libseccomp is not installed.
+    """
     try:
         library = ctypes.CDLL("libseccomp.so.2")
     except OSError:

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
-from .failures import Failure, HolonomError
+from .failures import ErrorKind, HolonomError
 
 PREFIX = ".holonom-run-"
 NAME = re.compile(re.escape(PREFIX) + r"[a-z0-9_]{8}")
@@ -22,6 +22,10 @@ NAME = re.compile(re.escape(PREFIX) + r"[a-z0-9_]{8}")
 @contextmanager
 def private_directory() -> Iterator[Path]:
     """Make a directory for temporary files, and remove it at the end.
+
+    Yields
+    ------
+    Path
 
     Raises
     ------
@@ -37,7 +41,10 @@ def private_directory() -> Iterator[Path]:
 
 
 class KeptDirectory:
-    """A private directory that exists as long as this object does. Raises as `private_directory`."""
+    """A private directory that exists as long as this object does.
+
+    Raises as `private_directory`.
+    """
 
     def __init__(self) -> None:
         held = ExitStack()
@@ -53,9 +60,15 @@ def remove_abandoned_directories() -> None:
 
 
 def remove_tree(path: Path) -> None:
-    """Remove a directory with everything in it; follow no link, and leave what cannot be removed.
+    """Remove a directory with its content, without following links.
 
-    Directories are emptied into the topmost one before they are removed, so depth costs neither stack nor descriptors.
+    Entries that cannot be removed are left. Directories are emptied into the topmost one before they are removed, so
+    depth costs neither stack nor descriptors.
+
+    Parameters
+    ----------
+    path : Path
+        The directory.
     """
     with suppress(OSError):
         top = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
@@ -69,7 +82,10 @@ def remove_tree(path: Path) -> None:
 
 
 def _remove_entry(name: str, top: int) -> bool:
-    """Remove a file, or a directory whose entries are moved to the topmost one; return True on success."""
+    """Remove a file or a directory; return True on success.
+
+    The entries of a directory are first moved to the topmost one.
+    """
     try:
         if not _is_directory(name, top):
             os.unlink(name, dir_fd=top)
@@ -109,7 +125,7 @@ def _locked_directory() -> tuple[Path, int]:
                     return path, lock
                 os.close(lock)
     except OSError as error:
-        raise HolonomError(Failure.NO_PRIVATE_DIRECTORY, detail=error.strerror or str(error)) from None
+        raise HolonomError(ErrorKind.NO_PRIVATE_DIRECTORY, detail=error.strerror or str(error)) from None
 
 
 def _remove_if_abandoned(path: Path) -> None:

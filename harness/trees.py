@@ -1,6 +1,6 @@
-"""MathJSON trees: what documents hold expressions as, and the way to go through one.
+"""MathJSON trees, the form of expressions in documents, and their traversal.
 
-A tree is what `json.loads` makes of
+A tree is the result of `json.loads` for
 
     integer          7, or {"num": "12345678901234567890"} from 2^53 on
     float            {"num": "1.25e0"}: a double; with more than 17 digits a number of that many digits
@@ -9,8 +9,8 @@ A tree is what `json.loads` makes of
     application      ["Add", a, b, ...], ["Power", a, b], ["Sin", a], ["Rational", 1, 3], ...
     indexed quantity ["Subscript", "A", 1, 2]
 
-and nothing else. It is gone through with a stack: the depth of an expression is bounded by memory, not by Python's
-recursion limit. (`json.loads` itself gives up at about a thousand levels.)
+and for nothing else. The traversal uses a stack: the depth of an expression is bounded by memory, not by Python's
+recursion limit. (`json.loads` itself is limited to about a thousand levels.)
 """
 
 import re
@@ -18,7 +18,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from .failures import Failure, HolonomError
+from .failures import ErrorKind, HolonomError
 
 Tree = int | str | dict | list
 
@@ -41,7 +41,20 @@ class _Application:
 
 
 def converted(root: Any, expand: Callable[[Any], tuple[Callable[..., Any], list]]) -> Any:
-    """Convert an expression, arguments first; `expand` takes a node to a function and that function's arguments."""
+    """Convert an expression, arguments first.
+
+    Parameters
+    ----------
+    root : object
+        Expression to convert.
+    expand : callable
+        Takes a node to a function and the arguments of that function, which are nodes.
+
+    Returns
+    -------
+    object
+        Value of the function of the root.
+    """
     waiting = [root]
     found: list[Any] = []
     while waiting:
@@ -60,10 +73,19 @@ def converted(root: Any, expand: Callable[[Any], tuple[Callable[..., Any], list]
 def integer(tree: object) -> int:
     """Return the value of a tree that is an integer.
 
+    Parameters
+    ----------
+    tree : Tree
+        A tree of any kind.
+
+    Returns
+    -------
+    int
+
     Raises
     ------
     HolonomError
-        It is none.
+        It is not an integer.
     """
     match tree:
         case int() if not isinstance(tree, bool) and abs(tree) < JSON_INTEGERS:
@@ -75,7 +97,16 @@ def integer(tree: object) -> int:
 
 
 def quantity(name: str) -> str:
-    """Return a name, if it is one of a quantity.
+    """Return a name if it names a quantity.
+
+    Parameters
+    ----------
+    name : str
+        A symbol of a tree.
+
+    Returns
+    -------
+    str
 
     Raises
     ------
@@ -88,6 +119,16 @@ def quantity(name: str) -> str:
 
 
 def refusal(part: object) -> HolonomError:
-    """Of a part that is no expression."""
+    """Return the error for a part that is not an expression.
+
+    Parameters
+    ----------
+    part : object
+        A part of a document.
+
+    Returns
+    -------
+    HolonomError
+    """
     shown = str(part)
-    return HolonomError(Failure.NOT_AN_EXPRESSION, detail=shown if len(shown) <= SHOWN else f"{shown[:SHOWN]}...")
+    return HolonomError(ErrorKind.NOT_AN_EXPRESSION, detail=shown if len(shown) <= SHOWN else f"{shown[:SHOWN]}...")

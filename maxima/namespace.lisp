@@ -1,18 +1,19 @@
 ;;; A namespace for the library
 ;;;
 ;;; Maxima has one space of names, and scopes them dynamically. The files of the library are read here: each of their
-;;; own names, gradient, is exchanged for a private twin, gradient', which is displayed and exported without the prime.
+;;; own names, gradient, is exchanged for a private symbol, gradient', which is displayed and
+;;; exported without the prime.
 ;;;
 ;;; Kept as they are: Maxima's own functions and variables; names that the library neither binds nor calls; the fields
 ;;; of structures; and the public names: those of public_names(...), the options (names given to define_variable), the
 ;;; entries of descriptions (named where read_entries is called), the writers of documents (write_...).
 ;;;
 ;;;   public_names(name, ...)$              declares names of the vocabulary
-;;;   public_steps(name(a, b, [c]), ...)$   declares functions that a user calls as well. The library calls their twins;
-;;; the plain name checks its arguments first (steps.mac). Those in brackets are given all or not at all
+;;;   public_steps(name(a, b, [c]), ...)$   declares functions that a user calls as well. The library calls the
+;;; private symbols; the plain name checks its arguments first (steps.mac). Those in brackets are given all or none
 ;;;   private_names(name, ...)$             declares names that head data: json_object(...)
 ;;;   load_library(directory, [file, ...])$ reads Maxima and Lisp files into the namespace, once
-;;;   internal_names();                     lists the names that have a twin
+;;;   internal_names();                     lists the names that have a private symbol
 ;;;   open_namespace()$                     reads from now on everything so: for tests of internal functions
 ;;;
 ;;; Names are collected from all files before the first statement is evaluated, so that a name means
@@ -59,25 +60,25 @@
                 (not (maximas-function-p name))
                 (not (maximas-variable-p name))))))
 
-(defun private-twin (name)
-  (let ((twin (intern (concatenate 'string (symbol-name name) "'") :maxima)))
-    (setf (get twin 'reversealias) name)
-    (setf (get twin 'plain-name) name)
-    twin))
+(defun private-symbol (name)
+  (let ((private (intern (concatenate 'string (symbol-name name) "'") :maxima)))
+    (setf (get private 'reversealias) name)
+    (setf (get private 'plain-name) name)
+    private))
 
-(defun private-twin-p (name) (and (symbolp name) (get name 'plain-name)))
+(defun private-symbol-p (name) (and (symbolp name) (get name 'plain-name)))
 
 (defun private-noun (noun)
   "The noun 'f of a private name."
-  (let* ((name (get noun 'noun)) (twin (and (maxima-name-p name) (read-name name))))
-    (if (or (null twin) (eq twin name))
+  (let* ((name (get noun 'noun)) (private (and (maxima-name-p name) (read-name name))))
+    (if (or (null private) (eq private name))
         noun
-        (let ((private ($nounify twin)))
+        (let ((private ($nounify private)))
           (setf (get private 'reversealias) name)
           private))))
 
 (defun plain-name (name)
-  "The name that a private twin stands for; any other name as it is."
+  "The name that a private symbol stands for; any other name as it is."
   (or (get name 'plain-name) name))
 
 (defun letters-of-name (name)
@@ -88,12 +89,12 @@
 (defun read-name (name)
   "What a name is read as: decided once, where it is met first."
   (or (gethash name *read-names*)
-      (setf (gethash name *read-names*) (if (private-name-p name) (private-twin name) name))))
+      (setf (gethash name *read-names*) (if (private-name-p name) (private-symbol name) name))))
 
 ;;; An entry and an internal function may share a name:  kinetic_energy = ...,  kinetic_energy(sys).
 (defun read-function-name (name)
   (if (and (eq (gethash name *public-names*) 'entry) (gethash name *defined-names*))
-      (private-twin name)
+      (private-symbol name)
       (read-name name)))
 
 ;;; ---- statements, with the names exchanged ------------------------------------------------
@@ -234,12 +235,12 @@
 (defmacro define-library-version (name arguments &body body)
   "What the library's files mean when they call a function of Maxima's."
   `(progn (setf (gethash ',name *defined-names*) t)
-          (setf (symbol-function (private-twin ',name)) #'(lambda ,arguments ,@body))))
+          (setf (symbol-function (private-symbol ',name)) #'(lambda ,arguments ,@body))))
 
 ;;; A name made from a private one is what the library would read it as.
 (define-library-version $concat (&rest parts)
   (let ((made (apply '$concat parts)))
-    (if (and (symbolp made) (some #'private-twin-p parts)) (read-name made) made)))
+    (if (and (symbolp made) (some #'private-symbol-p parts)) (read-name made) made)))
 
 (define-library-version $parse_string (text) (in-namespace (parsed text)))
 (define-library-version $eval_string (text) (meval (in-namespace (parsed text))))
@@ -274,7 +275,7 @@
   (setq $values (remove-if #'public-option-p $values)))
 
 (defun define-step (call)
-  "The plain name of a step:  name([given]) := called_step(twin, [a, b], [c], given)."
+  "The plain name of a step:  name([given]) := called_step(internal, [a, b], [c], given)."
   (let* ((given (read-name '$given))
          (letters (mapcar #'in-namespace (cdr call)))
          (optional (find-if #'$listp letters)))

@@ -9,11 +9,15 @@ import io
 import re
 from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import IO, Any
 
 from babel.messages.catalog import Catalog, Message
 from babel.messages.extract import extract
 from babel.messages.pofile import read_po, write_po
+from jinja2.ext import babel_extract
+from sphinx.application import Sphinx
+from sphinx.util.docutils import docutils_namespace, patch_docutils
 
 import holonom
 from holonom.companion.pages import WHITESPACE
@@ -29,16 +33,21 @@ IN_MAXIMA = re.compile(
     rf'|\bequation\("[^"]*",\s*"\w+",\s*{STRING}'  # names of equations
     rf'|\bprinted\("[^"]*",\s*{STRING}'
     rf'|\b(?:then|else) "(inverse[^"]*)"'
-    rf'|"((?:Compared|Holds|Printed|What is)[^"]*\.)"'  # remarks on the print
+    rf'|"((?:Compared|Holds|Printed|What is)[^"]*\.)"'  # notes on the print
 )
 IN_TOML = re.compile(rf"^(?:meaning|where|comment|heading|aim|drawing|curves) = {STRING}$", re.MULTILINE)
 KEPT = {
     "placeholders": re.compile(r"%(?:\(\w+\)[.\d]*[a-z]|%)"),
     "marks": re.compile(r"<[^>]+>"),
     "formulas": re.compile(r"\$[^$]+\$"),
-    "code": re.compile(r"`[^`]+`"),
+    "code": re.compile(r"(?:\{\w+\})?`[^`]+`"),
 }
 """What a translation has in common with its message."""
+TRANSLATED = ("book", "manual")  # folders of pages in other languages; the reference is in English
+SHOWN = re.compile(r"^```\{show\}\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+VALUE = re.compile(r"\{value\}`([^`]+)`")
+ALIKE = re.compile(r"\$[^$]*\$|`[^`]*`|\{\w+\}`[^`]*`|\[\]\([^)]*\)|[^$`]*\\[^$`]*|Holonom", re.DOTALL)
+"""What is the same in every language."""
 Found = Iterator[tuple[int, str, str, list[str]]]  # line, function, message, comments
 
 
@@ -59,24 +68,30 @@ def template_text(catalog: Catalog) -> str:
     return written.getvalue().decode()
 
 
-def read_catalog(language: str) -> Catalog:
-    """The catalog of a language as it is; empty where there is none."""
-    file = catalog_file(language)
-    if not file.exists():
-        return Catalog(locale=language, project=DOMAIN, charset="utf-8")
+def read_catalog(language: str, name: str = DOMAIN) -> Catalog:
+    """A catalog of a language as it is; empty where there is none."""
+    file = catalog_file(language, name)
+    return (
+        read_catalog_file(file, language) if file.exists() else Catalog(locale=language, project=name, charset="utf-8")
+    )
+
+
+def read_catalog_file(file: Path, language: str | None = None) -> Catalog:
+    """A catalog or a template."""
     with file.open("rb") as text:
         return read_po(text, locale=language)
 
 
 def update() -> None:
     """Write the template and the catalogs anew."""
-    catalog = collected()
-    write_whole(TEMPLATE, template_text(catalog))
+    with TemporaryDirectory() as folder:
+        templates = {DOMAIN: collected(), **page_templates(Path(folder))}
+    write_whole(TEMPLATE, template_text(templates[DOMAIN]))
     for language in LANGUAGES:
-        if language != ENGLISH:
-            known = read_catalog(language)
+        for name, catalog in templates.items() if language != ENGLISH else ():
+            known = read_catalog(language, name)
             known.update(catalog, no_fuzzy_matching=True, update_creation_date=False)
-            write_whole(catalog_file(language), template_text(known))
+            write_whole(catalog_file(language, name), template_text(known))
 
 
 def faults(catalog: Catalog) -> list[str]:
@@ -92,10 +107,15 @@ def _faults(message: Message) -> Iterator[str]:
     if message.fuzzy:
         yield "fuzzy"
     for what, pattern in KEPT.items():
-        wanted = set(pattern.findall(_english(message)))
+        wanted = _kept(pattern, _english(message))
         for text in texts:
-            if (found := set(pattern.findall(text))) != wanted:
+            if (found := _kept(pattern, text)) != wanted:
                 yield f"{what} differ, {', '.join(sorted(found ^ wanted))}"
+
+
+def _kept(pattern: re.Pattern, text: str) -> set[str]:
+    """What a text has of a kind, without the words that it defines and the names of chapters."""
+    return {found for found in pattern.findall(text) if not found.startswith(("{dfn}", "{numref}"))}
 
 
 def _english(message: Message) -> str:
@@ -108,6 +128,8 @@ def _sources() -> Iterator[tuple[Path, Any, Mapping[str, Any]]]:
     pages = {name: str(value).lower() for name, value in WHITESPACE.items()}
     for file in sorted(PACKAGE.rglob("*.html")):
         yield file, "jinja2", {**pages, "extensions": "jinja2.ext.i18n", "silent": "false"}
+    for file in sorted(PACKAGE.rglob("companion/**/*.md")):
+        yield file, _in_markdown, pages
     for file in sorted(PACKAGE.rglob("*.toml")):
         yield file, _in_toml, {}
     for file in sorted(PACKAGE.rglob("*.py")):
@@ -127,12 +149,41 @@ def _place(file: Path) -> str:
 
 
 def _in_maxima(file: IO[bytes], keywords: Collection[str], tags: Collection[str], options: Mapping[str, Any]) -> Found:
-    """Titles, sources, names of equations and remarks in a Maxima file."""
+    """Titles, sources, names of equations and notes in a Maxima file."""
     text = re.sub(r"/\*.*?\*/", "", file.read().decode(), flags=re.DOTALL)
     for found in IN_MAXIMA.finditer(text):
         message = " ".join(next(filter(None, found.groups()), "").split())
         if message:
             yield 0, "gettext", message.replace('\\"', '"'), []
+
+
+def _in_markdown(
+    file: IO[bytes], keywords: Collection[str], tags: Collection[str], options: Mapping[str, Any]
+) -> Found:
+    """The messages in the pieces of templates within a page of the book or the manual."""
+    text = file.read().decode()
+    pieces = [*SHOWN.findall(text), *(f"{{{{ {value} }}}}" for value in VALUE.findall(text))]
+    template = io.BytesIO("\n".join(pieces).encode())
+    yield from babel_extract(template, keywords, tags, {**options, "extensions": "jinja2.ext.i18n"})
+
+
+def page_templates(folder: Path) -> dict[str, Catalog]:
+    """The messages of the pages of the book and the manual, by the names of their catalogs."""
+    package = PACKAGE / "companion"
+    with patch_docutils(package), docutils_namespace():
+        Sphinx(package, package, folder, folder / "doctrees", "gettext", status=None).build()
+    return {name: _to_translate(folder / f"{name}.pot") for name in TRANSLATED}
+
+
+def _to_translate(file: Path) -> Catalog:
+    """The messages of a template of Sphinx's but those that are code or a formula alone."""
+    catalog = Catalog(project=DOMAIN, charset="utf-8")
+    for message in read_catalog_file(file):
+        if message.id and not ALIKE.fullmatch(message.id):
+            catalog.add(
+                message.id, None, [(name, None) for name in dict.fromkeys(name for name, _ in message.locations)]
+            )
+    return catalog
 
 
 def _in_toml(file: IO[bytes], keywords: Collection[str], tags: Collection[str], options: Mapping[str, Any]) -> Found:
@@ -145,4 +196,5 @@ if __name__ == "__main__":
     update()
     for language in LANGUAGES:
         if language != ENGLISH:
-            print(*(f"{language}: {fault}" for fault in faults(read_catalog(language))), sep="\n")
+            for file in sorted(catalog_file(language).parent.glob("*.po")):
+                print(*(f"{file.name}: {fault}" for fault in faults(read_catalog_file(file, language))), sep="\n")

@@ -11,4 +11,4 @@ needs_sandbox = pytest.mark.skipif(not SANDBOXED, reason="bubblewrap is missing 
 
 def without_notice(said: str) -> str:
     """Remove the line about a missing sandbox from the standard error of a command, if this machine has none."""
-    return said if SANDBOXED else said.replace(f"holonom: {UNCONFINED}\n", "", 1)
+    return said if SANDBOXED else said.replace(f"holonom: warning: {UNCONFINED}\n", "", 1)

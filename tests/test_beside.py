@@ -7,11 +7,11 @@ import time
 import pytest
 
 from holonom.cli.beside import beside, result_of
-from holonom.failures import Failure, HolonomError
+from holonom.failures import ErrorKind, HolonomError
 
 
 def refused(_: object) -> None:
-    raise HolonomError(Failure.REFUSED, "scene.mac:3", "no such mass", refusal="unknown_entry")
+    raise HolonomError(ErrorKind.REFUSED, "scene.mac:3", "no such mass", refusal="unknown_entry")
 
 
 def ended(_: object) -> None:
@@ -29,8 +29,8 @@ def test_errors_are_raised_here():
         child.send(None)
         with pytest.raises(HolonomError) as error:
             result_of(child)
-    assert (error.value.failure, error.value.place, error.value.refusal) == (
-        Failure.REFUSED,
+    assert (error.value.kind, error.value.place, error.value.refusal) == (
+        ErrorKind.REFUSED,
         "scene.mac:3",
         "unknown_entry",
     )
@@ -41,7 +41,7 @@ def test_child_that_is_ended_is_told():
         child.send(None)
         with pytest.raises(HolonomError) as error:
             result_of(child)
-    assert error.value.failure is Failure.WORKER_ENDED
+    assert error.value.kind is ErrorKind.WORKER_ENDED
 
 
 def test_child_ends_with_the_block():

@@ -17,10 +17,10 @@ from particle import PARTICLE
 
 from holonom.cli import holonom as cli
 from holonom.cli import run
-from holonom.crosscheck.report import Judgement, Verdict
+from holonom.crosscheck.report import CheckResult, Verdict
 from holonom.display.condition import condition_lines
 from holonom.display.derivation import why_left_out
-from holonom.failures import Failure, HolonomError
+from holonom.failures import ErrorKind, HolonomError
 from holonom.record import LARGEST_SIZE, LeftOut, read_record
 
 HOLONOM = [sys.executable, "-m", "holonom"]
@@ -133,7 +133,7 @@ def test_bad_input_is_one_sentence_and_writes_nothing(write_scene, tmp_path):
     done = holonom("derive", scene, "--json", tmp_path / "record.json")
     assert done.returncode == 2
     assert done.stdout == ""
-    assert done.stderr == f"holonom: {scene}:2: holonomic_system: the mass m is not declared.\n"
+    assert done.stderr == f"holonom: error: {scene}:2: holonomic_system: the mass m is not declared.\n"
     assert os.listdir(tmp_path) == [scene.name]
 
 
@@ -227,11 +227,11 @@ def test_doctor_tells_what_is_missing_and_the_command_that_installs_it(tmp_path)
     components = {each["name"]: each for each in json.loads(done.stdout)["components"]}
     assert done.returncode == 1
     assert components["maxima"]["version"] is None
-    assert "maxima" in components["maxima"]["remedy"]
+    assert "maxima" in components["maxima"]["hint"]
     assert components["bwrap"]["version"] is None
-    assert "user namespaces" in components["bwrap"]["remedy"]
+    assert "user namespaces" in components["bwrap"]["hint"]
     assert components["sympy"]["version"] == metadata.version("sympy")
-    assert components["heyoka"]["remedy"] == "pip install 'holonom[motion]'"
+    assert components["heyoka"]["hint"] == "pip install 'holonom[motion]'"
 
 
 def test_doctor_finds_this_installation_whole(holonom_here):
@@ -240,14 +240,14 @@ def test_doctor_finds_this_installation_whole(holonom_here):
     assert metadata.version("heyoka") in done.stdout
 
 
-@pytest.mark.parametrize("failure", list(Failure))
-def test_advice_names_no_option_that_the_command_lacks(failure):
-    parts = (failure.said, *failure.remedies)
+@pytest.mark.parametrize("kind", list(ErrorKind))
+def test_advice_names_no_option_that_the_command_lacks(kind):
+    parts = (kind.reason, *kind.hints)
     named = {name for part in parts for _, name, _, _ in Formatter().parse(part) if name and name[:2] != "--"}
-    error = HolonomError(failure, "scene.mac", "detail", **dict.fromkeys(named - {"detail"}, 1))
+    error = HolonomError(kind, "scene.mac", "detail", **dict.fromkeys(named - {"detail"}, 1))
     assert "--" not in str(error)
-    assert "--" not in error.sentence(())
-    assert error.sentence({"--until", "--time-limit", "--engine", "--drift", "--precision"}).endswith(".")
+    assert "--" not in error.message(())
+    assert error.message({"--until", "--time-limit", "--engine", "--stabilization", "--precision"}).endswith(".")
 
 
 def test_check_and_derive_were_silent_about_equations_that_are_not_made(holonom_here):
@@ -288,7 +288,7 @@ def test_the_scene_file_s_closed_form_size_had_no_effect(write_scene, holonom_he
 
 
 def test_a_law_that_sympy_contradicts_had_exit_status_0(particle_scene, monkeypatch):
-    contradicted = Judgement(Verdict.DISAGREES, 50, 8, "lambda1 is 1")
+    contradicted = CheckResult(Verdict.DISAGREES, 50, 8, "lambda1 is 1")
     monkeypatch.setattr("holonom.free_verdicts.judge_law", lambda *_: contradicted)
     found = CliRunner().invoke(cli, ["free", str(particle_scene)], standalone_mode=False)
     assert found.return_value == 1

@@ -1,6 +1,8 @@
-"""Examples in docstrings print what they say."""
+"""Docstrings: examples that print what they say, short summaries, and complete sections."""
 
+import ast
 import doctest
+import re
 from importlib import import_module
 from pathlib import Path
 
@@ -9,7 +11,11 @@ import pytest
 import holonom
 
 PACKAGE = Path(holonom.__file__).parent
-WITH_EXAMPLES = [file for file in sorted(PACKAGE.rglob("*.py")) if ">>> " in file.read_text(encoding="utf-8")]
+PUBLIC = {PACKAGE / "scene.py", PACKAGE / "equations.py", PACKAGE / "program/forms.py"}  # see test_public_docstrings.py
+WITH_EXAMPLES = [
+    file for file in sorted({*PACKAGE.rglob("*.py")} - PUBLIC) if ">>> " in file.read_text(encoding="utf-8")
+]
+PROPERTIES = {"property", "cached_property"}
 
 
 @pytest.mark.parametrize("file", WITH_EXAMPLES, ids=lambda file: file.relative_to(PACKAGE).as_posix())
@@ -18,3 +24,58 @@ def test_examples_print_what_they_say(file):
     found = doctest.testmod(import_module(name))
     assert found.attempted > 0
     assert found.failed == 0
+
+
+def test_a_summary_is_one_short_line():
+    book = PACKAGE / "companion"
+    files = [file for file in sorted(PACKAGE.rglob("*.py")) if book not in file.parents]
+    summaries = [(file.name, text.split("\n\n")[0]) for file in files for text in docstrings(file)]
+    assert [each for each in summaries if len(each[1]) > 80 or "\n" in each[1]] == []
+
+
+def test_public_functions_document_parameters_and_results():
+    files = sorted(PACKAGE.rglob("*.py"))
+    found = [(file, each) for file in files for each in public_functions(parsed(file).body)]
+    assert found
+    missing = [(file.name, each.name, lacking) for file, each in found if (lacking := undocumented(each))]
+    assert missing == []
+
+
+def public_functions(body):
+    for node in body:
+        public = isinstance(node, ast.ClassDef | ast.FunctionDef) and not node.name.startswith("_")
+        if public and not is_command(node):
+            yield from public_functions(node.body) if isinstance(node, ast.ClassDef) else [node]
+
+
+def is_command(node):
+    """Return True for a command of Click: its docstring is its help text."""
+    return any(re.match(r"(holonom\.command|click\.group)\(", ast.unparse(each)) for each in node.decorator_list)
+
+
+def undocumented(function):
+    """Return what the sections Parameters and Returns of a docstring lack or have in another order."""
+    text, taken = ast.get_docstring(function) or "", function.args
+    heads = re.findall(r"^\S.*", section(text, "Parameters"), re.MULTILINE)
+    named = [name for head in heads for name in re.findall(r"\w+", head.partition(" : ")[0])]
+    arguments = [*taken.posonlyargs, *taken.args, taken.vararg, *taken.kwonlyargs, taken.kwarg]
+    names = [argument.arg for argument in arguments if argument and argument.arg not in ("self", "cls")]
+    decorators = {ast.unparse(each) for each in function.decorator_list}
+    returns = function.returns and ast.unparse(function.returns) != "None" and not decorators & PROPERTIES
+    described = section(text, "Returns") or section(text, "Yields")
+    return (names if named != names else []) + (["Returns"] if returns and not described else [])
+
+
+def section(text, title):
+    found = re.search(rf"^{title}\n-+\n(.*?)(?=\n\n\w+\n---|\Z)", text, re.MULTILINE | re.DOTALL)
+    return found[1] if found else ""
+
+
+def docstrings(file):
+    documented = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+    nodes = (node for node in ast.walk(parsed(file)) if isinstance(node, documented))
+    return [text for text in map(ast.get_docstring, nodes) if text]
+
+
+def parsed(file):
+    return ast.parse(file.read_text(encoding="utf-8"))

@@ -1,13 +1,14 @@
 """Documents: every one has a schema, keeps it, and is refused where it does not."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from jsonschema import Draft202012Validator
 
 from holonom.documents import Question, ask, ask_all
-from holonom.failures import Failure, HolonomError
+from holonom.failures import ErrorKind, HolonomError
 from holonom.formats import SCHEMAS, Document, Publication, is_document, read, schema
 from holonom.maxima import DEFAULT_LIMITS, run_description
 from holonom.source import Source
@@ -21,7 +22,7 @@ def test_every_document_has_a_schema_that_names_its_format(name):
     found = schema(name)
     Draft202012Validator.check_schema(found)
     assert found["properties"]["format"] == {"const": f"holonom-{name}"}
-    assert found["properties"]["version"] == {"const": 1}
+    assert found["properties"]["version"] == {"const": 2}
 
 
 def test_every_schema_is_that_of_a_document():
@@ -66,11 +67,11 @@ def test_commands_publish_what_the_schema_says(command, holonom_here):
 
 def test_what_has_another_shape_is_refused_where_it_differs():
     with pytest.raises(HolonomError, match=r"holonom-errata: at \$\.equations\[0\]") as raised:
-        read(Document.ERRATA, '{"format": "holonom-errata", "version": 1, "equations": [2]}')
-    assert raised.value.failure is Failure.NOT_A_DOCUMENT
+        read(Document.ERRATA, '{"format": "holonom-errata", "version": 2, "equations": [2]}')
+    assert raised.value.kind is ErrorKind.NOT_A_DOCUMENT
 
 
-ENVELOPE = {"format": "holonom-check", "version": 1}
+ENVELOPE = {"format": "holonom-check", "version": 2}
 
 
 @pytest.mark.parametrize(
@@ -81,7 +82,7 @@ ENVELOPE = {"format": "holonom-check", "version": 1}
         ({"name": "mine"}, False),
         ({**ENVELOPE, "format": "holonom-thesis"}, False),
         ({**ENVELOPE, "format": ["holonom-check"]}, False),
-        ({**ENVELOPE, "version": 2}, False),
+        ({**ENVELOPE, "version": 1}, False),
         ({"mine": ENVELOPE}, False),
         ([], False),
         ([ENVELOPE, "mine"], False),
@@ -91,7 +92,7 @@ def test_a_document_is_known_by_its_envelope(content, ours):
     assert is_document(json.dumps(content).encode()) is ours
 
 
-@pytest.mark.parametrize("text", [b'{"format": "holonom-check", "version": 1', b"\xff\xfe", b"[" * 100_000, b""])
+@pytest.mark.parametrize("text", [b'{"format": "holonom-check", "version": 2', b"\xff\xfe", b"[" * 100_000, b""])
 def test_what_is_no_json_is_no_document(text):
     assert not is_document(text)
 
@@ -100,7 +101,7 @@ def test_what_is_no_json_is_no_document(text):
 def test_what_is_no_name_never_reaches_maxima(scene):
     with pytest.raises(HolonomError) as raised:
         ask(Document.FREE_MOTION, PAPER, scene)
-    assert raised.value.failure is Failure.NOT_A_SCENE_NAME
+    assert raised.value.kind is ErrorKind.NOT_A_SCENE_NAME
 
 
 def test_one_run_writes_the_documents_of_several():
@@ -116,9 +117,9 @@ def test_one_run_writes_the_documents_of_several():
     ]
     together = ask_all(questions, source)
     alone = [answer for each in questions for answer in ask_all([each], source)]
-    refusals = [(each.failure, each.refusal, each.detail) for each in (together.pop(1), alone.pop(1))]
+    refusals = [(each.kind, each.refusal, each.detail) for each in (together.pop(1), alone.pop(1))]
     assert refusals[0] == refusals[1]
-    assert refusals[0][0] is Failure.REFUSED
+    assert refusals[0][0] is ErrorKind.REFUSED
     assert together == alone
 
 
@@ -126,6 +127,7 @@ def test_documents_written_before_a_limit_are_kept():
     description = Source(EXAMPLES / "bead.mac").description()
     endless = "lambda([file], do print(file))"
     writers = ["write_record", endless, "write_record"]
-    record, *broken_off = run_description(description.text, description.file, writers, DEFAULT_LIMITS, None)
+    limits = replace(DEFAULT_LIMITS, output_mib=1)
+    record, *broken_off = run_description(description.text, description.file, writers, limits, None)
     read(Document.RECORD, record)
-    assert [each.failure for each in broken_off] == [Failure.TOO_MUCH_TEXT] * 2
+    assert [each.kind for each in broken_off] == [ErrorKind.TOO_MUCH_TEXT] * 2

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from holonom.failures import Failure, HolonomError
+from holonom.failures import ErrorKind, HolonomError
 from holonom.files import (
     MANIFEST,
     require_own_files,
@@ -47,7 +47,7 @@ def test_what_was_there_stays_when_the_new_cannot_be_written(tmp_path):
 def test_a_place_that_cannot_be_written_is_refused(place, tmp_path):
     with pytest.raises(HolonomError) as raised:
         write_whole(tmp_path / place, "text")
-    assert raised.value.failure is Failure.UNWRITABLE
+    assert raised.value.kind is ErrorKind.UNWRITABLE
 
 
 def test_a_link_is_followed_and_a_device_kept(tmp_path):
@@ -133,7 +133,7 @@ def test_a_link_of_somebody_else_is_not_followed(tmp_path):
     for path in (link, own):
         with pytest.raises(HolonomError) as raised:
             write_whole(path, "forged")
-        assert raised.value.failure is Failure.UNWRITABLE
+        assert raised.value.kind is ErrorKind.UNWRITABLE
     assert victim.read_text() == "secret"
 
 
@@ -158,7 +158,7 @@ def test_a_new_directory_appears_whole(tmp_path, monkeypatch):
     monkeypatch.setattr("os.fsync", fill)
     with pytest.raises(HolonomError) as raised:
         write_whole_directory(tmp_path / "pages", {"a": "1", "b": "2", "c/d": "3"})
-    assert raised.value.failure is Failure.DISK_FULL
+    assert raised.value.kind is ErrorKind.DISK_FULL
     assert os.listdir(tmp_path) == []
 
 
@@ -194,6 +194,6 @@ def test_a_foreign_file_of_the_same_name_is_refused(write, tmp_path):
     (directory / "CMakeLists.txt").write_text("mine")
     with pytest.raises(HolonomError) as raised:
         write(directory, {"index.html": "second", "CMakeLists.txt": "ours"})
-    assert raised.value.failure is Failure.FOREIGN_FILE
+    assert raised.value.kind is ErrorKind.UNRELATED_FILE
     assert (directory / "CMakeLists.txt").read_text() == "mine"
     assert (directory / "index.html").read_text() == "first"

@@ -3,7 +3,7 @@
 import pytest
 import sympy as sp
 
-from holonom.crosscheck.report import Judgement
+from holonom.crosscheck.report import CheckResult
 from holonom.crosscheck.system import MechanicalSystem, dotted
 from holonom.crosscheck.verdict import Verdict
 from holonom.free_verdicts import FreeMotionTrial
@@ -21,7 +21,7 @@ def trial(force, span=HALF) -> FreeMotionTrial:
 
 ROOT = trial(((1 - t) * u**2 - 1) * y)
 GOOD, BAD, OPEN = (
-    Judgement(verdict, None, None, "why") for verdict in (Verdict.AGREES, Verdict.DISAGREES, Verdict.UNDECIDED)
+    CheckResult(verdict, None, None, "why") for verdict in (Verdict.AGREES, Verdict.DISAGREES, Verdict.UNDECIDED)
 )
 
 

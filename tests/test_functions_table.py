@@ -43,6 +43,23 @@ def numeric(tree):
     return (each["num"] if isinstance(each, dict) else each for each in tree[1:])
 
 
+def numbers(given):
+    return map(mp.mpmathify, given)
+
+
+@pytest.mark.parametrize("function", FUNCTIONS, ids=lambda each: each.head)
+def test_the_derivative_is_that_of_the_values(function):
+    given = [sympy.Rational(each) for each in numeric(trees(function)[1])]
+    place = 1 if function.of_an_order else 0
+    before, after = given[:place], given[place + 1 :]
+    x = sympy.Symbol("x", real=True)
+    with mp.workdps(30):
+        rate = CLASSES[function](*before, x, *after).diff(x).subs(x, given[place]).evalf(30)
+        value = points.FUNCTIONS.get(CLASSES[function], mp.sqrt)
+        quotient = mp.diff(lambda each: value(*numbers(before), each, *numbers(after)), given[place])
+        assert abs(mp.mpmathify(rate) - quotient) < mp.mpf(10) ** -12
+
+
 def test_what_maxima_writes_is_in_the_table_and_nothing_else():
     table = (LIBRARY / "record" / "mathjson.lisp").read_text(encoding="utf-8").partition("*mathjson-functions*")[2]
     heads = set(re.findall(r'\. "(\w+)"', table.partition("(defun")[0])) - {"Multiply", "Divide", "Negate"}

@@ -19,7 +19,7 @@ from rich.text import Text
 
 from holonom.display.progress import motion_progress
 from holonom.display.text import PlainConsole, html_of, text_of
-from holonom.failures import Failure, HolonomError
+from holonom.failures import ErrorKind, HolonomError
 from holonom.figures.style import Picture, figure_style, new_figure, svg_text
 from holonom.hidden import visible, visible_line
 from holonom.program.model import scene_model
@@ -83,8 +83,8 @@ def test_a_bar_of_progress_takes_a_title_for_text(monkeypatch):
 
 
 def test_a_sentence_is_seen():
-    assert not UNSEEN.search(str(HolonomError(Failure.REFUSED, HOSTILE, HOSTILE)))
-    assert not UNSEEN.search(HolonomError(Failure.REFUSED, HOSTILE, HOSTILE).sentence())
+    assert not UNSEEN.search(str(HolonomError(ErrorKind.REFUSED, HOSTILE, HOSTILE)))
+    assert not UNSEEN.search(HolonomError(ErrorKind.REFUSED, HOSTILE, HOSTILE).message())
 
 
 @pytest.mark.parametrize("text", [HOSTILE, MARKUP, "$x$ $\\frac$", "a$b", "\\$ $"])

@@ -29,14 +29,15 @@ leaves = st.one_of(
 
 
 def combined(parts: st.SearchStrategy) -> st.SearchStrategy:
-    """Of readable parts: atan2 of what is no number raises an error in SymPy itself."""
+    """Of readable parts: SymPy's atan2 raises an error for infinities and for complex numbers."""
     parts = parts.filter(is_readable)
+    reals = parts.filter(lambda part: part.is_extended_real is not False)
     several = st.lists(parts, min_size=2, max_size=4)
     return st.one_of(
         several.map(lambda terms: sympy.Add(*terms)),
         several.map(lambda factors: sympy.Mul(*factors)),
         st.tuples(parts, st.integers(-3, 3).map(Integer)).map(lambda power: sympy.Pow(*power)),
-        st.tuples(parts, parts).map(lambda sides: sympy.atan2(*sides)),
+        st.tuples(reals, reals).map(lambda sides: sympy.atan2(*sides)),
         st.tuples(st.sampled_from(functions), parts).map(lambda call: call[0](call[1])),
     )
 

@@ -10,7 +10,7 @@ from rtests import RtestFailed, count_statements, run_rtest
 from shell import SHELL
 
 from holonom.documents import ask
-from holonom.failures import Failure, HolonomError
+from holonom.failures import ErrorKind, HolonomError
 from holonom.formats import Document
 from holonom.maxima import LIBRARY, run_batch
 from holonom.sandbox import Limits
@@ -33,24 +33,24 @@ def test_a_scene_that_was_copied_away_from_beside_the_library_was_refused(write_
 @pytest.mark.parametrize(
     ("text", "line", "failure", "detail"),
     [
-        ("x : 1$\n\nintegrate(exp(-a*y), y, 0, inf)$", 3, Failure.QUESTION, "Is a positive, negative or zero?"),
-        ('read("your name", x^2)$', 1, Failure.QUESTION, "your name x^2"),
-        ("x : 1$\ny :\n  1/0$", 2, Failure.REFUSED, "expt: undefined: 0 to a negative exponent."),
-        ('/* a /* nested */ one */\nerror("no mass in", x^2 + y/z)$', 2, Failure.REFUSED, "no mass in y/z+x^2"),
-        ('load("nowhere.mac")$', 1, Failure.REFUSED, "file_search1: nowhere.mac not found"),
-        ("f(x) := x$\nf(1, 2)$", 2, Failure.REFUSED, "Too many arguments"),
-        ("x : 1$\ny : 2 +* 3$", 2, Failure.SYNTAX, "* is not a prefix operator"),
-        ("y compare z$", 1, Failure.SYNTAX, "compare is not an infix operator"),
-        ("x : 1$\ny : (2", 2, Failure.SYNTAX, "end of file"),
-        ('x : 1$\ny : "unclosed', 2, Failure.SYNTAX, "end of file"),
-        ("f(x) := 1 + f(x)$\nf(1)$", 2, Failure.LISP_ERROR, "overflow"),
-        ("?car(1, 2)$", 1, Failure.LISP_ERROR, "arguments"),
+        ("x : 1$\n\nintegrate(exp(-a*y), y, 0, inf)$", 3, ErrorKind.QUESTION, "Is a positive, negative or zero?"),
+        ('read("your name", x^2)$', 1, ErrorKind.QUESTION, "your name x^2"),
+        ("x : 1$\ny :\n  1/0$", 2, ErrorKind.REFUSED, "expt: undefined: 0 to a negative exponent."),
+        ('/* a /* nested */ one */\nerror("no mass in", x^2 + y/z)$', 2, ErrorKind.REFUSED, "no mass in y/z+x^2"),
+        ('load("nowhere.mac")$', 1, ErrorKind.REFUSED, "file_search1: nowhere.mac not found"),
+        ("f(x) := x$\nf(1, 2)$", 2, ErrorKind.REFUSED, "Too many arguments"),
+        ("x : 1$\ny : 2 +* 3$", 2, ErrorKind.SYNTAX, "* is not a prefix operator"),
+        ("y compare z$", 1, ErrorKind.SYNTAX, "compare is not an infix operator"),
+        ("x : 1$\ny : (2", 2, ErrorKind.SYNTAX, "end of file"),
+        ('x : 1$\ny : "unclosed', 2, ErrorKind.SYNTAX, "end of file"),
+        ("f(x) := 1 + f(x)$\nf(1)$", 2, ErrorKind.LISP_ERROR, "overflow"),
+        ("?car(1, 2)$", 1, ErrorKind.LISP_ERROR, "arguments"),
     ],
 )
 def test_a_statement_that_fails_is_found(text, line, failure, detail, write_scene):
     file = write_scene(text)
     error = failure_of(file)
-    assert error.failure is failure
+    assert error.kind is failure
     assert error.place == f"{file}:{line}"
     assert detail in error.detail
     assert error.refusal is None
@@ -63,26 +63,26 @@ def test_a_statement_that_fails_is_found(text, line, failure, detail, write_scen
         # GCL collects garbage until the clock runs out where it cannot have the memory it wants.
         pytest.param(
             "hog : []$ for i do hog : cons(1.5*i, hog)$",
-            {Failure.TOO_LARGE, Failure.TOO_LONG},
+            {ErrorKind.TOO_LARGE, ErrorKind.TOO_LONG},
             marks=pytest.mark.long,
         ),
-        ('for i do print("so it goes on, and on, and on")$', {Failure.TOO_MUCH_TEXT}),
-        ("quit()$", {Failure.ENDED_EARLY}),
-        (f'{SHELL} in_a_shell("kill -9 $PPID")$', {Failure.KILLED}),
-        ("x : 1$", {Failure.NOTHING_WRITTEN}),
-        ("", {Failure.NOTHING_WRITTEN}),
+        ('for i do print("so it goes on, and on, and on")$', {ErrorKind.TOO_MUCH_TEXT}),
+        ("quit()$", {ErrorKind.ENDED_EARLY}),
+        (f'{SHELL} in_a_shell("kill -9 $PPID")$', {ErrorKind.KILLED}),
+        ("x : 1$", {ErrorKind.NOTHING_WRITTEN}),
+        ("", {ErrorKind.NOTHING_WRITTEN}),
     ],
 )
 def test_a_file_that_ends_badly_is_named(text, failure, write_scene):
     file = write_scene(text)
     error = failure_of(file, LONG)
-    assert error.failure in failure
+    assert error.kind in failure
     assert str(error).startswith(f"{file}: ")
 
 
 @pytest.mark.parametrize("text", ["for i do 1$", 'system("sleep 60")$'])
 def test_a_file_that_never_ends_is_ended(text, write_scene):
-    assert failure_of(write_scene(text), replace(LONG, seconds=1)).failure is Failure.TOO_LONG
+    assert failure_of(write_scene(text), replace(LONG, seconds=1)).kind is ErrorKind.TOO_LONG
 
 
 def test_a_syntax_error_in_a_loaded_file_is_found_there(write_scene, tmp_path):
@@ -93,18 +93,18 @@ def test_a_syntax_error_in_a_loaded_file_is_found_there(write_scene, tmp_path):
 
 def test_an_error_is_caught_by_the_file_itself(write_scene):
     error = failure_of(write_scene("errcatch(1/0)$ x : 1$"))
-    assert error.failure is Failure.NOTHING_WRITTEN
+    assert error.kind is ErrorKind.NOTHING_WRITTEN
 
 
 def test_a_lisp_error_without_a_message_ended_in_an_empty_sentence(write_scene):
     error = failure_of(write_scene('?error("")$'))
-    assert (error.failure, error.detail) == (Failure.LISP_ERROR, "it does not say which")
+    assert (error.kind, error.detail) == (ErrorKind.LISP_ERROR, "it does not say which")
 
 
 def test_a_refusal_has_its_id_with_its_place(write_scene):
     file = write_scene('load("holonom.mac")$\ndot(x + y)$')
     error = failure_of(file)
-    assert (error.failure, error.refusal, error.place) == (Failure.REFUSED, "dot_of_expression", f"{file}:2")
+    assert (error.kind, error.refusal, error.place) == (ErrorKind.REFUSED, "dot_of_expression", f"{file}:2")
 
 
 def test_an_error_after_a_refusal_that_was_caught_has_no_id(write_scene):
@@ -128,20 +128,20 @@ def test_a_file_without_a_system_is_refused(write_scene):
 
 
 def test_missing_and_unreadable_files(tmp_path):
-    assert failure_of(tmp_path / "nowhere.mac").failure is Failure.FILE_MISSING
-    assert failure_of(tmp_path).failure is Failure.FILE_UNREADABLE
+    assert failure_of(tmp_path / "nowhere.mac").kind is ErrorKind.FILE_MISSING
+    assert failure_of(tmp_path).kind is ErrorKind.FILE_UNREADABLE
 
 
 def test_maxima_not_installed(particle_scene, monkeypatch, tmp_path):
     monkeypatch.setenv("PATH", str(tmp_path))
-    assert failure_of(particle_scene).failure is Failure.MAXIMA_MISSING
+    assert failure_of(particle_scene).kind is ErrorKind.MAXIMA_MISSING
 
 
 def test_init_files_are_not_read(write_scene, tmp_path, monkeypatch):
     (tmp_path / "maxima-init.mac").write_text('error("read")$')
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("MAXIMA_USERDIR", str(tmp_path))
-    assert failure_of(write_scene("x : 1$")).failure is Failure.NOTHING_WRITTEN
+    assert failure_of(write_scene("x : 1$")).kind is ErrorKind.NOTHING_WRITTEN
 
 
 def test_the_command_given_repeats_the_failure_with_maxima_alone(write_scene):

@@ -132,7 +132,7 @@ POWER = "parameters=[n], forces=[0,(1+t)^n], constraints=[y-u]"
 
 
 @pytest.mark.parametrize("entries", [SIGN, POWER], ids=["sign", "power"])
-def test_no_question_is_asked_where_nobody_answers(batch, entries):
+def test_no_question_is_asked_in_a_batch_run(batch, entries):
     printed = batch(f"""
 load(holonom)$
 system : holonomic_system(coordinates=[x,y], controls=[u], kinetic_energy=(dot(x)^2+dot(y)^2)/2, {entries})$

@@ -2,25 +2,22 @@
 
 import re
 import shlex
-import subprocess
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
 
 import pytest
+from snippets import LONG, in_a_process, require_parts, snippets_of
 
 from holonom import system
 from holonom.cli import holonom
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-BLOCK = r"^```(\w*)\n(.*?)^```$"
-BLOCKS = re.findall(BLOCK, README, re.MULTILINE | re.DOTALL)
+BLOCKS = snippets_of(ROOT / "README.md")
 OUTPUTS = {
     before.splitlines()[-1].partition("#")[0]: text for (_, before), (kind, text) in pairwise(BLOCKS) if kind == "text"
 }
-# Commands that other tests run; here, that they take their arguments.
-LONG = ("companion", "accuracy", "stability", "errata", "sweep")
 
 
 def blocks(language: str) -> list[str]:
@@ -35,7 +32,7 @@ def commands() -> list[list[str]]:
 def test_the_chinese_readme_says_the_same_to_the_machine():
     """Its commands and its scene are among those that are run here; what it links to is there."""
     text = (ROOT / "README.zh.md").read_text(encoding="utf-8")
-    found = re.findall(BLOCK, text, re.MULTILINE | re.DOTALL)
+    found = snippets_of(ROOT / "README.zh.md")
     lines = [line.partition("#")[0].split() for kind, block in found if kind == "sh" for line in block.splitlines()]
     assert [line for line in lines if line not in commands()] == []
     assert [block for kind, block in found if kind == "maxima"] == blocks("maxima")[:1]
@@ -57,22 +54,6 @@ def test_there_are_snippets_of_each_kind():
     assert {kind for kind, _ in BLOCKS} == {"sh", "text", "python", "maxima"}
 
 
-def require_parts(output: str, printed: list[str]) -> None:
-    """Find each part between dots in what a command prints."""
-    for part in output.split("...\n"):
-        wanted = part.split()
-        starts = range(len(printed) - len(wanted) + 1)
-        assert any(all(map(alike, wanted, printed[at:])) for at in starts), part
-
-
-def alike(wanted: str, found: str) -> bool:
-    """Return True for the same word, and for numbers that differ by rounding alone."""
-    try:
-        return float(found) == pytest.approx(float(wanted), rel=1e-9)
-    except ValueError:
-        return wanted == found
-
-
 def test_each_output_follows_a_command_that_is_run():
     assert len(OUTPUTS) == 3
     assert {*OUTPUTS} <= {shlex.join(command) for command in commands()}
@@ -86,10 +67,6 @@ def test_times_beside_peers_are_those_of_the_benchmark():
         method = {"Holonom": "Holonom, Taylor"}.get(name, name)
         found = re.search(rf"^pendulum +{method} +([0-9.]+)", measured, re.MULTILINE)[1]
         assert number == f"{float(found):.3g}", name
-
-
-def in_a_process(*command: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
 
 
 @pytest.mark.parametrize("command", commands(), ids=" ".join)

@@ -3,16 +3,15 @@
 import os
 import subprocess
 import sys
-import time
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from uuid import uuid4
 
 import psutil
 import pytest
+from waiting import living, soon
 
-from holonom.failures import Failure
+from holonom.failures import ErrorKind
 from holonom.sandbox import LimitExceeded, Limits, Place, Sandbox, run_process
 
 READABLE = (Path(sys.prefix), Path(sys.base_prefix))
@@ -36,20 +35,20 @@ def test_standard_input_is_at_its_end(tmp_path):
 @pytest.mark.parametrize(
     ("program", "seconds", "failure"),
     [
-        ("import time; time.sleep(1e9)", 1, Failure.TOO_LONG),
-        ("while True: pass", 1, Failure.TOO_LONG),
-        ("hog = []\nwhile True: hog.append(bytearray(10**6))", 100, Failure.TOO_LARGE),
-        ("while True: print('so it goes on')", 100, Failure.TOO_MUCH_TEXT),
+        ("import time; time.sleep(1e9)", 1, ErrorKind.TOO_LONG),
+        ("while True: pass", 1, ErrorKind.TOO_LONG),
+        ("hog = []\nwhile True: hog.append(bytearray(10**6))", 100, ErrorKind.TOO_LARGE),
+        ("while True: print('so it goes on')", 100, ErrorKind.TOO_MUCH_TEXT),
     ],
 )
 def test_a_limit_ends_the_process(program, seconds, failure, tmp_path):
     with pytest.raises(LimitExceeded) as exceeded:
         run(program, tmp_path, Limits(seconds=seconds, memory_mib=200, output_mib=1))
-    assert exceeded.value.failure is failure
+    assert exceeded.value.kind is failure
 
 
 def test_a_process_that_may_not_be_ended_was_a_traceback(monkeypatch, tmp_path):
-    """What runs with other rights; and macOS refuses the signal to a group of which nobody lives any more."""
+    """What runs with other rights; and macOS refuses the signal to a group without living processes."""
 
     def denied(_: psutil.Process) -> None:
         raise psutil.AccessDenied
@@ -104,17 +103,3 @@ def test_a_killed_parent_takes_all_with_it(sandbox, tmp_path):
 
 def trusting(sandbox: Sandbox) -> Limits:
     return replace(LIMITS, sandbox=sandbox)
-
-
-def living(mark: str) -> list[psutil.Process]:
-    """Processes on whose command line the mark stands."""
-    return [
-        each for each in psutil.process_iter(["cmdline"]) if any(mark in word for word in each.info["cmdline"] or ())
-    ]
-
-
-def soon(condition: Callable[[], bool]) -> bool:
-    deadline = time.monotonic() + 100
-    while not condition() and time.monotonic() < deadline:
-        time.sleep(0.02)
-    return condition()

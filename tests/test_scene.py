@@ -1,4 +1,4 @@
-"""The front door: one object for all that a scene can be asked."""
+"""High-level API: one object for all that a scene can be asked."""
 
 import subprocess
 import sys
@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 import scipy.integrate
 import sympy
-from refusing import refused
+from refusing import failing, refused
 
 import holonom
+from holonom.failures import ErrorKind
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 OSCILLATOR = """
@@ -174,7 +175,7 @@ def test_a_scene_is_chosen_by_its_name_and_the_last_one_without():
     assert holonom.system(OSCILLATOR).simulate(until=1, samples=2)["x"][-1] == pytest.approx(np.sin(2), abs=1e-13)
     with refused("unknown_scene"):
         holonom.system(OSCILLATOR, scene="nowhere").simulate()
-    with pytest.raises(holonom.HolonomError, match="there is no scene nowhere"):
+    with failing(ErrorKind.NO_SUCH_SCENE, "nowhere"):
         _ = holonom.system(OSCILLATOR, scene="nowhere").equations
 
 
@@ -182,7 +183,7 @@ def test_a_scene_that_prescribes_reactions_has_the_equations_of_the_described_sy
     last, first = (holonom.load(EXAMPLES / "prescribed_tension.mac", scene=name) for name in (None, "thrown_scene"))
     assert {"2", "8", "11"} <= {equation.number for equation in last.equations}
     assert list(last.equations.titles()) == list(first.equations.titles())
-    with pytest.raises(holonom.HolonomError, match="the file has thrown_scene, steady_scene, growing_scene"):
+    with failing(ErrorKind.NO_SUCH_SCENE, "thrown_scene, steady_scene, growing_scene"):
         _ = holonom.load(EXAMPLES / "prescribed_tension.mac", scene="thrown").equations
 
 
@@ -193,11 +194,11 @@ def test_settings_reach_the_file():
 
 @pytest.mark.parametrize("value", ["quit()", float("inf"), "1 + 1"])
 def test_a_setting_that_is_no_number_is_refused(value):
-    with pytest.raises(holonom.HolonomError, match="sets nothing"):
+    with failing(ErrorKind.NOT_A_SETTING, f"k={value}"):
         holonom.system(OSCILLATOR, k=value)
 
 
-@pytest.mark.parametrize("choice", [{"engine": "warp"}, {"drift": "tape"}, {"solve": "guess"}])
+@pytest.mark.parametrize("choice", [{"engine": "warp"}, {"stabilization": "tape"}, {"solve": "guess"}])
 def test_what_is_no_choice_is_told_the_choices(released, choice):
     with pytest.raises(holonom.HolonomError, match="there is no (warp|tape|guess); there are "):
         released.simulate(**choice)
@@ -205,12 +206,12 @@ def test_what_is_no_choice_is_told_the_choices(released, choice):
 
 @pytest.mark.parametrize("asked", [{"until": "noon"}, {"until": float("nan")}, {"until": "1/0"}, {"samples": 1}])
 def test_an_end_or_samples_that_make_no_motion_are_refused(released, asked):
-    with pytest.raises(holonom.HolonomError, match="is no instant|samples is 2 or more, not 1"):
+    with pytest.raises(holonom.HolonomError, match="invalid time|samples is 2 or more, not 1"):
         released.simulate(**asked)
 
 
 def test_a_missing_file_is_refused_at_once():
-    with pytest.raises(holonom.HolonomError, match="there is no such file"):
+    with failing(ErrorKind.FILE_MISSING):
         holonom.load("nowhere.mac")
 
 
@@ -221,7 +222,7 @@ def test_an_example_that_travels_with_the_package_is_found_from_anywhere(tmp_pat
     own = Path("examples", "pendulum.mac")
     own.write_text("mine : 1$")
     assert holonom.load(own).file == own
-    with pytest.raises(holonom.HolonomError, match="no such file"):
+    with failing(ErrorKind.FILE_MISSING):
         holonom.load("examples/none.mac")
 
 
@@ -273,9 +274,9 @@ def test_the_text_of_a_system_is_removed_with_its_last_scene():
 
 
 def test_in_python_advice_names_arguments_and_no_options(released):
-    with pytest.raises(holonom.HolonomError, match="give a later one with until"):
+    with pytest.raises(holonom.HolonomError, match="Give a later one with until"):
         released.simulate(until=-1)
-    with pytest.raises(holonom.HolonomError, match="ask for less, or raise limits"):
+    with pytest.raises(holonom.HolonomError, match="Ask for less, or raise limits"):
         holonom.load(released.file, limits=holonom.Limits(seconds=1e-3)).free()
 
 

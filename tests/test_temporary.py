@@ -5,7 +5,7 @@ import os
 
 import pytest
 
-from holonom.failures import Failure, HolonomError
+from holonom.failures import ErrorKind, HolonomError
 from holonom.temporary import PREFIX, private_directory, remove_abandoned_directories, remove_tree
 
 
@@ -93,5 +93,5 @@ def test_file_system_without_locks_is_refused(monkeypatch, tmp_path):
     monkeypatch.setattr("fcntl.flock", refuse)
     with pytest.raises(HolonomError) as raised:
         private_directory().__enter__()
-    assert raised.value.failure is Failure.NO_PRIVATE_DIRECTORY
+    assert raised.value.kind is ErrorKind.NO_PRIVATE_DIRECTORY
     assert list(tmp_path.iterdir()) == []

@@ -1,1 +1,1 @@
-"""The benchmarks: what accuracy costs in time, and what is hard to compute."""
+"""Benchmarks: time against accuracy, and problems that are hard to compute."""

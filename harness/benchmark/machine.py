@@ -1,4 +1,4 @@
-"""What measured: every table and figure of times says so."""
+"""The machine of a measurement, shown with every table and figure of times."""
 
 import platform
 from collections.abc import Mapping
@@ -30,7 +30,17 @@ class Machine:
 
 
 def this_machine(packages: tuple[str, ...] = PACKAGES) -> Machine:
-    """Return the machine this runs on, today, with the versions of those packages that are installed."""
+    """Return this machine, today's date and the versions of installed packages.
+
+    Parameters
+    ----------
+    packages : tuple of str
+        Names of packages whose versions are recorded.
+
+    Returns
+    -------
+    Machine
+    """
     versions = {"Python": platform.python_version()}
     for package in packages:
         try:

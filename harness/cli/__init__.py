@@ -1,6 +1,6 @@
-"""The command line, thin: it reads options, calls one function, and shows or writes its result.
+"""The command line: read options, call one function, show or write its result.
 
-Modules are imported inside the commands: ``holonom --help`` waits for no SymPy.
+Modules are imported inside the commands, so that ``holonom --help`` does not import SymPy.
 """
 
 from . import benchmark, companion, derivation, free_motion, installation, motion, programs, stability, sweep

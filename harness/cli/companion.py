@@ -11,9 +11,21 @@ from ..language import ENGLISH, LANGUAGES
 from ..sandbox import Limits
 from .group import holonom
 from .options import runs_scenes, takes_settings
-from .outputs import OutputFile, SceneFile, as_given
+from .outputs import OutputFile, SceneFile
 
-EXTRAS = ("jinja2", "babel", "latex2mathml", "matplotlib", "heyoka", "ziamath", "pypdf")
+EXTRAS = (
+    "jinja2",
+    "babel",
+    "latex2mathml",
+    "matplotlib",
+    "heyoka",
+    "ziamath",
+    "pypdf",
+    "sphinx",
+    "myst_parser",
+    "furo",
+    "sphinxcontrib.bibtex",
+)
 
 
 @holonom.command(examples=["companion -o build/companion", "companion examples/pendulum.mac -o pages"])
@@ -50,26 +62,26 @@ def companion(
     Without a SCENE it is the textbook companion of the paper, else pages of the SCENEs, for a browser.
     """
     require_extras()
-    from ..companion.book import make_book
-    from ..companion.own_scenes import book_of_scenes
-    from ..companion.paper import book_of_the_paper
+    from ..companion.own_scenes import chapters_of_scenes
+    from ..companion.paper import chapters_of_the_paper
+    from ..companion.site import make_site
     from ..display.progress import progress
     from .console import make_console
 
     given = tuple(settings.items())
     if given and not scenes:
         raise click.UsageError("--set needs a SCENE")
-    command = " ".join(["holonom companion", *map(as_given, scenes)])
-    book = book_of_scenes(scenes, given, limits, command) if scenes else book_of_the_paper()
-    with progress(f"Making {directory}", len(book.runs)) as done:
-        make_book(book, directory, pdf, tuple(dict.fromkeys(languages)) or (ENGLISH,), done)
+    chapters = chapters_of_scenes(scenes, given, limits) if scenes else chapters_of_the_paper()
+    runs = {run for chapter in chapters.values() for run in chapter.runs.values()}
+    with progress(f"Making {directory}", len(runs)) as done:
+        make_site(scenes, chapters, directory, pdf, tuple(dict.fromkeys(languages)) or (ENGLISH,), done)
     done_line = f"The companion is in {directory}: open {directory / 'index.html'} in a browser."
     make_console().print(done_line, soft_wrap=True)
     return 0
 
 
 def require_extras() -> None:
-    """Refuse to begin where a package that the pages take is missing, and name it."""
+    """Raise if a package that the pages require is missing, and name it."""
     for package in EXTRAS:
         if find_spec(package) is None:
             raise missing_package(package)

@@ -10,8 +10,8 @@ import click
 from ..language import ENGLISH, LANGUAGES, speaking
 from ..sandbox import Limits
 from ..supervisor import doing, time_to_limit
+from .background import run_in_background
 from .group import holonom
-from .meanwhile import meanwhile
 from .options import DISAGREEMENT, present, publish, runs_scenes, takes_settings, writes_json
 from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile, as_given
 
@@ -26,7 +26,7 @@ limits_closed_forms = click.option(
     "--closed-form-size",
     metavar="N",
     type=click.IntRange(min=1),
-    help="Make closed forms up to so many terms; without it, up to the scene file's closed_form_size, or 500.",
+    help="Make closed forms of up to this many terms; without it, up to the scene file's closed_form_size, or 500.",
 )
 
 
@@ -112,7 +112,7 @@ def check(
     seed = seed or fresh_seed()
     sources = [Source(scene, limits) for scene in scenes]
     with beside(_judge_motions, settings, seed) as child:
-        with meanwhile(scenes[0], limits, _import_what_checks):
+        with run_in_background(scenes[0], limits, _import_what_checks):
             described = [source.description(settings) for source in sources]
             child.send(sources)
             records = [derived_record(source, settings, closed_form_size=closed_form_size) for source in sources]
@@ -140,10 +140,10 @@ def check(
 
 
 def _judge_motions(sources: Sequence["Source"], settings: dict[str, str], seed: str) -> list[list["EquationVerdict"]]:
-    """Ask Maxima for the motions of each source, and judge them."""
+    """Ask Maxima for the motions of each source, and verify them."""
     from ..crosscheck.questions import ask_for_check
 
-    with meanwhile(sources[0].file, sources[0].limits, _import_what_judges_motions):
+    with run_in_background(sources[0].file, sources[0].limits, _import_what_judges_motions):
         asked = [ask_for_check(source, settings) for source in sources]
 
     from ..crosscheck.motions import motion_verdicts, read_motions
@@ -157,13 +157,13 @@ def _judge_motions(sources: Sequence["Source"], settings: dict[str, str], seed: 
 
 
 def _import_what_checks() -> None:
-    """Import SymPy, and what needs it."""
+    """Import SymPy and the modules of the check."""
     from ..crosscheck import check, lagranges_method, motions  # noqa: F401
     from ..display import derivation  # noqa: F401
 
 
 def _import_what_judges_motions() -> None:
-    """Import it, and what reads motions."""
+    """Import the modules that read and verify motions."""
     from ..crosscheck import motions  # noqa: F401
     from ..program import drawing  # noqa: F401
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..sandbox import Limits
+from .background import run_in_background
 from .group import holonom
-from .meanwhile import meanwhile
 from .options import DISAGREEMENT, asks_one_scene, present, runs_scenes, writes_json
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ def free(
     from ..documents import ask
     from ..formats import Document
 
-    with meanwhile(scene_file, limits, _import_what_follows):
+    with run_in_background(scene_file, limits, _import_what_follows):
         text = ask(Document.FREE_MOTION, scene_file, request.scene, order, settings=request.settings, limits=limits)
 
     from ..crosscheck.report import Verdict
@@ -56,7 +56,7 @@ def free(
 
 
 def _import_what_follows() -> None:
-    """Import SymPy, and what needs it."""
+    """Import SymPy and the modules of the analysis."""
     from ..display.free_motion import show_free_motion  # noqa: F401
     from ..free_motion import read_free_motion  # noqa: F401
 

@@ -1,7 +1,7 @@
-"""The group of commands, and the sentences and statuses that they leave with.
+"""The group of commands, their error messages and exit statuses.
 
-Exit status: 0 when all is well, 1 when a check fails, 2 for bad input, 3 where the machine lacks something, 70 after an
-internal error, 130 when interrupted, 141 where nobody reads what is written.
+Exit status: 0 for success, 1 if a check fails, 2 for bad input, 3 if the machine lacks something, 70 after an
+internal error, 130 when interrupted, 141 if the reader of the output has ended.
 """
 
 import io
@@ -29,12 +29,23 @@ OWN_PROCESS = object()  # what a command finds in its context when nothing else 
 
 
 class Commands(click.Group):
-    """The commands, with every failure explained in one sentence."""
+    """The commands, with every error reported in one message."""
 
     command_class = Command
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run the command asked for; return its exit status."""
+        """Run the command asked for; return its exit status.
+
+        Parameters
+        ----------
+        ctx : Context
+            Context of the group.
+
+        Returns
+        -------
+        object
+            Exit status of the command, as listed above.
+        """
         verbose = ctx.params["verbose"]
         try:
             with naming_the_extra():
@@ -44,20 +55,42 @@ class Commands(click.Group):
         except BrokenPipeError:
             return PIPE_CLOSED
         except MemoryError:
-            return _told("there is not enough memory for this; ask for less.", MACHINE_AT_FAULT)
+            return _report("there is not enough memory for this; ask for less.", MACHINE_AT_FAULT)
         except OSError as error:
-            return _machine_refuses(error)
+            return _system_error(error)
         except (click.ClickException, click.Abort, click.exceptions.Exit):
             raise
         except Exception as error:
             if sys.flags.optimize > 1:
-                return _told(NO_DOCSTRINGS, MACHINE_AT_FAULT)
+                return _report(NO_DOCSTRINGS, MACHINE_AT_FAULT)
             return _internal_error(error, verbose)
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Find the command; one that there is not is told what it may have been meant to be."""
+        """Find the command; the error for an unknown name suggests a similar one.
+
+        Parameters
+        ----------
+        ctx : Context
+            Context of the group.
+        args : list of str
+            Words of the command line, the name of the command first.
+
+        Returns
+        -------
+        name : str or None
+            Name of the command.
+        command : Command or None
+            The command.
+        rest : list of str
+            The other words.
+
+        Raises
+        ------
+        click.UsageError
+            No command has this name.
+        """
         try:
             return super().resolve_command(ctx, args)
         except click.UsageError as error:
@@ -86,7 +119,7 @@ class Commands(click.Group):
     help="Tell the versions of Holonom, Maxima and its Lisp, heyoka and SymPy.",
 )
 def holonom(verbose: bool, quiet: bool) -> None:
-    """Derive, check and simulate controllable holonomic systems with redundant coordinates.
+    """Derive, check and simulate holonomic systems with redundant coordinates.
 
     A SCENE is a Maxima file that describes a system and what to do with it.
     """
@@ -110,17 +143,25 @@ def main() -> None:
     try:
         ending = supervise(run)
     except HolonomError as error:
-        status = _told(error.sentence(), error.failure.status)
+        status = _report(error.message(), error.kind.status)
     except OSError as error:  # as where no process may be started
-        status = _machine_refuses(error)
+        status = _system_error(error)
     else:
-        status = _told(ending.sentence, ending.status) if ending.sentence else ending.status
+        status = _report(ending.message, ending.status) if ending.message else ending.status
     sys.stderr.flush()
     os._exit(status)  # the child has written all there is to write
 
 
 def run() -> int:
-    """Run the command line in this process; every failure is told in one sentence. Returns the exit status."""
+    """Run the command line in this process; return its exit status.
+
+    Every error is reported in one message.
+
+    Returns
+    -------
+    int
+        Exit status, as listed above.
+    """
     _write_what_can_be_written()
     warnings.showwarning = _show_warning
     try:
@@ -129,14 +170,13 @@ def run() -> int:
             sys.stdout.flush()
         return status
     except click.ClickException as error:
-        error.show()
-        return error.exit_code
+        return _report(f"{error.format_message().rstrip('.')}.", error.exit_code)
     except (click.Abort, KeyboardInterrupt):
         return INTERRUPTED
-    except (BrokenPipeError, SystemExit):  # with which rich and click leave where nobody reads
+    except (BrokenPipeError, SystemExit):  # with which rich and click leave where the reader is gone
         return PIPE_CLOSED
     except OSError as error:
-        return _machine_refuses(error)
+        return _system_error(error)
 
 
 def _show_warning(message: Warning | str, category: type[Warning], filename: str, lineno: int, *more: Any) -> None:
@@ -148,7 +188,10 @@ def _show_warning(message: Warning | str, category: type[Warning], filename: str
 
 
 def _open_what_is_closed() -> None:
-    """Have the null device stand in for a standard stream that is closed: the next file would take its number."""
+    """Open the null device in place of closed standard streams.
+
+    Otherwise the next file would take their number.
+    """
     while (descriptor := os.open(os.devnull, os.O_RDWR)) <= 2:
         pass
     os.close(descriptor)
@@ -158,37 +201,37 @@ def _open_what_is_closed() -> None:
 
 
 def _write_what_can_be_written() -> None:
-    """Have a letter that standard output or error cannot show written as its code."""
+    """Write characters that standard output or error cannot encode by their codes."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
 
 
-def _told(sentence: str, status: int) -> int:
-    click.echo(f"holonom: {' '.join(visible(sentence).splitlines())}", err=True)
+def _report(message: str, status: int) -> int:
+    click.echo(f"holonom: error: {' '.join(visible(message).splitlines())}", err=True)
     return status
 
 
-def _machine_refuses(error: OSError) -> int:
+def _system_error(error: OSError) -> int:
     what = f"{error.filename}: {error.strerror}" if error.filename else error.strerror or str(error)
-    return _told(f"this machine refuses: {what}; see to it, and run it again.", MACHINE_AT_FAULT)
+    return _report(f"the operating system reports: {what}.", MACHINE_AT_FAULT)
 
 
 def _refused(error: HolonomError, verbose: bool, options: Collection[str], standing_in: str) -> int:
-    """Tell what was refused; a file that stands in for standard input is not named."""
+    """Report an error; a temporary copy of standard input is not named."""
     named = "standard input"
-    _told(error.sentence(options).replace(standing_in or named, named), error.failure.status)
+    _report(error.message(options).replace(standing_in or named, named), error.kind.status)
     if verbose:
         for line in error.last_lines:
             click.echo(f"  | {visible(line)}", err=True)
         if error.command:
             click.echo(f"repeat it with: {visible(error.command)}", err=True)
-    return error.failure.status
+    return error.kind.status
 
 
 def _internal_error(error: Exception, verbose: bool) -> int:
     what = " ".join(f"{type(error).__name__}: {error}".split())
-    _told(f"an internal error, {what}; please report it with the output of `holonom -v ...`.", INTERNAL_ERROR)
+    _report(f"an internal error, {what}; please report it with the output of `holonom -v ...`.", INTERNAL_ERROR)
     if verbose:
         import traceback
 

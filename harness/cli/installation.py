@@ -34,23 +34,31 @@ def doctor(json_file: Path | None) -> int:
 
 
 def show_components(console: "Console", components: "Iterable[Component]") -> None:
-    """Print what is installed and what is missing, and the commands that install it."""
+    """Print installed and missing components, and the commands that install them.
+
+    Parameters
+    ----------
+    console : Console
+        Console to print on.
+    components : iterable of Component
+        Components, installed or not.
+    """
     from rich.table import Table
     from rich.text import Text
 
     table = Table("", "version", "for")
-    remedies = []
+    hints = []
     for component in components:
         if component.version is None:
-            remedies.append(component.remedy)
+            hints.append(component.hint)
             version = Text("missing", style="bold red" if component.needed else "yellow")
         else:
             version = Text(component.version or "found", style="green")
         table.add_row(component.name, version, component.purpose)
     console.print(table)
-    for remedy in dict.fromkeys(remedies):
-        console.print(f"to install what is missing: {remedy}", soft_wrap=True)
-    if not remedies:
+    for hint in dict.fromkeys(hints):
+        console.print(f"to install what is missing: {hint}", soft_wrap=True)
+    if not hints:
         console.print("Nothing is missing.")
 
 

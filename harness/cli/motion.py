@@ -1,4 +1,4 @@
-"""The commands about one motion: as a power series, and in numbers."""
+"""The commands about one motion: as a power series, and numerically."""
 
 import sys
 from contextlib import suppress
@@ -16,9 +16,9 @@ from ..program.request import Request
 from ..sandbox import Limits
 from ..series.request import AUTOMATIC, EXACT, SeriesRequest
 from ..simulation.request import FINAL_STATE_ALONE, SimulationRequest
+from .background import run_in_background
 from .group import OWN_PROCESS, holonom
-from .meanwhile import meanwhile
-from .options import as_instant, asks_one_scene, json_text, present, publish, runs_scenes, takes, writes_json
+from .options import as_time, asks_one_scene, json_text, present, publish, runs_scenes, takes, writes_json
 from .outputs import STANDARD_OUTPUT, OutputFile
 
 
@@ -29,7 +29,7 @@ from .outputs import STANDARD_OUTPUT, OutputFile
 @takes(*options_of(SeriesRequest, "order", "precision", "until"))
 @click.option("--exact", is_flag=True, help="Rational coefficients, or none; the default is exact where possible.")
 @click.option("--digits", metavar="D", type=click.IntRange(min=1), help="Coefficients of D significant digits.")
-@click.option("--at", metavar="T", callback=as_instant, help="Also add the series up at the instant T.")
+@click.option("--at", metavar="T", callback=as_time, help="Also add the series up at the time T.")
 @writes_json
 @runs_scenes
 def series(
@@ -116,13 +116,14 @@ def simulate(
     wanted = SimulationRequest(**options)
     source, digits = Source(scene_file, limits), _digits_of(wanted.precision)
     imports = partial(_import_what_follows, click.get_current_context().obj is OWN_PROCESS)
-    with meanwhile(scene_file, limits, imports):
+    with run_in_background(scene_file, limits, imports):
         document = problem_document(source, request, limits, digits, open_names(request, digits, wanted.sensitivities))
     problem = read_problem(document, source.description(request.settings).joints)
     if not stands(problem):
         problem = motion_problem(source, request, limits, digits)
-    from ..display.motion import distrust, show_report
+    from ..display.motion import HINT_OF_ROOT, rejection, show_report
     from ..display.progress import motion_progress
+    from ..simulation.accuracy_check import has_root_of
     from ..simulation.output import (
         report_document,
         require_disk,
@@ -160,19 +161,21 @@ def simulate(
         from .console import make_console
 
         show_report(make_console(), problem.scene, problem.title, report)
-    for doubt in report.doubts:
-        click.echo(distrust(doubt), err=True)
+    for violation in report.violations:
+        click.echo(rejection(violation), err=True)
+    if report.violations and has_root_of(problem.matrices, problem.state[len(problem.coordinates) :]):
+        click.echo(HINT_OF_ROOT, err=True)
     return 0 if report.trusted else FAILED
 
 
 def _names_of(curves: str) -> list[str]:
-    from ..sweeps.kept import items_of
+    from ..sweeps.outputs import items_of
 
     return [name.strip() for name in items_of(curves)]
 
 
 def _digits_of(precision: str) -> int:
-    """Decimal digits that the initial state is to have."""
+    """Return the number of decimal digits of the initial state."""
     from ..program.motion_problem import DOUBLE_DIGITS
 
     if precision == "double":
@@ -183,7 +186,7 @@ def _digits_of(precision: str) -> int:
 
 
 def _import_what_follows(own_process: bool) -> None:
-    """Import what is needed next."""
+    """Import the modules needed next."""
     with suppress(ImportError, HolonomError):  # what is missing is told when it is needed
         import jsonschema_rs  # noqa: F401
 
@@ -196,9 +199,10 @@ def _import_what_follows(own_process: bool) -> None:
 
 
 def _import_heyoka_alone() -> None:
-    """Import heyoka without SymPy, which takes four times as long and of which a simulation has no need.
+    """Import heyoka without SymPy, which takes four times as long to import.
 
-    heyoka remembers that it found none: only where nobody else uses it in this process.
+    A simulation does not need SymPy. heyoka remembers that it found none, so this is only for a process in which no
+    other code uses it.
     """
     if "sympy" not in sys.modules:
         sys.modules["sympy"] = None

@@ -1,4 +1,4 @@
-"""What several commands share: options, and documents put where an option asks for them."""
+"""Options that several commands share, and output of documents by an option."""
 
 import functools
 import json
@@ -13,7 +13,7 @@ import click
 
 from ..failures import HolonomError
 from ..hidden import visible
-from ..options import choices_of, kind_of, options_of, read, read_instant
+from ..options import choices_of, kind_of, options_of, read, read_time
 from ..program.request import Request, read_settings
 from ..sandbox import UNCONFINED, Limits, Sandbox, is_isolated
 from ..supervisor import EXPECTED, limit_time
@@ -25,7 +25,18 @@ MOST_MEMORY = 2**30  # MiB of a memory limit
 
 
 def writes_json(command: Callable[..., int]) -> Callable[..., int]:
-    """Give a command the option --json."""
+    """Give a command the option --json.
+
+    Parameters
+    ----------
+    command : callable
+        Function with an argument `json_file`.
+
+    Returns
+    -------
+    callable
+        The function with the option.
+    """
     return click.option(
         "--json",
         "json_file",
@@ -36,7 +47,18 @@ def writes_json(command: Callable[..., int]) -> Callable[..., int]:
 
 
 def takes_settings(command: Callable[..., int]) -> Callable[..., int]:
-    """Give a command the option --set."""
+    """Give a command the option --set.
+
+    Parameters
+    ----------
+    command : callable
+        Function with an argument `settings`, names with their values as text.
+
+    Returns
+    -------
+    callable
+        The function with the option.
+    """
     return click.option(
         "--set",
         "settings",
@@ -52,7 +74,22 @@ def _read_settings(ctx: click.Context, parameter: click.Parameter, texts: tuple[
 
 
 def takes(*taken: Field, name: str = "options") -> Callable[[Callable[..., int]], Callable[..., int]]:
-    """Give a command options that are fields of requests; it takes their values as one mapping of that name."""
+    """Give a command options that are fields of requests.
+
+    It takes their values as one mapping of that name.
+
+    Parameters
+    ----------
+    *taken : Field
+        Fields that become options.
+    name : str
+        Name of the argument that gets the values.
+
+    Returns
+    -------
+    callable
+        Decorator of a function that has this argument.
+    """
 
     def decorate(command: Callable[..., int]) -> Callable[..., int]:
         @functools.wraps(command)
@@ -70,12 +107,13 @@ def takes(*taken: Field, name: str = "options") -> Callable[[Callable[..., int]]
 def _click_option(each: Field) -> Callable[[Callable[..., int]], Callable[..., int]]:
     stated, kind = each.metadata["option"], kind_of(each)
     written = "--" + each.name.replace("_", "-")
-    names = (*(stated.spelt or [written]), each.name)
+    former = [f"--{stated.alias}"] if stated.alias else []
+    names = (*(stated.spelt or [written]), *former, each.name)
     choices, details = choices_of(each), {}
     if choices:
         details["type"] = click.Choice(choices)
     elif kind is Fraction:
-        details["callback"] = as_instant
+        details["callback"] = as_time
     elif kind is bool and each.default is None:
         names = (f"{written}/--no-{written[2:]}", each.name)
     elif kind is bool:
@@ -99,7 +137,20 @@ def _click_option(each: Field) -> Callable[[Callable[..., int]], Callable[..., i
 
 
 def asks_one_scene(*taken: Field) -> Callable[[Callable[..., int]], Callable[..., int]]:
-    """Give a command a scene file, and as its `request` a scene in it, numbers for what is open, and other fields."""
+    """Give a command a scene file and the fields of a request about one scene.
+
+    Its `request` has a scene of the file, values of open names, and the other fields.
+
+    Parameters
+    ----------
+    *taken : Field
+        Further fields of the request that become options.
+
+    Returns
+    -------
+    callable
+        Decorator of a function with arguments `scene_file` and `request`.
+    """
 
     def decorate(command: Callable[..., int]) -> Callable[..., int]:
         @functools.wraps(command)
@@ -113,7 +164,20 @@ def asks_one_scene(*taken: Field) -> Callable[[Callable[..., int]], Callable[...
 
 
 def runs_scenes(command: Callable[..., int]) -> Callable[..., int]:
-    """Give a command the options that limit and isolate its runs, passed on as `limits`."""
+    """Give a command the options that limit and sandbox its runs.
+
+    It takes them as `limits`.
+
+    Parameters
+    ----------
+    command : callable
+        Function with an argument `limits`.
+
+    Returns
+    -------
+    callable
+        The function with the options.
+    """
     defaults = Limits()
 
     @click.option(
@@ -166,32 +230,80 @@ def _read_seconds(ctx: click.Context, parameter: click.Parameter, seconds: float
 
 
 def _sandbox(trust: bool, sandbox: bool) -> Sandbox:
-    """Return when the scene runs in the sandbox; print one line if this machine has none and nobody asked for that."""
+    """Return when the scene runs in the sandbox.
+
+    Print one line if this machine has no sandbox and no option asks for one.
+    """
     if trust and sandbox:
         raise click.UsageError("--trust and --sandbox exclude one another")
     if trust:
         return Sandbox.TRUSTED
     wanted = Sandbox.REQUIRED if sandbox else Sandbox.WHERE_POSSIBLE
     if not is_isolated(Limits(sandbox=wanted)):
-        click.echo(f"holonom: {UNCONFINED}", err=True)
+        click.echo(f"holonom: warning: {UNCONFINED}", err=True)
     return wanted
 
 
-def as_instant(ctx: click.Context, parameter: click.Parameter, text: str | None) -> Fraction | None:
-    """Read an instant."""
+def as_time(ctx: click.Context, parameter: click.Parameter, text: str | None) -> Fraction | None:
+    """Read a time; a callback of Click.
+
+    Parameters
+    ----------
+    ctx : Context
+        Context of the command.
+    parameter : Parameter
+        Option that gives the time.
+    text : str or None
+        The time, a decimal number or a quotient.
+
+    Returns
+    -------
+    Fraction or None
+        None without the option.
+
+    Raises
+    ------
+    click.BadParameter
+        The text is not a time.
+    """
     try:
-        return None if text is None else read_instant(text)
+        return None if text is None else read_time(text)
     except HolonomError as error:
-        raise click.BadParameter(error.sentence(), ctx, parameter) from None
+        raise click.BadParameter(error.message(), ctx, parameter) from None
 
 
 def json_text(document: Any) -> str:
-    """Return a document as `--json` writes it."""
+    """Return a document as `--json` writes it.
+
+    Parameters
+    ----------
+    document : object
+        Content that JSON can hold.
+
+    Returns
+    -------
+    str
+        Text with a newline at its end.
+    """
     return json.dumps(document, ensure_ascii=False, indent=1) + "\n"
 
 
 def present(document: Any, json_file: Path | None, show: Callable[..., None], *shown: Any) -> None:
-    """Put a document where --json asks for it, and show a result on the console unless the document is there."""
+    """Write a document to the output that --json names, and show a result.
+
+    The result is not shown if the document goes to standard output.
+
+    Parameters
+    ----------
+    document : object
+        Content that JSON can hold.
+    json_file : Path or None
+        File that --json names; ``-`` is standard output; None without the option.
+    show : callable
+        Function that prints the result; its first argument is the console.
+    *shown : object
+        Further arguments of the function.
+    """
     publish(json_text(document), json_file)
     if json_file != STANDARD_OUTPUT:
         from .console import make_console
@@ -200,7 +312,15 @@ def present(document: Any, json_file: Path | None, show: Callable[..., None], *s
 
 
 def publish(text: str, file: Path | None) -> None:
-    """Put a document where an option asks for it, if it does."""
+    """Write a document to the output that an option names, if any.
+
+    Parameters
+    ----------
+    text : str
+        The whole document.
+    file : Path or None
+        File to write; ``-`` is standard output; None for no output.
+    """
     if file == STANDARD_OUTPUT:
         click.echo(visible(text) if sys.stdout.isatty() else text, nl=False)
     elif file is not None:

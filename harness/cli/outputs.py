@@ -1,6 +1,7 @@
-"""The files that a command reads and writes; no output takes the place of a scene, of another output, or of a stranger.
+"""Input and output files of commands, with checks against overwriting files.
 
-What is there is replaced with --force alone, or where it is a JSON document of Holonom's and another takes its place.
+An existing file is replaced only with --force, or if it is a JSON document of Holonom and another one takes its
+place.
 """
 
 import os
@@ -10,7 +11,7 @@ from typing import Any
 
 import click
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..files import require_writable, scene_file
 from ..temporary import private_directory
 
@@ -20,7 +21,10 @@ FORCE = "holonom.force"  # where the context of a command holds whether it has t
 
 
 class SceneFile(click.Path):
-    """A scene file; ``-`` is what stands on standard input, kept in a file of its own while the command runs."""
+    """The type of a scene file; ``-`` is standard input.
+
+    Standard input is stored in a temporary file while the command runs.
+    """
 
     name = "scene"
 
@@ -28,7 +32,21 @@ class SceneFile(click.Path):
         super().__init__(path_type=Path)
 
     def convert(self, value: Any, parameter: click.Parameter | None, ctx: click.Context | None) -> Path:
-        """Return the path of the file."""
+        """Return the path of the file.
+
+        Parameters
+        ----------
+        value : object
+            Path on the command line.
+        parameter : Parameter or None
+            Argument of the command.
+        ctx : Context or None
+            Context that removes the temporary file.
+
+        Returns
+        -------
+        Path
+        """
         if value != str(STANDARD_OUTPUT) or ctx is None:
             return scene_file(super().convert(value, parameter, ctx))
         from ..maxima import limited
@@ -40,7 +58,19 @@ class SceneFile(click.Path):
 
 
 def as_given(scene: Path) -> str:
-    """Return how the command line names a scene file: ``-`` where it stands on standard input."""
+    """Return the name of a scene file on the command line.
+
+    It is ``-`` for standard input.
+
+    Parameters
+    ----------
+    scene : Path
+        Path of the scene file, or of the copy of standard input.
+
+    Returns
+    -------
+    str
+    """
     stands_in = scene == click.get_current_context().meta.get(STANDARD_INPUT)
     return str(STANDARD_OUTPUT if stands_in else scene)
 
@@ -65,7 +95,7 @@ COMMON = {"scene", "settings", "json_file", "time_limit", "memory_limit", "trust
 
 
 class Command(click.Command):
-    """A command that looks at its outputs before it begins.
+    """A command that checks its outputs before it begins.
 
     Parameters
     ----------
@@ -82,7 +112,15 @@ class Command(click.Command):
             )
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the command's own options, then those that it has in common with others, then the examples."""
+        """Write the command's own options, then the common options, then the examples.
+
+        Parameters
+        ----------
+        ctx : Context
+            Context of the command.
+        formatter : HelpFormatter
+            Collects the text of the help page.
+        """
         common = [each for each in self.get_params(ctx) if each.name in COMMON]
         own = [each for each in self.get_params(ctx) if each not in common]
         for title, options in (("Options", own), ("Common options", common)):
@@ -96,7 +134,23 @@ class Command(click.Command):
                     formatter.write(f"{'':{formatter.current_indent}}holonom {each}\n")
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Refuse outputs that would destroy something or cannot be written; then run the command."""
+        """Raise for unsafe or unwritable outputs; then run the command.
+
+        Parameters
+        ----------
+        ctx : Context
+            Context with the values of all options.
+
+        Returns
+        -------
+        object
+            Exit status.
+
+        Raises
+        ------
+        HolonomError
+            An output cannot be written, replaces an unrelated file, or is a scene or another output.
+        """
         given = [(each.type, ctx.params.get(each.name)) for each in self.params]
         outputs = [(kind, path) for kind, path in given if isinstance(kind, OutputFile) and path is not None]
         scenes = [path for kind, value in given if isinstance(kind, SceneFile) for path in _paths(value)]
@@ -112,22 +166,51 @@ class Command(click.Command):
 
 
 def is_forced() -> bool:
-    """Return True if the running command may replace what is somebody else's."""
+    """Return True if the running command may replace unrelated files.
+
+    Returns
+    -------
+    bool
+    """
     return click.get_current_context().meta.get(FORCE, False)
 
 
 def require_apart(scenes: Iterable[Path], outputs: Iterable[Path]) -> None:
-    """Refuse an output that is a scene of the command, or another output, also through links."""
+    """Raise if an output is a scene of the command or another output.
+
+    Links are followed.
+
+    Parameters
+    ----------
+    scenes : iterable of Path
+        Scene files that the command reads.
+    outputs : iterable of Path
+        Files that the command writes.
+
+    Raises
+    ------
+    HolonomError
+        An output is also a scene or another output.
+    """
     taken = [(scene, "the scene itself") for scene in scenes]
     for output in outputs:
         for other, what in taken:
             if _same_file(output, other):
-                raise HolonomError(Failure.OUTPUT_TAKEN, output, what)
+                raise HolonomError(ErrorKind.OUTPUT_TAKEN, output, what)
         taken.append((output, "another output"))
 
 
 def require_replaceable(path: Path, json: bool) -> None:
-    """Refuse to replace a file, unless it is empty, or a document of Holonom's in the place of which another is put.
+    """Raise if a file may not be replaced.
+
+    An empty file may be, and a document of Holonom by another one.
+
+    Parameters
+    ----------
+    path : Path
+        Output file, which may not exist yet.
+    json : bool
+        True if a JSON document will be written.
 
     Raises
     ------
@@ -137,7 +220,7 @@ def require_replaceable(path: Path, json: bool) -> None:
     from ..formats import is_document
 
     if path.is_file() and path.stat().st_size and not (json and is_document(path.read_bytes())):
-        raise HolonomError(Failure.FOREIGN_FILE, path)
+        raise HolonomError(ErrorKind.UNRELATED_FILE, path)
 
 
 def _paths(value: Any) -> tuple[Path, ...]:

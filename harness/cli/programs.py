@@ -5,10 +5,10 @@ from pathlib import Path
 
 import click
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..options import options_of
 from ..program.request import Request
-from ..program.targets import FORMS
+from ..program.targets import FORMS, MODULES
 from ..sandbox import Limits
 from .group import holonom
 from .options import asks_one_scene, present, publish, runs_scenes, writes_json
@@ -19,6 +19,7 @@ from .outputs import STANDARD_OUTPUT, OutputFile, is_forced
     examples=[
         "program examples/chain.mac --set N=64 --to python -o chain.py",
         "program examples/pendulum.mac --to c --parameters m -o pendulum/",
+        "program examples/crane.mac --to python --module jax --parameters m,c -o crane.py",
     ]
 )
 @asks_one_scene(*options_of(Request, "solve"))
@@ -30,12 +31,17 @@ from .outputs import STANDARD_OUTPUT, OutputFile, is_forced
     show_default=True,
     help="What is written.",
 )
-@click.option("--name", help="With c and fmu: what every public name begins with; without it, the file's name.")
+@click.option("--module", type=click.Choice(MODULES), help="With python: the package that it computes with.")
+@click.option(
+    "--name",
+    help="With c, fmu, matlab and --module: the name of the whole, which the public names of c and casadi begin with; "
+    "without it, the file's name.",
+)
 @click.option(
     "--parameters",
     metavar="NAME,...",
     callback=lambda ctx, parameter, text: tuple(text.split(",")) if text else (),
-    help="With c and fmu: parameters that stay open although the scene gives them values.",
+    help="With c, fmu, matlab and --module: parameters that stay open although the scene gives them values.",
 )
 @click.option(
     "-o",
@@ -50,6 +56,7 @@ def program(
     scene_file: Path,
     request: Request,
     form: str,
+    module: str | None,
     name: str | None,
     parameters: tuple[str, ...],
     output: Path,
@@ -59,18 +66,18 @@ def program(
 
     As json, python or javascript the motion program has the scene's values, and controls as inputs. As c it is a
     library in C11: accelerations and multipliers, the control law, residuals and Jacobian of the constraints,
-    projection; as fmu the same for FMI 3 model exchange. Controls, and parameters without a value or named by
-    --parameters, are inputs of both.
+    projection; as fmu the same for FMI 3 model exchange; as matlab, and as python with --module, functions of arrays.
+    Controls, and parameters without a value or named by --parameters, are inputs of all these.
     """
     from ..files import require_own_files, write_files, write_whole
     from ..program.forms import MotionProgram
 
     taken = MotionProgram(scene_file, request, limits)
-    written = taken.written(form, name, parameters)
+    written = taken.written(form, name, parameters, module)
     if isinstance(written, str):
         publish(written, output)
     elif output == STANDARD_OUTPUT:
-        raise HolonomError(Failure.NOT_A_FILE)
+        raise HolonomError(ErrorKind.NOT_A_FILE)
     elif isinstance(written, bytes):
         write_whole(output, written)
     else:

@@ -1,4 +1,4 @@
-"""The commands about states at rest and motions near a motion: equilibria, linearize."""
+"""The commands about equilibria and linearised motions: equilibria, linearize."""
 
 from fractions import Fraction
 from pathlib import Path
@@ -12,6 +12,7 @@ from ..sandbox import Limits
 from ..stability.request import EquilibriaRequest, LinearizationRequest
 from .group import holonom
 from .options import asks_one_scene, present, runs_scenes, takes, writes_json
+from .outputs import OutputFile
 
 
 @holonom.command(examples=["linearize examples/pendulum.mac --at 2", "linearize examples/crane.mac --json -"])
@@ -35,11 +36,15 @@ def linearize(
     return 0
 
 
-@holonom.command(examples=["equilibria examples/pendulum.mac --set l0=1", "equilibria examples/arm.mac --json -"])
+@holonom.command(
+    examples=["equilibria examples/pendulum.mac --set l0=1", "equilibria examples/pendulum.mac --over u=1:3:5"]
+)
 @asks_one_scene()
 @click.option(
     "--control", "controls", metavar="NAME=VALUE", multiple=True, help="A constant control, not as its law begins."
 )
+@click.option("--over", metavar="NAME=FIRST:LAST:COUNT", help="Values of a control, one after the other.")
+@click.option("--plot", "plot_file", metavar="FILE.svg|.png", type=OutputFile(), help="Also draw them over --over.")
 @takes(*options_of(EquilibriaRequest))
 @writes_json
 @runs_scenes
@@ -47,6 +52,8 @@ def equilibria(
     scene_file: Path,
     request: Request,
     controls: tuple[str, ...],
+    over: str | None,
+    plot_file: Path | None,
     options: dict[str, Any],
     json_file: Path | None,
     limits: Limits,
@@ -55,12 +62,26 @@ def equilibria(
 
     The controls are constant. Others than the states found may exist.
     """
-    from ..display.stability import show_equilibria
+    from ..display.stability import show_branches, show_equilibria
     from ..formats import Publication, published
     from ..program.request import read_settings
     from ..scene import Scene
+    from ..simulation.output import require_formats
+    from ..sweeps.axes import read_axes
 
+    if plot_file is not None and over is None:
+        raise click.UsageError("--plot draws what --over asks for")
+    require_formats(None, plot_file)
     values = {name: float(Fraction(text)) for name, text in read_settings(controls).items()}
-    found = Scene(scene_file, request.scene, request.settings, limits).equilibria(**options, **values)
-    present(published(Publication.EQUILIBRIA, found.document()), json_file, show_equilibria, found)
+    scene = Scene(scene_file, request.scene, request.settings, limits)
+    if over is None:
+        found = scene.equilibria(**options, **values)
+        present(published(Publication.EQUILIBRIA, found.document()), json_file, show_equilibria, found)
+        return 0
+    axes = read_axes([over], [], [], None, None)
+    branches = scene.branches(axes.names[0], axes.numbers(0, axes.rows)[0].tolist(), **options, **values)
+    if plot_file is not None:
+        branches.plot().save(plot_file)
+    documents = [published(Publication.EQUILIBRIA, each) for each in branches.documents()]
+    present(documents, json_file, show_branches, branches)
     return 0

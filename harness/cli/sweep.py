@@ -83,10 +83,10 @@ def sweep(
     from ..display.progress import sweep_progress
     from ..simulation.output import require_formats
     from ..sweeps.axes import read_axes
-    from ..sweeps.kept import read_kept
+    from ..sweeps.outputs import read_quantities
     from ..sweeps.run import run_sweep
 
-    axes, kept = read_axes(grids, lists, samples, size, seed), read_kept(keep)
+    axes, kept = read_axes(grids, lists, samples, size, seed), read_quantities(keep)
     if plot_file is not None:
         from ..figures.sweep import require_plottable
 
@@ -96,7 +96,7 @@ def sweep(
     with sweep_progress(axes.rows) as progress:
         found = run_sweep(scene_file, request, wanted, output, limits, progress)
     for name in found.mended:
-        click.echo(f"holonom: {output / name} was not as it was written, and has been computed again.", err=True)
+        click.echo(f"holonom: warning: {output / name}: changed since it was written; computed again.", err=True)
     if plot_file is not None:
         found.plot().save(plot_file)
     statuses = found.statuses

@@ -12,5 +12,16 @@ TEMPLATES = Path(__file__).with_name("templates")
 
 
 def table(name: str) -> dict[str, Any]:
-    """Return what the pages are told beside the runs: the table of that name, which lies with the templates."""
+    """Return what the pages are told beside the runs: the table of that name, which lies with the templates.
+
+    Parameters
+    ----------
+    name : str
+        Name of the table's file without its ending.
+
+    Returns
+    -------
+    dict
+        Content of the table.
+    """
     return tomllib.loads((TEMPLATES / f"{name}.toml").read_text(encoding="utf-8"))

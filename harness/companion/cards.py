@@ -53,8 +53,15 @@ def derivation_cards(
         Which ones; the cards come in the order of the first record.
     derivations : sequence of Derived
         The first has the equations that are shown, the others those shown on request.
+    printed : iterable of PrintedEquation
+        Equations of the paper.
     root : Path
         The repository that the Maxima lines are taken from.
+
+    Returns
+    -------
+    list of Card
+        Cards in the order of the first record.
     """
     instances = [_derivation_instances(each) for each in derivations]
     return _cards(numbers, instances, tuple(printed), root, _is_controlled(derivations[0]))
@@ -70,19 +77,63 @@ def scene_cards(
     """Cards of equations (10) and (12) to (19) of scenes, each given with the derivation that it belongs to.
 
     A prefix begins the anchors, where a page shows the cards of several scenes.
+
+    Parameters
+    ----------
+    numbers : sequence of str
+        Numbers of the equations.
+    scenes : sequence of tuple of Derived and str
+        Derivation and name of each scene.
+    printed : iterable of PrintedEquation
+        Equations of the paper.
+    root : Path
+        Root of the repository.
+    prefix : str
+        Beginning of the anchors.
+
+    Returns
+    -------
+    list of Card
+        Cards in the order of the records.
     """
     instances = [_scene_instances(derived, name) for derived, name in scenes]
     return _cards(numbers, instances, tuple(printed), root, _is_controlled(scenes[0][0]), prefix)
 
 
 def printed_card(printed: Iterable[PrintedEquation], name: str) -> Card:
-    """Return the card of an equation that the paper prints without a number, and no record has, given its name."""
+    """Return the card of an equation that the paper prints without a number, and no record has, given its name.
+
+    Parameters
+    ----------
+    printed : iterable of PrintedEquation
+        Equations of the paper.
+    name : str
+        Name of the equation.
+
+    Returns
+    -------
+    Card
+        Card of the equation.
+    """
     found = next(each for each in printed if each.name == name)
     return Card(anchor("", found), found.number, found.name, "", True, (found,), (), ())
 
 
 def named_equations(derived: Derived, scene: str | None = None) -> dict[str, Equation]:
-    """Return the equations of a derivation, of all its effects, or of a scene, by id."""
+    """Return the equations of a derivation, of all its effects, or of a scene, by id.
+
+    Parameters
+    ----------
+    derived : Derived
+        Derivation with its check.
+    scene : str or None
+        Name of the scene; None for the derivation.
+
+    Returns
+    -------
+    dict of str to Equation
+        Equations by id.
+    """
     record = derived.record
     whole = max(record.derivations, key=lambda each: len(each.effects))
     found = whole.equations if scene is None else scene_named(derived, scene).equations
@@ -90,34 +141,112 @@ def named_equations(derived: Derived, scene: str | None = None) -> dict[str, Equ
 
 
 def scene_named(derived: Derived, name: str) -> Scene:
-    """Return the scene of that name in a record."""
+    """Return the scene of that name in a record.
+
+    Parameters
+    ----------
+    derived : Derived
+        Derivation with its check.
+    name : str
+        Name of the scene.
+
+    Returns
+    -------
+    Scene
+        Scene of the record.
+    """
     return next(scene for scene in derived.record.scenes if scene.name == name)
 
 
 def verdicts_on(derived: Derived, equation: Equation, scene: str | None) -> tuple[EquationVerdict, ...]:
-    """Return the verdicts on an equation of a scene or, without a scene, of the derivation."""
+    """Return the verdicts on an equation of a scene or, without a scene, of the derivation.
+
+    Parameters
+    ----------
+    derived : Derived
+        Derivation with its check.
+    equation : Equation
+        Equation of a record.
+    scene : str or None
+        Name of the scene; None for the derivation.
+
+    Returns
+    -------
+    tuple of EquationVerdict
+        Verdicts on the equation.
+    """
     return tuple(found for found in derived.report.verdicts if found.scene == scene and found.id == equation.id)
 
 
 def missing(derived: Derived) -> list[EquationVerdict]:
-    """Return the verdicts on equations that a record should hold and does not: they have no card."""
+    """Return the verdicts on equations that a record should hold and does not: they have no card.
+
+    Parameters
+    ----------
+    derived : Derived
+        Derivation with its check.
+
+    Returns
+    -------
+    list of EquationVerdict
+        Verdicts on missing equations.
+    """
     return [found for found in derived.report.verdicts if not found.held and found.verdict is Verdict.DISAGREES]
 
 
 def files_of(cards: Iterable[Card]) -> tuple[str, ...]:
-    """Return the Maxima files that the lines on some cards come from."""
+    """Return the Maxima files that the lines on some cards come from.
+
+    Parameters
+    ----------
+    cards : iterable of Card
+        Cards of equations.
+
+    Returns
+    -------
+    tuple of str
+        Files, relative to the root.
+    """
     return tuple(each.file for card in cards for each in card.lines)
 
 
 def anchor(prefix: str, equation: Equation | PrintedEquation, taken: Iterable[str] = ()) -> str:
-    """Return the anchor of an equation: its number, or its name where there is none or another has it."""
+    """Return the anchor of an equation: its number, or its name where there is none or another has it.
+
+    Parameters
+    ----------
+    prefix : str
+        Beginning of the anchors.
+    equation : Equation or PrintedEquation
+        Equation on the page.
+    taken : iterable of str
+        Anchors of other equations.
+
+    Returns
+    -------
+    str
+        Anchor.
+    """
     short = "-".join(filter(None, [prefix, "eq", equation.number]))
     named = f"{short}-{re.sub(r'[^a-z0-9]+', '-', equation.name.lower()).strip('-')}"
     return named if not equation.number or short in taken else short
 
 
 def anchors(equations: Iterable[Equation | PrintedEquation], prefix: str = "") -> list[str]:
-    """Anchors of equations on one page, all different."""
+    """Anchors of equations on one page, all different.
+
+    Parameters
+    ----------
+    equations : iterable of Equation or PrintedEquation
+        Equations.
+    prefix : str
+        Beginning of the anchors.
+
+    Returns
+    -------
+    list of str
+        Anchors in the order of the equations.
+    """
     found: list[str] = []
     for each in equations:
         found.append(anchor(prefix, each, found))

@@ -59,8 +59,15 @@ def draw_partial_sums(name: str, coefficients: Sequence[float], radius: Radius, 
         Of (t - t0)^0, (t - t0)^1, ...: more than the highest of the orders drawn.
     radius : Radius
         Finite.
-    times, motion : ndarray, shape (k,)
-        t - t0, and the coordinate there, from an integration that does not know the series.
+    times : ndarray, shape (k,)
+        Times.
+    motion : ndarray, shape (k,)
+        Values of the integrated coordinate.
+
+    Returns
+    -------
+    str
+        SVG document.
     """
     with figure_style():
         figure = new_figure(8, 6)
@@ -105,7 +112,18 @@ class RadiiFound(NamedTuple):
 
 
 def find_radii(controls: Sequence[Fraction] = CONTROLS) -> RadiiFound:
-    """Estimate the radii that `draw_radius` draws; raises as `holonom.series.power_series.compute_series`."""
+    """Estimate the radii that `draw_radius` draws; raises as `holonom.series.power_series.compute_series`.
+
+    Parameters
+    ----------
+    controls : sequence of Fraction
+        Initial values u0.
+
+    Returns
+    -------
+    RadiiFound
+        Estimated radii.
+    """
     linear = _expanded(controls, LINEAR, max(ORDERS_OF_RADII))
     exponential = _expanded(controls, EXPONENTIAL, ORDER_OF_ENTIRE)
     coarse, fine = ([series.up_to(order).radius for series in linear] for order in ORDERS_OF_RADII)
@@ -114,6 +132,13 @@ def find_radii(controls: Sequence[Fraction] = CONTROLS) -> RadiiFound:
 
 def draw_radius(found: RadiiFound, file: Path) -> None:
     """Draw the radius of convergence and the nearest singularities against u0, as SVG.
+
+    Parameters
+    ----------
+    found : RadiiFound
+        Estimated radii.
+    file : Path
+        SVG file.
 
     Raises
     ------

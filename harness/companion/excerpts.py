@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..maxima import statement_ends
 from . import table
 
@@ -24,6 +24,20 @@ class Excerpt:
 def excerpt(root: Path, file: str, name: str) -> Excerpt:
     """Find the definition of a Maxima function or variable in a file below a root.
 
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+    file : str
+        Maxima file, relative to the root.
+    name : str
+        Name of the function or variable.
+
+    Returns
+    -------
+    Excerpt
+        Lines with their place.
+
     Raises
     ------
     HolonomError
@@ -32,14 +46,27 @@ def excerpt(root: Path, file: str, name: str) -> Excerpt:
     text = (root / file).read_text(encoding="utf-8")
     found = re.search(rf"^{re.escape(name)}\s*(\([^()]*\)\s*:=|:)", text, re.MULTILINE)
     if found is None:
-        raise HolonomError(Failure.DEFINITION_MISSING, file, name)
+        raise HolonomError(ErrorKind.DEFINITION_MISSING, file, name)
     start = _with_comment(text, found.start())
     end = next(statement_ends(text, found.start()), len(text))
     return Excerpt(file, name, text.count("\n", 0, start) + 1, text[start:end])
 
 
 def step(root: Path, name: str) -> tuple[Excerpt, ...]:
-    """Return the Maxima lines that derive an equation, given its id."""
+    """Return the Maxima lines that derive an equation, given its id.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+    name : str
+        Id of the equation.
+
+    Returns
+    -------
+    tuple of Excerpt
+        Lines with their places.
+    """
     return tuple(excerpt(root, file, function) for file, functions in STEPS[name].items() for function in functions)
 
 

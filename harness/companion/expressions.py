@@ -9,7 +9,20 @@ from ..mathjson import Tree, to_sympy
 
 
 def under(law: Mapping[str, Expr], expression: Expr) -> Expr:
-    """Return an expression under a control law, simplified."""
+    """Return an expression under a control law, simplified.
+
+    Parameters
+    ----------
+    law : mapping of str to Expr
+        Control law by control.
+    expression : Expr
+        SymPy expression.
+
+    Returns
+    -------
+    Expr
+        Simplified expression.
+    """
     time = Symbol("t", real=True)
     for control, value in law.items():
         for order, name in enumerate((control, f"dot({control})", f"ddot({control})")):
@@ -18,7 +31,18 @@ def under(law: Mapping[str, Expr], expression: Expr) -> Expr:
 
 
 def right_side(tree: Tree) -> Expr:
-    """Return the right side of a printed equation of the example as a SymPy expression."""
+    """Return the right side of a printed equation of the example as a SymPy expression.
+
+    Parameters
+    ----------
+    tree : Tree
+        Printed equation as MathJSON.
+
+    Returns
+    -------
+    Expr
+        Right side.
+    """
     return to_sympy(_named(tree[2]))
 
 
@@ -34,6 +58,17 @@ def _named(tree: Tree) -> Tree:
 
 
 def zeros(expression: Expr) -> list[Expr]:
-    """Return the zeros, complex ones too, of an expression in a single symbol."""
+    """Return the zeros, complex ones too, of an expression in a single symbol.
+
+    Parameters
+    ----------
+    expression : Expr
+        SymPy expression.
+
+    Returns
+    -------
+    list of Expr
+        Zeros.
+    """
     (symbol,) = expression.free_symbols
     return sympy.solve(expression.subs(symbol, sympy.Dummy()))

@@ -30,6 +30,11 @@ CHARACTERS = (
 def mathematics_font() -> tuple[bytes, str]:
     """Return the subset as WOFF, and its notice of copyright and licence.
 
+    Returns
+    -------
+    tuple of bytes and str
+        Font and notice.
+
     Raises
     ------
     HolonomError

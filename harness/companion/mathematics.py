@@ -33,45 +33,139 @@ Formulas = Callable[[int], Sequence[str]]  # LaTeX at a width in digits
 
 
 def tex(formula: str) -> Markup:
-    """Return a formula within a line of text."""
+    """Return a formula within a line of text.
+
+    Parameters
+    ----------
+    formula : str
+        TeX formula.
+
+    Returns
+    -------
+    Markup
+        MathML.
+    """
     return Markup(inline_mathml(formula))
 
 
 def prose(text: str) -> Markup:
-    """Text with the TeX between its dollar signs typeset."""
+    """Text with the TeX between its dollar signs typeset.
+
+    Parameters
+    ----------
+    text : str
+        Text with TeX between dollar signs.
+
+    Returns
+    -------
+    Markup
+        HTML.
+    """
     literal = Markup if isinstance(text, Markup) else escape
     pieces = FORMULA_IN_PROSE.split(str(text))
     return Markup("").join(tex(piece) if place % 2 else literal(piece) for place, piece in enumerate(pieces))
 
 
 def expression(value: Expr) -> Markup:
-    """Return a SymPy expression within a line of text."""
+    """Return a SymPy expression within a line of text.
+
+    Parameters
+    ----------
+    value : Expr
+        SymPy expression.
+
+    Returns
+    -------
+    Markup
+        MathML.
+    """
     return Markup(inline_mathml(latex(value), str(value)))
 
 
 def equality(name: str, value: Expr) -> Markup:
-    """Return a named value within a line of text."""
+    """Return a named value within a line of text.
+
+    Parameters
+    ----------
+    name : str
+        Name of the quantity.
+    value : Expr
+        SymPy expression.
+
+    Returns
+    -------
+    Markup
+        MathML.
+    """
     return symbol(name) + tex("=") + expression(value)
 
 
 def display(left: Expr, right: Expr | int) -> Markup:
-    """Return both sides of an equation on lines of its own."""
+    """Return both sides of an equation on lines of its own.
+
+    Parameters
+    ----------
+    left : Expr
+        Left side.
+    right : Expr or int
+        Right side.
+
+    Returns
+    -------
+    Markup
+        MathML.
+    """
     relation = Relation(from_sympy(left), from_sympy(sympify(right)))
     return _at_each_width(lambda width: [latex_relation(relation, width)], f"{left} = {right}")
 
 
 def display_named(name: str, value: Expr) -> Markup:
-    """Return a named value on lines of its own."""
+    """Return a named value on lines of its own.
+
+    Parameters
+    ----------
+    name : str
+        Name of the quantity.
+    value : Expr
+        SymPy expression.
+
+    Returns
+    -------
+    Markup
+        MathML.
+    """
     return display(Symbol(name, real=True), value)
 
 
 def display_expression(value: Expr) -> Markup:
-    """Return an expression on lines of its own."""
+    """Return an expression on lines of its own.
+
+    Parameters
+    ----------
+    value : Expr
+        SymPy expression.
+
+    Returns
+    -------
+    Markup
+        MathML.
+    """
     return _at_each_width(lambda width: [latex(value, width)], str(value))
 
 
 def symbol(name: str) -> Markup:
-    """Return the letter of a quantity within a line of text."""
+    """Return the letter of a quantity within a line of text.
+
+    Parameters
+    ----------
+    name : str
+        Name of the quantity.
+
+    Returns
+    -------
+    Markup
+        MathML.
+    """
     return expression(Symbol(name, real=True))
 
 
@@ -89,31 +183,86 @@ class Typeset:
 
 
 def typeset(equation: Equation) -> Typeset:
-    """Return the relations of an equation; those of the entries of one array as one, where it is narrow enough."""
+    """Return the relations of an equation; those of the entries of one array as one, where it is narrow enough.
+
+    Parameters
+    ----------
+    equation : Equation
+        Equation of a record.
+
+    Returns
+    -------
+    Typeset
+        Typeset relations.
+    """
     said = "; ".join(f"{relation.left} = {relation.right}" for relation in equation.relations)
     lines = sum(formula.count(LINE_BREAK) + 1 for formula in latex_equation(equation, WIDTH))
     return Typeset(_at_each_width(lambda width: latex_equation(equation, width), said), lines)
 
 
 def nothing_to_show(equation: Equation) -> str:
-    """Return what an equation without relations says."""
+    """Return what an equation without relations says.
+
+    Parameters
+    ----------
+    equation : Equation
+        Equation of a record.
+
+    Returns
+    -------
+    str
+        Sentence.
+    """
     return translated(NOTHING.get(equation.number, UNCONSTRAINED))
 
 
 def as_printed(printed: PrintedEquation) -> Markup:
-    """Return an equation as the paper prints it, the misprint marked."""
+    """Return an equation as the paper prints it, the misprint marked.
+
+    Parameters
+    ----------
+    printed : PrintedEquation
+        Equation of the paper.
+
+    Returns
+    -------
+    Markup
+        MathML.
+    """
     if printed.agrees:
         return _printed(printed.printed_tree, printed.printed_tree, MISPRINT, printed.printed)
     return _printed(printed.printed_tree, printed.corrected_tree, MISPRINT, printed.printed)
 
 
 def as_corrected(printed: PrintedEquation) -> Markup:
-    """Return the printed equation mended, the correction marked."""
+    """Return the printed equation mended, the correction marked.
+
+    Parameters
+    ----------
+    printed : PrintedEquation
+        Equation of the paper.
+
+    Returns
+    -------
+    Markup
+        MathML.
+    """
     return _printed(printed.corrected_tree, printed.printed_tree, CORRECTION, printed.corrected)
 
 
 def difference(printed: PrintedEquation) -> Markup:
-    """Return what is printed less what is derived."""
+    """Return what is printed less what is derived.
+
+    Parameters
+    ----------
+    printed : PrintedEquation
+        Equation of the paper.
+
+    Returns
+    -------
+    Markup
+        MathML.
+    """
     return _block(lambda width: [latex_tree(printed.difference_tree, width)], printed.difference)
 
 
@@ -140,7 +289,18 @@ def _blocks(formulas: Sequence[str], said: str) -> Markup:
 
 
 def description(system: System) -> list[Markup]:
-    """T, V, Q and f of a system, those that it has."""
+    """T, V, Q and f of a system, those that it has.
+
+    Parameters
+    ----------
+    system : System
+        Description of the system.
+
+    Returns
+    -------
+    list of Markup
+        Formulas.
+    """
     return [display(left, right) for left, right in _parts(system)]
 
 

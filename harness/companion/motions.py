@@ -40,23 +40,53 @@ class Motion:
 
 
 def motion(file: Path, scene: str | None = None, until: Fraction | None = None) -> Run:
-    """Return the pictures of a scene's motion, through its time span or to an instant: a `Motion`."""
-    return Run(follow, (file, scene, until, NO_SETTINGS, DEFAULT_LIMITS))
+    """Return the pictures of a scene's motion, through its time span or to a time: a `Motion`.
+
+    Parameters
+    ----------
+    file : Path
+        Scene file.
+    scene : str or None
+        Name of the scene.
+    until : Fraction or None
+        Last time; None for that of the scene.
+
+    Returns
+    -------
+    Run
+        Run with the result `Motion`.
+    """
+    return Run(_follow, (file, scene, until, NO_SETTINGS, DEFAULT_LIMITS))
 
 
 def motions(file: Path, settings: Settings, limits: Limits) -> Run:
-    """Return the pictures of all motions of a file: by scene a `Motion`, or the `Refusal` that takes its place."""
-    return Run(follow_all, (file, settings, limits))
+    """Return the pictures of all motions of a file: by scene a `Motion`, or the `Refusal` that takes its place.
+
+    Parameters
+    ----------
+    file : Path
+        Scene file.
+    settings : Settings
+        Values of parameters.
+    limits : Limits
+        Limits of Maxima's runs.
+
+    Returns
+    -------
+    Run
+        Run with the results by scene.
+    """
+    return Run(_follow_all, (file, settings, limits))
 
 
-def follow_all(file: Path, settings: Settings, limits: Limits) -> dict[str, Motion | Refusal]:
+def _follow_all(file: Path, settings: Settings, limits: Limits) -> dict[str, Motion | Refusal]:
     """Follow every scene of a file."""
     names = names_of_scenes(file, settings, limits)
-    return {name: or_refusal(follow, file, name, None, settings, limits) for name in names}
+    return {name: or_refusal(_follow, file, name, None, settings, limits) for name in names}
 
 
-def follow(file: Path, scene: str | None, until: Fraction | None, settings: Settings, limits: Limits) -> Motion:
-    """Follow a motion, of the file's last scene without a name, to the end of the scene's time span without an instant.
+def _follow(file: Path, scene: str | None, until: Fraction | None, settings: Settings, limits: Limits) -> Motion:
+    """Follow a motion, of the file's last scene without a name, to the end of the scene's time span without a time.
 
     Raises
     ------
@@ -70,7 +100,18 @@ def follow(file: Path, scene: str | None, until: Fraction | None, settings: Sett
 
 
 def figures_of(motions: Iterable[tuple[str, Motion]]) -> dict[str, str]:
-    """Return the SVG files of motions, whose names each begin with the motion's own."""
+    """Return the SVG files of motions, whose names each begin with the motion's own.
+
+    Parameters
+    ----------
+    motions : iterable of tuple of str and Motion
+        Name and pictures of each motion.
+
+    Returns
+    -------
+    dict of str to str
+        SVG documents by file name.
+    """
     files: dict[str, str] = {}
     for name, found in motions:
         files[f"{name}-curves"] = drawn(partial(draw_motion, found.simulation))

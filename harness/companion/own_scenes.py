@@ -1,4 +1,4 @@
-"""The book of somebody's own scene files: the same cards and answers, without the teaching.
+"""Pages about any scene files: the same cards and answers, without the teaching.
 
 Each file has five chapters, in whose pages' names the file's prefix comes first.
 """
@@ -9,9 +9,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ..language import translatable
+from ..language import gettext, translatable, translated
 from ..sandbox import Limits
-from .book import Book
 from .cards import Card, derivation_cards, files_of, missing, scene_cards
 from .chapter import Chapter, Page
 from .mathematics import description
@@ -23,28 +22,82 @@ EQUATIONS = ("2", "3a", "3", "4", "5", "6", "7", "8", "9", "11")
 INITIAL_MOTION = ("12", "13", "18", "19")
 
 
-def book_of_scenes(files: Sequence[Path], settings: Settings, limits: Limits, command: str) -> Book:
-    """Return the companion of scene files, which a command makes."""
-    prefixes = [""] if len(files) == 1 else [_prefix(file, place) for place, file in enumerate(files, 1)]
-    return Book(
-        title=translatable("A companion to systems of your own"),
-        subtitle=", ".join(file.name for file in files),
-        foreword="own_foreword.html",
-        command=command,
-        root=REPOSITORY,
-        parts=tuple(
-            (file.name, _chapters(prefix, file, settings, limits)) for prefix, file in zip(prefixes, files, strict=True)
-        ),
-    )
+PAGE = """# {title}
+
+{{.subtitle}}
+{aim}
+
+```{{show}}
+{{% include "{template}" %}}
+```
+"""
+INDEX = """# {title}
+
+```{{show}}
+{{% include "own_foreword.html" %}}
+```
+
+"""
+CONTENTS = """```{{toctree}}
+:caption: {file}
+
+{names}
+```
+
+"""
 
 
-def _chapters(prefix: str, file: Path, settings: Settings, limits: Limits) -> tuple[Chapter, ...]:
-    asked = study(file, settings, limits)
-    runs = {"study": asked, "motions": motions(*asked.arguments)}
-    return tuple(
-        Chapter(f"{prefix}{slug}", title, aim, template, runs, partial(page, prefix, file))
-        for slug, title, aim, template, page in CHAPTERS
-    )
+def chapters_of_scenes(files: Sequence[Path], settings: Settings, limits: Limits) -> dict[str, Chapter]:
+    """Return what stands behind the pages about scene files, by the pages' names.
+
+    Parameters
+    ----------
+    files : sequence of Path
+        Scene files.
+    settings : Settings
+        Values of parameters.
+    limits : Limits
+        Limits of Maxima's runs.
+
+    Returns
+    -------
+    dict of str to Chapter
+        Chapters by page.
+    """
+    found: dict[str, Chapter] = {}
+    for prefix, file in _prefixed(files):
+        asked = study(file, settings, limits)
+        runs = {"study": asked, "motions": motions(*asked.arguments)}
+        found |= {f"{prefix}{name}": Chapter(runs, partial(page, prefix, file)) for name, *_, page in CHAPTERS}
+    return found
+
+
+def texts_of_scenes(files: Sequence[Path]) -> dict[str, str]:
+    """Return the texts of these pages in the language spoken, by the names of their files.
+
+    Parameters
+    ----------
+    files : sequence of Path
+        Scene files.
+
+    Returns
+    -------
+    dict of str to str
+        Texts by file name.
+    """
+    texts = {"index.md": INDEX.format(title=gettext("A companion to systems of your own"))}
+    for prefix, file in _prefixed(files):
+        names = "\n".join(f"{prefix}{name}" for name, *_ in CHAPTERS)
+        texts["index.md"] += CONTENTS.format(file=file.name, names=names)
+        for name, title, aim, template, _ in CHAPTERS:
+            page = PAGE.format(title=translated(title), aim=translated(aim), template=template)
+            texts[f"{prefix}{name}.md"] = page
+    return texts
+
+
+def _prefixed(files: Sequence[Path]) -> list[tuple[str, Path]]:
+    """Return files with what the names of their pages begin with: nothing where there is one file."""
+    return [("" if len(files) == 1 else _prefix(file, place), file) for place, file in enumerate(files, 1)]
 
 
 def _prefix(file: Path, place: int) -> str:
@@ -53,7 +106,22 @@ def _prefix(file: Path, place: int) -> str:
 
 
 def system(prefix: str, file: Path, results: Mapping[str, FileAnswers]) -> Page:
-    """Return the system as its file describes it."""
+    """Return the system as its file describes it.
+
+    Parameters
+    ----------
+    prefix : str
+        Beginning of the anchors.
+    file : Path
+        Scene file.
+    results : mapping of str to FileAnswers
+        Results of the run.
+
+    Returns
+    -------
+    Page
+        Content of the page.
+    """
     derived = results["study"].derived
     cards = derivation_cards(["1"], [derived], (), REPOSITORY)
     return Page(
@@ -68,7 +136,7 @@ def system(prefix: str, file: Path, results: Mapping[str, FileAnswers]) -> Page:
     )
 
 
-def equations(prefix: str, file: Path, results: Mapping[str, FileAnswers]) -> Page:
+def _equations(prefix: str, file: Path, results: Mapping[str, FileAnswers]) -> Page:
     """Return the equations of motion of the system, and the verdicts on them."""
     derived = results["study"].derived
     cards = derivation_cards(EQUATIONS, [derived], (), REPOSITORY)
@@ -76,7 +144,7 @@ def equations(prefix: str, file: Path, results: Mapping[str, FileAnswers]) -> Pa
     return Page({"cards": cards, "missing": missing(derived), "closed": closed}, sources=files_of(cards))
 
 
-def free_motion(prefix: str, file: Path, results: Mapping[str, FileAnswers]) -> Page:
+def _free_motion(prefix: str, file: Path, results: Mapping[str, FileAnswers]) -> Page:
     """When the motion of the system is free."""
     found = results["study"]
     cards = derivation_cards(["10"], [found.derived], (), REPOSITORY)
@@ -88,7 +156,7 @@ def free_motion(prefix: str, file: Path, results: Mapping[str, FileAnswers]) -> 
     return Page({"cards": cards, "scenes": scenes, "controlled": controlled}, sources=files_of(cards))
 
 
-def initial_motion(prefix: str, file: Path, results: Mapping[str, FileAnswers]) -> Page:
+def _initial_motion(prefix: str, file: Path, results: Mapping[str, FileAnswers]) -> Page:
     """Return the initial motion of each scene: the power series with its radius, and closed forms."""
     found = results["study"]
     scenes = [
@@ -99,7 +167,22 @@ def initial_motion(prefix: str, file: Path, results: Mapping[str, FileAnswers]) 
 
 
 def motion(prefix: str, file: Path, results: Mapping[str, Any]) -> Page:
-    """Return the motion of each scene: drawn, where the system says how it looks, and as curves."""
+    """Return the motion of each scene: drawn, where the system says how it looks, and as curves.
+
+    Parameters
+    ----------
+    prefix : str
+        Beginning of the anchors.
+    file : Path
+        Scene file.
+    results : mapping
+        Results of the runs by their names.
+
+    Returns
+    -------
+    Page
+        Content of the page.
+    """
     found, titles = results["motions"], results["study"].titles
     scenes = [(f"{prefix}scene-{place}", titles[name], name, found[name]) for place, name in enumerate(found, 1)]
     shown = [(figure, moved) for figure, _, _, moved in scenes if isinstance(moved, Motion)]
@@ -126,21 +209,21 @@ CHAPTERS = (  # slug, title, aim, template, and what makes the page
         translatable("Equations of motion"),
         translatable("Equations (2) to (9) and (11), each with its verdict."),
         "own_equations.html",
-        equations,
+        _equations,
     ),
     (
         "free-motion",
         translatable("Free motion"),
         translatable("Whether the constraints push, and what it takes that they do not."),
         "own_free_motion.html",
-        free_motion,
+        _free_motion,
     ),
     (
         "initial-motion",
         translatable("Initial motion"),
         translatable("Initial state, initial accelerations, and the power series of the motion."),
         "own_initial_motion.html",
-        initial_motion,
+        _initial_motion,
     ),
     (
         "motion",

@@ -1,155 +1,85 @@
-"""Pages from templates: XHTML that a browser reads as HTML, and that parses as XML."""
+"""Pieces of pages from templates: XHTML that a browser reads as HTML, and that parses as XML."""
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache
-from typing import Any
-from xml.etree import ElementTree
+from pathlib import Path
 
 import jinja2
 from markupsafe import Markup, escape
 from sympy import Expr
 
-from ..explanations import advice, engine_text, remarks
+from ..explanations import advice, engine_text, notes
+from ..files import shared
 from ..free_motion import UniversalLaw
-from ..language import ENGLISH, LANGUAGES, gettext, ngettext, spoken, translated
+from ..language import ENGLISH, gettext, ngettext, spoken, translated
 from ..number_texts import number
 from ..record import Scene
-from ..reference.topic import Topic
 from . import TEMPLATES, mathematics
-from .chapter import Chapter
 from .excerpts import Excerpt
-from .finish import Place
-from .finish import terms as terms_in
 
 LONGEST_COEFFICIENT = 12  # characters of an exact number in a table
 NAMED_BY_MAXIMA = re.compile(r"(no control law makes every motion free: .* is )(.+)($)")
 CODE_IN_TEXT = re.compile(r"`([^`]+)`")
 NEGLIGIBLE = 1e-9  # of a complex number: a part of it that is rounding alone
-STYLE = TEMPLATES / "companion.css"
+MACROS = ("words.html", "cards.html", "answers.html", "motions.html", "tables.html")
 WHITESPACE = {"trim_blocks": True, "lstrip_blocks": True, "keep_trailing_newline": True}
 
 
-@dataclass(frozen=True)
-class Entry:
-    """A chapter's line in the contents."""
+def source_page(root: Path, file: str) -> str:
+    """Return a Maxima file with numbered lines.
 
-    label: str  # its number, or the letter of an appendix
-    slug: str
-    title: str
-    aim: str
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+    file : str
+        Maxima file, relative to the root.
 
-
-@dataclass(frozen=True)
-class Part:
-    """Chapters under one heading of the contents; without a title where there is one part only."""
-
-    title: str
-    entries: tuple[Entry, ...]
-
-
-@dataclass(frozen=True)
-class Twin:
-    """The same book in another language: page by page the same names of files, in another directory."""
-
-    language: str
-    directory: str  # from this book's own, with a slash at its end
-
-    @property
-    def name(self) -> str:
-        """What the language calls itself."""
-        return LANGUAGES[self.language]
-
-
-@dataclass(frozen=True)
-class Contents:
-    """What every page knows about the book."""
-
-    title: str
-    subtitle: str
-    foreword: str  # template of what the first page says before the contents
-    command: str  # the command that makes the book
-    maxima: str  # version of Maxima that derived it
-    parts: tuple[Part, ...]
-    sessions: frozenset[str] = frozenset()  # slugs of the chapters that have a session of Maxima
-    language: str = ENGLISH  # that it is written in
-    twins: tuple["Twin", ...] = ()  # the same book in other languages
-
-    @property
-    def entries(self) -> list[Entry]:
-        """All chapters in their order."""
-        return [entry for part in self.parts for entry in part.entries]
-
-
-def index_page(book: Contents, terms: Sequence[Place]) -> str:
-    """Return the first page: foreword, contents, and where each word is defined."""
-    return _rendered("index.html", "index.html", book=book, terms=terms)
-
-
-def chapter_page(book: Contents, chapter: Chapter, content: Mapping[str, Any]) -> str:
-    """Return the page of a chapter, well-formed.
-
-    Raises
-    ------
-    jinja2.TemplateError
-        The template wants what it is not given.
-    xml.etree.ElementTree.ParseError
-        The template makes a page that is not well-formed.
+    Returns
+    -------
+    str
+        HTML of the page.
     """
-    entries = book.entries
-    place = next(place for place, entry in enumerate(entries) if entry.slug == chapter.slug)
-    about = {
-        "slug": chapter.slug,
-        "title": entries[place].title,
-        "label": _spelled_label(entries[place].label),
-        "previous": entries[place - 1] if place else None,
-        "next": entries[place + 1] if place + 1 < len(entries) else None,
-    }
-    return _rendered(chapter.template, f"{chapter.slug}.html", book=book, chapter=about, **content)
-
-
-def printed_page(
-    book: Contents, front: Markup, chapters: Sequence[tuple[Entry, Markup]], sheets: Mapping[str, int]
-) -> str:
-    """Return the whole book as one page, with the sheet that each place is on as far as it is known."""
-    terms = terms_in({f"{entry.slug}.html": text for entry, text in chapters})
-    return _rendered("print.html", "print.html", book=book, front=front, chapters=chapters, sheets=sheets, terms=terms)
-
-
-def source_page(book: Contents, file: str, text: str) -> str:
-    """Return a Maxima file with numbered lines."""
-    return _rendered("source.html", source_name(file), book=book, file=file, lines=text.splitlines())
-
-
-def topic_page(book: Contents, topic: Topic) -> str:
-    """Return a page of the reference."""
-    return _rendered("topic.html", topic_name(topic), book=book, topic=topic)
+    lines = (root / file).read_text(encoding="utf-8").splitlines()
+    return environment(spoken()).get_template("source.html").render(file=file, lines=lines)
 
 
 def source_name(file: str) -> str:
-    """Name of the page of a Maxima file."""
+    """Name of the page of a Maxima file.
+
+    Parameters
+    ----------
+    file : str
+        Maxima file, relative to the root.
+
+    Returns
+    -------
+    str
+        Name of the page.
+    """
     return f"source/{file.replace('/', '-')}.html"
 
 
-def topic_name(topic: Topic) -> str:
-    """Name of the page of a topic of the reference."""
-    return f"reference/{topic.slug}.html"
-
-
-def source_link(excerpt: Excerpt) -> str:
+def _source_link(excerpt: Excerpt) -> str:
     """Link to the first line of an excerpt."""
     return f"{source_name(excerpt.file)}#L{excerpt.first_line}"
 
 
-def _rendered(template: str, file_name: str, /, **content: Any) -> str:
-    page = _environment(spoken()).get_template(template).render(file_name=file_name, **content)
-    ElementTree.fromstring(page)
-    return page
-
-
 @cache
-def _environment(language: str) -> jinja2.Environment:  # templates are compiled, and their words made, once a language
+def environment(language: str) -> jinja2.Environment:
+    """Return the environment of the templates, whose macros all pieces of pages have; once a language.
+
+    Parameters
+    ----------
+    language : str
+        Language code.
+
+    Returns
+    -------
+    jinja2.Environment
+        Environment of the language.
+    """
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES),
         autoescape=True,
@@ -165,7 +95,7 @@ def _environment(language: str) -> jinja2.Environment:  # templates are compiled
         "as_printed": mathematics.as_printed,
         "as_corrected": mathematics.as_corrected,
         "expression": mathematics.expression,
-        "source_link": source_link,
+        "source_link": _source_link,
         "source_page_link": source_name,
         "difference": mathematics.difference,
         "sentence": _sentence,
@@ -185,24 +115,29 @@ def _environment(language: str) -> jinja2.Environment:  # templates are compiled
         "signed": _signed,
         "advice": advice,
         "engine_text": engine_text,
-        "remarks": remarks,
+        "notes": notes,
         "complex_numbers": _complex_numbers,
         "coefficient": _coefficient,
         "symbol": mathematics.symbol,
         "maxima_text": _maxima_text,
     }
     environment.globals |= {
+        "language": language,
+        "in_repository": shared("tests").is_dir(),
         "tex": mathematics.tex,
         "equality": mathematics.equality,
         "display": mathematics.display,
         "display_named": mathematics.display_named,
         "display_expression": mathematics.display_expression,
     }
+    for library in MACROS:
+        macros = environment.get_template(library).module
+        environment.globals |= {name: macro for name, macro in vars(macros).items() if not name.startswith("_")}
     return environment
 
 
 def _sentence(text: str) -> str:
-    return text[:1].upper() + text[1:]
+    return text if text[1:2].isdigit() else text[:1].upper() + text[1:]  # q1 is a symbol
 
 
 def _continued(text: str) -> str:
@@ -306,9 +241,3 @@ def _power_of_ten(value: float) -> Markup:
 def _with_code(text: str) -> Markup:
     """Text with what stands between backquotes as code."""
     return Markup(CODE_IN_TEXT.sub(r"<code>\1</code>", str(escape(text))))
-
-
-def _spelled_label(label: str) -> str:
-    if label.isdecimal():
-        return gettext("Chapter %(label)s", label=label)
-    return gettext("Appendix %(label)s", label=label)

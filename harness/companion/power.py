@@ -18,7 +18,7 @@ from .expressions import under
 
 @dataclass(frozen=True)
 class EnergyBalance:
-    """Where the kinetic energy of a motion comes from; arrays of shape (k,) at its instants."""
+    """Where the kinetic energy of a motion comes from; arrays of shape (k,) at its times."""
 
     power: NDArray[np.float64]  # of the reactions, -lambda (df/dt + du/dt df/du)
     gained: NDArray[np.float64]  # kinetic energy since the start
@@ -35,24 +35,53 @@ class EnergyBalance:
 def energy_balance(system: System, scene: Scene, motion: Simulation) -> EnergyBalance:
     """Take stock of the energy of a motion, from the description of the system alone.
 
-    The system has no potential energy; the motion has multipliers, at many equidistant instants.
+    The system has no potential energy; the motion has multipliers, at many equidistant times.
+
+    Parameters
+    ----------
+    system : System
+        Description of the system.
+    scene : Scene
+        Scene of the motion.
+    motion : Simulation
+        Simulated motion.
+
+    Returns
+    -------
+    EnergyBalance
+        Work and energy along the motion.
     """
     described = described_system(system, scene.effects)
     power, forces, kinetic = (
         values_along(expression, scene, motion)
         for expression in (reaction_power(described), power_of_forces(described), described.kinetic_energy)
     )
-    instants = motion.instants.astype(float)
-    by_forces, by_knob = (cumulative_simpson(rate, x=instants, initial=0.0) for rate in (forces, power))
+    times = motion.times.astype(float)
+    by_forces, by_knob = (cumulative_simpson(rate, x=times, initial=0.0) for rate in (forces, power))
     return EnergyBalance(power, kinetic - kinetic[0], by_forces, by_knob)
 
 
 def values_along(expression: Expr, scene: Scene, motion: Simulation) -> NDArray[np.float64]:
-    """Return an expression of state, multipliers and controls along a motion under the law."""
-    known = {"t": motion.instants, **motion.coordinates, **motion.velocities, **motion.multipliers}
+    """Return an expression of state, multipliers and controls along a motion under the law.
+
+    Parameters
+    ----------
+    expression : Expr
+        SymPy expression.
+    scene : Scene
+        Scene of the motion.
+    motion : Simulation
+        Simulated motion.
+
+    Returns
+    -------
+    ndarray
+        Value at each sample.
+    """
+    known = {"t": motion.times, **motion.coordinates, **motion.velocities, **motion.multipliers}
     values: Mapping[Symbol, Expr] = {Symbol(name, real=True): value for name, value in scene.parameter_values.items()}
     expression = under(scene.control_law, expression).subs(values)
     names = sorted(str(symbol) for symbol in expression.free_symbols)
     function = sympy.lambdify([Symbol(name, real=True) for name in names], expression, "numpy")
     found = function(*(np.asarray(known[name], dtype=float) for name in names))
-    return np.broadcast_to(np.asarray(found, dtype=float), motion.instants.shape)
+    return np.broadcast_to(np.asarray(found, dtype=float), motion.times.shape)

@@ -6,18 +6,24 @@ first one gave to the places that the contents and the index name.
 """
 
 import os
+import posixpath
 import re
 import shutil
 import subprocess
-import tempfile
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 from markupsafe import Markup
+from sphinx.application import Sphinx
+from sphinx.environment.adapters.indexentries import IndexEntries
 
 from ..extras import missing_package
-from ..failures import Failure, HolonomError
-from .pages import Contents, printed_page
+from ..failures import ErrorKind, HolonomError
+from ..files import write_whole
+from ..temporary import private_directory
+from .directives import FILES
+from .pages import environment
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 PATIENCE = 300  # seconds that the browser may take
@@ -35,66 +41,129 @@ PRINT = (
     "--no-pdf-header-footer",
     "--generate-pdf-document-outline",
 )
-ARTICLE = re.compile(r"<article>(.*)</article>", re.DOTALL)
-FRONT = re.compile(r'<main id="main">(.*?)<nav id="contents"', re.DOTALL)
+ARTICLE = re.compile(r'<article role="main"[^>]*>(.*?)</article>', re.DOTALL)
+CONTENTS = re.compile(r'<div class="toctree-wrapper compound">.*?</div>', re.DOTALL)
+ANCHOR = re.compile(r'<a class="headerlink".*?</a>')
+TITLE = re.compile(r"<h1>(.*?)</h1>", re.DOTALL)
 IDENTIFIER = re.compile(r'\b(id|for|aria-labelledby)="([^"]+)"')
 LINK = re.compile(r' href="(?!data:|http)([^"#]*)(#[^"]*)?"')
 
 
-def print_book(contents: Contents, files: Mapping[str, str | bytes], pdf: Path) -> None:
-    """Print a book, given all that it consists of by name: pages, figures, style and font.
+@dataclass(frozen=True)
+class Chapter:
+    """A chapter as it is printed."""
+
+    name: str  # of its page
+    title: str
+    text: Markup
+
+
+@dataclass(frozen=True)
+class Term:
+    """A word of the index, and where it is defined."""
+
+    text: str
+    place: str
+
+
+def print_site(app: Sphinx, root: str, pdf: Path) -> None:
+    """Print the pages below a root page that Sphinx has made as one book.
+
+    Parameters
+    ----------
+    app : Sphinx
+        Application.
+    root : str
+        Name of the root page.
+    pdf : Path
+        PDF file.
 
     Raises
     ------
     HolonomError
         There is no browser, it does not print, or the file cannot be written.
     """
-    from ..files import write_whole
-
-    with tempfile.TemporaryDirectory(prefix="holonom-") as folder:
-        directory = Path(folder)
-        for name, content in files.items():
-            if not name.endswith(".html"):
-                (directory / name).parent.mkdir(parents=True, exist_ok=True)
-                (directory / name).write_bytes(content.encode() if isinstance(content, str) else content)
-        sheets: dict[str, int] = {}
+    with private_directory() as folder:
+        for name in (FILES, "_static"):
+            (folder / name).symlink_to(Path(app.outdir, name).resolve())
+        pages: dict[str, int] = {}
         for _ in range(2):
-            page = directory / "book.html"
-            page.write_text(one_document(contents, files, sheets), encoding="utf-8")
+            page = folder / "book.html"
+            page.write_text(one_document(app, root, pages), encoding="utf-8")
             printed = _printed(page)
-            sheets = sheets_of(printed)
+            pages = _page_numbers(printed)
         write_whole(pdf, printed.read_bytes())
 
 
-def browser() -> str:
-    """Return the browser that prints, or the refusal where none is installed."""
-    found = next(filter(None, map(shutil.which, BROWSERS)), None)
-    if found is None:
-        raise HolonomError(Failure.BROWSER_MISSING)
-    return found
+def one_document(app: Sphinx, root: str, numbers: Mapping[str, int]) -> str:
+    """Return the pages below a root page in one document, with the page numbers of places that are known.
 
+    Parameters
+    ----------
+    app : Sphinx
+        Application.
+    root : str
+        Name of the root page.
+    numbers : mapping of str to int
+        Page numbers by anchor.
 
-def one_document(contents: Contents, files: Mapping[str, str | bytes], sheets: Mapping[str, int]) -> str:
-    """Return all chapters in one document, ids and links made to fit."""
-    chapters = [
-        (entry, _fitted(ARTICLE.search(files[f"{entry.slug}.html"])[1], entry.slug)) for entry in contents.entries
+    Returns
+    -------
+    str
+        HTML document.
+    """
+    front, *chapters = (_chapter(app, name) for name in (root, *app.env.toctree_includes[root]))
+    names = {each.name for each in chapters}
+    terms = [
+        Term(text, place)
+        for _, entries in IndexEntries(app.env).create_index(app.builder)
+        for text, (links, _, _) in entries
+        for place in (_place(uri) for _, uri in links)
+        if place.partition(".")[0] in names
     ]
-    front = _fitted(FRONT.search(files["index.html"])[1], "index")
-    return printed_page(contents, Markup(front), [(entry, Markup(text)) for entry, text in chapters], sheets)
+    language = app.config.language[:2]
+    template = environment(language).get_template("print.html")
+    return template.render(front=front, chapters=chapters, terms=terms, numbers=numbers, language=language)
 
 
-def _fitted(text: str, slug: str) -> str:
+def _chapter(app: Sphinx, name: str) -> Chapter:
+    text = ARTICLE.search(Path(app.outdir, f"{name}.html").read_text(encoding="utf-8"))[1]
+    text = ANCHOR.sub("", CONTENTS.sub("", text))
+    title = Markup(TITLE.search(text)[1]).striptags()
+    return Chapter(posixpath.basename(name), title, Markup(_fitted(text, posixpath.basename(name))))
+
+
+def _place(uri: str) -> str:
+    page, _, anchor = uri.partition("#")
+    return f"{posixpath.basename(page).removesuffix('.html')}.{anchor}"
+
+
+def _fitted(text: str, name: str) -> str:
     """Return the text of a page with its ids and links as they are in one document; what leads out of it is no link."""
 
     def linked(link: re.Match) -> str:
         page, anchor = link[1], (link[2] or "")[1:]
         if "/" in page or (page and not page.endswith(".html")):
             return ""
-        place = page.removesuffix(".html") or slug
+        place = page.removesuffix(".html") or name
         return f' href="#{place}.{anchor}"' if anchor else f' href="#{place}"'
 
-    text = IDENTIFIER.sub(lambda found: f'{found[1]}="{slug}.{found[2]}"', text)
-    return LINK.sub(linked, text)
+    text = IDENTIFIER.sub(lambda found: f'{found[1]}="{name}.{found[2]}"', text)
+    return LINK.sub(linked, text).replace(f'="../{FILES}/', f'="{FILES}/')
+
+
+def browser() -> str:
+    """Return the browser that prints, or the refusal where none is installed.
+
+    Returns
+    -------
+    str
+        Path of the program.
+    """
+    found = next(filter(None, map(shutil.which, BROWSERS)), None)
+    if found is None:
+        raise HolonomError(ErrorKind.BROWSER_MISSING)
+    return found
 
 
 def _printed(page: Path) -> Path:
@@ -105,13 +174,13 @@ def _printed(page: Path) -> Path:
     try:
         done = subprocess.run([*command, page.as_uri()], capture_output=True, text=True, timeout=PATIENCE)
     except subprocess.TimeoutExpired:
-        raise HolonomError(Failure.NOT_PRINTED, detail=f"it took longer than {PATIENCE} s") from None
+        raise HolonomError(ErrorKind.NOT_PRINTED, detail=f"it took longer than {PATIENCE} s") from None
     if not printed.is_file():
-        raise HolonomError(Failure.NOT_PRINTED, detail=(done.stderr.strip().splitlines() or ["it wrote nothing"])[-1])
+        raise HolonomError(ErrorKind.NOT_PRINTED, detail=(done.stderr.strip().splitlines() or ["it wrote nothing"])[-1])
     return printed
 
 
-def sheets_of(pdf: Path) -> dict[str, int]:
+def _page_numbers(pdf: Path) -> dict[str, int]:
     """Return the sheet, from 1 on, that each place of a printed document is on."""
     try:
         from pypdf import PdfReader

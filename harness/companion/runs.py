@@ -16,7 +16,7 @@ from typing import Any
 from ..crosscheck.check import check_record
 from ..crosscheck.report import CheckReport
 from ..errata import errata
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..free_motion import FreeMotion, free_motion
 from ..processes import die_with_parent
 from ..program.motion_problem import motion_problem
@@ -78,43 +78,147 @@ class FileAnswers:
 
 
 def derived(file: Path, settings: Settings = NO_SETTINGS, limits: Limits = DEFAULT_LIMITS) -> Run:
-    """Return the derivation of a scene file, cross-checked: a `Derived`."""
+    """Return the derivation of a scene file, cross-checked: a `Derived`.
+
+    Parameters
+    ----------
+    file : Path
+        Scene file.
+    settings : Settings
+        Values of parameters.
+    limits : Limits
+        Limits of Maxima's runs.
+
+    Returns
+    -------
+    Run
+        Run with the result `Derived`.
+    """
     return Run(_derive, (file, settings, limits))
 
 
 def printed() -> Run:
-    """Return the paper as printed, compared with the derivation: a tuple of `PrintedEquation`."""
+    """Return the paper as printed, compared with the derivation: a tuple of `PrintedEquation`.
+
+    Returns
+    -------
+    Run
+        Run with the printed equations.
+    """
     return Run(errata)
 
 
 def free(
     file: Path, scene: str | None = None, settings: Settings = NO_SETTINGS, limits: Limits = DEFAULT_LIMITS
 ) -> Run:
-    """Return the free motion of a scene: a `FreeMotion`."""
+    """Return the free motion of a scene: a `FreeMotion`.
+
+    Parameters
+    ----------
+    file : Path
+        Scene file.
+    scene : str or None
+        Name of the scene.
+    settings : Settings
+        Values of parameters.
+    limits : Limits
+        Limits of Maxima's runs.
+
+    Returns
+    -------
+    Run
+        Run with the result `FreeMotion`.
+    """
     return Run(_free, (file, scene, settings, limits))
 
 
 def series(
     file: Path, scene: str | None, order: int, settings: Settings = NO_SETTINGS, limits: Limits = DEFAULT_LIMITS
 ) -> Run:
-    """Return the power series of a scene's motion: a `MotionSeries`."""
+    """Return the power series of a scene's motion: a `MotionSeries`.
+
+    Parameters
+    ----------
+    file : Path
+        Scene file.
+    scene : str or None
+        Name of the scene.
+    order : int
+        Order of the series.
+    settings : Settings
+        Values of parameters.
+    limits : Limits
+        Limits of Maxima's runs.
+
+    Returns
+    -------
+    Run
+        Run with the result `MotionSeries`.
+    """
     return Run(_series, (file, scene, order, settings, limits))
 
 
 def simulation(
     file: Path, scene: str | None, until: Fraction | None, samples: int | None, settings: Settings = NO_SETTINGS
 ) -> Run:
-    """Return a scene's motion followed through its time span or to an instant: a `Simulation`."""
+    """Return a scene's motion followed through its time span or to a time: a `Simulation`.
+
+    Parameters
+    ----------
+    file : Path
+        Scene file.
+    scene : str or None
+        Name of the scene.
+    until : Fraction or None
+        Last time; None for that of the scene.
+    samples : int or None
+        Number of samples.
+    settings : Settings
+        Values of parameters.
+
+    Returns
+    -------
+    Run
+        Run with the result `Simulation`.
+    """
     return Run(_simulate, (file, scene, until, samples, settings))
 
 
 def study(file: Path, settings: Settings, limits: Limits) -> Run:
-    """Return all that is asked of somebody's own scene file: a `FileAnswers`."""
+    """Return all that is asked of somebody's own scene file: a `FileAnswers`.
+
+    Parameters
+    ----------
+    file : Path
+        Scene file.
+    settings : Settings
+        Values of parameters.
+    limits : Limits
+        Limits of Maxima's runs.
+
+    Returns
+    -------
+    Run
+        Run with the result `FileAnswers`.
+    """
     return Run(_study, (file, settings, limits))
 
 
 def perform(runs: Iterable[Run], done: Callable[[], None]) -> dict[Run, Any]:
-    """Perform runs, equal ones once, two at a time, and call `done` after each; where one fails, give up the others."""
+    """Perform runs, equal ones once, two at a time, and call `done` after each; where one fails, give up the others.
+
+    Parameters
+    ----------
+    runs : iterable of Run
+        Runs.
+    done : callable
+        Function that is called after each run.
+
+    Returns
+    -------
+    dict of Run to Any
+        Results by run.
+    """
     with ProcessPoolExecutor(WORKERS, get_context("spawn"), die_with_parent, (os.getpid(),)) as processes:
         waiting = {processes.submit(run.compute, *run.arguments): run for run in dict.fromkeys(runs)}
         results = {}
@@ -123,7 +227,7 @@ def perform(runs: Iterable[Run], done: Callable[[], None]) -> dict[Run, Any]:
                 results[waiting[future]] = future.result()
                 done()
         except BrokenProcessPool:
-            raise HolonomError(Failure.WORKER_ENDED) from None
+            raise HolonomError(ErrorKind.WORKER_ENDED) from None
         except BaseException:
             processes.shutdown(cancel_futures=True)
             raise
@@ -156,7 +260,18 @@ def _simulate(
 
 
 def drawn(draw: Callable[[Path], None]) -> str:
-    """Return the text of the SVG document that a function writes to a file."""
+    """Return the text of the SVG document that a function writes to a file.
+
+    Parameters
+    ----------
+    draw : callable
+        Function that writes an SVG file.
+
+    Returns
+    -------
+    str
+        SVG document.
+    """
     with private_directory() as directory:
         file = directory / "figure.svg"
         draw(file)
@@ -174,12 +289,40 @@ def _study(file: Path, settings: Settings, limits: Limits) -> FileAnswers:
 
 
 def names_of_scenes(file: Path, settings: Settings, limits: Limits) -> list[str]:
-    """Return names of a file's scenes, of those too that prescribe reactions."""
+    """Return names of a file's scenes, of those too that prescribe reactions.
+
+    Parameters
+    ----------
+    file : Path
+        Scene file.
+    settings : Settings
+        Values of parameters.
+    limits : Limits
+        Limits of Maxima's runs.
+
+    Returns
+    -------
+    list of str
+        Names in the order of the file.
+    """
     return [scene.name for scene in describe(file, dict(settings), limits).scenes]
 
 
 def or_refusal(compute: Callable[..., Any], *arguments: Any) -> Any:
-    """Return what a function returns, or why it does not."""
+    """Return what a function returns, or why it does not.
+
+    Parameters
+    ----------
+    compute : callable
+        Function to call.
+    *arguments : Any
+        Arguments of the function.
+
+    Returns
+    -------
+    Any
+        Result, or the `Refusal`.
+    """
     try:
         return compute(*arguments)
     except HolonomError as error:

@@ -23,7 +23,20 @@ ABOVE = 1.25  # how far the plane goes beyond the particle
 
 
 def draw_tilted_plane(particle: Sequence[float], tilt: float) -> str:
-    """Draw the plane tilted by u, the knob, the particle on it and the reaction, as SVG."""
+    """Draw the plane tilted by u, the knob, the particle on it and the reaction, as SVG.
+
+    Parameters
+    ----------
+    particle : sequence of float
+        Position q1, q2, q3.
+    tilt : float
+        Control u.
+
+    Returns
+    -------
+    str
+        SVG document.
+    """
     q = np.asarray(particle, dtype=float)
     foot = np.array([q[0] - q[1], q[1] - q[0], 0.0]) / 2
     along, up = np.array([1.0, -1.0, 0.0]) / np.sqrt(2), ABOVE * (q - foot)

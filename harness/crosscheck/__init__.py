@@ -1,5 +1,5 @@
-"""The independent cross-check: every equation of a record against T, V, Q and f alone.
+"""The independent cross-check of a record's equations with T, V, Q and f alone.
 
-The record is Maxima's word. What is compared with it is made here, by SymPy, from the system's
-description only; the two meet in the comparison and nowhere before.
+Maxima wrote the record. SymPy makes the other side of each comparison from the system's description only; the two
+sides meet in the comparison.
 """

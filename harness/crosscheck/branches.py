@@ -1,7 +1,8 @@
-"""Where expressions branch: the arguments of abs, sign, roots and logarithms; and where functions such as exp change.
+"""Branch points of expressions, and arguments at which they change quickly.
 
-Two expressions may be equal on one side of a branch and differ on the other. A function such as exp or tanh may differ
-from zero, or from one, only in a narrow range of its argument: there, too, points are wanted.
+Branch points are zeros of the arguments of abs, sign, roots and logarithms. Two expressions may be equal on one side
+of a branch and differ on the other. A function such as exp or tanh may differ from zero, or from one, only in a
+narrow range of its argument; points are drawn there as well.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ RANGE = 2
 
 @dataclass(frozen=True)
 class Branch:
-    """The argument of a function that branches, or changes, where the argument is zero."""
+    """The argument of a function that branches, or changes quickly, at its zero."""
 
     argument: sp.Expr
     bounds_domain: bool = False  # whether there is no real value where the argument is negative
@@ -30,11 +31,21 @@ class Branch:
 
     @property
     def has_sides(self) -> bool:
-        """Whether both sides of zero are different."""
+        """True if both sides of zero are different."""
         return not self.is_growing
 
     def is_empty(self, side: int) -> bool:
-        """Return True if the argument is known never to be on this side of zero."""
+        """Return True if the argument is known never to be on this side of zero.
+
+        Parameters
+        ----------
+        side : int
+            1 for positive arguments, -1 for negative ones.
+
+        Returns
+        -------
+        bool
+        """
         argument = self.argument.replace(lambda part: part.is_real is None and _branch(part) is not None, _real)
         argument = argument.replace(_is_inverse_square, lambda part: sp.Dummy(positive=True))
         bounds = argument.replace(_is_bounded, lambda part: sp.AccumBounds(-1, 1))
@@ -43,7 +54,18 @@ class Branch:
         return bool(argument.is_nonpositive if side > 0 else argument.is_nonnegative)
 
     def target(self, draw: random.Random) -> mp.mpf:
-        """Return a value of the argument near which points are wanted."""
+        """Return a value of the argument near which points are drawn.
+
+        Parameters
+        ----------
+        draw : Random
+            Source of random numbers.
+
+        Returns
+        -------
+        mpf
+            Zero, or a number from -`RANGE` to `RANGE` if the function has no sides.
+        """
         return mp.mpf(draw.uniform(-RANGE, RANGE)) if self.is_growing else mp.zero
 
 
@@ -53,7 +75,10 @@ def _is_bounded(part: sp.Expr) -> bool:
 
 
 def _is_inverse_square(part: sp.Expr) -> bool:
-    """Return True for a negative even power of a real number, which is positive where it has a value."""
+    """Return True for a negative even power of a real number.
+
+    It is positive if it has a value.
+    """
     return bool(part.is_Pow and part.exp.is_even and part.exp.is_negative and part.base.is_real)
 
 
@@ -61,7 +86,18 @@ Branches = tuple[Branch, ...]
 
 
 def branches_of(expressions: Iterable[sp.Expr]) -> Branches:
-    """Return all branches of some expressions, each once."""
+    """Return all branches of some expressions, each once.
+
+    Parameters
+    ----------
+    expressions : iterable of Expr
+        Expressions to examine.
+
+    Returns
+    -------
+    Branches
+        Branches in a fixed order.
+    """
     parts = set().union(*(expression.atoms(sp.Function, sp.Pow) for expression in expressions))
     found: dict[sp.Expr, Branch] = {}
     for part in sorted(parts, key=sp.default_sort_key):
@@ -75,7 +111,7 @@ def branches_of(expressions: Iterable[sp.Expr]) -> Branches:
 
 
 def _real(part: sp.Expr) -> sp.Expr:
-    """Stand in for a root or logarithm, of which only real values count."""
+    """Replace a root or logarithm by a real one: only its real values count."""
     return sp.Dummy(real=True)
 
 

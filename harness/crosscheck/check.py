@@ -1,4 +1,7 @@
-"""The cross-check of a record: a verdict on every equation, held or missing, and on what else is said."""
+"""The cross-check of a record: a verdict on every equation and premise.
+
+An equation that is missing has a verdict, too.
+"""
 
 from __future__ import annotations
 
@@ -10,13 +13,13 @@ from typing import TypeVar
 from ..description import Description
 from ..record import Derivation, LeftOut, Record, Relation, Scene
 from . import derivation, initial_motion
-from .claims import NotComparable
-from .derivation import DerivationClaims
+from .derivation import CheckedDerivation
 from .independent import IndependentEquations
-from .initial_motion import SceneClaims
+from .initial_motion import CheckedScene
 from .premises import Difference, Premises, differences, premises_of
 from .redundancy import judge_redundancy
-from .report import CheckReport, EquationVerdict, Item, Judgement, Place, Verdict, verdict_on
+from .relations import NotComparable
+from .report import CheckReport, CheckResult, EquationVerdict, Item, Place, Verdict, verdict_on
 from .seed import fresh_seed
 from .skeleton import (
     CLOSED_NUMBERS,
@@ -31,10 +34,10 @@ from .system import MechanicalSystem, described_system
 from .time_limit import TimeLimit
 from .verdict import Comparison, judge_all
 
-Claims = TypeVar("Claims", DerivationClaims, SceneClaims)
-Compare = Callable[[Claims, tuple[Relation, ...]], Comparison | tuple[Comparison, ...]]
+Checked = TypeVar("Checked", CheckedDerivation, CheckedScene)
+Compare = Callable[[Checked, tuple[Relation, ...]], Comparison | tuple[Comparison, ...]]
 
-OUT_OF_TIME = Judgement(Verdict.UNDECIDED, None, None, "the time limit was reached before")
+OUT_OF_TIME = CheckResult(Verdict.UNDECIDED, None, None, "the time limit was reached before")
 
 
 def check_record(
@@ -44,26 +47,26 @@ def check_record(
     closed_form_size: int | None = None,
     seconds: float = math.inf,
 ) -> CheckReport:
-    """Compare every equation of a record with the independent evaluation of a description.
+    """Compare every equation of a record with the evaluation of a description.
 
     Parameters
     ----------
     record : Record
-        What is claimed.
+        The record to be checked.
     description : Description
-        What the scene file says; nothing of it is taken from the record.
+        Description of the scene file; nothing of it is taken from the record.
     seed : str or None
-        Draws the random points; None is for a fresh one.
+        Seed of the random points; None is for a fresh one.
     closed_form_size : int or None
         The limit that the record was derived with; None for that of the description.
     seconds : float
-        Time for all verdicts: what is not decided by then is undecided.
+        Time for all verdicts. Equations without a verdict by then are undecided.
 
     Returns
     -------
     CheckReport
-        Verdicts in the record's order. An equation that should be there and is not disagrees, and so does one that has
-        no place, and what the record says otherwise than the description.
+        Verdicts in the record's order. A missing equation disagrees, and so does an unexpected one, and every
+        difference between record and description.
     """
     seed = seed or fresh_seed()
     premises = premises_of(description, closed_form_size)
@@ -71,19 +74,19 @@ def check_record(
 
 
 class _Check:
-    """One record, what is known of it, and how its verdicts are found."""
+    """The check of one record, with its premises."""
 
     def __init__(self, record: Record, premises: Premises, seed: str, time: TimeLimit) -> None:
         self._record, self._premises, self._seed, self._time = record, premises, seed, time
         self._limit = premises.closed_form_size
 
     def verdicts(self) -> Iterator[EquationVerdict]:
-        """Verdicts on all that the record says, in its order."""
+        """Return verdicts on the whole record, in its order."""
         record = self._record
         yield from map(_said_otherwise, differences(record, self._premises))
-        claims = list(map(self._claims, record.derivations))
-        scenes = list(self._scenes(claims))
-        for place, (derived, each) in enumerate(zip(record.derivations, claims, strict=True)):
+        checked = list(map(self._checked, record.derivations))
+        scenes = list(self._scenes(checked))
+        for place, (derived, each) in enumerate(zip(record.derivations, checked, strict=True)):
             yield from self._on_derivation(Place(place), derived, each)
             starts = [scene.configuration for scene in scenes if scene.derivation is each]
             yield from self._on_redundancy(Place(place), derived, each, starts)
@@ -92,10 +95,10 @@ class _Check:
         for each in scenes:
             yield from self._on_scene(Place(each.scene.derivation, each.scene.name), each)
 
-    def _claims(self, derived: Derivation) -> DerivationClaims:
+    def _checked(self, derived: Derivation) -> CheckedDerivation:
         system = described_system(self._premises.system, derived.effects)
         independent = system.without(derived.redundant)
-        return DerivationClaims(
+        return CheckedDerivation(
             IndependentEquations(system),
             IndependentEquations(independent, derived.mass_matrix == "supported"),
             tuple(derived.equations),
@@ -103,23 +106,25 @@ class _Check:
             len(system.coordinates) ** 2 <= self._limit,
         )
 
-    def _scenes(self, claims: Sequence[DerivationClaims]) -> Iterator[SceneClaims]:
+    def _scenes(self, checked: Sequence[CheckedDerivation]) -> Iterator[CheckedScene]:
         stated = {scene.name: scene for scene in self._premises.scenes}
         for scene in self._record.scenes:
-            if scene.name in stated and scene.derivation < len(claims):
-                yield SceneClaims(scene, stated[scene.name], claims[scene.derivation])
+            if scene.name in stated and scene.derivation < len(checked):
+                yield CheckedScene(scene, stated[scene.name], checked[scene.derivation])
 
-    def _on_derivation(self, place: Place, derived: Derivation, claims: DerivationClaims) -> Iterator[EquationVerdict]:
-        closed = claims.size <= self._limit
-        items = derivation_items(closed, derived.mass_matrix == "regular", derived.redundant, claims.all_entries)
-        yield from self._on_equations(place, derived, items, claims, derivation.COMPARISONS)
+    def _on_derivation(
+        self, place: Place, derived: Derivation, checked: CheckedDerivation
+    ) -> Iterator[EquationVerdict]:
+        closed = checked.size <= self._limit
+        items = derivation_items(closed, derived.mass_matrix == "regular", derived.redundant, checked.all_entries)
+        yield from self._on_equations(place, derived, items, checked, derivation.COMPARISONS)
         from . import lagranges_method  # loads SymPy's mechanics, which nothing else of this package needs
 
-        if lagranges_method.can_take(claims.known.system):
+        if lagranges_method.can_take(checked.known.system):
             yield self._judged(
-                place, lagranges_method.OPINION, lambda: lagranges_method.compare(claims.known), claims.system
+                place, lagranges_method.OPINION, lambda: lagranges_method.compare(checked.known), checked.system
             )
-        yield from self._on_left_out(place, derived.left_out, () if closed else CLOSED_NUMBERS, claims.size)
+        yield from self._on_left_out(place, derived.left_out, () if closed else CLOSED_NUMBERS, checked.size)
         solved = [each for each in derived.equations if each.id in ("multipliers", "accelerations")]
         operations = operations_of(solved) if closed else None
         if derived.closed_form_operations != operations:
@@ -127,9 +132,9 @@ class _Check:
             yield _refused(place, Item("closed_form_operations", "", "operations in (8) and (11)"), detail)
 
     def _on_redundancy(
-        self, place: Place, derived: Derivation, claims: DerivationClaims, starts: Sequence[Mapping]
+        self, place: Place, derived: Derivation, checked: CheckedDerivation, starts: Sequence[Mapping]
     ) -> Iterator[EquationVerdict]:
-        names = [multiplier.name for multiplier in claims.system.multipliers]
+        names = [multiplier.name for multiplier in checked.system.multipliers]
         kept = [name for name in names if name not in derived.redundant]
         item = Item("redundant_constraints", "1", _redundant_in_words(derived.redundant))
         if [*derived.redundant] != [name for name in names if name not in kept]:
@@ -137,40 +142,43 @@ class _Check:
             return
         regular = derived.mass_matrix == "regular"
         found = self._time.result(
-            lambda: judge_redundancy(claims.system, kept, regular, starts, self._seed), OUT_OF_TIME
+            lambda: judge_redundancy(checked.system, kept, regular, starts, self._seed), OUT_OF_TIME
         )
         if names or found.verdict is not Verdict.AGREES:
             yield verdict_on(place, item, found)
 
-    def _on_scene(self, place: Place, claims: SceneClaims) -> Iterator[EquationVerdict]:
-        size = claims.derivation.size
-        closed, law = size <= self._limit, bool(claims.premises.control_law)
+    def _on_scene(self, place: Place, checked: CheckedScene) -> Iterator[EquationVerdict]:
+        size = checked.derivation.size
+        closed, law = size <= self._limit, bool(checked.premises.control_law)
         if closed:
-            accelerations = [each for each in claims.derivation.equations if each.id == "accelerations"]
+            accelerations = [each for each in checked.derivation.equations if each.id == "accelerations"]
             size = length_of(accelerations[0]) if accelerations else 0
         series = closed and size <= self._limit
         items = scene_items(closed, series, law)
-        yield from self._on_equations(place, claims.scene, items, claims, initial_motion.COMPARISONS)
+        yield from self._on_equations(place, checked.scene, items, checked, initial_motion.COMPARISONS)
         numbers = scene_numbers_left_out(closed, series, law)
-        yield from self._on_left_out(place, claims.scene.left_out, numbers, size)
-        yield from _left_out(place, claims.scene.left_out)
+        yield from self._on_left_out(place, checked.scene.left_out, numbers, size)
+        yield from _left_out(place, checked.scene.left_out)
 
     def _on_equations(
         self,
         place: Place,
         part: Derivation | Scene,
         items: Sequence[Item],
-        claims: Claims,
-        comparisons: Mapping[str, Compare[Claims]],
+        checked: Checked,
+        comparisons: Mapping[str, Compare[Checked]],
     ) -> Iterator[EquationVerdict]:
-        """Verdicts on the equations of a part, each of which must be there once, in its place and under its names."""
+        """Return verdicts on the equations of a part.
+
+        Each of them must be there once, in its place and under its names.
+        """
         waiting = list(items)
         for equation in part.equations:
             item = Item(equation.id, equation.number, equation.name)
             if item in waiting:
                 waiting = waiting[waiting.index(item) + 1 :]
                 compare = comparisons[equation.id]
-                yield self._judged(place, item, lambda c=compare, e=equation: c(claims, e.relations), claims.system)
+                yield self._judged(place, item, lambda c=compare, e=equation: c(checked, e.relations), checked.system)
             else:
                 yield _refused(place, item, "no such equation belongs here; or it is there twice, or out of order")
         held = {(each.id, each.number, each.name) for each in part.equations}
@@ -185,11 +193,11 @@ class _Check:
         compare: Callable[[], Comparison | tuple[Comparison, ...]],
         system: MechanicalSystem,
     ) -> EquationVerdict:
-        def work() -> Judgement:
+        def work() -> CheckResult:
             try:
                 compared = compare()
             except NotComparable as reason:
-                return Judgement(Verdict.DISAGREES, None, None, f"the record holds {reason}")
+                return CheckResult(Verdict.DISAGREES, None, None, f"the record holds {reason}")
             compared = (compared,) if isinstance(compared, Comparison) else compared
             comparisons = [replace(each, domain=system.terms) for each in compared]
             return judge_all(comparisons, f"{self._seed} {item.number} {item.name}")
@@ -197,9 +205,10 @@ class _Check:
         return verdict_on(place, item, self._time.result(work, OUT_OF_TIME))
 
     def _on_left_out(
-        self, place: Place, left_out: LeftOut | None, numbers: Sequence[str], size: int
+        self, place: Place, left_out: LeftOut | None, numbers: Sequence[str], size: float
     ) -> Iterator[EquationVerdict]:
-        expected = LeftOut(tuple(numbers), size, self._limit) if numbers else None
+        predicted = None if math.isinf(size) else size
+        expected = LeftOut(tuple(numbers), predicted, self._limit) if numbers else None
         if left_out != expected:
             detail = f"the record has {left_out or 'nothing'}, where {expected or 'nothing'} belongs"
             yield _refused(place, Item("left_out", "", "what is left out"), detail)
@@ -217,10 +226,10 @@ def _redundant_in_words(redundant: Sequence[str]) -> str:
 
 
 def _refused(place: Place, item: Item, reason: str, held: bool = True) -> EquationVerdict:
-    return verdict_on(place, item, Judgement(Verdict.DISAGREES, None, None, reason), held=held)
+    return verdict_on(place, item, CheckResult(Verdict.DISAGREES, None, None, reason), held=held)
 
 
 def _left_out(place: Place, left_out: LeftOut | None) -> Iterator[EquationVerdict]:
-    nothing = Judgement(Verdict.LEFT_OUT, None, None)
+    nothing = CheckResult(Verdict.LEFT_OUT, None, None)
     for number in left_out.numbers if left_out else ():
         yield verdict_on(place, Item("", number, "(not made)"), nothing, held=False, left_out=left_out)

@@ -1,9 +1,8 @@
-"""Equations (1) to (11) of a derivation, each against the independent evaluation.
+"""Equations (1) to (11) of a derivation, compared with the independent evaluation.
 
-Every function here takes the claims of one derivation and the relations of one equation, and
-states the comparison that decides it. Where the record has solved for something, the comparison
-is with the solution of the bordered system, and the record's closed forms (4), (8), (11) serve
-as the certificate of its proof.
+Each function here takes one derivation and the relations of one equation, and states the comparison
+that decides it. If the record has solved for a quantity, the comparison is with the solution of the bordered system,
+and the record's closed forms (4), (8), (11) are the certificate of its proof.
 """
 
 from __future__ import annotations
@@ -15,8 +14,8 @@ from itertools import combinations_with_replacement, product
 import sympy as sp
 
 from ..record import Equation, Relation
-from .claims import Entries, NotComparable, list_of, read_exactly, residual_pairs, solved_for, sparse_entries
 from .independent import IndependentEquations
+from .relations import Entries, NotComparable, list_of, read_exactly, residual_pairs, solved_for, sparse_entries
 from .system import MechanicalSystem, gradient
 from .verdict import Comparison, Pair
 
@@ -25,8 +24,8 @@ ClosedForm = Mapping[sp.Symbol, sp.Expr]
 
 
 @dataclass(frozen=True)
-class DerivationClaims:
-    """A derivation of the record beside the independent evaluation of its system."""
+class CheckedDerivation:
+    """A derivation of the record, with the independent evaluation of its system."""
 
     stated: IndependentEquations  # of the system as it is described
     known: IndependentEquations  # of its independent constraints: what is solved
@@ -36,26 +35,50 @@ class DerivationClaims:
 
     @property
     def system(self) -> MechanicalSystem:
-        """The system that the derivation is of."""
+        """The system of the derivation."""
         return self.stated.system
 
     def driven_accelerations(self) -> ClosedForm | None:
-        """Accelerations with multipliers (4), where the record holds them."""
+        """Return the accelerations with multipliers (4), if the record holds them.
+
+        Returns
+        -------
+        ClosedForm or None
+            By the symbols of the accelerations; None without them.
+        """
         return self._solution("driven_accelerations", self.system.accelerations)
 
     def free_accelerations(self) -> ClosedForm | None:
-        """Accelerations (4) with every multiplier zero."""
+        """Return the accelerations (4) with every multiplier zero.
+
+        Returns
+        -------
+        ClosedForm or None
+            By the symbols of the accelerations; None if the record does not hold (4).
+        """
         driven = self.driven_accelerations()
         released = dict.fromkeys(self.system.multipliers, sp.Integer(0))
         return driven and {a: value.xreplace(released) for a, value in driven.items()}
 
     def multipliers(self) -> ClosedForm | None:
-        """Multipliers of the independent constraints in closed form (8), where the record holds them."""
+        """Return the multipliers of the independent constraints in closed form (8).
+
+        Returns
+        -------
+        ClosedForm or None
+            By the symbols of the multipliers; None if the record does not hold them.
+        """
         solution = self._solution("multipliers", self.system.multipliers)
         return solution and {multiplier: solution[multiplier] for multiplier in self.known.system.multipliers}
 
     def motion(self) -> ClosedForm | None:
-        """Accelerations (11) and multipliers (8) together."""
+        """Return the accelerations (11) and multipliers (8) together.
+
+        Returns
+        -------
+        ClosedForm or None
+            By their symbols; None if the record does not hold both.
+        """
         accelerations = self._solution("accelerations", self.system.accelerations)
         multipliers = self.multipliers()
         if accelerations is None or multipliers is None:
@@ -72,23 +95,61 @@ class DerivationClaims:
         return None
 
 
-def constraints(claims: DerivationClaims, relations: Relations) -> Comparison:
-    """(1): f_beta = 0."""
-    return Comparison(residual_pairs("constraint", relations, claims.system.constraints))
+def constraints(checked: CheckedDerivation, relations: Relations) -> Comparison:
+    """Compare the constraints (1), f_beta = 0.
+
+    Parameters
+    ----------
+    checked : CheckedDerivation
+        The derivation.
+    relations : Relations
+        Relations of the equation.
+
+    Returns
+    -------
+    Comparison
+    """
+    return Comparison(residual_pairs("constraint", relations, checked.system.constraints))
 
 
-def equations_of_motion(claims: DerivationClaims, relations: Relations) -> Comparison:
-    """(2) and (3): left less right side is the residual of Lagrange's equation."""
-    return Comparison(residual_pairs("equation of motion", relations, claims.stated.motion))
+def equations_of_motion(checked: CheckedDerivation, relations: Relations) -> Comparison:
+    """Compare the equations of motion (2) and (3).
+
+    The left side less the right side is the residual of Lagrange's equation.
+
+    Parameters
+    ----------
+    checked : CheckedDerivation
+        The derivation.
+    relations : Relations
+        Relations of the equation.
+
+    Returns
+    -------
+    Comparison
+    """
+    return Comparison(residual_pairs("equation of motion", relations, checked.stated.motion))
 
 
-def split_kinetic_energy(claims: DerivationClaims, relations: Relations) -> Comparison:
-    """(3), its coefficients: A, B and T0 are those of T as a polynomial in the velocities."""
-    T, v = claims.system.kinetic_energy, claims.system.velocities
+def split_kinetic_energy(checked: CheckedDerivation, relations: Relations) -> Comparison:
+    """Compare A, B and T0 of (3), the coefficients of T as a polynomial in velocities.
+
+    Parameters
+    ----------
+    checked : CheckedDerivation
+        The derivation.
+    relations : Relations
+        Relations of the equation: A, then B, then T0.
+
+    Returns
+    -------
+    Comparison
+    """
+    T, v = checked.system.kinetic_energy, checked.system.velocities
     n = len(v)
     at_rest = dict.fromkeys(v, sp.Integer(0))
     momenta = gradient(T, v)
-    if claims.all_entries:
+    if checked.all_entries:
         keys = list(product(range(1, n + 1), repeat=2))
         A = dict(zip(keys, read_exactly([["Subscript", "A", *key] for key in keys], relations[: n * n]), strict=True))
     else:
@@ -114,7 +175,7 @@ def _slopes(momentum: sp.Expr, velocities: Sequence[sp.Symbol]) -> list[tuple[in
 
 
 def _sparse_pairs(name: str, claimed: Entries, expected: Entries) -> tuple[Pair, ...]:
-    """Pairs for all entries that the record holds, and for all that are not zero."""
+    """Pair all entries that the record holds, and all that are not zero."""
     zero = sp.Integer(0)
     return tuple(
         Pair(f"{name}{list(key)}", claimed.get(key, zero), expected.get(key, zero))
@@ -122,19 +183,45 @@ def _sparse_pairs(name: str, claimed: Entries, expected: Entries) -> tuple[Pair,
     )
 
 
-def driven_accelerations(claims: DerivationClaims, relations: Relations) -> Comparison:
-    """(4): the accelerations that Lagrange's equations give, the multipliers left open."""
-    claimed = solved_for(claims.system.accelerations, relations)
-    return Comparison(_solved_pairs(claimed), solves=(claims.known.driven,), certificate=claimed)
+def driven_accelerations(checked: CheckedDerivation, relations: Relations) -> Comparison:
+    """Compare (4), the accelerations of Lagrange's equations, with free multipliers.
+
+    Parameters
+    ----------
+    checked : CheckedDerivation
+        The derivation.
+    relations : Relations
+        Relations of the equation.
+
+    Returns
+    -------
+    Comparison
+    """
+    claimed = solved_for(checked.system.accelerations, relations)
+    return Comparison(_solved_pairs(claimed), solves=(checked.known.driven,), certificate=claimed)
 
 
-def inverse_mass_matrix(claims: DerivationClaims, relations: Relations) -> Comparison:
-    """(5): A^ls A_sk is the unit matrix, or the inverse of A + J^T J where A is singular."""
-    n = len(claims.system.coordinates)
+def inverse_mass_matrix(checked: CheckedDerivation, relations: Relations) -> Comparison:
+    """Compare (5): A^ls A_sk is the unit matrix.
+
+    If A is singular, the inverse is that of A + J^T J.
+
+    Parameters
+    ----------
+    checked : CheckedDerivation
+        The derivation.
+    relations : Relations
+        Relations of the equation.
+
+    Returns
+    -------
+    Comparison
+    """
+    n = len(checked.system.coordinates)
     keys = list(product(range(n), repeat=2))
     lefts = [["Subscript", "A_inverse", row + 1, s + 1] for row, s in keys]
     inverse = dict(zip(keys, read_exactly(lefts, relations), strict=True))
-    A = claims.known.inverted
+    A = checked.known.inverted
     return Comparison(
         tuple(
             Pair(
@@ -147,17 +234,31 @@ def inverse_mass_matrix(claims: DerivationClaims, relations: Relations) -> Compa
     )
 
 
-def christoffel_symbols(claims: DerivationClaims, relations: Relations) -> Comparison:
-    """(6): half the second derivatives by the velocities of d/dt dT/d dot(q_s) - dT/dq_s, for k <= m."""
-    v = claims.system.velocities
+def christoffel_symbols(checked: CheckedDerivation, relations: Relations) -> Comparison:
+    """Compare (6): half the second derivatives of Lagrange's terms by the velocities.
+
+    The terms are d/dt dT/d dot(q_s) - dT/dq_s, and k <= m.
+
+    Parameters
+    ----------
+    checked : CheckedDerivation
+        The derivation.
+    relations : Relations
+        Relations of the equation; zeros are left out.
+
+    Returns
+    -------
+    Comparison
+    """
+    v = checked.system.velocities
     n = len(v)
     claimed = sparse_entries("christoffel", (n, n, n), (2, 0, 1), relations)
     for k, m, s in claimed:
         if k > m:
             raise NotComparable(f"christoffel[{k}, {m}, {s}], which christoffel[{m}, {k}, {s}] stands for")
-    at_rest = dict.fromkeys(claims.system.accelerations, sp.Integer(0))
+    at_rest = dict.fromkeys(checked.system.accelerations, sp.Integer(0))
     expected = {}
-    for s, residual in enumerate(claims.stated.kinetic, 1):
+    for s, residual in enumerate(checked.stated.kinetic, 1):
         quadratic = residual.xreplace(at_rest)
         present = [k for k, velocity in enumerate(v, 1) if velocity in quadratic.free_symbols]
         for k, m in combinations_with_replacement(present, 2):
@@ -165,64 +266,138 @@ def christoffel_symbols(claims: DerivationClaims, relations: Relations) -> Compa
     return Comparison(_sparse_pairs("christoffel", claimed, expected))
 
 
-def constraint_accelerations(claims: DerivationClaims, relations: Relations) -> Comparison:
-    """(7): the second total derivative of each constraint."""
-    expected = claims.stated.constraint_accelerations
+def constraint_accelerations(checked: CheckedDerivation, relations: Relations) -> Comparison:
+    """Compare (7), the second total derivative of each constraint.
+
+    Parameters
+    ----------
+    checked : CheckedDerivation
+        The derivation.
+    relations : Relations
+        Relations of the equation.
+
+    Returns
+    -------
+    Comparison
+    """
+    expected = checked.stated.constraint_accelerations
     return Comparison(residual_pairs("constraint acceleration", relations, expected))
 
 
-def equations_for_multipliers(claims: DerivationClaims, relations: Relations) -> Comparison:
-    """(8): the constraint accelerations where the accelerations are those of (4)."""
-    expected = claims.known.constraint_accelerations
+def equations_for_multipliers(checked: CheckedDerivation, relations: Relations) -> Comparison:
+    """Compare (8): the constraint accelerations with the accelerations of (4).
+
+    Parameters
+    ----------
+    checked : CheckedDerivation
+        The derivation.
+    relations : Relations
+        Relations of the equation.
+
+    Returns
+    -------
+    Comparison
+    """
+    expected = checked.known.constraint_accelerations
     return Comparison(
         residual_pairs("equation for the multipliers", relations, expected),
-        solves=(claims.known.driven,),
-        certificate=claims.driven_accelerations(),
+        solves=(checked.known.driven,),
+        certificate=checked.driven_accelerations(),
     )
 
 
-def multipliers(claims: DerivationClaims, relations: Relations) -> Comparison:
-    """(8), solved: the multipliers of the bordered system, zero for redundant constraints."""
-    solved = set(claims.known.system.multipliers)
+def multipliers(checked: CheckedDerivation, relations: Relations) -> Comparison:
+    """Compare (8), solved: the multipliers of the bordered system.
+
+    Those of redundant constraints are zero.
+
+    Parameters
+    ----------
+    checked : CheckedDerivation
+        The derivation.
+    relations : Relations
+        Relations of the equation.
+
+    Returns
+    -------
+    Comparison
+    """
+    solved = set(checked.known.system.multipliers)
     return Comparison(
         tuple(
             Pair(multiplier.name, value, multiplier if multiplier in solved else sp.Integer(0))
-            for multiplier, value in solved_for(claims.system.multipliers, relations).items()
+            for multiplier, value in solved_for(checked.system.multipliers, relations).items()
         ),
-        solves=(claims.known.bordered,),
-        certificate=claims.motion(),
+        solves=(checked.known.bordered,),
+        certificate=checked.motion(),
     )
 
 
-def constraint_forces(claims: DerivationClaims, relations: Relations) -> Comparison:
-    """(9): lambda_gamma df_gamma/dq_s with the multipliers of the bordered system."""
-    claimed = list_of("Lambda", len(claims.system.coordinates), relations)
+def constraint_forces(checked: CheckedDerivation, relations: Relations) -> Comparison:
+    """Compare (9): lambda_gamma df_gamma/dq_s with the bordered system's multipliers.
+
+    Parameters
+    ----------
+    checked : CheckedDerivation
+        The derivation.
+    relations : Relations
+        Relations of the equation.
+
+    Returns
+    -------
+    Comparison
+    """
+    claimed = list_of("Lambda", len(checked.system.coordinates), relations)
     return Comparison(
         tuple(
             Pair(f"Lambda[{s}]", value, force)
-            for s, (value, force) in enumerate(zip(claimed, claims.known.constraint_forces, strict=True), 1)
+            for s, (value, force) in enumerate(zip(claimed, checked.known.constraint_forces, strict=True), 1)
         ),
-        solves=(claims.known.bordered,),
-        certificate=claims.motion(),
+        solves=(checked.known.bordered,),
+        certificate=checked.motion(),
     )
 
 
-def free_motion_condition(claims: DerivationClaims, relations: Relations) -> Comparison:
-    """(10): the constraint accelerations where every multiplier is zero."""
-    expected = claims.known.constraint_accelerations
+def free_motion_condition(checked: CheckedDerivation, relations: Relations) -> Comparison:
+    """Compare (10): the constraint accelerations with every multiplier zero.
+
+    Parameters
+    ----------
+    checked : CheckedDerivation
+        The derivation.
+    relations : Relations
+        Relations of the equation.
+
+    Returns
+    -------
+    Comparison
+    """
+    expected = checked.known.constraint_accelerations
     return Comparison(
         residual_pairs("condition of free motion", relations, expected),
-        solves=(claims.known.free,),
-        certificate=claims.free_accelerations(),
+        solves=(checked.known.free,),
+        certificate=checked.free_accelerations(),
     )
 
 
-def accelerations(claims: DerivationClaims, relations: Relations) -> Comparison:
-    """(11): the accelerations of the bordered system."""
+def accelerations(checked: CheckedDerivation, relations: Relations) -> Comparison:
+    """Compare (11), the accelerations of the bordered system.
+
+    Parameters
+    ----------
+    checked : CheckedDerivation
+        The derivation.
+    relations : Relations
+        Relations of the equation.
+
+    Returns
+    -------
+    Comparison
+    """
     return Comparison(
-        _solved_pairs(solved_for(claims.system.accelerations, relations)),
-        solves=(claims.known.bordered,),
-        certificate=claims.motion(),
+        _solved_pairs(solved_for(checked.system.accelerations, relations)),
+        solves=(checked.known.bordered,),
+        certificate=checked.motion(),
     )
 
 

@@ -1,10 +1,11 @@
-"""The equations of motion of a scene, from its description alone, evaluated along a curve.
+"""The equations of motion of a described scene, evaluated along a curve.
 
 A curve is a Taylor polynomial in the time for each coordinate. Along it
 
     d/dt dL/d dot(q_s) - dL/dq_s - Q_s - lambda_beta df_beta/dq_s        and        f_beta
 
-are polynomials in the time, too: on a motion they vanish. No matrix is made, and nothing is differentiated in symbols.
+are polynomials in the time, too: on a motion they vanish. No matrix is made, and no symbolic differentiation is
+needed.
 """
 
 from __future__ import annotations
@@ -27,14 +28,14 @@ Curve = Mapping[str, Polynomial]
 
 @dataclass(frozen=True)
 class Residual:
-    """What should vanish, as a polynomial in the time, and the sum of the sizes of its terms."""
+    """A residual as a polynomial in the time, with the sum of the sizes of its terms."""
 
     value: Polynomial
     size: Polynomial
 
 
 class DescribedMotion:
-    """What a description says of one scene, or of its system where `scene` is None."""
+    """The description of one scene, or of its system if `scene` is None."""
 
     def __init__(self, description: Description, scene: DescribedScene | None) -> None:
         system = self.system = description.system
@@ -55,7 +56,18 @@ class DescribedMotion:
         self.ended: frozenset[str] = frozenset()  # multipliers of constraints that have ended
 
     def after(self, k: int) -> DescribedMotion:
-        """Return the motion after the k-th release of the scene, counted from 0."""
+        """Return the motion after the k-th release of the scene, counted from 0.
+
+        Parameters
+        ----------
+        k : int
+            Place of the release in the scene.
+
+        Returns
+        -------
+        DescribedMotion
+            The motion without the constraints that end.
+        """
         found, scene, ended = copy(self), self.scene, self.scene.released[k].multipliers
         kept = [beta for beta, name in enumerate(self.system.multipliers) if name not in ended]
         found.scene = replace(scene, released=scene.released[:k] + scene.released[k + 1 :])
@@ -71,14 +83,17 @@ class DescribedMotion:
 
     @cached_property
     def moved(self) -> tuple[str, ...]:
-        """Controls that servo-constraints find and constraints contain: coordinates of the state."""
+        """Controls of servo-constraints that occur in constraints, as coordinates.
+
+        Servo-constraints determine them.
+        """
         if self.scene is None or not self.scene.servo_trees:
             return ()
         return tuple(u for u in self._standing_in(self.constraints) if u not in self.freed)
 
     @cached_property
     def freed(self) -> tuple[str, ...]:
-        """Controls that prescribed reactions find: coordinates of the state."""
+        """Controls that prescribed reactions determine, as coordinates of the state."""
         if self.scene is None or not self.scene.prescribed_reactions:
             return ()
         if not self.scene.servo_trees:
@@ -86,15 +101,21 @@ class DescribedMotion:
         places = zip(self.system.multipliers, self.constraints, strict=True)
         return self._standing_in([place for name, place in places if name in self.scene.prescribed_reactions])
 
+    @property
+    def reacting(self) -> tuple[str, ...]:
+        """Multipliers in the forces."""
+        needed = self.tape.needed_for([place for parts in self._forces for place in parts])
+        return tuple(name for name in self.system.multipliers if self.tape.names.get(name) in needed)
+
     def _standing_in(self, places: Sequence[int]) -> tuple[str, ...]:
-        """Return controls without a law that expressions contain."""
+        """Return controls without a law that occur in expressions."""
         needed = self.tape.needed_for(places)
         free = (u for u in self.system.controls if u not in self.scene.control_law)
         return tuple(u for u in free if self.tape.names.get(u) in needed)
 
     @cached_property
     def span(self) -> tuple[mp.mpf, mp.mpf] | None:
-        """First and last instant of the scene; None if it states none."""
+        """First and last time of the scene; None if it states none."""
         if self.scene is None or self.scene.span_trees is None:
             return None
         with mp.workdps(DATA_DIGITS):
@@ -102,52 +123,113 @@ class DescribedMotion:
         return first, last
 
     @property
-    def first_instant(self) -> mp.mpf:
+    def first_time(self) -> mp.mpf:
         """Beginning of the time span; zero without one."""
         return self.span[0] if self.span else mp.zero
 
     @cached_property
     def splines(self) -> list[Spline]:
-        """Its tables."""
+        """Tables of the scene as splines."""
         return [Spline(table) for table in self.description.tables]
 
     @cached_property
     def law(self) -> Law:
-        """Its control law."""
+        """Control law of the scene."""
         return Law({} if self.scene is None else self.scene.control_law.trees, self.splines)
 
     @cached_property
     def reactions(self) -> Law:
-        """Its prescribed reactions."""
+        """Prescribed reactions of the scene."""
         return Law({} if self.scene is None else self.scene.prescribed_reactions.trees, self.splines)
 
     def parameters(self) -> dict[str, Polynomial]:
-        """Return values of the parameters that have one, and of the switches."""
+        """Return the values of parameters and switches.
+
+        Returns
+        -------
+        dict of str to Polynomial
+            Constant polynomials by name; a switch is 1 or 0.
+        """
         trees = {} if self.scene is None else self.scene.parameter_values.trees
         called = self.system.switches if self.scene is None else self.scene.effects
         switches = {name: (mp.mpf(name in called),) for name in self.system.switches}
         return {name: (number(tree),) for name, tree in trees.items()} | switches
 
     def number_of(self, tree: Tree) -> mp.mpf:
-        """Value of an expression of parameters alone."""
+        """Return the value of an expression of parameters alone.
+
+        Parameters
+        ----------
+        tree : Tree
+            Expression of parameters.
+
+        Returns
+        -------
+        mpf
+        """
         return Law({"": tree}, ()).at(Taylor(0), mp.zero, self.parameters())[""][0]
 
     def values(self, taylor: Taylor, curve: Curve, needed: Container[int] | None = None) -> list[Polynomial]:
-        """Return values of T, V, Q, f and all their parts along a curve, or of those needed.
+        """Return values of T, V, Q, f and their parts along a curve.
 
-        Raises as `Tape.values`.
+        Parameters
+        ----------
+        taylor : Taylor
+            Arithmetic up to the order of the polynomials.
+        curve : Curve
+            Polynomial of each coordinate, control, parameter and the time.
+        needed : container of int or None
+            Places of the tape to evaluate; None for all.
+
+        Returns
+        -------
+        list of Polynomial
+            Polynomial at each place of the tape; empty if it is not needed.
+
+        Raises
+        ------
+        IrregularPoint
+            As `Tape.values`.
         """
         return self.tape.values(taylor, self.with_rates(taylor, curve), needed)
 
     def with_rates(self, taylor: Taylor, curve: Curve) -> dict[str, Polynomial]:
-        """Return a curve with the rates of its coordinates and controls."""
+        """Return a curve with the time derivatives of its coordinates and controls.
+
+        Parameters
+        ----------
+        taylor : Taylor
+            Arithmetic up to the order of the polynomials.
+        curve : Curve
+            Polynomial of each quantity.
+
+        Returns
+        -------
+        dict of str to Polynomial
+            The curve, and ``dot(q)`` of each of its coordinates and controls.
+        """
         names = (*self.system.coordinates, *self.system.controls)
         return {**{f"dot({name})": taylor.rate(curve[name]) for name in names if name in curve}, **curve}
 
     def equations(
         self, taylor: Taylor, values: Sequence[Polynomial], multipliers: Sequence[Polynomial]
     ) -> list[Residual]:
-        """Lagrange's equations along the curve of the values."""
+        """Return the residuals of Lagrange's equations along the curve of the values.
+
+        Parameters
+        ----------
+        taylor : Taylor
+            Arithmetic up to the order of the polynomials.
+        values : sequence of Polynomial
+            Result of `values` along the curve.
+        multipliers : sequence of Polynomial
+            Polynomial of each multiplier.
+
+        Returns
+        -------
+        list of Residual
+            One for each coordinate.
+        """
         lagrangian = self._gradient_of_lagrangian(taylor, values)
         reactions = self.constraint_forces(taylor, values, multipliers)
         found = []
@@ -162,21 +244,60 @@ class DescribedMotion:
     def constraint_forces(
         self, taylor: Taylor, values: Sequence[Polynomial], multipliers: Sequence[Polynomial]
     ) -> dict[str, Polynomial]:
-        """Gradient of lambda_beta f_beta, by the name of the coordinate."""
+        """Return the gradient of lambda_beta f_beta, by the name of the coordinate.
+
+        Parameters
+        ----------
+        taylor : Taylor
+            Arithmetic up to the order of the polynomials.
+        values : sequence of Polynomial
+            Result of `values` along the curve.
+        multipliers : sequence of Polynomial
+            Polynomial of each multiplier.
+
+        Returns
+        -------
+        dict of str to Polynomial
+        """
         seeds = dict.fromkeys(self.constraints, (mp.zero,))
         for place, multiplier in zip(self.constraints, multipliers, strict=True):
             seeds[place] = taylor.add(seeds[place], multiplier)
         return self.tape.gradient(taylor, values, seeds)
 
     def momenta(self, taylor: Taylor, values: Sequence[Polynomial]) -> dict[str, Polynomial]:
-        """Gradient of the kinetic energy, by the name of the velocity."""
+        """Return the gradient of the kinetic energy, by the name of the velocity.
+
+        Parameters
+        ----------
+        taylor : Taylor
+            Arithmetic up to the order of the polynomials.
+        values : sequence of Polynomial
+            Result of `values` along the curve.
+
+        Returns
+        -------
+        dict of str to Polynomial
+        """
         seeds: dict[int, Polynomial] = {}
         for place in self._kinetic:
             seeds[place] = taylor.add(seeds.get(place, (mp.zero,)), (mp.one,))
         return self.tape.gradient(taylor, values, seeds)
 
     def energy(self, taylor: Taylor, values: Sequence[Polynomial], curve: Curve) -> Polynomial:
-        """Return the energy function dot(q_s) dL/d dot(q_s) - L along the curve."""
+        """Return the energy function dot(q_s) dL/d dot(q_s) - L along the curve.
+
+        Parameters
+        ----------
+        taylor : Taylor
+            Arithmetic up to the order of the polynomials.
+        values : sequence of Polynomial
+            Result of `values` along the curve.
+        curve : Curve
+
+        Returns
+        -------
+        Polynomial
+        """
         lagrangian = self._gradient_of_lagrangian(taylor, values)
         rates = self.with_rates(taylor, curve)
         parts = [

@@ -1,8 +1,8 @@
-"""The lengths of expressions as Maxima displays them, counted again from the trees of a record.
+"""Lengths of expressions as Maxima displays them, from the trees of a record.
 
-Maxima decides by a predicted length whether closed forms are made. It counts what it displays: ``-x`` for ``(-1)*x``,
-``x/y`` for ``x*y^(-1)``, ``sqrt(x)`` for ``x^(1/2)``. Trees hold the products and powers behind these; here they are
-brought into the displayed form first.
+Maxima decides by a predicted length whether closed forms are made. It counts the displayed form: ``-x`` for
+``(-1)*x``, ``x/y`` for ``x*y^(-1)``, ``sqrt(x)`` for ``x^(1/2)``. Trees hold the products and powers of the internal
+form; they are converted first.
 """
 
 from __future__ import annotations
@@ -19,7 +19,17 @@ HALF = Fraction(1, 2)
 
 
 def displayed(tree: Tree) -> Displayed:
-    """Return the form in which Maxima displays a tree."""
+    """Return the form in which Maxima displays a tree.
+
+    Parameters
+    ----------
+    tree : Tree
+        Expression of a record.
+
+    Returns
+    -------
+    Displayed
+    """
     match tree:
         case str():
             return tree
@@ -40,12 +50,34 @@ def displayed(tree: Tree) -> Displayed:
 
 
 def size(form: Displayed) -> int:
-    """Return the number of symbols, numbers and operations in a displayed form."""
+    """Return the number of symbols, numbers and operations in a displayed form.
+
+    Parameters
+    ----------
+    form : Displayed
+        Displayed form.
+
+    Returns
+    -------
+    int
+    """
     return 1 + sum(map(size, form[1:])) if isinstance(form, tuple) else 1
 
 
 def operations(form: Displayed) -> int:
-    """Return the number of operations in a displayed form; a sum or product of k parts has k - 1."""
+    """Return the number of operations in a displayed form.
+
+    A sum or product of k parts has k - 1.
+
+    Parameters
+    ----------
+    form : Displayed
+        Displayed form.
+
+    Returns
+    -------
+    int
+    """
     if not isinstance(form, tuple):
         return 0
     own = len(form) - 2 if form[0] in ("Add", "Multiply") else 1
@@ -53,7 +85,17 @@ def operations(form: Displayed) -> int:
 
 
 def roots(forms: Iterable[Displayed]) -> set[Displayed]:
-    """Return the different powers with fractions for exponents in displayed forms."""
+    """Return the different powers with fractions for exponents in displayed forms.
+
+    Parameters
+    ----------
+    forms : iterable of Displayed
+        Displayed forms.
+
+    Returns
+    -------
+    set of Displayed
+    """
     return {part for form in forms for part in _parts(form) if _is_root(part)}
 
 
@@ -85,7 +127,10 @@ def _number(tree: Tree) -> Fraction:
 
 
 def _power(base: Displayed, exponent: Displayed) -> Displayed:
-    """Return a power; one with a negative exponent stands below the line, but for an exponential."""
+    """Return a power, with a negative exponent as a denominator.
+
+    Exponentials keep their negative exponent.
+    """
     match exponent:
         case Fraction() if exponent in (HALF, -HALF):
             root = ("sqrt", base)

@@ -1,6 +1,7 @@
-"""Random points: of many sizes and both signs, within the domain, near branches and on both sides of them.
+"""Draw random points of many sizes and both signs, within the domain.
 
-A point is exact, a rational number for each symbol, so that it is the same in any precision.
+Points near branches and on both sides of them are among these. A point is exact, a rational number for each symbol,
+so that it is the same in any precision.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from .points import random_point
 Point = Mapping[sp.Symbol, sp.Rational]
 
 MANTISSA = 10**12
-"""Of a number that is drawn; nobody can foresee it."""
+"""Denominator of drawn numbers, too large to foresee them."""
 
 LARGEST_POWER = 6
 """Sizes are drawn from 10^-6 to 10^6, each power of ten as likely as the others."""
@@ -41,7 +42,7 @@ TRIPLES, PAIRS = 8, 40
 
 
 class Draws:
-    """Random points for some names; the same seed makes the same points."""
+    """Random points for some names, determined by the seed."""
 
     def __init__(self, names: Sequence[str], branches: Branches, seed: str) -> None:
         self.names, self.branches, self.seed = names, branches, seed
@@ -50,7 +51,18 @@ class Draws:
         self._reached: set[tuple[tuple[int, int], ...]] = set()
 
     def point(self, attempt: int) -> Point:
-        """Return the point of this attempt, moved into the domain where that is easily done."""
+        """Return the point of this attempt, moved into the domain if a simple step can.
+
+        Parameters
+        ----------
+        attempt : int
+            Number of the attempt, from 0; it decides about sizes and signs.
+
+        Returns
+        -------
+        Point
+            Rational number of each symbol.
+        """
         draw = random.Random(f"{self.seed} {attempt}")
         point = self._drawn(attempt, draw)
         outside = self._outside(point) if self._wanted else []
@@ -70,7 +82,15 @@ class Draws:
         return point
 
     def at_branches(self) -> Iterator[Point]:
-        """Points that reach sides of branches, or combinations of sides, that no point reached before."""
+        """Yield points on sides of branches that no point reached before.
+
+        Combinations of sides count, too.
+
+        Yields
+        ------
+        Point
+            Rational number of each symbol.
+        """
         looks = min(PER_BRANCH * len(self.branches), MOST_LOOKS) if self.names else 0
         for attempt in range(looks):
             draw = random.Random(f"{self.seed} branch {attempt}")
@@ -81,7 +101,15 @@ class Draws:
                 yield point
 
     def sides_not_reached(self) -> list[str]:
-        """Tell the sides of branches that no point reached, and that are not known to be empty."""
+        """Return the sides of branches that no point reached.
+
+        Sides that are known to be empty do not count.
+
+        Returns
+        -------
+        list of str
+            Sentences such as ``x - 1 is negative``.
+        """
         missing = []
         for i, branch in enumerate(self.branches):
             for side in (1, -1):
@@ -90,7 +118,10 @@ class Draws:
         return missing if self.names else []
 
     def _drawn(self, attempt: int, draw: random.Random) -> dict[sp.Symbol, sp.Rational]:
-        """Return every second attempt is of many sizes; of the others, every second is positive throughout."""
+        """Draw a point.
+
+        Every second attempt has values of many sizes. Of the others, every second has positive values only.
+        """
         if attempt % 2:
             return random_point(self.names, attempt // 2, self.seed)
         return {sp.Symbol(name, real=True): _number(draw) for name in self.names}
@@ -107,7 +138,7 @@ class Draws:
         return [i for i in self._wanted if found[i] is None or mp.im(found[i]) or found[i] < 0]
 
     def _note(self, point: Point) -> bool:
-        """Return True if the point reaches a side, or a combination of sides, for the first time."""
+        """Return True if the point is the first on a side or combination of sides."""
         sides = [
             (i, 1 if value > 0 else -1)
             for i, value in enumerate(self._looked_at(point))
@@ -120,7 +151,7 @@ class Draws:
         return bool(new)
 
     def _brought_to(self, branch: Branch, point: Point, draw: random.Random) -> Point | None:
-        """Move one symbol to where the function changes: onto the branch, and a small step off it."""
+        """Move one symbol onto the zero of a function, and a small step off it."""
         symbols = sorted((x for x in branch.argument.free_symbols if x in point), key=str)
         if not symbols:
             return None
@@ -149,9 +180,9 @@ def _exact(number: mp.mpf) -> sp.Rational:
 
 
 def _solved(residual: Steps, symbol: sp.Symbol, point: Point) -> mp.mpf | None:
-    """Return the number for the symbol at which the residual vanishes, by the secant method.
+    """Return the zero of the residual as a function of the symbol.
 
-    None where it finds none.
+    The secant method is used; None if it does not converge.
     """
     values = {x: mp.mpf(number.p) / number.q for x, number in point.items()}
 

@@ -1,7 +1,7 @@
-"""Expressions evaluated at points, as steps that are found once and taken at many points and in any number of digits.
+"""Evaluate expressions at many points, as steps that are found once.
 
-Values may be complex on the way. A step without a value, such as a division by zero, has none, and neither has what is
-made of it; the other values stay.
+The number of digits may change between points. Intermediate values may be complex. A step without a value, such as a
+division by zero, has none, and neither have expressions that depend on it; the other values remain.
 """
 
 from __future__ import annotations
@@ -57,9 +57,19 @@ class Steps:
         self._results = [self._place(expression) for expression in expressions]
 
     def at(self, values: Values, real: bool = False) -> Numbers:
-        """Evaluate the expressions in mpmath's working precision; None for each that has no value.
+        """Evaluate the expressions in mpmath's working precision.
 
-        With `real`, what is complex has none, and neither has what is made of it.
+        Parameters
+        ----------
+        values : Values
+            Values of the symbols.
+        real : bool
+            If True, complex values count as missing.
+
+        Returns
+        -------
+        Numbers
+            One for each expression; None for an expression without a value.
         """
         found: Numbers = []
         for step in self._steps:
@@ -69,6 +79,16 @@ class Steps:
 
     def real_at(self, values: Values) -> list[mp.mpf]:
         """Evaluate the expressions in real numbers.
+
+        Parameters
+        ----------
+        values : Values
+            Values of the symbols.
+
+        Returns
+        -------
+        list of mpf
+            One for each expression.
 
         Raises
         ------
@@ -81,7 +101,7 @@ class Steps:
         return found
 
     def _place(self, expression: sp.Expr) -> int:
-        """Find the place of an expression's value; what it is made of comes before it."""
+        """Return the place of an expression's value, after the places of its arguments."""
         waiting = [expression]
         while waiting:
             part = waiting[-1]
@@ -171,5 +191,5 @@ def _applied(kind: type, *arguments: Number) -> Number | None:
 
 @lru_cache(REMEMBERED)
 def _remembered(kind: type, precision: int, *arguments: Number) -> Number:
-    """Value of a function in the working precision, which is `precision`."""
+    """Return the value of a function in the working precision, which is `precision`."""
     return FUNCTIONS[kind](*arguments)

@@ -4,17 +4,16 @@ T is differentiated by the total time derivative, as in
 
     d/dt dT/d dot(q_s) - dT/dq_s = Q_s + lambda_beta df_beta/dq_s,        d^2 f_beta/dt^2 = 0,
 
-and in no other way: no split into A, B and T0, no Christoffel symbols, no matrix inverted in
-symbols. Both sets of equations are linear in accelerations and multipliers; their coefficients,
-read off, make the bordered system [A -J^T; J 0].
+and in no other way: no split into A, B and T0, no Christoffel symbols, no symbolic inverse. Both sets of equations
+are linear in accelerations and multipliers; their coefficients make the bordered system [A -J^T; J 0].
 
-What the reactions do as work, where the constraints move, follows: the knob costs power. A reaction lies along df/dq,
-and so does its power along the velocities: lambda_b (df_b/dq_s) dot(q_s). On a motion the constraints stay zero, and
-with them their rate, (df_b/dq_s) dot(q_s) + df_b/dt + (df_b/du_r) dot(u_r) = 0. So
+The power of the reactions of moving constraints follows. A reaction lies along df/dq, and its power is lambda_b
+(df_b/dq_s) dot(q_s). On a motion the constraints stay zero, and with them their time derivative, (df_b/dq_s) dot(q_s)
++ df_b/dt + (df_b/du_r) dot(u_r) = 0. So
 
     P = -lambda_b (df_b/dt + (df_b/du_r) dot(u_r)),
 
-which is zero where nobody moves the constraints, and where they do not push.
+which is zero if the constraints are at rest, and if their multipliers are zero.
 """
 
 from __future__ import annotations
@@ -54,7 +53,7 @@ class IndependentEquations:
 
     @cached_property
     def kinetic(self) -> tuple[sp.Expr, ...]:
-        """The n left sides d/dt dT/d dot(q_s) - dT/dq_s."""
+        """Return the n left sides d/dt dT/d dot(q_s) - dT/dq_s."""
         return self._lagrangian_derivatives(self.system.kinetic_energy)
 
     @cached_property
@@ -97,7 +96,10 @@ class IndependentEquations:
 
     @cached_property
     def bordered_rates(self) -> LinearEquations:
-        """Equations for the n jerks and the g multiplier rates: the bordered system, differentiated."""
+        """The bordered system, differentiated.
+
+        These are equations for the n jerks and the time derivatives of the g multipliers.
+        """
         return LinearEquations(
             (*self.system.jerks, *self.system.multiplier_rates),
             tuple(self.system.total_rate(residual) for residual in self.bordered.residuals),
@@ -105,7 +107,10 @@ class IndependentEquations:
 
     @cached_property
     def _solvable_motion(self) -> tuple[sp.Expr, ...]:
-        """The n residuals of Lagrange's equations, the constraint accelerations added where A needs them."""
+        """The n residuals of Lagrange's equations, made regular.
+
+        If A is singular, the constraint accelerations are added.
+        """
         if not self.supported:
             return self.motion
         pairs = list(zip(self.system.constraints, self.constraint_accelerations, strict=True))
@@ -120,14 +125,25 @@ class IndependentEquations:
         return self.driven.coefficients
 
     def _lagrangian_derivatives(self, function: sp.Expr) -> tuple[sp.Expr, ...]:
-        """d/dt dX/d dot(q_s) - dX/dq_s, over s, of a function X of the state."""
+        """Return d/dt dX/d dot(q_s) - dX/dq_s for each s, of a function X of the state."""
         system = self.system
         momenta, slopes = gradient(function, system.velocities), gradient(function, system.coordinates)
         return tuple(system.total_rate(momentum) - slope for momentum, slope in zip(momenta, slopes, strict=True))
 
 
 def reaction_power(system: MechanicalSystem) -> sp.Expr:
-    """Power of all reactions by the rates of the constraints at rest, in state, controls and multipliers."""
+    """Return the power of all reactions in state, controls and multipliers.
+
+    It is that of the constraint derivatives at rest.
+
+    Parameters
+    ----------
+    system : MechanicalSystem
+
+    Returns
+    -------
+    Expr
+    """
     return -sp.Add(
         *(
             multiplier * rate_at_rest(system, constraint)
@@ -137,10 +153,32 @@ def reaction_power(system: MechanicalSystem) -> sp.Expr:
 
 
 def rate_at_rest(system: MechanicalSystem, constraint: sp.Expr) -> sp.Expr:
-    """Rate of a constraint where no coordinate moves: that of the time and the controls alone."""
+    """Return the time derivative of a constraint with all coordinates at rest.
+
+    Only the time and the controls change.
+
+    Parameters
+    ----------
+    system : MechanicalSystem
+    constraint : Expr
+        One of its constraints, in coordinates, controls and time.
+
+    Returns
+    -------
+    Expr
+    """
     return system.total_rate(constraint).subs(dict.fromkeys(system.velocities, 0))
 
 
 def power_of_forces(system: MechanicalSystem) -> sp.Expr:
-    """Power of the generalized forces, those of the potential not among them."""
+    """Return the power of the generalized forces without those of the potential.
+
+    Parameters
+    ----------
+    system : MechanicalSystem
+
+    Returns
+    -------
+    Expr
+    """
     return sp.Add(*(force * velocity for force, velocity in zip(system.forces, system.velocities, strict=True)))

@@ -1,10 +1,10 @@
-"""Functions taken for independent of their arguments: by Schwartz and Zippel's lemma a stronger test than points.
+"""Compare expressions with functions taken as independent of their arguments.
 
-In exp(x y + 2 z) the products of symbols are replaced by symbols of their own, exp(p1 + 2 p2), so that random values of
-x, y, z and of p1, p2 make the function any number, whatever x, y and z are. What holds for the functions by addition
-theorems holds on: the symbols are the same in all functions. Where two expressions agree then, they are equal as
-polynomials of functions and symbols, but for a chance too small to be met; a narrow well, exp(-10^6 (x - 1)^2), cannot
-hide. Where they differ, nothing is known.
+By Schwartz and Zippel's lemma this is a stronger test than points. In exp(x y + 2 z) the products of symbols are
+replaced by symbols of their own, exp(p1 + 2 p2), so that random values of x, y, z and of p1, p2 give the function any
+value, independent of x, y and z. Addition theorems remain valid: the symbols are the same in all functions. If two
+expressions agree then, they are equal as polynomials of functions and symbols, up to a negligible probability; a
+narrow well, exp(-10^6 (x - 1)^2), cannot hide. If they differ, the test is inconclusive.
 """
 
 from __future__ import annotations
@@ -31,7 +31,16 @@ LARGEST_ARGUMENT = 200
 
 
 def with_independent_functions(comparison: Comparison) -> Comparison:
-    """Return the comparison with the functions in it taken for independent of their arguments."""
+    """Return the comparison with functions independent of their arguments.
+
+    Parameters
+    ----------
+    comparison : Comparison
+
+    Returns
+    -------
+    Comparison
+    """
     made = _Independent(comparison.given)
     return replace(
         comparison,
@@ -48,7 +57,10 @@ def with_independent_functions(comparison: Comparison) -> Comparison:
 
 
 class _Independent:
-    """The symbols that stand for products in the arguments of functions, one a product and its largest coefficient."""
+    """The symbols in place of products in the arguments of functions.
+
+    There is one for each product and its largest coefficient.
+    """
 
     def __init__(self, given: Mapping[sp.Symbol, sp.Expr]) -> None:
         self._given: dict[sp.Symbol, sp.Expr] = {}

@@ -1,8 +1,8 @@
-"""Equations (10), (12), (13), (18), (19) of a scene, each against the independent evaluation.
+"""Equations (10), (12), (13), (18), (19) of a scene, each checked independently.
 
-The control law enters as the values of u and its rates, never substituted into an equation. The
-series is compared coefficient by coefficient: initial accelerations from the bordered system,
-initial jerks from the bordered system differentiated once more along the motion.
+The control law enters as the values of u and its derivatives, never substituted into an equation. The series is
+compared coefficient by coefficient: initial accelerations from the bordered system, initial jerks from the bordered
+system differentiated once more along the motion.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from mpmath import mp
 
 from ..description import DescribedScene
 from ..record import Relation, Scene
-from .claims import NotComparable, list_of, solved_for
-from .derivation import DerivationClaims
+from .derivation import CheckedDerivation
 from .digits import WORKING_DIGITS
 from .evaluation import Steps
 from .independent import IndependentEquations
+from .relations import NotComparable, list_of, solved_for
 from .system import MechanicalSystem, exact, history, initial
 from .verdict import Comparison, Pair
 
@@ -42,16 +42,16 @@ Definitions = Mapping[sp.Symbol, sp.Expr]
 
 
 @dataclass(frozen=True)
-class SceneClaims:
-    """A scene of the record beside what is known of it and the derivation it rests on."""
+class CheckedScene:
+    """A scene of the record, with its premises and its derivation."""
 
     scene: Scene
     premises: DescribedScene
-    derivation: DerivationClaims
+    derivation: CheckedDerivation
 
     @property
     def known(self) -> IndependentEquations:
-        """The independent evaluation of the independent constraints of the scene's system."""
+        """The independent evaluation with the independent constraints of the system."""
         return self.derivation.known
 
     @property
@@ -60,8 +60,8 @@ class SceneClaims:
         return self.derivation.system
 
     @property
-    def initial_instant(self) -> sp.Expr:
-        """t0, the beginning of the time span; zero where there is none."""
+    def initial_time(self) -> sp.Expr:
+        """The beginning t0 of the time span; zero without one."""
         return exact(self.premises.time_span[0]) if self.premises.time_span else sp.Integer(0)
 
     @cached_property
@@ -71,17 +71,20 @@ class SceneClaims:
 
     @property
     def law(self) -> Mapping[str, sp.Expr]:
-        """The control law; where it is switched, as the record holds it around the initial instant."""
+        """The control law.
+
+        A switched law is the one that the record holds around the initial time.
+        """
         return self.scene.control_law if self.scene.law_around_start else self.premises.control_law
 
     @cached_property
     def parameters(self) -> Definitions:
-        """The parameters that have values."""
+        """The values of the parameters."""
         return {sp.Symbol(x, real=True): exact(y) for x, y in self.premises.parameter_values.items()}
 
     @cached_property
     def initial_values(self) -> Definitions:
-        """The initial state by its symbols q1_0, dot(q1)_0, as the record has it."""
+        """The initial state in the record, by its symbols q1_0, dot(q1)_0."""
         return {initial(sp.Symbol(x, real=True)): exact(y) for x, y in self.scene.initial_state.items()}
 
     @cached_property
@@ -96,24 +99,27 @@ class SceneClaims:
 
     @cached_property
     def controls_at_start(self) -> Definitions:
-        """The initial instant and the controls then; those without a law have values u_0, ..."""
+        """The initial time and the initial controls; those without a law are u_0, ..."""
         without_law = (
             symbol for control in self.system.controls if control not in self.control_law for symbol in history(control)
         )
         return {
-            self.system.time: self.initial_instant,
+            self.system.time: self.initial_time,
             **self.control_law,
             **{symbol: initial(symbol) for symbol in without_law},
         }
 
     @cached_property
     def start(self) -> Definitions:
-        """The initial instant, the controls and the state then, in symbols q1_0, dot(q1)_0."""
+        """The initial time, the controls and the state then, in symbols q1_0, dot(q1)_0."""
         return {**self.controls_at_start, **{symbol: initial(symbol) for symbol in self.state}}
 
     @cached_property
     def configuration(self) -> Definitions:
-        """The initial instant, parameters, controls and coordinates, as far as the scene has numbers for them."""
+        """The initial configuration, with the numbers of the scene.
+
+        It holds the time, parameters, controls and coordinates.
+        """
         values = {q: self.initial_values.get(initial(q), initial(q)) for q in self.system.coordinates}
         known = {**values, **self.controls_at_start, **self.parameters}
         at_start = {
@@ -123,14 +129,25 @@ class SceneClaims:
 
     @cached_property
     def given_values(self) -> Definitions:
-        """Initial values as the scene gives them, by the symbols q1_0, dot(q1)_0."""
+        """Initial values in the scene, by the symbols q1_0, dot(q1)_0."""
         return {
             initial(sp.Symbol(x, real=True)): exact(y).xreplace(self.parameters)
             for x, y in self.premises.initial_state.items()
         }
 
     def certificate(self, *solutions: Definitions) -> Definitions | None:
-        """Claimed closed forms of the motion at the start, with the record's multipliers."""
+        """Return closed forms of the initial motion in the record, with its multipliers.
+
+        Parameters
+        ----------
+        *solutions : Definitions
+            Further closed forms, by their symbols.
+
+        Returns
+        -------
+        Definitions or None
+            Closed forms by their symbols; None if the record does not hold the multipliers.
+        """
         multipliers = self.derivation.multipliers()
         if multipliers is None:
             return None
@@ -141,9 +158,21 @@ class SceneClaims:
         return together
 
 
-def free_motion_condition(claims: SceneClaims, relations: Relations) -> tuple[Comparison, ...]:
-    """(10) under the control law: constraint accelerations where every multiplier is zero."""
-    expected = claims.known.constraint_accelerations
+def free_motion_condition(checked: CheckedScene, relations: Relations) -> tuple[Comparison, ...]:
+    """Compare (10) under the control law, with every multiplier zero.
+
+    Parameters
+    ----------
+    checked : CheckedScene
+        The scene.
+    relations : Relations
+        Relations of the equation.
+
+    Returns
+    -------
+    tuple of Comparison
+    """
+    expected = checked.known.constraint_accelerations
     claimed = list_of("residual", len(expected), relations)
     return (
         Comparison(
@@ -151,55 +180,79 @@ def free_motion_condition(claims: SceneClaims, relations: Relations) -> tuple[Co
                 Pair(f"condition of free motion {beta}", value, residual)
                 for beta, (value, residual) in enumerate(zip(claimed, expected, strict=True), start=1)
             ),
-            given=claims.control_law,
-            solves=(claims.known.free,),
-            certificate=claims.derivation.free_accelerations(),
+            given=checked.control_law,
+            solves=(checked.known.free,),
+            certificate=checked.derivation.free_accelerations(),
         ),
     )
 
 
-def initial_state(claims: SceneClaims, relations: Relations) -> tuple[Comparison, ...]:
-    """(12): what is given, up to the stated correction; and the constraints and their first rates vanish there."""
-    names = tuple(map(initial, claims.state))
+def initial_state(checked: CheckedScene, relations: Relations) -> tuple[Comparison, ...]:
+    """Compare the initial state (12) with the given values and the constraints.
+
+    The given values may differ by the stated correction. The constraints and their first derivatives vanish there.
+
+    Parameters
+    ----------
+    checked : CheckedScene
+        The scene.
+    relations : Relations
+        Relations of the equation.
+
+    Returns
+    -------
+    tuple of Comparison
+    """
+    names = tuple(map(initial, checked.state))
     claimed = solved_for(names, relations)
-    if list(claims.scene.initial_state) != [symbol.name for symbol in claims.state]:
+    if list(checked.scene.initial_state) != [symbol.name for symbol in checked.state]:
         raise NotComparable("an initial state that is not complete, or not in order")
     for name in names:
-        if claimed[name] != claims.initial_values[name]:
+        if claimed[name] != checked.initial_values[name]:
             raise NotComparable(f"two values of {name}")
-    require_given(claims, claimed)
+    require_given(checked, claimed)
     pairs = (
-        *_vanishing("constraint", claims.system.constraints),
-        *_vanishing("rate of constraint", claims.derivation.stated.constraint_rates),
+        *_vanishing("constraint", checked.system.constraints),
+        *_vanishing("rate of constraint", checked.derivation.stated.constraint_rates),
     )
-    return at_start(claims, pairs)
+    return at_start(checked, pairs)
 
 
-def require_given(claims: SceneClaims, claimed: Definitions) -> None:
-    """Refuse initial values that are not those given, or differ by more than the stated correction.
+def require_given(checked: CheckedScene, claimed: Definitions) -> None:
+    """Raise unless initial values are the given ones, up to the stated correction.
+
+    Parameters
+    ----------
+    checked : CheckedScene
+        The scene.
+    claimed : Definitions
+        Initial values in the record, by the symbols q1_0, dot(q1)_0.
 
     Raises
     ------
     NotComparable
-        Says which.
+        The message names the value.
     """
     changes = {}
-    for name, value in claims.given_values.items():
-        change = (claimed[name] - value).xreplace(claims.parameters)
+    for name, value in checked.given_values.items():
+        change = (claimed[name] - value).xreplace(checked.parameters)
         if change != 0 and (not change.is_number or not change.equals(0)):
             changes[name] = change
-    stated = claims.scene.correction
+    stated = checked.scene.correction
     if not changes and stated is None:
         return
     largest = max(changes, key=lambda name: _size(changes[name]), default=None)
     if largest is None or stated is None or stated[0] != largest.name:
         raise NotComparable(f"an initial value of {largest or stated[0]} that is another than the one given")
-    _require_correction(claims, _size(changes[largest]), stated[1])
+    _require_correction(checked, _size(changes[largest]), stated[1])
 
 
-def _require_correction(claims: SceneClaims, change: mp.mpf, stated: str) -> None:
-    """Refuse a correction that is none of limited digits, or another than is stated in three digits."""
-    given = max(_size(value.xreplace(claims.parameters)) for value in claims.given_values.values())
+def _require_correction(checked: CheckedScene, change: mp.mpf, stated: str) -> None:
+    """Raise unless a correction is allowed and is the stated one in three digits.
+
+    A correction is allowed for values of limited digits.
+    """
+    given = max(_size(value.xreplace(checked.parameters)) for value in checked.given_values.values())
     if not abs(change - mp.mpf(stated)) <= mp.mpf(10) ** -STATED_DIGITS * change:
         raise NotComparable(f"a correction of {stated}, where it is {mp.nstr(change, 6)}")
     if change > LIMITED_DIGITS * (given or 1):
@@ -212,10 +265,23 @@ def _size(number: sp.Expr) -> mp.mpf:
         return mp.inf if value is None else abs(value)
 
 
-def at_start(claims: SceneClaims, pairs: Iterable[Pair]) -> tuple[Comparison, ...]:
-    """Pairs in symbols of the initial state, with its numbers: one comparison where all have one, two at most."""
-    state = {name: value.xreplace(claims.parameters) for name, value in claims.initial_values.items()}
-    given = {**claims.parameters, **state, **claims.start}
+def at_start(checked: CheckedScene, pairs: Iterable[Pair]) -> tuple[Comparison, ...]:
+    """Return pairs in symbols of the initial state as a comparison with its numbers.
+
+    Parameters
+    ----------
+    checked : CheckedScene
+        The scene.
+    pairs : iterable of Pair
+        Pairs in symbols of the initial state.
+
+    Returns
+    -------
+    tuple of Comparison
+        One comparison.
+    """
+    state = {name: value.xreplace(checked.parameters) for name, value in checked.initial_values.items()}
+    given = {**checked.parameters, **state, **checked.start}
     pairs = tuple(pairs)
     if not pairs:
         return (Comparison(()),)
@@ -224,18 +290,41 @@ def at_start(claims: SceneClaims, pairs: Iterable[Pair]) -> tuple[Comparison, ..
 
 
 def is_rounded(value: sp.Expr) -> bool:
-    """Return True if a number may have been rounded: its fraction is as long as those that Newton's method finds."""
+    """Return True if a number may have been rounded.
+
+    Its fraction is as long as those of Newton's method.
+
+    Parameters
+    ----------
+    value : Expr
+        Number, or expression with numbers.
+
+    Returns
+    -------
+    bool
+    """
     return any(number.q > 10**FEWEST_ROUNDED_DIGITS for number in value.atoms(sp.Rational))
 
 
-def determined_initial_values(claims: SceneClaims, relations: Relations) -> tuple[Comparison, ...]:
-    """(19): all values left out are there; with them put in, the constraints they come from vanish identically.
+def determined_initial_values(checked: CheckedScene, relations: Relations) -> tuple[Comparison, ...]:
+    """Compare (19): determined initial values are present and satisfy the constraints.
 
-    A value that is a number, in constraints that contain other initial values besides, is one for the scene's own
-    numbers only. Each value is that of the initial state, for which (12) has the constraints: so is the branch of a
-    root.
+    With the values put in, the constraints that determine them vanish identically. A value that is a number, in
+    constraints that contain further initial values, holds for the scene's own numbers only. Each value is that of the
+    initial state, for which (12) has the constraints; this also decides the branch of a root.
+
+    Parameters
+    ----------
+    checked : CheckedScene
+        The scene.
+    relations : Relations
+        Relations of the equation.
+
+    Returns
+    -------
+    tuple of Comparison
     """
-    names = [symbol for symbol in claims.state if initial(symbol) not in claims.given_values]
+    names = [symbol for symbol in checked.state if initial(symbol) not in checked.given_values]
     lefts = [relation.left_tree for relation in relations]
     ordered = sorted(relations, key=lambda relation: str(relation.left_tree).startswith("dot("))
     if sorted(map(str, lefts)) != sorted(initial(symbol).name for symbol in names) or ordered != list(relations):
@@ -244,28 +333,31 @@ def determined_initial_values(claims: SceneClaims, relations: Relations) -> tupl
         )
     fixed = {sp.Symbol(left, real=True): exact(r.right) for left, r in zip(lefts, relations, strict=True)}
     residuals = [
-        *_for_all_states(claims, claims.system.coordinates, claims.known.system.constraints, fixed),
-        *_for_all_states(claims, claims.system.velocities, claims.known.constraint_rates, fixed),
+        *_for_all_states(checked, checked.system.coordinates, checked.known.system.constraints, fixed),
+        *_for_all_states(checked, checked.system.velocities, checked.known.constraint_rates, fixed),
     ]
-    always = Comparison(tuple(_vanishing("constraint", residuals)), given={**fixed, **claims.start})
+    always = Comparison(tuple(_vanishing("constraint", residuals)), given={**fixed, **checked.start})
     values = (Pair(name.name, fixed[name], name) for name in fixed)
-    return always, *at_start(claims, values)
+    return always, *at_start(checked, values)
 
 
 def _for_all_states(
-    claims: SceneClaims,
+    checked: CheckedScene,
     symbols: Iterable[sp.Symbol],
     residuals: Iterable[sp.Expr],
     fixed: Mapping[sp.Symbol, sp.Expr],
 ) -> Iterable[sp.Expr]:
-    """Residuals that contain fixed symbols, and no symbol that is fixed for the scene's numbers only."""
+    """Return residuals with fixed symbols that hold for all states.
+
+    They contain no symbol that is fixed for the scene's numbers only.
+    """
     symbols, residuals = set(symbols), list(residuals)
     known = {symbol for symbol in symbols if initial(symbol) in fixed}
     numbers = {symbol for symbol in known if fixed[initial(symbol)].is_number}
     containing = _containing(known, residuals)
     without = _without_closed_form(numbers, containing)
-    numbers = {x for x in without if not _is_quadratic(claims, x, known, containing[x])}
-    left_open = {x for x in claims.state if initial(x) not in fixed or not fixed[initial(x)].is_number}
+    numbers = {x for x in without if not _is_quadratic(checked, x, known, containing[x])}
+    left_open = {x for x in checked.state if initial(x) not in fixed or not fixed[initial(x)].is_number}
     for residual in residuals:
         present = residual.free_symbols & symbols
         others = (present - numbers) | (residual.free_symbols & left_open)
@@ -283,7 +375,10 @@ def _containing(symbols: set[sp.Symbol], residuals: Iterable[sp.Expr]) -> Mappin
 
 
 def _without_closed_form(numbers: set[sp.Symbol], containing: Mapping[sp.Symbol, Sequence[sp.Expr]]) -> set[sp.Symbol]:
-    """Return those of the symbols that share residuals with many, or with one that is not linear in them."""
+    """Return the symbols that have no closed form.
+
+    They share residuals with many symbols, or with one that is not linear in them.
+    """
     found: set[sp.Symbol] = set()
     waiting = set(numbers)
     while waiting:
@@ -310,12 +405,12 @@ def _sharing(
     return found
 
 
-def _is_quadratic(claims: SceneClaims, x: sp.Symbol, known: set[sp.Symbol], containing: Sequence[sp.Expr]) -> bool:
-    """Return True if a residual in the state alone fixes a symbol by a quadratic equation."""
+def _is_quadratic(checked: CheckedScene, x: sp.Symbol, known: set[sp.Symbol], containing: Sequence[sp.Expr]) -> bool:
+    """Return True if one residual in the state fixes a symbol by a quadratic equation."""
     if len(containing) != 1 or containing[0].free_symbols & known != {x}:
         return False
-    state = {*claims.state, claims.system.time}
-    numbers = {u for u, law in claims.control_law.items() if law.free_symbols <= {claims.system.time}}
+    state = {*checked.state, checked.system.time}
+    numbers = {u for u, law in checked.control_law.items() if law.free_symbols <= {checked.system.time}}
     if not containing[0].free_symbols <= state | numbers:
         return False
     polynomial = containing[0].as_poly(*containing[0].free_symbols)
@@ -326,30 +421,56 @@ def _listed(names: Iterable[str]) -> str:
     return ", ".join(sorted(names)) or "nothing"
 
 
-def initial_accelerations(claims: SceneClaims, relations: Relations) -> tuple[Comparison, ...]:
-    """(13): the accelerations of the bordered system at the start."""
-    system = claims.system
+def initial_accelerations(checked: CheckedScene, relations: Relations) -> tuple[Comparison, ...]:
+    """Compare (13), the accelerations of the bordered system at the start.
+
+    Parameters
+    ----------
+    checked : CheckedScene
+        The scene.
+    relations : Relations
+        Relations of the equation.
+
+    Returns
+    -------
+    tuple of Comparison
+    """
+    system = checked.system
     claimed = solved_for([initial(a) for a in system.accelerations], relations)
     solution = {a: claimed[initial(a)] for a in system.accelerations}
     return (
         Comparison(
             tuple(Pair(initial(a).name, value, a) for a, value in solution.items()),
-            given=claims.start,
-            solves=(claims.known.bordered,),
-            certificate=claims.certificate(solution),
+            given=checked.start,
+            solves=(checked.known.bordered,),
+            certificate=checked.certificate(solution),
         ),
     )
 
 
-def initial_series(claims: SceneClaims, relations: Relations) -> tuple[Comparison, ...]:
-    """(18): the series, to the third order, is that of the motion; and it ends there."""
-    system = claims.system
+def initial_series(checked: CheckedScene, relations: Relations) -> tuple[Comparison, ...]:
+    """Compare (18): the series is that of the motion to the third order.
+
+    Its fourth derivative is zero.
+
+    Parameters
+    ----------
+    checked : CheckedScene
+        The scene.
+    relations : Relations
+        Relations of the equation.
+
+    Returns
+    -------
+    tuple of Comparison
+    """
+    system = checked.system
     claimed = solved_for(system.coordinates, relations)
     rates: dict[sp.Symbol, sp.Expr] = {}
     pairs = []
     for q, series in claimed.items():
         for symbol in history(q):
-            rates[symbol] = series.xreplace({system.time: claims.initial_instant})
+            rates[symbol] = series.xreplace({system.time: checked.initial_time})
             pairs.append(Pair(initial(symbol).name, rates[symbol], symbol))
             series = series.diff(system.time)
         pairs.append(Pair(f"remainder of the series of {q}", series, sp.Integer(0)))
@@ -357,9 +478,9 @@ def initial_series(claims: SceneClaims, relations: Relations) -> tuple[Compariso
     return (
         Comparison(
             tuple(pairs),
-            given=claims.start,
-            solves=(claims.known.bordered, claims.known.bordered_rates),
-            certificate=claims.certificate(highest),
+            given=checked.start,
+            solves=(checked.known.bordered, checked.known.bordered_rates),
+            certificate=checked.certificate(highest),
         ),
     )
 

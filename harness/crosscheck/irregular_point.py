@@ -1,4 +1,4 @@
-"""Where something has no value."""
+"""The error of an expression without a value at a point."""
 
 
 class IrregularPoint(ArithmeticError):

@@ -1,7 +1,6 @@
-"""Control laws and other functions of the time as a description states them, expanded about an instant.
+"""Expand control laws and other functions of the time of a description.
 
-Tables are splines that are computed here once more, from their points (de Boor, A Practical Guide to Splines,
-chapter IV).
+Tables are splines, computed independently from their points (de Boor, A Practical Guide to Splines, chapter IV).
 """
 
 from __future__ import annotations
@@ -33,7 +32,10 @@ class Spline:
 
     @cached_property
     def bending(self) -> list[mp.mpf]:
-        """Second rates at the points: a tridiagonal system, eliminated from the first row down."""
+        """Second derivatives at the points.
+
+        A tridiagonal system is eliminated from the first row down.
+        """
         with mp.workdps(DATA_DIGITS):
             return self._bending()
 
@@ -48,12 +50,28 @@ class Spline:
             rows = [(0, 2 * h[0], h[0], first), *rows, (h[-1], 2 * h[-1], 0, last)]
         return _tridiagonal(rows)
 
-    def at(self, instant: mp.mpf) -> Polynomial:
-        """Return the polynomial that counts at an instant, about it."""
-        if not self.times[0] <= instant < self.times[-1]:
+    def at(self, time: mp.mpf) -> Polynomial:
+        """Return the polynomial that is valid at a given time, about it.
+
+        Parameters
+        ----------
+        time : mpf
+            Time inside the table, in the scene's unit.
+
+        Returns
+        -------
+        Polynomial
+            Four coefficients of powers of the time after the given one.
+
+        Raises
+        ------
+        IrregularPoint
+            The time is outside the table.
+        """
+        if not self.times[0] <= time < self.times[-1]:
             raise IrregularPoint
-        k = bisect_right(self.times, instant) - 1
-        h, s = self.times[k + 1] - self.times[k], instant - self.times[k]
+        k = bisect_right(self.times, time) - 1
+        h, s = self.times[k + 1] - self.times[k], time - self.times[k]
         low, high = self.bending[k], self.bending[k + 1]
         slope = (self.heights[k + 1] - self.heights[k]) / h - h * (2 * low + high) / 6
         c = (self.heights[k], slope, low / 2, (high - low) / (6 * h))
@@ -80,7 +98,17 @@ def _tridiagonal(rows: Sequence[tuple[mp.mpf, mp.mpf, mp.mpf, mp.mpf]]) -> list[
 
 
 def number(tree: Tree) -> mp.mpf:
-    """Value of an expression without names."""
+    """Return the value of an expression without names.
+
+    Parameters
+    ----------
+    tree : Tree
+        Expression without names.
+
+    Returns
+    -------
+    mpf
+    """
     tape = Tape()
     place = tape.place(tree)
     return tape.values(Taylor(0), {})[place][0]
@@ -93,10 +121,30 @@ class Law:
         self.splines, self.tape = splines, Tape()
         self.places = {name: self.tape.place(_with_names(tree)) for name, tree in trees.items()}
 
-    def at(self, taylor: Taylor, instant: mp.mpf, known: Mapping[str, Polynomial]) -> dict[str, Polynomial]:
-        """Their Taylor polynomials about an instant; raises as `Tape.values`."""
-        tables = {f"table {k}": spline.at(instant)[: taylor.order + 1] for k, spline in enumerate(self.splines)}
-        values = self.tape.values(taylor, {**known, **tables, "t": (instant, mp.one)[: taylor.order + 1]})
+    def at(self, taylor: Taylor, time: mp.mpf, known: Mapping[str, Polynomial]) -> dict[str, Polynomial]:
+        """Return Taylor polynomials about a time.
+
+        Parameters
+        ----------
+        taylor : Taylor
+            Arithmetic up to the order of the polynomials.
+        time : mpf
+            Time of the expansion, in the scene's unit.
+        known : mapping of str to Polynomial
+            Polynomials of the other names in the functions.
+
+        Returns
+        -------
+        dict of str to Polynomial
+            Polynomial of each function.
+
+        Raises
+        ------
+        IrregularPoint
+            As `Tape.values`, or the time is outside a table.
+        """
+        tables = {f"table {k}": spline.at(time)[: taylor.order + 1] for k, spline in enumerate(self.splines)}
+        values = self.tape.values(taylor, {**known, **tables, "t": (time, mp.one)[: taylor.order + 1]})
         return {name: values[place] for name, place in self.places.items()}
 
 
@@ -115,5 +163,15 @@ SWITCHING = ("Max", "Min", "UnitStep", "HalfStep", "Which", "Table")
 
 
 def is_switched(tree: Tree) -> bool:
-    """Return True if there is a switch or a table in a law."""
+    """Return True if there is a switch or a table in a law.
+
+    Parameters
+    ----------
+    tree : Tree
+        Expression of a law.
+
+    Returns
+    -------
+    bool
+    """
     return isinstance(tree, list) and (tree[0] in SWITCHING or any(map(is_switched, tree[1:])))

@@ -1,11 +1,11 @@
 """Random search for a law that makes every motion free, in floating-point numbers.
 
-The statement that no such law exists has to survive this search. Near a random instant of the time span the controls
-are polynomials in the time with unknown coefficients; parameters without a value are drawn with both signs. The
-multipliers of the bordered equations, at random states on the constraint manifold, are made to vanish by the
-Levenberg-Marquardt method. What is left of them falls at least by the fourth power of the interval's length if there is
-a law, and by the second or first power if the controls satisfy the equations at the instant alone. Nothing that Maxima
-derived is used.
+The statement that no such law exists is tested by this search. Near a random time of the time span the controls are
+polynomials in the time with unknown coefficients; parameters without a value are drawn with both signs. The
+multipliers of the bordered equations, at random states on the constraint manifold, are minimized by the
+Levenberg-Marquardt method. If there is a law, the residual falls at least by the fourth power of the interval's
+length. If the controls satisfy the equations at the time alone, it falls by the second or first power. Maxima's
+results are not used.
 """
 
 from __future__ import annotations
@@ -22,19 +22,19 @@ from .independent import IndependentEquations
 from .system import MechanicalSystem, dotted
 
 TRIALS = 8
-"""Random instants, parameters and states from which the search starts."""
+"""Random times, parameters and states from which the search starts."""
 
 STEPS = 14
 """Largest number of Levenberg-Marquardt steps from each start."""
 
 STATES = 4
-"""Random states at each instant."""
+"""Random states at each time."""
 
 DEGREE = 5
 """Degree of the polynomials in the time."""
 
 REACH = 0.02
-"""Distance of the outermost instants from the middle one."""
+"""Distance of the outermost times from the middle one."""
 
 LARGEST_SYSTEM = 12
 """Accelerations and multipliers up to which the search is made."""
@@ -44,7 +44,7 @@ LARGEST_CONTROL = 1e3
 
 VANISHING = 1e-9
 NEARLY_VANISHING = 1e-4
-"""Relative size of multipliers taken for zero: at one instant, and along a polynomial."""
+"""Relative size of multipliers taken for zero: at one time, and along a polynomial."""
 
 NARROWING = 4
 """How many times shorter the second interval is."""
@@ -57,10 +57,10 @@ Vector = list[float]
 
 
 class FreeLaw(NamedTuple):
-    """Controls under which all multipliers vanish near an instant."""
+    """Controls for which all multipliers vanish near a time."""
 
-    instant: float
-    controls: Mapping[str, float]  # values at the instant
+    time: float
+    controls: Mapping[str, float]  # values at the time
     parameters: Mapping[str, float]  # those that were drawn
 
 
@@ -71,7 +71,9 @@ class _NoValueError(ArithmeticError):
 def find_free_law(
     system: MechanicalSystem, values: Mapping[sp.Symbol, sp.Expr], span: Span | None, seed: str
 ) -> FreeLaw | None:
-    """Return controls under which the multipliers vanish in all random states; None if none were found.
+    """Return controls for which the multipliers vanish in all random states, or None.
+
+    None means that the search found none.
 
     Parameters
     ----------
@@ -79,9 +81,14 @@ def find_free_law(
     values : mapping of Symbol to Expr
         Values of the parameters. Others are drawn at random.
     span : tuple of two floats or None
-        First and last instant.
+        First and last time.
     seed : str
         The same seed gives the same search.
+
+    Returns
+    -------
+    FreeLaw or None
+        Law near one time.
     """
     if not system.controls or len(system.coordinates) + len(system.multipliers) > LARGEST_SYSTEM:
         return None
@@ -102,7 +109,7 @@ def find_free_law(
 
 @dataclass(frozen=True)
 class _Numbers:
-    """The equations of a system as functions of floating-point numbers."""
+    """The equations of a system as floating-point functions."""
 
     system: MechanicalSystem
     parameters: tuple[sp.Symbol, ...]
@@ -151,16 +158,28 @@ class _Numbers:
 
 
 def batched(numbers: Sequence[float], size: int) -> Iterator[Vector]:
-    """Cut a sequence into lists of a size."""
+    """Cut a sequence into lists of a size.
+
+    Parameters
+    ----------
+    numbers : sequence of float
+        The sequence.
+    size : int
+        Length of each list; the last one may be shorter.
+
+    Returns
+    -------
+    iterator of list of float
+    """
     return (list(numbers[k : k + size]) for k in range(0, len(numbers), size))
 
 
 @dataclass(frozen=True)
 class _Trial:
-    """One instant, parameters and states, from which a law is sought."""
+    """A time, parameters and states for the search for a law."""
 
     numbers: _Numbers
-    instant: float
+    time: float
     reach: float
     parameters: Vector
     states: list[Vector]  # coordinates and velocities before they are moved onto the manifold
@@ -169,18 +188,21 @@ class _Trial:
     def drawn(cls, numbers: _Numbers, span: Span | None, draw: random.Random) -> _Trial:
         first, last = span or (-2.0, 2.0)
         reach = min(REACH, (last - first) / 10)
-        instant = draw.uniform(first + reach, last - reach)
+        time = draw.uniform(first + reach, last - reach)
         size = 2 * len(numbers.system.coordinates)
         return cls(
             numbers,
-            instant,
+            time,
             reach,
             [draw.choice([-1, 1]) * draw.uniform(0.2, 2) for _ in numbers.parameters],
             [[draw.uniform(-1.5, 1.5) for _ in range(size)] for _ in range(STATES)],
         )
 
     def law(self, draw: random.Random) -> FreeLaw | None:
-        """Search at the instant alone first, which most systems without a law do not survive."""
+        """Search for a law, at the time alone first.
+
+        Most systems without a law fail there.
+        """
         controls = self.numbers.system.controls
         start = [draw.uniform(-1.5, 1.5) for _ in range(3 * len(controls))]
         scale = max(1.0, _norm(self.multipliers(start, 2, [0.0])))
@@ -195,25 +217,28 @@ class _Trial:
         if narrow > max(VANISHING * scale, size / LEAST_FALL):
             return None
         return FreeLaw(
-            self.instant,
+            self.time,
             {u.name: found[k * (DEGREE + 1)] for k, u in enumerate(controls)},
             {p.name: value for p, value in zip(self.numbers.parameters, self.parameters, strict=True)},
         )
 
     def polynomial(self, start: Vector) -> tuple[Vector, float]:
-        """Coefficients under which the multipliers are smallest along the interval, and their norm."""
+        """Return coefficients with the smallest multipliers on the interval, and the norm."""
         nodes = [self.reach * k / 2 for k in (-2, -1, 0, 1, 2)]
         return _minimized(lambda x: self.multipliers(x, DEGREE, nodes), start)
 
     def multipliers(self, coefficients: Vector, degree: int, nodes: Sequence[float]) -> Vector:
-        """Multipliers in all states at all instants, under polynomials in units of the reach."""
+        """Return multipliers in all states at all times for polynomial controls.
+
+        The polynomials are in units of the reach.
+        """
         found = []
         for node in nodes:
             controls = []
             for k in range(0, len(coefficients), degree + 1):
                 controls += _polynomial(coefficients[k : k + degree + 1], node / self.reach, self.reach)
             for state in self.states:
-                found += self._multipliers_in(state, controls, self.instant + node)
+                found += self._multipliers_in(state, controls, self.time + node)
         return found
 
     def _multipliers_in(self, state: Vector, controls: Vector, t: float) -> Vector:
@@ -239,7 +264,10 @@ class _Trial:
 
 
 def _polynomial(c: Vector, s: float, unit: float) -> Vector:
-    """Value, rate and second rate in time t = unit*s of c0 + c1 t + c2 t^2/2 + ..., the later terms in powers of s."""
+    """Return value, first and second derivative of c0 + c1 t + c2 t^2/2 + ...
+
+    The time is t = unit*s; the later terms are in powers of s.
+    """
     powers = [c[0], c[1] * unit, c[2] * unit**2 / 2, *c[3:]]
     value = sum(a * s**k for k, a in enumerate(powers))
     rate = sum(k * a * s ** (k - 1) for k, a in enumerate(powers) if k > 0) / unit
@@ -248,7 +276,10 @@ def _polynomial(c: Vector, s: float, unit: float) -> Vector:
 
 
 def _moved(x: Vector, residuals: Vector, slopes: Sequence[Vector]) -> Vector:
-    """Return the shortest Newton step; slopes[k] are the derivatives of the residuals by x[k]."""
+    """Return the shortest Newton step.
+
+    slopes[k] are the derivatives of the residuals by x[k].
+    """
     range_of_rows = range(len(residuals))
     products = [[sum(slope[i] * slope[j] for slope in slopes) for j in range_of_rows] for i in range_of_rows]
     weights = _solved(products, residuals)
@@ -258,7 +289,7 @@ def _moved(x: Vector, residuals: Vector, slopes: Sequence[Vector]) -> Vector:
 
 
 def _minimized(residuals: Callable[[Vector], Vector], start: Vector) -> tuple[Vector, float]:
-    """Levenberg-Marquardt steps; the point found and the norm of the residuals there."""
+    """Return the minimum by Levenberg-Marquardt steps, and the norm of the residuals."""
     x, damping = start, 1e-3
     r = residuals(x)
     for _ in range(STEPS):
@@ -290,7 +321,7 @@ def _minimized(residuals: Callable[[Vector], Vector], start: Vector) -> tuple[Ve
 
 
 def _solved(matrix: Sequence[Sequence[float]], right: Sequence[float]) -> Vector:
-    """Gaussian elimination with the largest pivot of each column."""
+    """Solve by Gaussian elimination with the largest pivot of each column."""
     rows = [[*row, b] for row, b in zip(matrix, right, strict=True)]
     size = len(rows)
     for k in range(size):

@@ -1,4 +1,4 @@
-"""Linear equations for symbols, kept as residuals: never solved in symbols, only at a point."""
+"""Linear equations in symbols as residuals, solved only at a point."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .evaluation import Number, Steps, Values
 
 @dataclass(frozen=True)
 class LinearEquations:
-    """As many residuals, linear in the unknowns, as there are unknowns."""
+    """Residuals that are linear in equally many unknowns."""
 
     unknowns: tuple[sp.Symbol, ...]
     residuals: tuple[sp.Expr, ...]
@@ -26,7 +26,7 @@ class LinearEquations:
 
     @cached_property
     def constants(self) -> list[sp.Expr]:
-        """The m residuals where every unknown is zero."""
+        """The m residuals with every unknown zero."""
         nothing = dict.fromkeys(self.unknowns, sp.Integer(0))
         return [residual.xreplace(nothing) for residual in self.residuals]
 
@@ -35,7 +35,20 @@ class LinearEquations:
         return Steps([*(entry for row in self.coefficients for entry in row), *self.constants])
 
     def solution(self, values: Values, real: bool = False) -> dict[sp.Symbol, Number | None]:
-        """Solve for the unknowns at a point; None for each where there is no solution. `real` as for `Steps.at`."""
+        """Return the solution at a point; None for each unknown if there is no solution.
+
+        Parameters
+        ----------
+        values : Values
+            Values of the other symbols.
+        real : bool
+            If True, complex values count as missing.
+
+        Returns
+        -------
+        dict of Symbol to Number or None
+            Value of each unknown.
+        """
         order = len(self.unknowns)
         found = self._steps.at(values, real) if order else []
         if order and None not in found:

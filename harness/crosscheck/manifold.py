@@ -1,4 +1,7 @@
-"""States moved onto the constraint manifold by Newton's method, at a working precision beyond the one stated."""
+"""Move states onto the constraint manifold by Newton's method.
+
+The working precision is higher than the stated one.
+"""
 
 from __future__ import annotations
 
@@ -20,13 +23,14 @@ State = dict[sp.Symbol, mp.mpf]
 
 
 def moved_onto(state: State, unknowns: Sequence[sp.Symbol], residuals: Steps, jacobian: Steps) -> None:
-    """Move the unknowns of a state, by the shortest steps, to where the residuals vanish.
+    """Move the unknowns of a state, by shortest steps, to a zero of the residuals.
 
     Parameters
     ----------
     state : dict of Symbol to mpf
         Changed in place.
-    unknowns : sequence of n Symbols
+    unknowns : sequence of Symbol, shape (n,)
+        Symbols of the state to move.
     residuals : Steps
         Of g expressions.
     jacobian : Steps

@@ -1,7 +1,7 @@
-"""The verdict on a motion program: what is simulated, held against the equations of motion at random states.
+"""Verdicts on motion programs: the simulated equations at random states.
 
-Nothing of it is derived from the record. Accelerations and multipliers of both solves, the control law and its rates,
-the corrections of the state, residuals, energy and power are compared with what the description says, in 50 digits.
+Nothing is taken from the record. Accelerations and multipliers of both solves, the control law and its derivatives,
+the corrections of the state, residuals, energy and power are compared with the description in 50 digits.
 """
 
 from __future__ import annotations
@@ -12,35 +12,35 @@ from dataclasses import dataclass, field, replace
 from mpmath import mp
 
 from ..description import DescribedScene, Description
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..program.motion_problem import MotionProblem, read_problem
 from ..program.motion_program import Program, read_program
 from ..program.request import Solve
 from . import motion_states as states
+from .compared_values import Parts, first_differences
 from .described_motion import DescribedMotion
 from .digits import DIGITS, POINTS
 from .irregular_point import IrregularPoint
-from .judged_claims import Parts, first_differences
-from .motion_premises import PREMISES, claims_of_inputs, other_premises
-from .motion_states import STATE, Claim, States
+from .motion_premises import PREMISES, other_premises, values_of_inputs
+from .motion_states import STATE, ComparedValue, States
 from .program_values import Values, run
 from .questions import Answer, SceneAndSolve, holds_special_functions, is_closed
-from .report import Judgement, Verdict
+from .report import CheckResult, Verdict
 
 ATTEMPTS = 6  # draws for each state before the search for a regular one is given up
 
 
 @dataclass(frozen=True)
 class ScenePrograms:
-    """The programs of one scene, or of a system without one; or why there are none."""
+    """The programs of one scene, or of a system without one; or the reason for none."""
 
     scene: str | None
     problems: Mapping[Solve, MotionProblem] = field(default_factory=dict)  # where the controls have laws
     programs: Mapping[Solve, Program] = field(default_factory=dict)  # where they have none
-    missing: Mapping[Solve, Judgement] = field(default_factory=dict)
+    missing: Mapping[Solve, CheckResult] = field(default_factory=dict)
 
 
-OF_SPECIAL_FUNCTIONS = Judgement(
+OF_SPECIAL_FUNCTIONS = CheckResult(
     Verdict.NOTHING, None, None, "special functions of the time are not compared in 50 digits"
 )
 
@@ -51,11 +51,29 @@ class ProgramVerdict:
 
     scene: str | None
     part: str
-    found: Judgement
+    found: CheckResult
 
 
 def read_programs(description: Description, answers: Mapping[SceneAndSolve, Answer]) -> list[ScenePrograms]:
-    """Read what Maxima answers; raises where that is no document."""
+    """Read Maxima's answers about programs.
+
+    Parameters
+    ----------
+    description : Description
+        The reference.
+    answers : mapping of SceneAndSolve to Answer
+        Document or error for each scene and solve.
+
+    Returns
+    -------
+    list of ScenePrograms
+        One for each scene, or one for a system without scenes.
+
+    Raises
+    ------
+    HolonomError
+        An answer is not a document of the expected form.
+    """
     return [_programs_of(description, scene, answers) for scene in description.scenes or (None,)]
 
 
@@ -73,26 +91,47 @@ def _programs_of(
     return ScenePrograms(name, **{"problems" if closed else "programs": found}, missing=missing)
 
 
-def why_missing(error: HolonomError) -> Judgement:
-    """Return the verdict where Maxima has written nothing; raises what is neither a refusal nor a limit."""
-    if error.failure is Failure.REFUSED:
-        return Judgement(Verdict.NOTHING, None, None, error.said)
-    if error.failure in (Failure.TOO_LONG, Failure.TOO_LARGE):
-        return Judgement(Verdict.UNDECIDED, None, None, error.said)
+def why_missing(error: HolonomError) -> CheckResult:
+    """Return the verdict if Maxima wrote nothing.
+
+    Parameters
+    ----------
+    error : HolonomError
+        Error of the run of Maxima.
+
+    Returns
+    -------
+    CheckResult
+        Nothing to check, or undecided after a limit.
+
+    Raises
+    ------
+    HolonomError
+        The error itself, if it is neither an id of Maxima nor a limit.
+    """
+    if error.kind is ErrorKind.REFUSED:
+        return CheckResult(Verdict.NOTHING, None, None, error.reason)
+    if error.kind in (ErrorKind.TOO_LONG, ErrorKind.TOO_LARGE):
+        return CheckResult(Verdict.UNDECIDED, None, None, error.reason)
     raise error
 
 
 def judge_programs(description: Description, programs: Iterable[ScenePrograms], seed: str) -> list[ProgramVerdict]:
-    """Verdicts on the programs of the scenes of a description.
+    """Return verdicts on the programs of the scenes of a description.
 
     Parameters
     ----------
     description : Description
-        What is so.
+        The reference.
     programs : iterable of ScenePrograms
-        What Maxima wrote.
+        The programs that Maxima wrote.
     seed : str
-        Draws the states.
+        Seed of the random states.
+
+    Returns
+    -------
+    list of ProgramVerdict
+        One for each part of the programs.
     """
     scenes = {scene.name: scene for scene in description.scenes}
     verdicts = []
@@ -109,7 +148,10 @@ def judge_programs(description: Description, programs: Iterable[ScenePrograms], 
 
 
 def _judge_with_releases(motion: DescribedMotion, programs: ScenePrograms, seed: str) -> list[ProgramVerdict]:
-    """Verdicts on the motion at the start, and on that after each release, in every order."""
+    """Return verdicts on the initial motion, and on that after each release.
+
+    The releases are tried in every order.
+    """
     verdicts = _judge_problems(motion, programs, seed)
     problems = programs.problems
     if any(len(each.released) != len(motion.scene.released) for each in problems.values()):
@@ -126,14 +168,14 @@ def _judge_with_releases(motion: DescribedMotion, programs: ScenePrograms, seed:
 def _judge_problems(motion: DescribedMotion, programs: ScenePrograms, seed: str) -> list[ProgramVerdict]:
     problems = programs.problems
     if wrong := other_premises(motion, problems, seed):
-        return [ProgramVerdict(programs.scene, PREMISES, Judgement(Verdict.DISAGREES, DIGITS, 1, wrong))]
+        return [ProgramVerdict(programs.scene, PREMISES, CheckResult(Verdict.DISAGREES, DIGITS, 1, wrong))]
     solved = [solve for solve, problem in problems.items() if problem.motion is not None]
     parts = [f"motion program, {solve} solve" for solve in solved]
     verdicts = [
         ProgramVerdict(
             programs.scene,
             f"motion program, {solve} solve",
-            Judgement(Verdict.NOTHING, None, None, problem.obstacle or ""),
+            CheckResult(Verdict.NOTHING, None, None, problem.obstacle or ""),
         )
         for solve, problem in problems.items()
         if problem.motion is None
@@ -143,19 +185,19 @@ def _judge_problems(motion: DescribedMotion, programs: ScenePrograms, seed: str)
     else:
         maker = _plain_states(motion, problems, seed)
         parts = [MATRICES, *parts]
-    verdicts += _judged(programs.scene, [PREMISES], claims_of_inputs(motion, problems, seed))
+    verdicts += _judged(programs.scene, [PREMISES], values_of_inputs(motion, problems, seed))
     return [*verdicts, *_judged(programs.scene, parts, maker)]
 
 
 def _values_of(program: Program, inputs: Values, solve: Solve) -> Values | None:
     """Return values of a program.
 
-    None where it has none and should have: the orthogonal solve needs masses that are positive.
+    None if it must have values and has none: the orthogonal solve requires positive masses.
 
     Raises
     ------
     IrregularPoint
-        The orthogonal solve has none.
+        The orthogonal solve has no value.
     """
     try:
         return run(program, inputs)
@@ -176,11 +218,14 @@ def _plain_states(
     n, names = len(first.coordinates), [*(f"ddot({q})" for q in first.coordinates), *first.multipliers]
     redundant = next((p.motion.redundant for p in problems.values() if p.motion is not None), ())
 
-    def claims(attempt: int) -> Parts:
+    def compared(attempt: int) -> Parts:
         own = drawn[next(iter(problems))]
         state = own.state(attempt)
         x = own.random_numbers(attempt, len(names))
         x[len(names) - first.servo :] = [mp.zero] * first.servo
+        if first.reacting:
+            system = states.bordered(run(first.matrices, own.inputs(state, x[n:])), n, first.multipliers, redundant)
+            x[n:] = system.solution(system.right)[n:]
         inputs = own.inputs(state, x[n:])
         computed, energy = run(first.matrices, inputs), run(first.energy, inputs)
         controls = own.controls(state, computed)
@@ -188,17 +233,18 @@ def _plain_states(
         law = {name: value for name, value in controls.items() if name in motion.scene.control_law}
         computed |= {name: energy[name] for name in ("energy", "power")}
         for program in (computed, energy):
-            yield from ((MATRICES, claim) for claim in states.claims_of_law(law, program))
+            yield from ((MATRICES, value) for value in states.values_of_law(law, program))
         curve = own.curve(state, dict(zip(first.coordinates, x, strict=False)), controls)
-        yield from ((MATRICES, claim) for claim in states.claims_of_matrices(motion, system, computed, curve, x))
+        curve |= {name: inputs[name] for name in first.reacting}
+        yield from ((MATRICES, value) for value in states.values_of_matrices(motion, system, computed, curve, x))
         for solve, problem in problems.items():
             if problem.projection is not None:
                 part = f"motion program, {solve} solve"
                 corrections = run(problem.projection, inputs)
-                yield from ((part, claim) for claim in states.claims_of_law(law, corrections))
+                yield from ((part, value) for value in states.values_of_law(law, corrections))
                 for which in ("position", "velocity"):
-                    found = states.claims_of_projection(system, corrections, computed, which)
-                    yield from ((part, claim) for claim in found)
+                    found = states.values_of_projection(system, corrections, computed, which)
+                    yield from ((part, value) for value in found)
         if first.servo:
             state = own.kept(state)
             inputs = own.inputs(state, x[n:])
@@ -211,22 +257,25 @@ def _plain_states(
             part = f"motion program, {solve} solve"
             found = _values_of(problem.motion, inputs, solve)
             if found is None:
-                yield part, Claim("a value", mp.zero, mp.one, mp.one)
+                yield part, ComparedValue("a value", mp.zero, mp.one, mp.one)
                 continue
-            yield from ((part, claim) for claim in states.claims_of_law(law, found))
-            yield from ((part, each) for each in states.claims_of_solve(system, solution, found, names, problem.servo))
-            yield from ((part, each) for each in states.claims_of_constraint_forces(system, found, names))
+            yield from ((part, value) for value in states.values_of_law(law, found))
+            yield from ((part, each) for each in states.values_of_solve(system, solution, found, names, problem.servo))
+            yield from ((part, each) for each in states.values_of_constraint_forces(system, found, names))
 
-    return claims
+    return compared
 
 
 def _released_states(
     motion: DescribedMotion, problems: Mapping[Solve, MotionProblem], seed: str
 ) -> Callable[[int], Parts]:
-    """Of a scene that prescribes reactions: its free controls are coordinates, and what it prescribes is so."""
+    """Return states of a scene that prescribes reactions.
+
+    Its free controls are coordinates, and the prescribed reactions hold.
+    """
     drawn = {solve: States(motion, problem, seed) for solve, problem in problems.items() if problem.motion is not None}
 
-    def claims(attempt: int) -> Parts:
+    def compared(attempt: int) -> Parts:
         for solve, own in drawn.items():
             problem, part = problems[solve], f"motion program, {solve} solve"
             state = own.kept(own.state(attempt))
@@ -234,21 +283,21 @@ def _released_states(
             controls = own.controls(state, found)
             prescribed = motion.reactions.at(STATE, state["t"][0], motion.parameters())
             for name, value in prescribed.items():
-                yield part, Claim(name, found[name][0], value[0], abs(value[0]))
+                yield part, ComparedValue(name, found[name][0], value[0], abs(value[0]))
             accelerations = {q: found[f"ddot({q})"][0] for q in problem.coordinates}
             multipliers = [found[name][0] for name in motion.system.multipliers]
             size = mp.fsum(map(abs, (*accelerations.values(), *multipliers)))
             for name in problem.multipliers[len(multipliers) :]:
-                yield part, Claim(name, found[name][0], mp.zero, size)
+                yield part, ComparedValue(name, found[name][0], mp.zero, size)
             curve = own.curve(state, accelerations, controls)
             kept = [*motion.constraints, *motion.outputs]
-            yield from ((part, each) for each in states.claims_by_substitution(motion, curve, multipliers, kept))
+            yield from ((part, each) for each in states.values_by_substitution(motion, curve, multipliers, kept))
 
-    return claims
+    return compared
 
 
 def _open_states(motion: DescribedMotion, program: Program, seed: str) -> Callable[[int], Parts]:
-    """Of a motion program whose controls, and some of whose parameters, are inputs."""
+    """Return states of a program whose controls, and some parameters, are inputs."""
     system, part = motion.system, f"motion program, {program.solve} solve"
     kept = [
         place
@@ -258,7 +307,7 @@ def _open_states(motion: DescribedMotion, program: Program, seed: str) -> Callab
     if f"lambda{len(motion.constraints) + len(motion.outputs) + 1}" not in program.outputs:  # all of relative degree 2
         kept += motion.outputs
 
-    def claims(attempt: int) -> Parts:
+    def compared(attempt: int) -> Parts:
         import random
 
         draw = random.Random(f"{seed} {attempt}")
@@ -274,27 +323,27 @@ def _open_states(motion: DescribedMotion, program: Program, seed: str) -> Callab
         for q in system.coordinates:
             curve[q] = (inputs[q][0], inputs[f"dot({q})"][0], found[f"ddot({q})"][0] / 2)
         multipliers = [found[name][0] for name in system.multipliers]
-        yield from ((part, each) for each in states.claims_by_substitution(motion, curve, multipliers, kept))
+        yield from ((part, each) for each in states.values_by_substitution(motion, curve, multipliers, kept))
 
-    return claims
+    return compared
 
 
-def _judged(scene: str | None, parts: list[str], claims: Callable[[int], Parts]) -> list[ProgramVerdict]:
-    """Compare at random states until there are enough, or one part is wrong."""
+def _judged(scene: str | None, parts: list[str], compared: Callable[[int], Parts]) -> list[ProgramVerdict]:
+    """Compare at random states until there are enough or one part is wrong."""
     wrong: dict[str, str] = {}
-    compared = 0
+    points = 0
     for attempt in range(ATTEMPTS * POINTS):
-        if compared == POINTS or len(wrong) == len(parts):
+        if points == POINTS or len(wrong) == len(parts):
             break
-        told, regular = first_differences(claims, attempt)
+        told, regular = first_differences(compared, attempt)
         wrong = told | wrong
-        compared += regular
-    few = f"only {compared} regular states were found among {ATTEMPTS * POINTS}"
-    left = Judgement(Verdict.AGREES, DIGITS, POINTS) if compared == POINTS else None
-    left = left or Judgement(Verdict.UNDECIDED, None, compared or None, few)
+        points += regular
+    few = f"only {points} regular states were found among {ATTEMPTS * POINTS}"
+    left = CheckResult(Verdict.AGREES, DIGITS, POINTS) if points == POINTS else None
+    left = left or CheckResult(Verdict.UNDECIDED, None, points or None, few)
     return [
         ProgramVerdict(
-            scene, part, Judgement(Verdict.DISAGREES, DIGITS, POINTS, wrong[part]) if part in wrong else left
+            scene, part, CheckResult(Verdict.DISAGREES, DIGITS, POINTS, wrong[part]) if part in wrong else left
         )
         for part in parts
     ]

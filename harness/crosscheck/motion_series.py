@@ -1,7 +1,7 @@
-"""The verdict on power series of a motion: put into the equations of motion, they must satisfy them.
+"""Verdicts on power series of a motion: they must satisfy the equations of motion.
 
-So are the controls of servo-constraints: with them the motion program is expanded here, and along that motion the
-outputs must stay zero.
+Controls of servo-constraints are checked as well: the motion program with these controls is expanded, and along that
+motion the outputs must stay zero.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from ..program.motion_problem import MotionProblem
 from ..program.request import Solve
 from ..series.power_series import MotionSeries, read_series
 from ..series.request import EXACT
+from .compared_values import differing
 from .described_motion import DescribedMotion
 from .digits import DIGITS
 from .irregular_point import IrregularPoint
-from .judged_claims import differing
 from .motion_program import OF_SPECIAL_FUNCTIONS, ProgramVerdict, ScenePrograms, why_missing
-from .motion_start import claims_of_start
-from .motion_states import Claim
+from .motion_start import values_of_start
+from .motion_states import ComparedValue
 from .program_values import Values, letters_of_tables, run_along, with_signs
 from .questions import ORDER, Answer, holds_special_functions
-from .report import Judgement, Verdict
+from .report import CheckResult, Verdict
 from .taylor import Polynomial, Taylor
 
 PERTURBATIONS = 3  # of all coefficients, by which the effect of rounding them is found
@@ -39,15 +39,33 @@ SERIES, SERVO = "power series", "servo-constraints, along the motion"
 
 @dataclass(frozen=True)
 class SceneSeries:
-    """The power series of one scene; or why there are none."""
+    """The power series of one scene, or the reason for none."""
 
     scene: str
     series: MotionSeries | None
-    missing: Judgement | None = None
+    missing: CheckResult | None = None
 
 
 def read_all_series(description: Description, answers: Mapping[str, Answer]) -> list[SceneSeries]:
-    """Read what Maxima answers; raises where that is no document."""
+    """Read Maxima's answers about power series.
+
+    Parameters
+    ----------
+    description : Description
+        The reference.
+    answers : mapping of str to Answer
+        Document or error for each scene.
+
+    Returns
+    -------
+    list of SceneSeries
+        One for each scene.
+
+    Raises
+    ------
+    HolonomError
+        An answer is not a document of the expected form.
+    """
     return [_series_of(description, scene.name, answers.get(scene.name)) for scene in description.scenes]
 
 
@@ -59,15 +77,29 @@ def _series_of(description: Description, scene: str, answer: Answer | None) -> S
     if holds_special_functions(description):
         return SceneSeries(scene, None, OF_SPECIAL_FUNCTIONS)
     said = f"no power series of {len(description.system.coordinates)} coordinates is asked for"
-    return SceneSeries(scene, None, Judgement(Verdict.NOTHING, None, None, said))
+    return SceneSeries(scene, None, CheckResult(Verdict.NOTHING, None, None, said))
 
 
 def judge_series(
     description: Description, found: Iterable[SceneSeries], programs: Iterable[ScenePrograms] = ()
 ) -> list[ProgramVerdict]:
-    """Verdicts on the power series of the scenes of a description.
+    """Return verdicts on the power series of the scenes of a description.
 
     The programs of the same scenes state the corrections of given values.
+
+    Parameters
+    ----------
+    description : Description
+        The reference.
+    found : iterable of SceneSeries
+        Power series of its scenes.
+    programs : iterable of ScenePrograms
+        Programs of the same scenes.
+
+    Returns
+    -------
+    list of ProgramVerdict
+        One for each scene without servo-constraints.
     """
     scenes = {scene.name: scene for scene in description.scenes}
     corrections = {each.scene: problem.correction for each in programs for problem in each.problems.values()}
@@ -80,7 +112,7 @@ def judge_series(
         else:
             motion = DescribedMotion(description, scenes[each.scene])
             series, digits = each.series, _digits(each.series)
-            judged = _judged(partial(_claims, motion, series, corrections.get(each.scene)), digits)
+            judged = _judged(partial(_compared, motion, series, corrections.get(each.scene)), digits)
         verdicts.append(ProgramVerdict(each.scene, SERIES, judged))
     return verdicts
 
@@ -88,7 +120,22 @@ def judge_series(
 def judge_servo(
     description: Description, programs: Iterable[ScenePrograms], found: Iterable[SceneSeries]
 ) -> list[ProgramVerdict]:
-    """Verdicts on the controls of servo-constraints, and on the power series of their motion."""
+    """Return verdicts on controls of servo-constraints and on their power series.
+
+    Parameters
+    ----------
+    description : Description
+        The reference.
+    programs : iterable of ScenePrograms
+        Programs of its scenes.
+    found : iterable of SceneSeries
+        Power series of its scenes.
+
+    Returns
+    -------
+    list of ProgramVerdict
+        One for each scene with servo-constraints.
+    """
     verdicts, series = [], {each.scene: each.series for each in found}
     for each in programs:
         scene = next((scene for scene in description.scenes if scene.name == each.scene), None)
@@ -96,8 +143,8 @@ def judge_servo(
         if scene is not None and scene.servo_trees and problem is not None and problem.motion is not None:
             motion = DescribedMotion(description, scene)
             own = series.get(each.scene)
-            claims = partial(_claims_of_servo, motion, problem, own)
-            judged = _judged(claims, DIGITS if own is None else _digits(own))
+            compared = partial(_values_of_servo, motion, problem, own)
+            judged = _judged(compared, DIGITS if own is None else _digits(own))
             verdicts.append(ProgramVerdict(each.scene, SERVO, judged))
     return verdicts
 
@@ -106,38 +153,43 @@ def _digits(series: MotionSeries) -> int:
     return DIGITS if series.arithmetic == EXACT else min(DIGITS, int(series.arithmetic[9:-1]) - LOST)
 
 
-def _judged(claims: Callable[[], Iterator[Claim]], digits: int) -> Judgement:
+def _judged(compared: Callable[[], Iterator[ComparedValue]], digits: int) -> CheckResult:
     try:
-        wrong = differing(claims, digits)
+        wrong = differing(compared, digits)
     except (IrregularPoint, ZeroDivisionError):
-        return Judgement(Verdict.NOTHING, None, None, "the equations of motion have no power series at the start")
-    return Judgement(Verdict.DISAGREES if wrong else Verdict.AGREES, digits, 1, wrong)
+        return CheckResult(Verdict.NOTHING, None, None, "the equations of motion have no power series at the start")
+    return CheckResult(Verdict.DISAGREES if wrong else Verdict.AGREES, digits, 1, wrong)
 
 
-def _claims(motion: DescribedMotion, series: MotionSeries, correction: tuple[str, str] | None) -> Iterator[Claim]:
-    """Claim that a power series begins at the start and satisfies the equations and reactions."""
-    taylor, instant = Taylor(ORDER), number(series.t0)
-    curve: Values = motion.parameters() | motion.law.at(Taylor(ORDER + 1), instant, motion.parameters())
+def _compared(
+    motion: DescribedMotion, series: MotionSeries, correction: tuple[str, str] | None
+) -> Iterator[ComparedValue]:
+    """Check that a power series starts at the initial state and is a solution.
+
+    Prescribed reactions are among the equations.
+    """
+    taylor, time = Taylor(ORDER), number(series.t0)
+    curve: Values = motion.parameters() | motion.law.at(Taylor(ORDER + 1), time, motion.parameters())
     curve |= {name: tuple(numbers(row)) for name, row in series.coordinates.items()}
-    curve["t"] = (instant, mp.one)
+    curve["t"] = (time, mp.one)
     multipliers = {name: tuple(numbers(row)) for name, row in series.multipliers.items()}
-    for name, prescribed in motion.reactions.at(taylor, instant, motion.parameters()).items():
+    for name, prescribed in motion.reactions.at(taylor, time, motion.parameters()).items():
         for k in range(ORDER - 1):
             true = _coefficient(prescribed, k)
-            yield Claim(f"coefficient {k} of {name}", _coefficient(multipliers[name], k), true, abs(true))
-    yield from claims_of_start(motion, _start(series, instant), correction)
+            yield ComparedValue(f"coefficient {k} of {name}", _coefficient(multipliers[name], k), true, abs(true))
+    yield from values_of_start(motion, _start(series, time), correction)
     ordered = [multipliers[name] for name in motion.system.multipliers]
-    yield from _claims_of_forces(motion, taylor, curve, ordered, series.constraint_forces)
-    yield from _claims_of_equations(motion, taylor, curve, ordered)
+    yield from _values_of_forces(motion, taylor, curve, ordered, series.constraint_forces)
+    yield from _values_of_equations(motion, taylor, curve, ordered)
 
 
-def _claims_of_forces(
+def _values_of_forces(
     motion: DescribedMotion,
     taylor: Taylor,
     curve: Values,
     multipliers: list[Polynomial],
     given: Mapping[str, Sequence[str]],
-) -> Iterator[Claim]:
+) -> Iterator[ComparedValue]:
     """Yield the constraint forces of a series, by Lambda[s]."""
     if not given:
         return
@@ -151,19 +203,19 @@ def _claims_of_forces(
     for name, row in given.items():
         s = int(name.removeprefix("Lambda[").removesuffix("]")) - 1
         for k, x in enumerate(numbers(row[: ORDER - 1])):
-            yield Claim(f"coefficient {k} of {name}", x, _coefficient(true[s], k), changes[s][k])
+            yield ComparedValue(f"coefficient {k} of {name}", x, _coefficient(true[s], k), changes[s][k])
 
 
-def _start(series: MotionSeries, instant: mp.mpf) -> dict[str, mp.mpf]:
-    found = {"t": instant}
+def _start(series: MotionSeries, time: mp.mpf) -> dict[str, mp.mpf]:
+    found = {"t": time}
     for name, row in series.coordinates.items():
         found[name], found[f"dot({name})"] = numbers(row[:2])
     return found
 
 
-def _claims_of_equations(
+def _values_of_equations(
     motion: DescribedMotion, taylor: Taylor, curve: Values, multipliers: list[Polynomial]
-) -> Iterator[Claim]:
+) -> Iterator[ComparedValue]:
     values = motion.values(taylor, curve)
     sizes = motion.tape.sizes(taylor, values)
     equations = motion.equations(taylor, values, multipliers)
@@ -174,12 +226,12 @@ def _claims_of_equations(
     for q, equation, change in zip(motion.system.coordinates, equations, changes, strict=True):
         for k in range(taylor.order - 1):
             value, size = _coefficient(equation.value, k), max(_coefficient(equation.size, k), change[k])
-            yield Claim(f"power {k} of the equation of motion of {q}", value, mp.zero, size)
+            yield ComparedValue(f"power {k} of the equation of motion of {q}", value, mp.zero, size)
     for what, places in (("constraint", motion.constraints), ("servo-constraint", motion.outputs)):
         for beta, place in enumerate(places, 1):
             for k in range(taylor.order + 1):
                 value = _coefficient(values[place], k)
-                yield Claim(f"power {k} of {what} {beta}", value, mp.zero, _coefficient(sizes[place], k))
+                yield ComparedValue(f"power {k} of {what} {beta}", value, mp.zero, _coefficient(sizes[place], k))
 
 
 def _changes(
@@ -190,7 +242,10 @@ def _changes(
     before: Sequence[Polynomial],
     made: Callable[[Sequence[Polynomial], list[Polynomial]], list[Polynomial]],
 ) -> list[list[mp.mpf]]:
-    """By how much what was made before changes with relative changes of all coefficients, which are rounded."""
+    """Return how relative changes of all coefficients change the results so far.
+
+    The coefficients are rounded.
+    """
     found = [[mp.zero] * taylor.order for _ in before]
     share = mp.mpf(10) ** (-mp.dps // 3)
     for attempt in range(PERTURBATIONS):
@@ -208,21 +263,29 @@ def _changes(
     return found
 
 
-def _claims_of_servo(motion: DescribedMotion, problem: MotionProblem, series: MotionSeries | None) -> Iterator[Claim]:
-    """Claim that the outputs stay zero along the motion that the program makes, which is that of the power series."""
+def _values_of_servo(
+    motion: DescribedMotion, problem: MotionProblem, series: MotionSeries | None
+) -> Iterator[ComparedValue]:
+    """Check that the outputs stay zero along the program's motion.
+
+    That motion is also the one of the power series.
+    """
     taylor = Taylor(ORDER)
     curve, computed = _expanded(problem)
     for q, row in series.coordinates.items() if series else ():
         for k, x in enumerate(numbers(row)):
-            yield Claim(f"power {k} of {q}", x, _coefficient(curve[q], k), mp.fsum(map(abs, curve[q])))
+            yield ComparedValue(f"power {k} of {q}", x, _coefficient(curve[q], k), mp.fsum(map(abs, curve[q])))
     found = {name: computed[name] for name in motion.system.controls if name in computed}
     law = motion.law.at(Taylor(ORDER + 1), curve["t"][0], motion.parameters())
     multipliers = [computed[name] for name in motion.system.multipliers]
-    yield from _claims_of_equations(motion, taylor, motion.parameters() | found | law | curve, multipliers)
+    yield from _values_of_equations(motion, taylor, motion.parameters() | found | law | curve, multipliers)
 
 
 def _expanded(problem: MotionProblem) -> tuple[Values, Values]:
-    """Power series from the start, of the coordinates and of all that the program computes, by its accelerations."""
+    """Return power series of the coordinates and of the program's results.
+
+    They follow from its accelerations, from the initial state on.
+    """
     start = {name: mp.mpf(text) for name, text in problem.start.items()}
     known = {q: (start[q], start[f"dot({q})"]) for q in problem.coordinates}
     fixed = dict.fromkeys(problem.multipliers, (mp.zero,)) | letters_of_tables(problem, start["t"])

@@ -1,7 +1,8 @@
-"""The start of a motion, from its description alone: given values, constraints, and the branch that a guess chooses.
+"""The initial state of a motion, compared with the description alone.
 
-What a scene leaves out is found near its guess, by Newton's method with the shortest corrections in the mass metric
-(eqs. (12), (19)). The method is applied here once more. A start is wrong if the method arrives at a nearer one.
+Values that a scene leaves out are the nearest to its guess, by Newton's method with the shortest corrections in the
+mass metric (eqs. (12), (19)). The method is repeated here. An initial state is wrong if the method finds a nearer
+one.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from mpmath import mp
 
 from .described_motion import DescribedMotion
 from .irregular_point import IrregularPoint
-from .motion_states import Claim
+from .motion_states import ComparedValue
 from .ranks import Elimination, Row
 from .taylor import Polynomial, Taylor
 
@@ -28,8 +29,12 @@ NEARER_ROOT = 1 - mp.mpf(10) ** -6  # the same of isolated roots
 FAINT = mp.mpf(10) ** -20  # share of the metric that coordinates without mass have
 
 
-def claims_of_start(motion: DescribedMotion, start: State, correction: tuple[str, str] | None) -> Iterator[Claim]:
-    """Compare a start with the given values, and the constraints and their rates with zero there.
+def values_of_start(
+    motion: DescribedMotion, start: State, correction: tuple[str, str] | None
+) -> Iterator[ComparedValue]:
+    """Compare an initial state with the given values and the constraints.
+
+    The constraints and their first derivatives must vanish.
 
     Parameters
     ----------
@@ -38,14 +43,19 @@ def claims_of_start(motion: DescribedMotion, start: State, correction: tuple[str
     start : mapping of str to mpf
         The time, coordinates and velocities.
     correction : tuple of str and str or None
-        The given value that is said to be corrected most, and by how much.
+        The given value with the largest reported correction, and that correction.
+
+    Yields
+    ------
+    ComparedValue
+        Of a value, a constraint or its derivative.
     """
-    yield Claim("first instant", start["t"], motion.first_instant, abs(motion.first_instant))
+    yield ComparedValue("first time", start["t"], motion.first_time, abs(motion.first_time))
     allowed = mp.mpf(correction[1]) * mp.mpf("1.01") if correction else mp.zero
     for name, tree in motion.scene.initial_state.trees.items():
         given = motion.number_of(tree)
         if abs(start[name] - given) > allowed:
-            yield Claim(f"initial value of {name}", start[name], given, abs(given))
+            yield ComparedValue(f"initial value of {name}", start[name], given, abs(given))
     needed = motion.tape.needed_for([*motion.constraints, *motion.outputs])  # forces may have no value at the start
     values = motion.values(RATE, _curve(motion, start), needed)
     sizes, coordinates = motion.tape.sizes(RATE, values, needed), set(motion.system.coordinates)
@@ -55,11 +65,14 @@ def claims_of_start(motion: DescribedMotion, start: State, correction: tuple[str
             for order, rate in enumerate(("", "rate of ")):
                 value, size = ((*each[place], mp.zero)[order] for each in (values, sizes))
                 size += mp.fsum(abs(x) for q in slopes.keys() & coordinates for x in _changes(slopes, start, q, order))
-                yield Claim(f"{rate}{what} {beta} at the start", value, mp.zero, size)
+                yield ComparedValue(f"{rate}{what} {beta} at the start", value, mp.zero, size)
 
 
 def _changes(slopes: Mapping[str, Polynomial], start: State, q: str, order: int) -> list[mp.mpf]:
-    """Return what relative changes of a coordinate and its velocity make of a constraint, or of its rate."""
+    """Return changes of a constraint, or of its derivative, by relative changes.
+
+    A coordinate and its velocity change.
+    """
     slope, slope_rate = (*slopes.get(q, ()), mp.zero, mp.zero)[:2]
     if order == 0:
         return [slope * start.get(q, mp.zero)]
@@ -67,9 +80,21 @@ def _changes(slopes: Mapping[str, Polynomial], start: State, q: str, order: int)
 
 
 def nearer_start(motion: DescribedMotion, start: State, masses: State | None = None) -> str:
-    """Tell which value Newton's method finds nearer to the guess than that of a start; empty if it finds none.
+    """Return a value that Newton's method finds nearer to the guess; empty if none.
 
-    The masses are those that the start gives to the controls that move.
+    Parameters
+    ----------
+    motion : DescribedMotion
+        The scene.
+    start : State
+        Time, coordinates and velocities of the initial state.
+    masses : State or None
+        Masses of the moving controls in the problem; None for none.
+
+    Returns
+    -------
+    str
+        Message that names the value.
     """
     if motion.scene is None or not motion.scene.initial_guess:
         return ""
@@ -91,11 +116,15 @@ def _curve(motion: DescribedMotion, state: State) -> dict[str, Polynomial]:
     forcing = dict.fromkeys(
         motion.system.controls if motion.scene.servo_trees else (), (mp.zero,)
     )  # not in constraints
+    forcing |= dict.fromkeys(motion.reacting, (mp.one,))
     return motion.parameters() | forcing | law | places | {"t": (state["t"], mp.one)}
 
 
 class _Search:
-    """Newton's method from a guess of coordinates (order 0) or velocities (order 1), by the shortest corrections."""
+    """Newton's method from a guess, by the shortest corrections.
+
+    The unknowns are coordinates (order 0) or velocities (order 1).
+    """
 
     def __init__(
         self,
@@ -112,7 +141,7 @@ class _Search:
         self._conditions = [*motion.constraints, *motion.outputs]
 
     def nearer(self) -> str:
-        """Tell a value of a nearer root than the start is; empty if none is found."""
+        """Return a value of a root nearer than the initial state; empty if none is found."""
         try:
             guess = {**self._start, **self._guess}
             metric = self._metric(guess)
@@ -130,7 +159,10 @@ class _Search:
         return f"initial value of {name}: {given}, where {true} is nearer to the guess"
 
     def _metric(self, state: State) -> list[Row]:
-        """Mass matrix of the names at a state; coordinates without mass get a faint one."""
+        """Return the mass matrix of the names at a state.
+
+        Coordinates without mass get a small one.
+        """
         motion, rates = self._motion, [f"dot({q})" for q in self._columns]
         at_rest = state | {f"dot({q})": mp.zero for q in motion.system.coordinates if q in state}
         momenta = [
@@ -144,12 +176,12 @@ class _Search:
         return [row | {i: row.get(i, mp.zero) + own.get(i, faint)} for i, row in enumerate(rows)]
 
     def _root(self, state: State, metric: Sequence[Row]) -> tuple[State, bool]:
-        """Return the root that the method arrives at, and whether it is one of a continuum.
+        """Return the root found, and True if it belongs to a continuum.
 
         Raises
         ------
         IrregularPoint
-            It arrives at none.
+            The method does not converge.
         """
         left, rows = self._residuals(state)
         for _ in range(NEWTON_STEPS):
@@ -160,7 +192,10 @@ class _Search:
         raise IrregularPoint
 
     def _damped(self, state: State, step: Sequence[mp.mpf], left: Sequence[mp.mpf]) -> tuple:
-        """Return the state after a step that is halved until the residuals are smaller, with them and their slopes."""
+        """Return the state after a step, halved until the residuals decrease.
+
+        Their values and slopes are returned as well.
+        """
         for halving in range(HALVINGS):
             share = mp.mpf(2) ** -halving
             moved = state | {name: state[name] - share * by for name, by in zip(self._guess, step, strict=True)}
@@ -173,7 +208,7 @@ class _Search:
         raise IrregularPoint
 
     def _residuals(self, state: State) -> tuple[list[mp.mpf], list[Row]]:
-        """Return what should vanish, and its slopes by the names."""
+        """Return the residuals, and their slopes by the names."""
         tape, order = self._motion.tape, Taylor(self._order)
         values = self._motion.values(order, _curve(self._motion, state))
         left = [(*values[place], mp.zero)[self._order] for place in self._conditions]
@@ -194,5 +229,5 @@ def _shortest(metric: Sequence[Row], rows: Sequence[Row], left: Sequence[mp.mpf]
 
 
 def _length(metric: Sequence[Row], way: Sequence[mp.mpf]) -> mp.mpf:
-    """Length of a way in the metric."""
+    """Return the length of a displacement in the metric."""
     return mp.sqrt(max(mp.fsum(way[i] * a * way[k] for i, row in enumerate(metric) for k, a in row.items()), mp.zero))

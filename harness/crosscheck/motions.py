@@ -1,4 +1,7 @@
-"""What is computed of motions and is in no record, asked of Maxima and judged: programs, power series, controls."""
+"""Verify the programs, power series and controls that Maxima computes of motions.
+
+They are in no record.
+"""
 
 from __future__ import annotations
 
@@ -10,38 +13,60 @@ from ..description import Description
 from .motion_program import ProgramVerdict, ScenePrograms, judge_programs, read_programs
 from .motion_series import SceneSeries, judge_series, judge_servo, read_all_series
 from .questions import Answers
-from .report import EquationVerdict, Item, Judgement, Place, Verdict, verdict_on
+from .report import CheckResult, EquationVerdict, Item, Place, Verdict, verdict_on
 from .time_limit import TimeLimit
 
 
 @dataclass(frozen=True)
 class Motions:
-    """What Maxima wrote of the motions of a scene file."""
+    """The results of Maxima about the motions of a scene file."""
 
     programs: Sequence[ScenePrograms]
     series: Sequence[SceneSeries]
 
 
 def read_motions(description: Description, answers: Answers) -> Motions:
-    """Read what Maxima answers about a description; raises where that is no document."""
+    """Read Maxima's answers about a description.
+
+    Parameters
+    ----------
+    description : Description
+        The reference.
+    answers : Answers
+        Documents or errors.
+
+    Returns
+    -------
+    Motions
+
+    Raises
+    ------
+    HolonomError
+        An answer is not a document of the expected form.
+    """
     return Motions(read_programs(description, answers.programs), read_all_series(description, answers.series))
 
 
 def motion_verdicts(
     description: Description, motions: Motions, seed: str, seconds: float = math.inf
 ) -> Iterator[EquationVerdict]:
-    """Verdicts for a report; undecided where the time is over before.
+    """Yield verdicts on motions for a report; undecided if the time is over.
 
     Parameters
     ----------
     description : Description
-        What is so.
+        The reference.
     motions : Motions
-        What Maxima wrote.
+        The results of Maxima.
     seed : str
-        Draws the states.
+        Seed of the random states.
     seconds : float
         Time for all of them.
+
+    Yields
+    ------
+    EquationVerdict
+        Verdict on one part of the programs or on a power series.
     """
     time = TimeLimit(seconds)
 
@@ -57,12 +82,23 @@ def motion_verdicts(
 
 
 def verdicts_out_of_time(description: Description) -> list[EquationVerdict]:
-    """Verdicts where Maxima has not written the motions before the time is over."""
+    """Return verdicts for motions that Maxima did not finish in time.
+
+    Parameters
+    ----------
+    description : Description
+        The reference.
+
+    Returns
+    -------
+    list of EquationVerdict
+        One for each scene, undecided.
+    """
     return [_told(_out_of_time(scene and scene.name)) for scene in description.scenes or (None,)]
 
 
 def _out_of_time(scene: str | None) -> ProgramVerdict:
-    over = Judgement(Verdict.UNDECIDED, None, None, "the time limit was reached before")
+    over = CheckResult(Verdict.UNDECIDED, None, None, "the time limit was reached before")
     return ProgramVerdict(scene, "motion", over)
 
 

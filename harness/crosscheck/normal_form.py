@@ -1,14 +1,14 @@
-"""Proof that an expression is identically zero, by bringing it over a common denominator.
+"""Prove that an expression is identically zero, by a common denominator.
 
-Every symbol, function value and root is a generator of a polynomial ring over the rationals. An
-expression becomes a numerator and a product of denominators, which are never multiplied out. The
-numerator is then reduced by what is known of the generators,
+Every symbol, function value and root is a generator of a polynomial ring over the rationals. An expression becomes a
+numerator and a product of denominators, which are never multiplied out. The numerator is then reduced by relations of
+the generators,
 
     sin(x)^2 = 1 - cos(x)^2,    cosh(x)^2 = 1 + sinh(x)^2,    (b^(1/q))^q = b,    |x|^2 = x^2,
 
-and the expression is identically zero when nothing is left of it. When something is left, or the
-work exceeds its allowance, nothing has been shown. The allowance counts terms read and products of
-terms made, not seconds: the same expression has the same outcome on every machine.
+and the expression is identically zero if the numerator becomes zero. Otherwise, or if the work exceeds its allowance,
+the method is inconclusive. The allowance counts terms read and products of terms made, not seconds: the same
+expression has the same outcome on every machine.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ LARGEST_MULTIPLE, MOST_TERMS, LONGEST_ARGUMENT = 12, 12, 200
 """Of an argument that addition theorems are applied to: its largest factor, its terms, its operations."""
 
 
-class AllowanceSpent(Exception):
+class EffortLimitExceeded(Exception):
     """The proof would take more work than it is allowed."""
 
 
@@ -43,7 +43,7 @@ class Quotient(NamedTuple):
 
 
 class RootRelation(NamedTuple):
-    """generator^degree = value, where the value contains earlier generators only."""
+    """The relation generator^degree = value, with earlier generators in the value."""
 
     generator: sp.Expr
     degree: int
@@ -51,9 +51,19 @@ class RootRelation(NamedTuple):
 
 
 def is_identically_zero(expressions: Iterable[sp.Expr], allowance: int = ALLOWANCE) -> bool:
-    """Return True if all expressions are shown to be identically zero within the allowance.
+    """Return True if all expressions are proved to be identically zero.
 
-    True is a proof; False says nothing. The allowance is of terms read and products of terms made.
+    Parameters
+    ----------
+    expressions : iterable of Expr
+        Expressions to examine.
+    allowance : int
+        Largest number of terms read and products of terms made.
+
+    Returns
+    -------
+    bool
+        True is a proof; False is inconclusive.
     """
     canonical = []
     for expression in expressions:
@@ -64,7 +74,7 @@ def is_identically_zero(expressions: Iterable[sp.Expr], allowance: int = ALLOWAN
     try:
         forms = NormalForms(canonical, allowance)
         return not any(forms.numerator(expression) for expression in canonical)
-    except (AllowanceSpent, ZeroDivisionError):  # nothing is shown of a quotient by what is identically zero
+    except (EffortLimitExceeded, ZeroDivisionError):  # nothing is shown of a quotient by what is identically zero
         return False
 
 
@@ -85,7 +95,24 @@ class NormalForms:
         }
 
     def numerator(self, expression: sp.Expr) -> PolyElement:
-        """Numerator of an expression, reduced by the relations; zero for an identical zero."""
+        """Return the numerator of an expression, reduced by the relations.
+
+        It is zero for an identical zero.
+
+        Parameters
+        ----------
+        expression : Expr
+            Expression in the generators of the ring.
+
+        Returns
+        -------
+        PolyElement
+
+        Raises
+        ------
+        EffortLimitExceeded
+            The allowance is used up.
+        """
         numerator = self._quotient(expression).numerator
         for relation in self._relations:
             numerator = self._reduced(numerator, relation)
@@ -121,7 +148,7 @@ class NormalForms:
         return Quotient(sum((self._widened(term, common) for term in terms), self._ring.zero), common)
 
     def _widened(self, term: Quotient, common: Mapping[PolyElement, int]) -> PolyElement:
-        """Numerator of a term once it stands over the common denominators."""
+        """Return the numerator of a term over the common denominators."""
         numerator = term.numerator
         for factor, exponent in common.items():
             for _ in range(exponent - term.denominators.get(factor, 0)):
@@ -139,7 +166,7 @@ class NormalForms:
     def _power(self, base: Quotient, exponent: int) -> Quotient:
         self._left -= exponent
         if self._left < 0:
-            raise AllowanceSpent
+            raise EffortLimitExceeded
         return self._product([base] * exponent)
 
     def _inverse(self, quotient: Quotient) -> Quotient:
@@ -164,11 +191,11 @@ class NormalForms:
     def _times(self, left: PolyElement, right: PolyElement) -> PolyElement:
         self._left -= len(left) * len(right)
         if self._left < 0:
-            raise AllowanceSpent
+            raise EffortLimitExceeded
         return left * right
 
     def _reduced(self, polynomial: PolyElement, relation: RootRelation) -> PolyElement:
-        """Numerator of a polynomial after generator^degree has been replaced throughout."""
+        """Return the numerator of a polynomial with generator^degree replaced throughout."""
         position = self._position[relation.generator]
         by_exponent: dict[int, dict] = {}
         for monomial, coefficient in polynomial.items():
@@ -187,7 +214,7 @@ class NormalForms:
 
 
 def _generators(expression: sp.Expr) -> Iterator[sp.Expr]:
-    """List the generators that an expression needs, those of a relation before the one it is for."""
+    """Return the generators of an expression, those of a relation first."""
     match expression:
         case sp.Rational():
             return
@@ -233,13 +260,19 @@ def _relations_of(generator: sp.Expr) -> list[RootRelation]:
 
 
 def _in_basic_functions(expression: sp.Expr) -> sp.Expr:
-    """Take sums and multiples out of arguments; write tangents as quotients, floats as rationals."""
+    """Take sums and multiples out of arguments, and rewrite tangents and floats.
+
+    Tangents become quotients, floats rationals.
+    """
     exact = expression.xreplace({number: sp.Rational(number) for number in expression.atoms(sp.Float)})
     return exact.replace(lambda part: isinstance(part, ADDITION_THEOREMS), _basic_function)
 
 
 def _basic_function(part: sp.Expr) -> sp.Expr:
-    """Write a function by others of shorter arguments; that of a large multiple, by too many of them, stays."""
+    """Write a function in terms of functions of shorter arguments.
+
+    A large multiple, which would need too many of them, stays.
+    """
     argument = sp.expand(part.args[0]) if part.args[0].count_ops() <= LONGEST_ARGUMENT else part.args[0]
     multiples = [term.as_coeff_Mul(rational=True)[0] for term in sp.Add.make_args(argument)]
     if len(multiples) > MOST_TERMS or any(abs(multiple.p) > LARGEST_MULTIPLE for multiple in multiples):

@@ -1,4 +1,4 @@
-"""Random rational points, and the functions of mpmath that SymPy's are evaluated by."""
+"""Draw random rational points, and evaluate SymPy's functions by mpmath."""
 
 from __future__ import annotations
 
@@ -29,9 +29,23 @@ FUNCTIONS = {function: getattr(mp, each.in_sympy, None) for each, function in CL
 
 
 def random_point(names: Iterable[str], attempt: int, seed: str) -> dict[sp.Symbol, sp.Rational]:
-    """Draw a rational point, the same for the same names, number of the draw and seed on every machine.
+    """Draw a rational point for some names, determined by the seed and a number.
 
     Every second attempt is positive throughout, for the sake of logarithms and roots.
+
+    Parameters
+    ----------
+    names : iterable of str
+        Names of the symbols.
+    attempt : int
+        Number of the point.
+    seed : str
+        Seed of the random numbers.
+
+    Returns
+    -------
+    dict of Symbol to Rational
+        Rational numbers up to two, by symbol.
     """
     draw = random.Random(f"{seed} {attempt}")
     lowest = -2 * PARTS if attempt % 2 else 1

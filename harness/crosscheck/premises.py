@@ -1,4 +1,7 @@
-"""What is known before anything is derived: the system and its scenes; and where a record says them otherwise."""
+"""The premises of a check, and the differences of a record from them.
+
+The premises are the described system and its scenes.
+"""
 
 from __future__ import annotations
 
@@ -22,8 +25,8 @@ from .motion_start import nearer_start
 from .system import exact
 from .taylor import Taylor
 
-INSTANTS = 4
-"""Instants after the first at which a law that is held around it is that which is stated."""
+TIMES = 4
+"""Times after the first at which a law that is held around it is that which is stated."""
 
 SHORTEST = mp.mpf(2) ** -27
 """Time between two of them."""
@@ -31,7 +34,7 @@ SHORTEST = mp.mpf(2) ** -27
 
 @dataclass(frozen=True)
 class Premises:
-    """A description, and the size beyond which closed forms are left out: its own, or that of the caller."""
+    """A description with a limit of closed forms, its own or the caller's."""
 
     description: Description
     closed_form_size: int
@@ -43,18 +46,32 @@ class Premises:
 
     @property
     def scenes(self) -> tuple[DescribedScene, ...]:
-        """The scenes that a record holds; those under prescribed reactions and servo-constraints move other systems."""
+        """The scenes that a record holds.
+
+        Scenes under prescribed reactions and servo-constraints move other systems.
+        """
         scenes = self.description.scenes
         return tuple(scene for scene in scenes if not scene.prescribed_reactions and not scene.servo_trees)
 
 
 def premises_of(description: Description, closed_form_size: int | None = None) -> Premises:
-    """Take what a description says for known, with the caller's limit where there is one."""
+    """Return the premises of a description, with the caller's limit if there is one.
+
+    Parameters
+    ----------
+    description : Description
+    closed_form_size : int or None
+        Limit of closed forms; None for that of the description.
+
+    Returns
+    -------
+    Premises
+    """
     return Premises(description, closed_form_size or description.closed_form_size)
 
 
 class Difference(NamedTuple):
-    """What a record says otherwise than it is stated: of the system, or of the scene with this name."""
+    """A difference of a record from the description, in the system or a named scene."""
 
     what: str
     detail: str
@@ -62,7 +79,19 @@ class Difference(NamedTuple):
 
 
 def differences(record: Record, premises: Premises) -> Iterator[Difference]:
-    """Say where the record's system, scenes and selections of effects are not the stated ones."""
+    """Yield the differences of the record's system, scenes and effects.
+
+    Parameters
+    ----------
+    record : Record
+    premises : Premises
+        The premises of the check.
+
+    Yields
+    ------
+    Difference
+        One difference.
+    """
     for field in fields(System):
         said, stated = getattr(record.system, field.name), getattr(premises.system, field.name)
         if said != stated:
@@ -100,34 +129,34 @@ def _differences_of_scene(scene: Scene, motion: DescribedMotion) -> Iterator[Dif
 
 
 def _law_differs(scene: Scene, motion: DescribedMotion) -> str:
-    """Tell where a law that is held around the first instant is another than the stated one; empty where it is not."""
+    """Return the name of a law that differs around the first time; empty if none does."""
     if list(scene.control_law) != list(motion.scene.control_law):
         return _told(scene.control_law, motion.scene.control_law)
     with mp.workdps(CONFIRMING_DIGITS):
         held = Law(scene.control_law.trees, motion.splines)
         parameters = {name: (mp.mpf(k) / 7,) for k, name in enumerate(motion.system.parameters, 8)}
         parameters |= motion.parameters()
-        for k in range(1, INSTANTS + 1):
-            instant = motion.first_instant + k * SHORTEST
+        for k in range(1, TIMES + 1):
+            time = motion.first_time + k * SHORTEST
             try:
-                found, stated = (law.at(Taylor(0), instant, parameters) for law in (held, motion.law))
+                found, stated = (law.at(Taylor(0), time, parameters) for law in (held, motion.law))
             except IrregularPoint:
-                return f"the law has no value at t = {mp.nstr(instant, 12)}"
+                return f"the law has no value at t = {mp.nstr(time, 12)}"
             for name, (belongs,) in stated.items():
                 if abs(found[name][0] - belongs) > mp.mpf(10) ** -DIGITS * abs(belongs):
-                    return f"{name} is {found[name][0]}, where {belongs} is stated, at t = {mp.nstr(instant, 12)}"
+                    return f"{name} is {found[name][0]}, where {belongs} is stated, at t = {mp.nstr(time, 12)}"
     return ""
 
 
 def _nearer_start(scene: Scene, motion: DescribedMotion) -> str:
-    """Tell an initial value for which there is one nearer to the scene's guess; empty if there is none."""
+    """Return an initial value with another nearer to the scene's guess; empty if none."""
     if not motion.scene.initial_guess or list(scene.initial_state) != _state_of(motion):
         return ""
     try:
         with mp.workdps(WORKING_DIGITS):
             parameters = {sp.Symbol(name, real=True): value for name, (value,) in motion.parameters().items()}
             values = Steps([exact(value) for value in scene.initial_state.values()]).at(parameters)
-            start = dict(zip(scene.initial_state, values, strict=True)) | {"t": motion.first_instant}
+            start = dict(zip(scene.initial_state, values, strict=True)) | {"t": motion.first_time}
             return "" if None in values else nearer_start(motion, start)
     except HolonomError:  # a parameter or a control is left open
         return ""

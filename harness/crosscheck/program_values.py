@@ -1,7 +1,7 @@
-"""A motion program, or another of a motion, evaluated in many digits.
+"""Evaluate motion programs, and others of a motion, in many digits.
 
-Its arithmetic is done on mpmath's own numbers, below the type `mpf`, which would take twice the time; functions are
-those of `tape`.
+Its arithmetic uses mpmath's low-level numbers, which takes half the time of the type `mpf`; functions are those of
+`tape`.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from bisect import bisect_right
 from collections.abc import Callable, Mapping
 from fractions import Fraction
 from functools import lru_cache, partial
+from itertools import product
 from typing import Any
 
 from mpmath import mp
@@ -29,7 +30,7 @@ from mpmath.libmp import (
     to_rational,
 )
 
-from ..program.motion_problem import MotionProblem
+from ..program.motion_problem import DependsOn, MotionProblem
 from ..program.motion_program import VARIADIC, Call, Constant, Expression, Name, Operation, Program
 from .irregular_point import IrregularPoint
 from .tape import value_of
@@ -44,7 +45,7 @@ LARGEST_POWER = 64  # up to which a power is made of products
 
 
 class Same:
-    """A program, equal to itself alone."""
+    """A program with identity as equality."""
 
     def __init__(self, program: Program) -> None:
         self.program = program
@@ -57,7 +58,20 @@ class Same:
 
 
 def run(program: Program, inputs: Mapping[str, Polynomial]) -> Values:
-    """Return values of all names and outputs of a program, where its inputs have the values that they begin with.
+    """Return values of all names and outputs of a program for values of its inputs.
+
+    The values begin with those of the inputs.
+
+    Parameters
+    ----------
+    program : Program
+    inputs : mapping of str to Polynomial
+        Polynomial of each input; only its constant is used.
+
+    Returns
+    -------
+    Values
+        Constant polynomials by name.
 
     Raises
     ------
@@ -74,9 +88,9 @@ def run(program: Program, inputs: Mapping[str, Polynomial]) -> Values:
 
 @lru_cache(maxsize=32)
 def _steps(same: Same) -> tuple[list[Step], dict[str, int]]:
-    """Return a program as operations on two places in a list, which begins with its inputs.
+    """Return a program as operations on two places in a list, and the places of names.
 
-    And the places of its names.
+    The list begins with the inputs.
     """
     program = same.program
     places: dict[str, int] = {name: place for place, name in enumerate(program.inputs)}
@@ -109,13 +123,49 @@ def _steps(same: Same) -> tuple[list[Step], dict[str, int]]:
 
 
 def outputs_of(program: Program, inputs: Mapping[str, Polynomial]) -> Values:
-    """Return values of the outputs of a program; raises as `run`."""
+    """Return values of the outputs of a program.
+
+    Parameters
+    ----------
+    program : Program
+    inputs : mapping of str to Polynomial
+        Polynomial of each input; only its constant is used.
+
+    Returns
+    -------
+    Values
+        Constant polynomials by name.
+
+    Raises
+    ------
+    IrregularPoint
+        As `run`.
+    """
     values = run(program, inputs)
     return {name: values[name] for name in program.outputs}
 
 
 def run_along(program: Program, inputs: Mapping[str, Polynomial], taylor: Taylor) -> Values:
-    """Return values of all names and outputs of a program along a curve; raises as `run`."""
+    """Return values of all names and outputs of a program along a curve.
+
+    Parameters
+    ----------
+    program : Program
+    inputs : mapping of str to Polynomial
+        Polynomial of each input.
+    taylor : Taylor
+        Arithmetic up to the order of the polynomials.
+
+    Returns
+    -------
+    Values
+        Polynomials by name.
+
+    Raises
+    ------
+    IrregularPoint
+        As `run`.
+    """
     known: Values = {name: inputs[name] for name in program.inputs}
 
     def evaluate(expression: Expression) -> Polynomial:
@@ -180,21 +230,72 @@ BINARY: dict[Operation, Callable[..., Number]] = {
 
 
 def with_signs(problem: MotionProblem, inputs: Values) -> Values:
-    """Return the inputs with the signs that a motion depends on: a function may contain the signs before its own."""
+    """Return the inputs with the signs that a motion depends on.
+
+    A function may contain the signs before its own.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    inputs : Values
+        Inputs without signs.
+
+    Returns
+    -------
+    Values
+        The inputs, and 1 or -1 for each sign.
+
+    Raises
+    ------
+    IrregularPoint
+        A switching function is zero, or no sign pattern is consistent.
+    """
     found = inputs | {sign.name: (mp.one,) for sign in problem.signs}
     for place, sign in enumerate(problem.signs, 1):
+        if sign.by is DependsOn.REACTION:
+            continue
         switch = run(problem.switching, found)[f"switch[{place}]"][0]
         if not switch:
             raise IrregularPoint
         found[sign.name] = (mp.mpf(1 if switch > 0 else -1),)
-    return found
+    return _with_signs_of_reactions(problem, found)
 
 
-def letters_of_tables(problem: MotionProblem, instant: mp.mpf) -> Values:
-    """Return the numbers of the polynomial that each table is at an instant."""
+def _with_signs_of_reactions(problem: MotionProblem, inputs: Values) -> Values:
+    """Return the inputs with the one sign pattern that agrees with its multipliers."""
+    names = {f"switch[{k}]": sign.name for k, sign in enumerate(problem.signs, 1) if sign.by is DependsOn.REACTION}
+    consistent = []
+    for signs in product((mp.one, -mp.one), repeat=len(names)):
+        tried = inputs | {name: (sign,) for name, sign in zip(names.values(), signs, strict=True)}
+        switches = run(problem.switching, tried) if problem.reacting else {}
+        if problem.reacting and not switches["regular"][0] > 0:
+            raise IrregularPoint
+        if all(sign * switches[switch][0] > 0 for switch, sign in zip(names, signs, strict=True)):
+            consistent.append(tried)
+    if len(consistent) != 1:
+        raise IrregularPoint
+    return consistent[0]
+
+
+def letters_of_tables(problem: MotionProblem, time: mp.mpf) -> Values:
+    """Return the numbers of the polynomial that each table is at a given time.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    time : mpf
+        Time, in the scene's unit.
+
+    Returns
+    -------
+    Values
+        Value of each input of a table.
+    """
     found: Values = {}
     for table in problem.tables:
-        piece = table.pieces[bisect_right(table.begins, Fraction(*to_rational(instant._mpf_))) - 1]
+        piece = table.pieces[bisect_right(table.begins, Fraction(*to_rational(time._mpf_))) - 1]
         found |= {name: (_number(text),) for name, text in zip(table.inputs, piece, strict=True)}
     return found
 

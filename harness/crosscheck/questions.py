@@ -1,6 +1,6 @@
-"""The questions of a check to Maxima: the programs of motions and their power series, in one run.
+"""Ask Maxima for the programs and power series of motions, in one run.
 
-Nothing of SymPy is loaded for it, so that SymPy is loaded while Maxima runs.
+The module imports nothing of SymPy, so that SymPy is loaded while Maxima runs.
 """
 
 from __future__ import annotations
@@ -27,14 +27,32 @@ SceneAndSolve = tuple[str | None, Solve]
 
 
 class Answers(NamedTuple):
-    """Documents, or why there are none."""
+    """Documents, or the reasons why there are none."""
 
     programs: Mapping[SceneAndSolve, Answer]  # empty where none are asked for
     series: Mapping[str, Answer]
 
 
 def ask_for_check(source: Source, settings: Mapping[str, str]) -> Answers:
-    """Ask Maxima for all that is checked of motions; raises as `holonom.documents.ask_all`."""
+    """Ask Maxima for all documents of a check about motions.
+
+    Parameters
+    ----------
+    source : Source
+        The scene file.
+    settings : mapping of str to str
+        Values of open names.
+
+    Returns
+    -------
+    Answers
+        A document, or the error in its place, for each question.
+
+    Raises
+    ------
+    HolonomError
+        As `holonom.documents.ask_all`.
+    """
     description = source.description(settings)
     programs, series = _programs(description), _series(description)
     answers = iter(ask_all([*programs.values(), *series.values()], source, settings))
@@ -42,12 +60,34 @@ def ask_for_check(source: Source, settings: Mapping[str, str]) -> Answers:
 
 
 def holds_special_functions(description: Description) -> bool:
-    """Return True if a description has a special function of the time, which Maxima takes minutes for in 50 digits."""
+    """Return True if a description has a special function of the time.
+
+    Maxima takes minutes to evaluate one in 50 digits.
+
+    Parameters
+    ----------
+    description : Description
+
+    Returns
+    -------
+    bool
+    """
     return any(f'"{head}"' in description.text for head in SPECIAL)
 
 
 def is_closed(description: Description, scene: DescribedScene | None) -> bool:
-    """Return True if there is a motion of which nothing is left open."""
+    """Return True if there is a motion without open names.
+
+    Parameters
+    ----------
+    description : Description
+    scene : DescribedScene or None
+        One of its scenes; None for the system.
+
+    Returns
+    -------
+    bool
+    """
     if scene is None:
         return False
     free = [name for name in description.system.controls if name not in scene.control_law]
@@ -56,7 +96,7 @@ def is_closed(description: Description, scene: DescribedScene | None) -> bool:
 
 
 def _programs(description: Description) -> dict[SceneAndSolve, Question]:
-    """Of all scenes, or of the system if there is none."""
+    """Return the questions for all scenes, or for the system if there is none."""
     if holds_special_functions(description):
         return {}
     scenes: Sequence[DescribedScene | None] = description.scenes or (None,)

@@ -1,4 +1,4 @@
-"""Ranks of sparse matrices, and solutions of sparse equations, by elimination row after row."""
+"""Compute ranks and solutions of sparse equations by elimination row after row."""
 
 from __future__ import annotations
 
@@ -19,7 +19,10 @@ SPARSE_RATIO = 1000
 
 
 class Elimination:
-    """Rows of a matrix, reduced by one another in their order; a row that follows from those before is not kept."""
+    """Rows of a matrix, each reduced by those before.
+
+    A row that follows from those before is left out.
+    """
 
     def __init__(self, rows: Sequence[Row], right: Sequence[mp.mpf] | None = None) -> None:
         self._pivots: dict[int, tuple[Row, mp.mpf]] = {}
@@ -35,7 +38,13 @@ class Elimination:
         return len(self._pivots)
 
     def solution(self) -> Row:
-        """Return a solution of the equations kept: what no pivot determines is zero."""
+        """Return a solution of the independent equations; undetermined unknowns are zero.
+
+        Returns
+        -------
+        Row
+            Value of each determined unknown, by column; the others are zero.
+        """
         found: Row = {}
         for column, (row, right) in reversed(self._pivots.items()):
             others = mp.fsum(value * found.get(k, mp.zero) for k, value in row.items() if k != column)
@@ -64,13 +73,29 @@ class Elimination:
             self._pivots[pivot], self._order[pivot] = (left, right), len(self._order)
 
     def _pivot(self, left: Row) -> int:
-        """Return the column of few rows to come, so that these stay sparse, among those with large entries."""
+        """Return the pivot column among those with large entries.
+
+        The column with the fewest remaining rows keeps these sparse.
+        """
         least = max(map(abs, left.values())) / SPARSE_RATIO
         return min((k for k, value in left.items() if abs(value) >= least), key=lambda k: self._uses[k])
 
 
 def least_solution(rows: Sequence[Row], right: Sequence[mp.mpf]) -> Row:
-    """Return the solution J^T (J J^T)^-1 r of the equations J x = r with independent rows: the shortest one."""
+    """Return the shortest solution of J x = r, J^T (J J^T)^-1 r, for independent rows.
+
+    Parameters
+    ----------
+    rows : sequence of Row
+        Rows of J.
+    right : sequence of mpf
+        Right side r, one number for each row.
+
+    Returns
+    -------
+    Row
+        Entries by column; those left out are zero.
+    """
     users: dict[int, list[tuple[int, mp.mpf]]] = {}
     for place, row in enumerate(rows):
         for column, value in row.items():
@@ -90,7 +115,7 @@ def least_solution(rows: Sequence[Row], right: Sequence[mp.mpf]) -> Row:
 
 
 def _subtract(left: Row, factor: mp.mpf, row: Row) -> mp.mpf:
-    """Subtract a multiple of a row from another; return the largest of what was subtracted."""
+    """Subtract a multiple of a row from another; return the largest change."""
     largest = mp.zero
     for k, value in row.items():
         change = factor * value

@@ -1,8 +1,8 @@
-"""Ranks on the constraint manifold: which constraints follow from the others, and whether the mass matrix is regular.
+"""Check redundant constraints and the mass matrix by ranks on the manifold.
 
 By the implicit function theorem, constraints with independent gradients at a configuration are a manifold around it.
-The others follow from them there if they vanish on it. So a configuration near the start of a scene, or a random one,
-is moved by Newton's method to where the constraints that are said to be independent hold; where the others hold as
+The others follow from them there if they vanish on it. So a configuration near the initial state of a scene, or a
+random one, is moved by Newton's method onto the constraints that are claimed to be independent. If the others hold as
 well, the rank of the gradients of all constraints is the number of independent ones.
 """
 
@@ -19,7 +19,7 @@ from .draws import Point
 from .evaluation import Number, Steps
 from .points import random_point
 from .ranks import Elimination, Row, least_solution
-from .report import Judgement, Verdict
+from .report import CheckResult, Verdict
 from .system import MechanicalSystem, gradient
 
 STEP = sp.Rational(1, 1000)
@@ -41,7 +41,10 @@ State = dict[sp.Symbol, Number | None]
 
 
 class Ranks(NamedTuple):
-    """Ranks at a configuration: of the mass matrix, and of the gradients of all constraints and of those kept."""
+    """Ranks of the mass matrix and of the constraint gradients at a configuration.
+
+    The gradients are those of all constraints, and of the independent ones.
+    """
 
     mass: int
     every: int
@@ -54,21 +57,26 @@ def judge_redundancy(
     regular: bool,
     starts: Sequence[Mapping[sp.Symbol, sp.Expr]],
     seed: str,
-) -> Judgement:
-    """Verdict on the constraints of a system that others are said to imply, and on the kind of its mass matrix.
+) -> CheckResult:
+    """Return the verdict on redundant constraints and the kind of the mass matrix.
 
     Parameters
     ----------
     described : MechanicalSystem
         With all constraints.
     kept : sequence of str
-        Multipliers of the constraints that are said to be independent.
+        Multipliers of the constraints that are claimed to be independent.
     regular : bool
-        Whether the mass matrix is said to be regular.
+        True if the mass matrix is claimed to be regular.
     starts : sequence of mapping of Symbol to Expr
-        Configurations that keep all constraints: numbers for what is known of time, parameters, controls, coordinates.
+        Configurations that satisfy all constraints: numbers for known times, parameters, controls, coordinates.
     seed : str
-        Makes the random steps.
+        Seed of the random steps.
+
+    Returns
+    -------
+    CheckResult
+        Agreement, disagreement with the reason, or undecided.
     """
     manifold = _Manifold(described, kept)
     with mp.workdps(WORKING_DIGITS):
@@ -80,12 +88,12 @@ def judge_redundancy(
                 break
     if not found and manifold.held_alone:
         detail = "where the constraints that are kept hold, the others do not"
-        return Judgement(Verdict.DISAGREES, DIGITS, manifold.held_alone, detail)
+        return CheckResult(Verdict.DISAGREES, DIGITS, manifold.held_alone, detail)
     if not found:
-        return Judgement(Verdict.UNDECIDED, None, None, "no configuration was found that keeps all constraints")
+        return CheckResult(Verdict.UNDECIDED, None, None, "no configuration was found that keeps all constraints")
     largest = Ranks(*(max(ranks) for ranks in zip(*found, strict=True)))
     detail = _contradiction(largest, len(kept), len(described.coordinates), regular)
-    return Judgement(Verdict.DISAGREES if detail else Verdict.AGREES, DIGITS, len(found), detail)
+    return CheckResult(Verdict.DISAGREES if detail else Verdict.AGREES, DIGITS, len(found), detail)
 
 
 def _contradiction(found: Ranks, kept: int, coordinates: int, regular: bool) -> str:
@@ -112,7 +120,7 @@ class _Manifold:
         self.held_alone = 0  # configurations where the constraints that are kept hold, and not all others
 
     def ranks_near(self, point: Point) -> Ranks | None:
-        """Ranks at a configuration of the manifold near a point; None where there is none."""
+        """Return ranks at a configuration of the manifold near a point; None without one."""
         state: State = {x: mp.mpf(number.p) / number.q for x, number in point.items()}
         if not self._brought_onto(state):
             return None
@@ -123,7 +131,10 @@ class _Manifold:
         return Ranks(Elimination(mass).rank, Elimination(every).rank, Elimination(kept).rank)
 
     def _brought_onto(self, state: State) -> bool:
-        """Return True if Newton's method on the constraints that are kept brings the state to where all hold."""
+        """Return True if Newton's method finds a state that satisfies all constraints.
+
+        It iterates on the independent constraints.
+        """
         for _ in range(NEWTON_STEPS):
             values, rows = self._constraints.at(state), self._jacobian.at(state)
             if rows is None or any(value is None or mp.im(value) for value in values):
@@ -157,7 +168,7 @@ class _Sparse:
         self._length = len(rows)
 
     def at(self, state: State) -> list[Row] | None:
-        """Its rows; None where an entry has no real value."""
+        """Return the rows of the matrix; None if an entry has no real value."""
         rows: list[Row] = [{} for _ in range(self._length)]
         for (i, k), value in zip(self._places, self._steps.at(state), strict=True):
             if value is None or mp.im(value):
@@ -175,7 +186,10 @@ def _entries(expression: sp.Expr, symbols: Sequence[sp.Symbol]) -> dict[int, sp.
 def _configurations(
     names: Sequence[str], system: MechanicalSystem, starts: Sequence[Mapping[sp.Symbol, sp.Expr]], seed: str
 ) -> Iterator[Point]:
-    """Points a random step away from the starts; what they do not know, and what there is without any, is random."""
+    """Yield points a random step away from the initial configurations.
+
+    Unknown values are random.
+    """
     moving = {system.time, *system.coordinates, *system.controls}
     exact = [_in_numbers(start) for start in starts]
     for attempt in range(DRAWS):

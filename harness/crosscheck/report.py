@@ -1,4 +1,4 @@
-"""What a cross-check found: one verdict an equation, and their sum."""
+"""The report of a cross-check: one verdict an equation, and their counts."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..shown import Shown
 
 
 class Verdict(StrEnum):
-    """What can be said of an equation once it has been compared with the independent evaluation."""
+    """Verdicts on an equation after comparison with the independent evaluation."""
 
     PROVED = translatable("proved")
     """The difference is identically zero."""
@@ -32,7 +32,7 @@ class Verdict(StrEnum):
     """The equation was not made, for a reason that the record states."""
 
 
-class Judgement(NamedTuple):
+class CheckResult(NamedTuple):
     """A verdict, the digits and points that support it, and the difference found."""
 
     verdict: Verdict
@@ -50,7 +50,10 @@ class Item(NamedTuple):
 
 
 class Place(NamedTuple):
-    """Where a verdict belongs: a derivation, by its place in the record, and a scene of it or none."""
+    """The place of a verdict: a derivation and a scene of it or none.
+
+    The derivation is given by its place in the record.
+    """
 
     derivation: int
     scene: str | None = None
@@ -78,9 +81,27 @@ class EquationVerdict:
 
 
 def verdict_on(
-    place: Place, item: Item, found: Judgement, held: bool = True, left_out: LeftOut | None = None
+    place: Place, item: Item, found: CheckResult, held: bool = True, left_out: LeftOut | None = None
 ) -> EquationVerdict:
-    """Return what was found of an equation as a verdict of a report."""
+    """Return the result for an equation as a verdict of a report.
+
+    Parameters
+    ----------
+    place : Place
+        Derivation and scene of the equation.
+    item : Item
+        The equation.
+    found : CheckResult
+        Result of the comparison.
+    held : bool
+        True if the record holds the equation.
+    left_out : LeftOut or None
+        Reason why the equation was not made.
+
+    Returns
+    -------
+    EquationVerdict
+    """
     return EquationVerdict(**item._asdict(), **place._asdict(), **found._asdict(), held=held, left_out=left_out)
 
 
@@ -98,7 +119,17 @@ class CheckReport(Shown):
     seed: str
 
     def with_verdicts(self, verdicts: Iterable[EquationVerdict]) -> CheckReport:
-        """Return the same report with further verdicts."""
+        """Return the same report with further verdicts.
+
+        Parameters
+        ----------
+        verdicts : iterable of EquationVerdict
+            Further verdicts, for the end.
+
+        Returns
+        -------
+        CheckReport
+        """
         return replace(self, verdicts=(*self.verdicts, *verdicts))
 
     @property
@@ -107,5 +138,15 @@ class CheckReport(Shown):
         return self.count(Verdict.DISAGREES)
 
     def count(self, *verdicts: Verdict) -> int:
-        """Return number of equations with one of these verdicts."""
+        """Return the number of equations with one of these verdicts.
+
+        Parameters
+        ----------
+        *verdicts : Verdict
+            Verdicts to count.
+
+        Returns
+        -------
+        int
+        """
         return sum(found.verdict in verdicts for found in self.verdicts)

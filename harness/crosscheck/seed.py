@@ -4,5 +4,13 @@ import secrets
 
 
 def fresh_seed() -> str:
-    """Draw a seed that cannot be foreseen, for points at which no equation can have been made to vanish."""
+    """Draw an unpredictable seed.
+
+    No equation can have been made to vanish at its points.
+
+    Returns
+    -------
+    str
+        16 hexadecimal digits.
+    """
     return secrets.token_hex(8)

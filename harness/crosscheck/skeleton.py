@@ -1,14 +1,15 @@
-"""Which equations a record holds, in which order and under which names: known before any of them is read.
+"""The equations that a record must hold, their order and names.
 
-Closed forms are made where their predicted length is within a limit. The prediction is Maxima's: symbols and operations
-of T, V, Q and f, times g! for the multipliers, times b! for the largest block of coordinates that a row of the mass
-matrix couples, times r + 1 for r different roots. It is made again here.
+They are known before any of them is read. Closed forms are made if their predicted length is within a limit. The
+prediction is Maxima's: symbols and operations of T, V, Q and f, times g! for the multipliers, times b! for the
+largest block of coordinates that a row of the mass matrix couples, times r + 1 for r different roots. It is repeated
+here.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import factorial
+from math import factorial, inf
 
 import sympy as sp
 
@@ -27,7 +28,23 @@ ZEROS_LEFT_OUT = ", without the zeros off the diagonal of A"
 
 
 def derivation_items(closed: bool, regular: bool, redundant: Sequence[str], all_entries: bool) -> tuple[Item, ...]:
-    """Return the equations of a derivation, in their order."""
+    """Return the equations of a derivation, in their order.
+
+    Parameters
+    ----------
+    closed : bool
+        True if closed forms are made.
+    regular : bool
+        True if the mass matrix is regular.
+    redundant : sequence of str
+        Multipliers of redundant constraints.
+    all_entries : bool
+        True if (3a) holds the zeros of A as well.
+
+    Returns
+    -------
+    tuple of Item
+    """
     inverse = "inverse of the mass matrix" + ("" if regular else " with J^T J added, which is singular without")
     items = (
         Item("constraints", "1", "constraints"),
@@ -50,7 +67,21 @@ def derivation_items(closed: bool, regular: bool, redundant: Sequence[str], all_
 
 
 def scene_items(closed: bool, series: bool, law: bool) -> tuple[Item, ...]:
-    """Return the equations of a scene, in their order."""
+    """Return the equations of a scene, in their order.
+
+    Parameters
+    ----------
+    closed : bool
+        True if closed forms are made.
+    series : bool
+        True if the initial series is made.
+    law : bool
+        True if the scene has a control law.
+
+    Returns
+    -------
+    tuple of Item
+    """
     items = (
         (closed and law, Item("free_motion_residual", "10", "condition of free motion under the control law")),
         (True, Item("initial_state", "12", "initial state")),
@@ -62,7 +93,21 @@ def scene_items(closed: bool, series: bool, law: bool) -> tuple[Item, ...]:
 
 
 def scene_numbers_left_out(closed: bool, series: bool, law: bool) -> tuple[str, ...]:
-    """Numbers of the equations of a scene that are left out because they would be too long."""
+    """Return numbers of the equations of a scene that are left out for their length.
+
+    Parameters
+    ----------
+    closed : bool
+        True if closed forms are made.
+    series : bool
+        True if the initial series is made.
+    law : bool
+        True if the scene has a control law.
+
+    Returns
+    -------
+    tuple of str
+    """
     if closed:
         return () if series else ("18",)
     return (*(("10",) if law else ()), "13", "18")
@@ -76,8 +121,27 @@ def _multipliers_in_words(redundant: Sequence[str]) -> str:
     return f"multipliers, not unique: those that are zero for the redundant {constraints} {places}"
 
 
-def predicted_size(system: System, derived: Derivation, known: MechanicalSystem, limit: int) -> int:
-    """Predict the length of the closed forms; `known` has the effects called for and the independent constraints."""
+def predicted_size(system: System, derived: Derivation, known: MechanicalSystem, limit: int) -> float:
+    """Predict the length of the closed forms; infinite if forces contain multipliers.
+
+    Parameters
+    ----------
+    system : System
+        The described system.
+    derived : Derivation
+        Derivation of the record, with its effects.
+    known : MechanicalSystem
+        The system with these effects and the independent constraints.
+    limit : int
+        Limit of closed forms.
+
+    Returns
+    -------
+    float
+        Number of symbols and operations; if finite, at most `LARGEST_SIZE`.
+    """
+    if any(symbol.name in system.multipliers for force in known.forces for symbol in force.free_symbols):
+        return inf
     kept = {multiplier.name for multiplier in known.multipliers}
     called = [
         *(["=", part.effect, displayed(part.tree)] for part in _called(system.kinetic_energy, derived.effects)),
@@ -100,7 +164,10 @@ def _called(parts: Iterable, effects: Sequence[str]) -> list:
 
 
 def _largest_block(system: MechanicalSystem, supported: bool) -> int:
-    """Most coordinates that one row of the mass matrix couples, or of A + J^T J."""
+    """Return the largest number of coordinates that a row of the mass matrix couples.
+
+    If A is singular, the row is one of A + J^T J.
+    """
     if supported:
         return _largest_block_supported(system)
     rows = gradient(system.kinetic_energy, system.velocities)
@@ -118,11 +185,31 @@ def _largest_block_supported(system: MechanicalSystem) -> int:
 
 
 def length_of(equation: Equation) -> int:
-    """Return the length of the right sides of an equation, as a list."""
+    """Return the length of the right sides of an equation, as a list.
+
+    Parameters
+    ----------
+    equation : Equation
+        Equation of a record.
+
+    Returns
+    -------
+    int
+    """
     return size(("[", *(displayed(relation.right_tree) for relation in equation.relations)))
 
 
 def operations_of(equations: Iterable[Equation]) -> int:
-    """Return the number of operations in the right sides of equations."""
+    """Return the number of operations in the right sides of equations.
+
+    Parameters
+    ----------
+    equations : iterable of Equation
+        Equations of a record.
+
+    Returns
+    -------
+    int
+    """
     rights: list[Tree] = [relation.right_tree for equation in equations for relation in equation.relations]
     return sum(operations(displayed(right)) for right in rights)

@@ -1,6 +1,7 @@
-"""Sparse linear equations in the numbers of mpmath, by elimination with threshold pivoting.
+"""Solve sparse linear equations in mpmath's numbers, with threshold pivoting.
 
-The row of the fewest entries is next, and in it the sparsest of the columns whose entry is not small (Markowitz 1957).
+The row of the fewest entries is next, and in it the sparsest of the columns with an entry that is not small
+(Markowitz 1957).
 """
 
 from __future__ import annotations
@@ -26,6 +27,12 @@ def solved(rows: Sequence[Mapping[int, mp.mpf]], right: Sequence[mp.mpf]) -> lis
     rows : sequence of mapping of int to mpf
         Entries of each row, by column; those that are left out are zero.
     right : sequence of mpf
+        Right side, one number for each row.
+
+    Returns
+    -------
+    list of mpf
+        Value of each unknown.
 
     Raises
     ------

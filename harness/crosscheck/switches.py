@@ -1,4 +1,7 @@
-"""Instants at which control laws are compared: on each piece of a table, and on both sides of each switch."""
+"""Choose times for the comparison of control laws.
+
+They lie on each piece of a table, and on both sides of each switch.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,7 @@ from itertools import combinations, pairwise
 
 from mpmath import mp
 
-from ..program.motion_problem import By, MotionProblem
+from ..program.motion_problem import DependsOn, MotionProblem
 from ..trees import Tree
 from .described_motion import DescribedMotion
 from .irregular_point import IrregularPoint
@@ -15,7 +18,7 @@ from .law import Law
 from .program_values import run
 from .taylor import Taylor
 
-SAMPLES = 199  # instants between which the sign of a switching function is looked for
+SAMPLES = 199  # times between which the sign of a switching function is looked for
 BISECTIONS = 60
 BESIDE = mp.mpf(10) ** -6  # of the time span: how far from a switch the laws are compared
 SWITCHES = ("UnitStep", "HalfStep", "Sign", "Abs")
@@ -23,17 +26,22 @@ SWITCHES = ("UnitStep", "HalfStep", "Sign", "Abs")
 Functions = Callable[[mp.mpf], Sequence[mp.mpf]]
 
 
-def law_instants(motion: DescribedMotion, problem: MotionProblem, span: tuple[mp.mpf, mp.mpf]) -> Iterator[mp.mpf]:
-    """Instants within a span: one on each piece of a law, and two beside each instant that parts two pieces.
+def law_times(motion: DescribedMotion, problem: MotionProblem, span: tuple[mp.mpf, mp.mpf]) -> Iterator[mp.mpf]:
+    """Yield times within a span, one on each piece of a law and two at each boundary.
 
     Parameters
     ----------
     motion : DescribedMotion
-        Its switches and tables count, and
+        A motion with switches and tables.
     problem : MotionProblem
-        those of the problem.
+        A problem with further ones.
     span : tuple of mpf
-        First and last instant.
+        First and last time.
+
+    Yields
+    ------
+    mpf
+        Time, in the scene's unit.
     """
     first, last = span
     breaks = [*_knots(motion, problem), *_zeros(_stated(motion), span), *_zeros(_claimed(problem), span)]
@@ -55,11 +63,22 @@ def _stated(motion: DescribedMotion) -> Functions:
     functions = dict(enumerate(function for tree in trees for function in switching_functions(tree)))
     law = Law({str(place): function for place, function in functions.items()}, motion.splines)
     parameters = motion.parameters()
-    return lambda instant: [value[0] for value in law.at(Taylor(0), instant, parameters).values()]
+    return lambda time: [value[0] for value in law.at(Taylor(0), time, parameters).values()]
 
 
 def switching_functions(tree: Tree) -> Iterator[Tree]:
-    """Functions whose signs decide the form of an expression."""
+    """Yield the functions whose signs decide the form of an expression.
+
+    Parameters
+    ----------
+    tree : Tree
+        The expression.
+
+    Yields
+    ------
+    Tree
+        A function, as a tree.
+    """
     match tree:
         case ["Which", *parts]:
             for condition in parts[::2]:
@@ -83,13 +102,13 @@ def _compared(condition: Tree) -> Iterator[Tree]:
 
 
 def _claimed(problem: MotionProblem) -> Functions:
-    of_time = [f"switch[{place}]" for place, sign in enumerate(problem.signs, 1) if sign.by is By.TIME]
+    of_time = [f"switch[{place}]" for place, sign in enumerate(problem.signs, 1) if sign.by is DependsOn.TIME]
     signs = {sign.name: (mp.one,) for sign in problem.signs}
 
-    def values(instant: mp.mpf) -> list[mp.mpf]:
+    def values(time: mp.mpf) -> list[mp.mpf]:
         if not of_time:
             return []
-        known = dict.fromkeys(problem.switching.inputs, (mp.one,)) | signs | {"t": (instant,)}
+        known = dict.fromkeys(problem.switching.inputs, (mp.one,)) | signs | {"t": (time,)}
         found = run(problem.switching, known)
         return [found[name][0] for name in of_time]
 
@@ -97,12 +116,12 @@ def _claimed(problem: MotionProblem) -> Functions:
 
 
 def _zeros(functions: Functions, span: tuple[mp.mpf, mp.mpf]) -> Iterator[mp.mpf]:
-    """Instants at which one of some functions changes its sign."""
+    """Return the times at which one of some functions changes its sign."""
     first, last = span
 
-    def signs(instant: mp.mpf) -> list[mp.mpf] | None:
+    def signs(time: mp.mpf) -> list[mp.mpf] | None:
         try:
-            return [mp.sign(value) for value in functions(instant)]
+            return [mp.sign(value) for value in functions(time)]
         except (IrregularPoint, ZeroDivisionError, OverflowError):
             return None
 
@@ -116,7 +135,7 @@ def _zeros(functions: Functions, span: tuple[mp.mpf, mp.mpf]) -> Iterator[mp.mpf
 
 
 def _bisected(signs: Callable[[mp.mpf], list[mp.mpf] | None], i: int, a: mp.mpf, b: mp.mpf) -> mp.mpf:
-    """Return the instant between two at which a function changes its sign."""
+    """Return the time between two at which a function changes its sign."""
     of_a = signs(a)[i]
     for _ in range(BISECTIONS):
         middle = (a + b) / 2

@@ -1,7 +1,7 @@
-"""The system as it is described: T, V, Q and f of the effects called for, and nothing derived.
+"""The system as described: T, V, Q and f of the effects called for.
 
-This is all that the independent evaluation may see of a record. Every symbol has a rate, the
-symbol that is its derivative along the motion:
+The independent evaluation uses nothing else of a record. Every symbol has a rate, the symbol that is its derivative
+along the motion:
 
     q -> dot(q) -> ddot(q) -> dddot(q),   u -> dot(u) -> ddot(u) -> dddot(u),   lambda -> dot(lambda).
 """
@@ -19,18 +19,40 @@ from ..described import Effect, System
 
 
 def dotted(dots: str, symbol: sp.Symbol) -> sp.Symbol:
-    """Name the derivative of a symbol: ``dotted("ddot", q1)`` is ``ddot(q1)``."""
+    """Name the derivative of a symbol: ``dotted("ddot", q1)`` is ``ddot(q1)``.
+
+    Parameters
+    ----------
+    dots : str
+        ``dot``, ``ddot`` or ``dddot``.
+    symbol : Symbol
+
+    Returns
+    -------
+    Symbol
+    """
     return sp.Symbol(f"{dots}({symbol.name})", real=True)
 
 
 def initial(symbol: sp.Symbol) -> sp.Symbol:
-    """Name the initial value of a symbol: ``q1_0`` of ``q1``, ``dot(q1)_0`` of ``dot(q1)``."""
+    """Name the initial value of a symbol.
+
+    Examples are ``q1_0`` of ``q1``, and ``dot(q1)_0`` of ``dot(q1)``.
+
+    Parameters
+    ----------
+    symbol : Symbol
+
+    Returns
+    -------
+    Symbol
+    """
     return sp.Symbol(f"{symbol.name}_0", real=True)
 
 
 @dataclass(frozen=True)
 class MechanicalSystem:
-    """A holonomic system with redundant coordinates and controls, as described by its scene file."""
+    """A holonomic system with redundant coordinates and controls, as described."""
 
     time: sp.Symbol
     coordinates: tuple[sp.Symbol, ...]
@@ -81,7 +103,17 @@ class MechanicalSystem:
         return tuple(dict.fromkeys(term for each in described for term in sp.Add.make_args(each)))
 
     def without(self, redundant: Collection[str]) -> MechanicalSystem:
-        """Leave out the constraints whose multipliers have these names."""
+        """Leave out the constraints whose multipliers have these names.
+
+        Parameters
+        ----------
+        redundant : collection of str
+            Names of multipliers.
+
+        Returns
+        -------
+        MechanicalSystem
+        """
         kept = [
             (multiplier, f)
             for multiplier, f in zip(self.multipliers, self.constraints, strict=True)
@@ -92,7 +124,17 @@ class MechanicalSystem:
         )
 
     def total_rate(self, expression: sp.Expr) -> sp.Expr:
-        """Total time derivative d/dt of an expression along any motion."""
+        """Return the total time derivative d/dt of an expression along any motion.
+
+        Parameters
+        ----------
+        expression : Expr
+            Expression in the symbols of the system.
+
+        Returns
+        -------
+        Expr
+        """
         changing = sorted(expression.free_symbols & self.rates.keys(), key=str)
         slopes = gradient(expression, changing)
         return sp.Add(*(slope * self.rates[symbol] for symbol, slope in zip(changing, slopes, strict=True)))
@@ -103,7 +145,21 @@ FEW = 4
 
 
 def gradient(expression: sp.Expr, symbols: Sequence[sp.Symbol]) -> list[sp.Expr]:
-    """Partial derivatives by the symbols, in a time that grows with the length of a sum and not with their number."""
+    """Return partial derivatives by the symbols.
+
+    The time grows with the length of a sum, not with the number of symbols.
+
+    Parameters
+    ----------
+    expression : Expr
+    symbols : sequence of Symbol
+        Symbols to differentiate by.
+
+    Returns
+    -------
+    list of Expr
+        One for each symbol.
+    """
     terms: dict[sp.Symbol, list[sp.Expr]] = {symbol: [] for symbol in symbols}
     slopes: dict[sp.Symbol, list[sp.Expr]] = {symbol: [] for symbol in symbols}
     for term in sp.Add.make_args(expression):
@@ -119,17 +175,49 @@ def gradient(expression: sp.Expr, symbols: Sequence[sp.Symbol]) -> list[sp.Expr]
 
 
 def history(symbol: sp.Symbol) -> tuple[sp.Symbol, ...]:
-    """List a coordinate or control and its first three rates."""
+    """List a coordinate or control and its first three rates.
+
+    Parameters
+    ----------
+    symbol : Symbol
+        Coordinate or control.
+
+    Returns
+    -------
+    tuple of Symbol
+        q, dot(q), ddot(q), dddot(q).
+    """
     return symbol, *(dotted(dots, symbol) for dots in ("dot", "ddot", "dddot"))
 
 
 def exact(expression: sp.Expr) -> sp.Expr:
-    """Return the expression with each decimal number as the fraction that it is."""
+    """Return the expression with each decimal number as the fraction that it is.
+
+    Parameters
+    ----------
+    expression : Expr
+
+    Returns
+    -------
+    Expr
+    """
     return expression.xreplace({number: sp.Rational(number) for number in expression.atoms(sp.Float)})
 
 
 def described_system(system: System, effects: Collection[str]) -> MechanicalSystem:
-    """Take the system of a record with the named effects and switches alone."""
+    """Take the system of a record with the named effects and switches alone.
+
+    Parameters
+    ----------
+    system : System
+        System of a description or a record.
+    effects : collection of str
+        Names of effects and switches to take.
+
+    Returns
+    -------
+    MechanicalSystem
+    """
     forces = [effect.value for effect in system.forces if effect.effect in effects]
     switches = {sp.Symbol(name, real=True): sp.Integer(name in effects) for name in system.switches}
 

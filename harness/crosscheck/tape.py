@@ -1,8 +1,8 @@
-"""Expressions evaluated along a motion, with their gradients by the reverse mode of automatic differentiation.
+"""Evaluate expressions and their gradients along a motion, by the reverse mode.
 
-The trees of a description become one list of operations, equal parts once, and every number in it a Taylor polynomial
-in the time: the cost of all derivatives together is a small multiple of that of the values (Griewank & Walther,
-Evaluating Derivatives, chapter 3).
+The trees of a description become one list of operations with common subexpressions shared. Every number is a Taylor
+polynomial in the time. The cost of all derivatives together is a small multiple of that of the values (Griewank &
+Walther, Evaluating Derivatives, chapter 3).
 """
 
 from __future__ import annotations
@@ -35,12 +35,21 @@ class Tape:
         self._named: dict[int, str] = {}  # names by their places
 
     def place(self, tree: Tree) -> int:
-        """Place of an expression, which is added unless it is there.
+        """Return the place of an expression, added if necessary.
+
+        Parameters
+        ----------
+        tree : Tree
+            The expression.
+
+        Returns
+        -------
+        int
 
         Raises
         ------
         HolonomError
-            It is no expression.
+            It is not an expression.
         """
         return converted(tree, self._expanded)
 
@@ -84,7 +93,18 @@ class Tape:
         return self._places[key]
 
     def needed_for(self, places: Iterable[int]) -> set[int]:
-        """Operations that those at some places are made of, themselves among them."""
+        """Return the operations that some places depend on, those places included.
+
+        Parameters
+        ----------
+        places : iterable of int
+            Places of operations.
+
+        Returns
+        -------
+        set of int
+            Places of operations.
+        """
         needed: set[int] = set()
         waiting = [*places]
         while waiting:
@@ -99,10 +119,24 @@ class Tape:
     ) -> list[Polynomial]:
         """Return values of all operations, or of those that are needed.
 
+        Parameters
+        ----------
+        taylor : Taylor
+            Arithmetic up to the order of the polynomials.
+        known : mapping of str to Polynomial
+            Polynomial of each name.
+        needed : container of int or None
+            Places to evaluate; None for all.
+
+        Returns
+        -------
+        list of Polynomial
+            Polynomial at each place; empty if it is not needed.
+
         Raises
         ------
         IrregularPoint
-            One of them has no finite real value, or changes its form at the instant.
+            One of them has no finite real value, or changes its form at the time.
         """
         values: list[Polynomial] = [()] * len(self.operations)
         for name, place in self.names.items():
@@ -117,7 +151,22 @@ class Tape:
     def sizes(
         self, taylor: Taylor, values: Sequence[Polynomial], needed: Container[int] | None = None
     ) -> list[Polynomial]:
-        """Return what the sizes of all terms of sums add up to, of each operation, or of those that are needed."""
+        """Return the sums of the sizes of all terms, for each operation.
+
+        Parameters
+        ----------
+        taylor : Taylor
+            Arithmetic up to the order of the polynomials.
+        values : sequence of Polynomial
+            Result of `values`.
+        needed : container of int or None
+            Places to evaluate, as for `values`; None for all.
+
+        Returns
+        -------
+        list of Polynomial
+            Polynomial at each place; empty if it is not needed.
+        """
         found: list[Polynomial] = []
         for place, (head, arguments) in enumerate(self.operations):
             x = [found[each] for each in arguments]
@@ -142,7 +191,22 @@ class Tape:
     def gradient(
         self, taylor: Taylor, values: Sequence[Polynomial], seeds: Mapping[int, Polynomial]
     ) -> dict[str, Polynomial]:
-        """Gradient, by name, of the sum of the operations at some places, each with a factor."""
+        """Return the gradient, by name, of the weighted sum of some places.
+
+        Parameters
+        ----------
+        taylor : Taylor
+            Arithmetic up to the order of the polynomials.
+        values : sequence of Polynomial
+            Result of `values`.
+        seeds : mapping of int to Polynomial
+            Weight of each place in the sum.
+
+        Returns
+        -------
+        dict of str to Polynomial
+            Derivative by each name that the sum depends on.
+        """
         adjoints = dict(seeds)
         waiting = [-place for place in adjoints]  # the last first: it is an argument of none before
         heapify(waiting)
@@ -170,7 +234,26 @@ def _quantity(name: str, known: Mapping[str, Polynomial]) -> Polynomial:
 
 
 def value_of(taylor: Taylor, head: str, x: Sequence[Polynomial]) -> Polynomial:
-    """Value of one operation."""
+    """Return the value of one operation.
+
+    Parameters
+    ----------
+    taylor : Taylor
+        Arithmetic up to the order of the polynomials.
+    head : str
+        Head of the operation's tree.
+    x : sequence of Polynomial
+        Values of its arguments.
+
+    Returns
+    -------
+    Polynomial
+
+    Raises
+    ------
+    IrregularPoint
+        The operation has no finite real value, or changes its form at the time.
+    """
     match head, x:
         case "Add", _:
             return taylor.add(*x)
@@ -199,7 +282,20 @@ def value_of(taylor: Taylor, head: str, x: Sequence[Polynomial]) -> Polynomial:
 
 
 def coefficients_of(head: str, x: Sequence[Polynomial]) -> Coefficients | None:
-    """Taylor coefficients of a function, given its arguments."""
+    """Return the Taylor coefficients of a function for its arguments.
+
+    Parameters
+    ----------
+    head : str
+        Head of the function's tree.
+    x : sequence of Polynomial
+        Its arguments; those of special functions include a constant.
+
+    Returns
+    -------
+    Coefficients or None
+        None if the function is unknown.
+    """
     if head in OF_A_NUMBER:
         return differentiated(partial(OF_A_NUMBER[head], _constant(x[0])))
     if head in ELLIPTIC:
@@ -240,7 +336,10 @@ def _squares(taylor: Taylor, x: Polynomial, y: Polynomial) -> Polynomial:
 
 
 def _decided(taylor: Taylor, head: str, x: Sequence[Polynomial]) -> Polynomial:
-    """Value of what signs decide at the instant; a condition is 1 where it holds and -1 where it does not."""
+    """Return the value of an operation that signs decide.
+
+    A condition is 1 if it holds and -1 if it does not.
+    """
     match head:
         case "Sign":
             return (mp.mpf(_sign(x[0])),)
@@ -267,7 +366,10 @@ def _decided(taylor: Taylor, head: str, x: Sequence[Polynomial]) -> Polynomial:
 
 
 def _chosen(x: Sequence[Polynomial]) -> int:
-    """Return the place of the value whose condition holds, of conditions and values by turns."""
+    """Return the place of the value with a true condition.
+
+    Conditions and values alternate.
+    """
     return next(k + 1 for k in range(0, len(x), 2) if x[k][0] > 0)
 
 
@@ -279,7 +381,7 @@ def _shares(
     place: int,
     adjoint: Polynomial,
 ) -> list[Polynomial | None]:
-    """Return the shares that the arguments of an operation have in its adjoint."""
+    """Return the contributions of an operation to the adjoints of its arguments."""
     x = [values[each] for each in arguments]
     match head:
         case "Add":

@@ -24,19 +24,61 @@ class Taylor:
         self.order = order
 
     def constant(self, number: mp.mpf | int) -> Polynomial:
-        """Return a number."""
+        """Return a number as a polynomial.
+
+        Parameters
+        ----------
+        number : mpf or int
+            The number.
+
+        Returns
+        -------
+        Polynomial
+        """
         return (mp.mpf(number),)
 
     def add(self, *terms: Polynomial) -> Polynomial:
-        """Add polynomials."""
+        """Add polynomials.
+
+        Parameters
+        ----------
+        *terms : Polynomial
+            Polynomials to add.
+
+        Returns
+        -------
+        Polynomial
+        """
         return tuple(mp.fsum(column) for column in zip_longest(*terms, fillvalue=mp.zero))
 
     def scale(self, factor: mp.mpf | int, x: Polynomial) -> Polynomial:
-        """Multiply by a number."""
+        """Multiply a polynomial by a number.
+
+        Parameters
+        ----------
+        factor : mpf or int
+            The number.
+        x : Polynomial
+
+        Returns
+        -------
+        Polynomial
+        """
         return tuple(factor * c for c in x)
 
     def multiply(self, x: Polynomial, y: Polynomial) -> Polynomial:
-        """Multiply two polynomials."""
+        """Multiply two polynomials.
+
+        Parameters
+        ----------
+        x, y : Polynomial
+            Factors.
+
+        Returns
+        -------
+        Polynomial
+            Product up to the order.
+        """
         if len(x) == 1 or len(y) == 1:
             (factor,), other = (x, y) if len(x) == 1 else (y, x)
             return self.scale(factor, other)
@@ -46,7 +88,23 @@ class Taylor:
         )
 
     def divide(self, x: Polynomial, y: Polynomial) -> Polynomial:
-        """Divide by a polynomial that is not zero at the start."""
+        """Divide by a polynomial that is not zero at the start.
+
+        Parameters
+        ----------
+        x, y : Polynomial
+            Dividend and divisor.
+
+        Returns
+        -------
+        Polynomial
+            Quotient up to the order.
+
+        Raises
+        ------
+        IrregularPoint
+            The divisor is zero at the start.
+        """
         if not y[0]:
             raise IrregularPoint
         if len(y) == 1:
@@ -58,7 +116,25 @@ class Taylor:
         return tuple(found)
 
     def power(self, x: Polynomial, exponent: mp.mpf) -> Polynomial:
-        """Raise to a constant power."""
+        """Raise a polynomial to a constant power.
+
+        Parameters
+        ----------
+        x : Polynomial
+            The base.
+        exponent : mpf
+            The power.
+
+        Returns
+        -------
+        Polynomial
+            Power up to the order.
+
+        Raises
+        ------
+        IrregularPoint
+            The power is not analytic at the start.
+        """
         if exponent == int(exponent) and 0 <= exponent <= self.order + 2:
             found = (mp.one,)
             for _ in range(int(exponent)):
@@ -77,7 +153,20 @@ class Taylor:
         return tuple(found)
 
     def compose(self, coefficients: Coefficients, x: Polynomial) -> Polynomial:
-        """Value of a function with these Taylor coefficients."""
+        """Return a function of a polynomial from the function's Taylor coefficients.
+
+        Parameters
+        ----------
+        coefficients : Coefficients
+            Taylor coefficients of the function, at a number and up to an order.
+        x : Polynomial
+            Argument of the function.
+
+        Returns
+        -------
+        Polynomial
+            Composition up to the order.
+        """
         own = coefficients(x[0], 0 if len(x) == 1 else self.order)
         found, beyond = (own[-1],), (mp.zero, *x[1:])
         for c in reversed(own[:-1]):
@@ -85,11 +174,32 @@ class Taylor:
         return found
 
     def rate(self, x: Polynomial) -> Polynomial:
-        """Differentiate by the time."""
+        """Differentiate a polynomial by the time.
+
+        Parameters
+        ----------
+        x : Polynomial
+
+        Returns
+        -------
+        Polynomial
+        """
         return tuple(k * c for k, c in enumerate(x))[1:] or (mp.zero,)
 
     def integral(self, x: Polynomial, first: mp.mpf) -> Polynomial:
-        """Integrate over the time, from a first value."""
+        """Integrate a polynomial over the time, from a first value.
+
+        Parameters
+        ----------
+        x : Polynomial
+        first : mpf
+            Value at the start.
+
+        Returns
+        -------
+        Polynomial
+            Integral up to the order.
+        """
         return (first, *(c / (k + 1) for k, c in enumerate(x)))[: self.order + 1]
 
 
@@ -97,24 +207,78 @@ class Taylor:
 
 
 def exponential(x: mp.mpf, order: int) -> list[mp.mpf]:
-    """Of exp."""
+    """Return Taylor coefficients of the exponential.
+
+    Parameters
+    ----------
+    x : mpf
+        Number to expand about.
+    order : int
+        Highest order.
+
+    Returns
+    -------
+    list of mpf, shape (order + 1,)
+    """
     return [mp.exp(x) / mp.factorial(k) for k in range(order + 1)]
 
 
 def logarithm(x: mp.mpf, order: int) -> list[mp.mpf]:
-    """Of log."""
+    """Return Taylor coefficients of the logarithm.
+
+    Parameters
+    ----------
+    x : mpf
+        Number to expand about.
+    order : int
+        Highest order.
+
+    Returns
+    -------
+    list of mpf, shape (order + 1,)
+
+    Raises
+    ------
+    IrregularPoint
+        The number is not positive.
+    """
     if x <= 0:
         raise IrregularPoint
     return [mp.log(x), *(-1 / (k * (-x) ** k) for k in range(1, order + 1))]
 
 
 def cyclic(values: Sequence[mp.mpf], order: int) -> list[mp.mpf]:
-    """Of a function whose derivatives have these values in turn."""
+    """Return Taylor coefficients of a function whose derivatives repeat in turn.
+
+    Parameters
+    ----------
+    values : sequence of mpf
+        Values of the function and its derivatives, one period.
+    order : int
+        Highest order.
+
+    Returns
+    -------
+    list of mpf, shape (order + 1,)
+    """
     return [values[k % len(values)] / mp.factorial(k) for k in range(order + 1)]
 
 
 def integrated(first: Callable[[mp.mpf], mp.mpf], slope: Callable[[Taylor, Polynomial], Polynomial]) -> Coefficients:
-    """Of a function with this value and derivative."""
+    """Return Taylor coefficients of a function with this value and derivative.
+
+    Parameters
+    ----------
+    first : callable
+        Value of the function at a number.
+    slope : callable
+        Derivative of the function, as a function of its argument.
+
+    Returns
+    -------
+    Coefficients
+        Function of a number and an order.
+    """
 
     def coefficients(x: mp.mpf, order: int) -> Polynomial:
         taylor = Taylor(order)
@@ -124,7 +288,20 @@ def integrated(first: Callable[[mp.mpf], mp.mpf], slope: Callable[[Taylor, Polyn
 
 
 def solving(first: Callable[[mp.mpf], mp.mpf], slope: Callable[[Taylor, Polynomial], Polynomial]) -> Coefficients:
-    """Of a function whose derivative is this function of its value."""
+    """Return Taylor coefficients of a function that solves y' = slope(y).
+
+    Parameters
+    ----------
+    first : callable
+        Value of the function at a number.
+    slope : callable
+        Derivative of the function, as a function of its value.
+
+    Returns
+    -------
+    Coefficients
+        Function of a number and an order.
+    """
 
     def coefficients(x: mp.mpf, order: int) -> Polynomial:
         found = (_real(first(x)),)
@@ -137,7 +314,18 @@ def solving(first: Callable[[mp.mpf], mp.mpf], slope: Callable[[Taylor, Polynomi
 
 
 def differentiated(function: Callable[[mp.mpf], mp.mpf]) -> Coefficients:
-    """Of any function, by differences."""
+    """Return Taylor coefficients of any function, by finite differences.
+
+    Parameters
+    ----------
+    function : callable
+        Function of a number.
+
+    Returns
+    -------
+    Coefficients
+        Function of a number and an order.
+    """
     return lambda x, order: list(map(_real, mp.taylor(function, x, order)))
 
 

@@ -1,4 +1,7 @@
-"""A time for all verdicts together: the one that it interrupts is undecided, and those before it stand."""
+"""A time limit for all verdicts together.
+
+The verdict that it interrupts is undecided; those before it remain.
+"""
 
 from __future__ import annotations
 
@@ -17,18 +20,33 @@ ALARM = signal.SIGVTALRM
 
 
 class OutOfTime(BaseException):
-    """The time is over; no handler of errors takes it for one."""
+    """The time is over; handlers of ordinary errors do not catch it."""
 
 
 class TimeLimit:
-    """So many seconds from now on; without limit outside of the main thread, which alone is interrupted."""
+    """A time limit in seconds from now on.
+
+    Only the main thread can be limited.
+    """
 
     def __init__(self, seconds: float = math.inf) -> None:
         heard = threading.current_thread() is threading.main_thread()
         self._end = time.monotonic() + seconds if heard else math.inf
 
     def result(self, work: Callable[[], Result], otherwise: Result) -> Result:
-        """Return the result of some work, or what stands for it where the time ends before it."""
+        """Return the result of some work, or a substitute if the time ends before it.
+
+        Parameters
+        ----------
+        work : callable
+            Function without arguments.
+        otherwise : Result
+            The substitute.
+
+        Returns
+        -------
+        Result
+        """
         if math.isinf(self._end):
             return work()
         left = self._end - time.monotonic()

@@ -1,9 +1,9 @@
-"""The laws that are said to make every motion free, tried once more on the equations of motion.
+"""Verify laws that are claimed to make every motion free.
 
-Under such a law every multiplier is zero: at every state on the constraint manifold the bordered equations, Lagrange's
-with multipliers and d^2 f/dt^2 = 0, have the solution lambda = 0. States are drawn at random and moved onto the
-manifold by Newton's method, position first, velocity after it; nothing that Maxima derived is used, neither (10) nor a
-solution of the constraints.
+Under such a law every multiplier is zero: at every state on the constraint manifold the bordered equations,
+Lagrange's with multipliers and d^2 f/dt^2 = 0, have the solution lambda = 0. States are drawn at random and moved
+onto the manifold by Newton's method, first the positions, then the velocities. Neither (10) nor a solution of the
+constraints by Maxima is used.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from .irregular_point import IrregularPoint
 from .linear import LinearEquations
 from .manifold import moved_onto
 from .points import random_point
-from .report import Judgement, Verdict
+from .report import CheckResult, Verdict
 from .seed import fresh_seed
 from .system import MechanicalSystem, dotted
 from .verdict import confirmed
@@ -44,11 +44,24 @@ def judge_law(
     values: Mapping[sp.Symbol, sp.Expr],
     law: LawOfControls,
     span: tuple[sp.Expr, sp.Expr] | None = None,
-) -> Judgement:
-    """Judge a law by the multipliers in random states at instants of the time span.
+) -> CheckResult:
+    """Return the verdict on a law, by the multipliers in random states.
 
-    Parameters without a value are drawn at random too. The verdict is undecided if too few regular states are found,
-    for instance because the law is not real there.
+    The verdict is undecided if too few regular states are found, for instance because the law is not real there.
+
+    Parameters
+    ----------
+    system : MechanicalSystem
+    values : mapping of Symbol to Expr
+        Values of parameters; others are random.
+    law : LawOfControls
+    span : tuple of (Expr, Expr) or None
+        First and last time of the states; None for no limits.
+
+    Returns
+    -------
+    CheckResult
+        Agreement, disagreement with the state's seed, or undecided.
     """
     moved = _MovedByLaw(system, values, law)
     seed = fresh_seed()
@@ -58,16 +71,16 @@ def judge_law(
             detail = _residual_at_next_state(moved, draws)
             if detail is None:
                 reason = f"only {found} regular states were found on the constraint manifold, of {POINTS} looked for"
-                return Judgement(Verdict.UNDECIDED, None, found or None, reason)
+                return CheckResult(Verdict.UNDECIDED, None, found or None, reason)
             if detail:
-                return Judgement(Verdict.DISAGREES, DIGITS, POINTS, f"{detail}, in a state drawn with seed {seed}")
-    return Judgement(Verdict.AGREES, DIGITS, POINTS)
+                return CheckResult(Verdict.DISAGREES, DIGITS, POINTS, f"{detail}, in a state drawn with seed {seed}")
+    return CheckResult(Verdict.AGREES, DIGITS, POINTS)
 
 
 def _within(
     span: tuple[sp.Expr, sp.Expr] | None, point: dict[sp.Symbol, sp.Rational], time: sp.Symbol
 ) -> dict[sp.Symbol, sp.Rational]:
-    """Move the instant of a point, which lies between -2 and 2, into the time span."""
+    """Move the time of a point, which lies between -2 and 2, into the time span."""
     if span is None or time not in point:
         return point
     first, last = (sp.Rational(str(sp.N(end, 30))) for end in span)
@@ -75,7 +88,10 @@ def _within(
 
 
 def _residual_at_next_state(moved: _MovedByLaw, draws: Iterator[Mapping[sp.Symbol, sp.Rational]]) -> str | None:
-    """Tell the first multiplier that is not zero, empty where all are; None where the draws end without a state."""
+    """Return the first nonzero multiplier at the next state; empty if all are zero.
+
+    None if the draws end without a state.
+    """
     for point in draws:
         try:
             return confirmed(partial(moved.residual, point))
@@ -85,7 +101,7 @@ def _residual_at_next_state(moved: _MovedByLaw, draws: Iterator[Mapping[sp.Symbo
 
 
 class _MovedByLaw:
-    """The equations of a system with a law and parameter values put in."""
+    """The equations of a system with a law and parameter values substituted."""
 
     def __init__(self, system: MechanicalSystem, values: Mapping[sp.Symbol, sp.Expr], law: LawOfControls) -> None:
         equations = IndependentEquations(system)
@@ -116,7 +132,7 @@ class _MovedByLaw:
         self.names = sorted(symbol.name for symbol in (symbols | state) - {*self.motion.unknowns})
 
     def residual(self, point: Mapping[sp.Symbol, sp.Rational]) -> str:
-        """Tell the first multiplier that is not zero; empty where all are."""
+        """Return the first nonzero multiplier; empty if all are zero."""
         state: dict[sp.Symbol, mp.mpf] = {symbol: mp.mpf(number.p) / number.q for symbol, number in point.items()}
         if any(value <= 0 for value in self.positive.real_at(state)):
             raise IrregularPoint

@@ -1,14 +1,15 @@
-"""Two expressions compared: at points first, then, where they agree, by proof.
+"""Compare two expressions at points, and then by proof.
 
-A point is taken in two precisions. What is the same in both is a value, and a difference that is the same in both is
-one; what shrinks with the precision is a rounding of zero. So no tolerance is chosen, and terms of any size count.
+A point is evaluated in two precisions. A digit that both have in common belongs to the value, and a difference common
+to both is real; a difference that shrinks with the precision is a rounding error of zero. No tolerance is needed, and
+terms of any size count.
 
-A comparison may need the solution of linear equations. At a point they are solved, by numbers. In a proof a certificate
-takes the solution's place: the record's own closed form, which is put back into the equations. Where all residuals
-vanish identically it is the solution, for the equations are regular at the points and so have no other.
+A comparison may need the solution of linear equations. At a point they are solved numerically. In a proof a
+certificate replaces the solution: the record's own closed form, which is substituted into the equations. If all
+residuals vanish identically, it is the solution, because the equations are regular at the points and have no other.
 
-Where no proof is found, points are drawn on both sides of each branch (`branches`), and points at which functions such
-as exp have values independent of what their arguments are (`independent_functions`).
+Without a proof, points are drawn on both sides of each branch (`branches`), and points at which functions such as exp
+have values independent of their arguments (`independent_functions`).
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ from .evaluation import Number, Steps, Values
 from .independent_functions import with_independent_functions
 from .linear import LinearEquations
 from .normal_form import is_identically_zero
-from .report import Judgement, Verdict
+from .report import CheckResult, Verdict
 
 SHOWN = 12
 """Digits of two values that differ; more if these are equal."""
@@ -50,7 +51,7 @@ MOST_AGAIN = 8
 """Numbers of digits tried in the place of the first where a rounding of zero is zero."""
 
 Sides = tuple[list[Number | None], list[Number | None]]
-"""Values of all claims, and of what they are compared with."""
+"""Values of all derived expressions, and of what they are compared with."""
 
 
 HOPELESS = 60
@@ -58,7 +59,7 @@ HOPELESS = 60
 
 
 class Pair(NamedTuple):
-    """What the record claims of a quantity, and what the independent evaluation makes of it."""
+    """A quantity in the record, and its value by the independent evaluation."""
 
     quantity: str
     claimed: sp.Expr
@@ -67,7 +68,7 @@ class Pair(NamedTuple):
 
 @dataclass(frozen=True)
 class Comparison:
-    """Pairs that have to be equal identically."""
+    """Pairs that must be identically equal."""
 
     pairs: tuple[Pair, ...]
     # symbols with a meaning, such as u under a control law; each may use the ones before it
@@ -83,26 +84,50 @@ class Comparison:
 
 
 class Found(Enum):
-    """What a point tells of a pair."""
+    """The result for a pair at a point."""
 
     EQUAL = auto()
     DIFFERENT = auto()
-    WITHOUT_CLAIM = auto()  # only the independent evaluation has a value
-    UNSTABLE = auto()  # the claim's value is lost in rounding
+    UNDERIVED = auto()  # only the independent evaluation has a value
+    UNSTABLE = auto()  # the derived value is lost in rounding
     NOTHING = auto()  # the independent evaluation has no value
 
 
-def judge(comparison: Comparison, seed: str) -> Judgement:
-    """Verdict on a comparison; the same seed makes the same random points."""
+def judge(comparison: Comparison, seed: str) -> CheckResult:
+    """Return the verdict on a comparison.
+
+    Parameters
+    ----------
+    comparison : Comparison
+    seed : str
+        Seed of the random points; the same seed makes the same points.
+
+    Returns
+    -------
+    CheckResult
+    """
     if not comparison.pairs:
-        return Judgement(Verdict.NOTHING, None, None)
+        return CheckResult(Verdict.NOTHING, None, None)
     if comparison.rounded and not _free_names(comparison):
         return judge_rounded(comparison)
-    return _Judge(comparison, seed).judgement()
+    return _Judge(comparison, seed).result()
 
 
-def judge_all(comparisons: Sequence[Comparison], seed: str) -> Judgement:
-    """Verdict on several comparisons, the weakest of theirs."""
+def judge_all(comparisons: Sequence[Comparison], seed: str) -> CheckResult:
+    """Return the verdict on several comparisons.
+
+    Parameters
+    ----------
+    comparisons : sequence of Comparison
+        The comparisons.
+    seed : str
+        Seed of the random points.
+
+    Returns
+    -------
+    CheckResult
+        The weakest verdict of all.
+    """
     found = [judge(comparison, f"{seed} {i}") for i, comparison in enumerate(comparisons)]
     order = (
         Verdict.DISAGREES,
@@ -116,7 +141,7 @@ def judge_all(comparisons: Sequence[Comparison], seed: str) -> Judgement:
 
 
 class _Judge:
-    """One comparison, and how often each of its pairs was found equal."""
+    """One comparison, with the number of points at which each pair agreed."""
 
     def __init__(self, comparison: Comparison, seed: str) -> None:
         self.comparison = comparison
@@ -127,29 +152,32 @@ class _Judge:
         self.equal = [0] * len(comparison.pairs)
         self.lost = [""] * len(comparison.pairs)
 
-    def judgement(self) -> Judgement:
+    def result(self) -> CheckResult:
         attempts = range(ATTEMPTS * self.points)
         if detail := self._difference(map(self.draws.point, attempts), enough=True):
-            return Judgement(Verdict.DISAGREES, DIGITS, self.points, detail)
+            return CheckResult(Verdict.DISAGREES, DIGITS, self.points, detail)
         fewest = min(self.equal)
         if fewest < self.points:
             return self._too_few(fewest)
         if _is_proved(self.comparison):
-            return Judgement(Verdict.PROVED, DIGITS, self.points)
+            return CheckResult(Verdict.PROVED, DIGITS, self.points)
         if detail := self._difference(self.draws.at_branches()):
-            return Judgement(Verdict.DISAGREES, DIGITS, self.points, detail)
+            return CheckResult(Verdict.DISAGREES, DIGITS, self.points, detail)
         if sides := self.draws.sides_not_reached():
-            return Judgement(Verdict.UNDECIDED, None, fewest, f"no point was found where {sides[0]}")
+            return CheckResult(Verdict.UNDECIDED, None, fewest, f"no point was found where {sides[0]}")
         verdict = Verdict.AGREES if self._agrees_independently() else Verdict.SAMPLED
-        return Judgement(verdict, DIGITS, min(self.equal))
+        return CheckResult(verdict, DIGITS, min(self.equal))
 
     def _difference(self, points: Iterable[Point], enough: bool = False) -> str:
-        """Tell the first difference; empty where there is none. It stops where each pair has enough points."""
+        """Return the first difference; empty if there is none.
+
+        The search stops when each pair has enough points.
+        """
         for drawn, point in enumerate(points):
             for i, (found, left, right) in enumerate(self.evaluation.findings(point)):
                 if found is Found.EQUAL:
                     self.equal[i] += 1
-                elif found in (Found.DIFFERENT, Found.WITHOUT_CLAIM) and self._is_in_domain(i, point):
+                elif found in (Found.DIFFERENT, Found.UNDERIVED) and self._is_in_domain(i, point):
                     return self._told(i, found, left, right, point)
                 elif found is Found.UNSTABLE:
                     self.lost[i] = self._told(i, found, left, right, point)
@@ -158,7 +186,7 @@ class _Judge:
         return ""
 
     def _is_in_domain(self, i: int, point: Point) -> bool:
-        """Return False if a described term of the quantities of a pair has no real value at a point."""
+        """Return False if a described term of a pair has no real value at a point."""
         pair = self.comparison.pairs[i]
         known = pair.independent.free_symbols | pair.claimed.free_symbols
         terms = [term for term in self.comparison.domain if term.free_symbols <= known]
@@ -166,24 +194,27 @@ class _Judge:
 
     def _told(self, i: int, found: Found, left: Number | None, right: Number, point: Point) -> str:
         if found is Found.DIFFERENT:
-            claim, known = _told_apart(mp.re(left), mp.re(right))
+            derived, known = _told_apart(mp.re(left), mp.re(right))
         else:
-            claim, known = "no real value", mp.nstr(mp.re(right), SHOWN)
+            derived, known = "no real value", mp.nstr(mp.re(right), SHOWN)
         return (
-            f"{self.comparison.pairs[i].quantity}: the record gives {claim}, "
+            f"{self.comparison.pairs[i].quantity}: the record gives {derived}, "
             f"the independent evaluation {known}{_where(point)}"
         )
 
-    def _too_few(self, fewest: int) -> Judgement:
+    def _too_few(self, fewest: int) -> CheckResult:
         for equal, lost in zip(self.equal, self.lost, strict=True):
             if lost and not equal:
-                return Judgement(Verdict.DISAGREES, DIGITS, ATTEMPTS * self.points, lost)
+                return CheckResult(Verdict.DISAGREES, DIGITS, ATTEMPTS * self.points, lost)
         points = f"only {fewest} regular points were" if fewest else "no regular point was"
         reason = f"{points} found among those drawn at random"
-        return Judgement(Verdict.UNDECIDED, None, fewest or None, reason)
+        return CheckResult(Verdict.UNDECIDED, None, fewest or None, reason)
 
     def _agrees_independently(self) -> bool:
-        """Return True if the pairs agree where exp, sin and the like have values independent of their arguments."""
+        """Return True if the pairs agree with functions independent of their arguments.
+
+        The functions are exp, sin and the like.
+        """
         comparison = with_independent_functions(self.comparison)
         evaluation = Evaluation(comparison)
         draws = Draws(_free_names(comparison), Branches(()), f"{self.draws.seed} independent")
@@ -208,7 +239,24 @@ class Evaluation:
         self._right = Steps([pair.independent for pair in comparison.pairs])
 
     def findings(self, point: Point, complex_too: bool = False) -> Iterator[tuple[Found, Number | None, Number | None]]:
-        """Yield what the point tells of each pair, and the values of both sides."""
+        """Yield the result for each pair at a point, and the values of both sides.
+
+        Parameters
+        ----------
+        point : Point
+            Number of each symbol.
+        complex_too : bool
+            If True, complex values are compared, too.
+
+        Yields
+        ------
+        result : Found
+            Result for a pair.
+        left : mpf, mpc or None
+            Value of the derived expression.
+        right : mpf, mpc or None
+            Value by the independent evaluation.
+        """
         fine = self._values(point, CONFIRMING_DIGITS)
         coarse = self._values(point, WORKING_DIGITS)
         for digits in range(WORKING_DIGITS + 1, WORKING_DIGITS + MOST_AGAIN):
@@ -223,7 +271,20 @@ class Evaluation:
                 yield _finding((left, left_again), (right, right_again), complex_too), left_again, right_again
 
     def values_of(self, expressions: Sequence[sp.Expr], point: Point) -> Sequence[Number | None]:
-        """Return the values of other expressions of the same symbols at a point; None where there is none."""
+        """Return the values of other expressions at a point; None if one has no value.
+
+        Parameters
+        ----------
+        expressions : sequence of Expr
+            Expressions in the symbols of the comparison.
+        point : Point
+            Number of each symbol.
+
+        Returns
+        -------
+        sequence of Number or None
+            One for each expression.
+        """
         with mp.workdps(CONFIRMING_DIGITS):
             return Steps(expressions).at(self._known(point))
 
@@ -245,22 +306,25 @@ def _finding(left: Sequence[Number | None], right: Sequence[Number | None], comp
     if None in right or not (_is_stable(*right) and (complex_too or _is_real(*right))):
         return Found.NOTHING
     if None in left:
-        return Found.WITHOUT_CLAIM if left[0] is left[1] else Found.UNSTABLE
+        return Found.UNDERIVED if left[0] is left[1] else Found.UNSTABLE
     coarse, fine = (claimed - known for claimed, known in zip(left, right, strict=True))
     if not coarse or _vanishes(coarse, fine):  # zero in each of the fewer numbers of digits
         return Found.EQUAL
     if not _is_same(coarse, fine):
         return Found.UNSTABLE
-    return Found.DIFFERENT if complex_too or _is_real(*left) else Found.WITHOUT_CLAIM
+    return Found.DIFFERENT if complex_too or _is_real(*left) else Found.UNDERIVED
 
 
 def _is_luck(left: Number | None, right: Number | None, left_again: Number | None, right_again: Number | None) -> bool:
-    """Return True if a rounding of zero is zero itself in the fewer digits, so that nothing is seen to shrink."""
+    """Return True if a rounding error is exactly zero in the fewer digits.
+
+    It cannot be seen to shrink then.
+    """
     return left is not None and left == right and left_again != right_again
 
 
 def _vanishes(coarse: Number, fine: Number) -> bool:
-    """Return True if a number shrinks with the precision, as a rounding of zero does."""
+    """Return True if a number shrinks with the precision, like a rounding error."""
     return not fine or abs(fine) <= mp.mpf(10) ** -SHRUNK * abs(coarse)
 
 
@@ -276,10 +340,20 @@ def _is_real(coarse: Number, fine: Number) -> bool:
     return _vanishes(mp.im(coarse), mp.im(fine)) or abs(mp.im(fine)) <= mp.mpf(10) ** -SHRUNK * abs(fine)
 
 
-def judge_rounded(comparison: Comparison) -> Judgement:
-    """Verdict on pairs at one point whose numbers may be rounded: a change of them in the 50th digit explains the rest.
+def judge_rounded(comparison: Comparison) -> CheckResult:
+    """Return the verdict on pairs at one point whose numbers may be rounded.
 
-    A difference d is explained where |d| <= 10^-50 times the sum of |x dd/dx| over the rounded numbers x.
+    A difference d is explained if a change of the numbers in the 50th digit makes it: |d| <= 10^-50 times the sum of
+    |x dd/dx| over the rounded numbers x.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        Comparison without free symbols.
+
+    Returns
+    -------
+    CheckResult
     """
     values = _rounded_values(comparison)
     exact = _resolved({x: meaning for x, meaning in comparison.given.items() if x not in comparison.rounded})
@@ -290,13 +364,13 @@ def judge_rounded(comparison: Comparison) -> Judgement:
         with mp.workdps(CONFIRMING_DIGITS):
             found, left, right, *changes = steps.at(values)
             if found is None or left is None or right is None or mp.im(found):
-                return Judgement(Verdict.DISAGREES, DIGITS, 1, f"{pair.quantity} has no real value at the start")
+                return CheckResult(Verdict.DISAGREES, DIGITS, 1, f"{pair.quantity} has no real value at the start")
             explained = mp.mpf(10) ** -DIGITS * mp.fsum(abs(change) for change in changes if change is not None)
             noise = mp.mpf(10) ** (DIGITS - CONFIRMING_DIGITS) * max(abs(left), abs(right))
             if abs(found) > explained + noise:
                 detail = f"{pair.quantity}: the record gives {mp.nstr(left, 12)}, where {mp.nstr(right, 12)} belongs"
-                return Judgement(Verdict.DISAGREES, DIGITS, 1, detail)
-    return Judgement(Verdict.AGREES, DIGITS, 1)
+                return CheckResult(Verdict.DISAGREES, DIGITS, 1, detail)
+    return CheckResult(Verdict.AGREES, DIGITS, 1)
 
 
 def _rounded_values(comparison: Comparison) -> Values:
@@ -308,7 +382,20 @@ def _rounded_values(comparison: Comparison) -> Values:
 
 
 def confirmed(difference: Callable[[], str]) -> str:
-    """Tell a difference that is found in more digits too; empty where there is none, or rounding made it."""
+    """Return a difference that is confirmed in more digits; empty if there is none.
+
+    Differences made by rounding do not count.
+
+    Parameters
+    ----------
+    difference : callable
+        Function that finds a difference in the working precision, or an empty text.
+
+    Returns
+    -------
+    str
+        Message.
+    """
     if not difference():
         return ""
     with mp.workdps(CONFIRMING_DIGITS):
@@ -316,7 +403,7 @@ def confirmed(difference: Callable[[], str]) -> str:
 
 
 def _told_apart(left: Number, right: Number) -> tuple[str, str]:
-    """Return two numbers with as many digits as show that they differ."""
+    """Return two numbers with enough digits to distinguish them."""
     with mp.workdps(CONFIRMING_DIGITS):
         for digits in range(SHOWN, CONFIRMING_DIGITS):
             told = mp.nstr(left, digits), mp.nstr(right, digits)
@@ -361,7 +448,7 @@ def _is_proved(comparison: Comparison) -> bool:
 
 
 def _resolved(definitions: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, sp.Expr]:
-    """Definitions in terms of what is not defined; each may use the ones before it."""
+    """Return definitions in terms of undefined symbols; each may use those before it."""
     found: dict[sp.Symbol, sp.Expr] = {}
     for symbol, meaning in definitions.items():
         found[symbol] = meaning.xreplace(found)

@@ -9,8 +9,18 @@ if TYPE_CHECKING:
 
 
 def show(console: "Console", result: Shown) -> None:
-    """Print the table of a result."""
+    """Print the table of a result.
+
+    Parameters
+    ----------
+    console : Console
+        Console to print on.
+    result : Shown
+        A result of one of the kinds listed in the function.
+    """
     match type(result).__name__:
+        case "Branches":
+            from .stability import show_branches as table
         case "CheckReport":
             from .derivation import show_verdicts as table
         case "Equilibria":

@@ -1,4 +1,7 @@
-"""The condition of free motion (10): one formula, or where that is long its terms, with the roots under names."""
+"""Show the condition of free motion (10), with names for its roots if it is long.
+
+A short condition is one formula; a long one is a list of its terms.
+"""
 
 import re
 from collections.abc import Callable, Iterator
@@ -15,7 +18,18 @@ Roots = dict[tuple[str, int], tuple[str, Tree]]
 
 
 def condition_lines(left: Tree) -> list[str]:
-    """Write left = 0 in lines."""
+    """Write left = 0 in lines.
+
+    Parameters
+    ----------
+    left : Tree
+        Left side of the condition, as MathJSON.
+
+    Returns
+    -------
+    list of str
+        One formula, or the roots' names and one line for each term.
+    """
     if sum(1 for _ in _nodes(left)) <= LARGEST_CONDITION:
         return [f"{scene_text(left)} = 0"]
     roots: Roots = {}
@@ -38,7 +52,7 @@ def _nodes(tree: Tree) -> Iterator[Tree]:
 
 
 def _prefix(tree: Tree) -> str:
-    """Of names that are none of the tree's."""
+    """Return a prefix of names that no symbol of the tree has."""
     prefix, taken = "r", {node for node in _nodes(tree) if isinstance(node, str)}
     while any(re.fullmatch(rf"{prefix}\d+", name) for name in taken):
         prefix += "r"
@@ -67,7 +81,7 @@ def _rebuilt(roots: Roots, prefix: str, head: str, *arguments: Tree) -> Tree:
 
 
 def _named(roots: Roots, prefix: str, base: Tree, degree: int) -> Tree:
-    """Roots of numbers stay."""
+    """Replace roots by their names; roots of numbers stay."""
     root = ["Sqrt", base] if degree == 2 else ["Power", base, ["Rational", 1, degree]]
     if isinstance(base, int | dict):
         return root

@@ -1,4 +1,4 @@
-"""A derivation, equation by equation, the verdicts on it, and the paper as printed beside it."""
+"""Print derivations, verdicts on them, and the errata of the paper."""
 
 import io
 import re
@@ -23,11 +23,19 @@ if TYPE_CHECKING:
     from ..errata import PrintedEquation
     from ..record import Equation, LeftOut, Record, Relation
 
-HELD_IN_MEMORY = 10**12  # terms of closed forms: some bytes each, and no machine has so many
+HELD_IN_MEMORY = 10**12  # terms of closed forms: some bytes each, more than any machine has
 
 
 def show_record(console: Console, record: "Record") -> None:
-    """Print a derivation, equation by equation, under the paper's numbers."""
+    """Print a derivation, equation by equation, under the paper's numbers.
+
+    Parameters
+    ----------
+    console : Console
+        Console to print on.
+    record : Record
+        Derivations and scenes of one file.
+    """
     console.print(visible_line(record.system.title), style="bold")
     if record.system.source:
         console.print(visible_line(record.system.source), style="dim")
@@ -42,14 +50,30 @@ def show_record(console: Console, record: "Record") -> None:
 
 
 def show_reports(console: Console, reports: Iterable[tuple[str, "CheckReport"]]) -> None:
-    """Print the verdicts on each scene file."""
+    """Print the verdicts on each scene file.
+
+    Parameters
+    ----------
+    console : Console
+        Console to print on.
+    reports : iterable of (str, CheckReport)
+        Name of the scene file and the verdicts on it.
+    """
     for scene, report in reports:
         console.print(scene, style="italic", soft_wrap=True)
         show_verdicts(console, report)
 
 
 def show_verdicts(console: Console, report: "CheckReport") -> None:
-    """Print the verdict on each equation, and the disagreements in full."""
+    """Print the verdict on each equation, and the disagreements in full.
+
+    Parameters
+    ----------
+    console : Console
+        Console to print on.
+    report : CheckReport
+        Verdicts on one scene file.
+    """
     table = Table("no.", "equation", "verdict", "digits", "points")
     for name, verdicts in groupby(report.verdicts, key=lambda verdict: verdict.scene):
         table.add_section()
@@ -107,7 +131,20 @@ def _show_left_out(console: Console, left_out: "LeftOut | None") -> None:
 
 
 def why_left_out(left_out: "LeftOut") -> str:
-    """Return the sentence that says why equations were not made, and how to get them."""
+    """Return the reason why equations were left out, and how to get them.
+
+    Parameters
+    ----------
+    left_out : LeftOut
+        Numbers and expected size of the equations.
+
+    Returns
+    -------
+    str
+        A clause without a period.
+    """
+    if left_out.size is None:
+        return "forces contain multipliers, and the equations are linear in them for each pattern of signs alone"
     size, limit = left_out.size, f"more than closed_form_size = {left_out.limit}"
     if size > HELD_IN_MEMORY:
         terms = f"{size:.0e} terms{' or more' if size == LARGEST_SIZE else ''}"
@@ -131,7 +168,15 @@ FONT_FROM_NETWORK = re.compile(r"@font-face \{.*?\}", re.DOTALL)
 
 
 def show_errata(console: Console, equations: Sequence["PrintedEquation"]) -> None:
-    """Print each equation of the paper, whether it is right, and what is wrong with it where it is not."""
+    """Print each equation of the paper, the verdict on it, and its correction.
+
+    Parameters
+    ----------
+    console : Console
+        Console to print on.
+    equations : sequence of PrintedEquation
+        Equations of the paper, in their order.
+    """
     console.print(_errata_table(equations))
     for equation in equations:
         _show_misprint(console, equation)
@@ -152,7 +197,18 @@ def _summary(equations: int, misprints: int) -> str:
 
 
 def draw_errata(equations: Sequence["PrintedEquation"]) -> str:
-    """Return the table of the comparison with print as an SVG picture that needs no network."""
+    """Return the table of the errata as an SVG picture that needs no network.
+
+    Parameters
+    ----------
+    equations : sequence of PrintedEquation
+        Equations of the paper, in their order.
+
+    Returns
+    -------
+    str
+        SVG document.
+    """
     console = PlainConsole(record=True, width=PICTURE_WIDTH, file=io.StringIO(), force_terminal=True)
     console.print(_errata_table(equations))
     picture = console.export_svg(title="holonom errata", theme=DIMMED_MONOKAI, unique_id="errata")
@@ -172,9 +228,9 @@ def _show_misprint(console: Console, equation: "PrintedEquation") -> None:
     said = {
         gettext("difference"): equation.difference,
         gettext("corrected"): equation.corrected,
-        gettext("remark"): equation.remark and translated(equation.remark),
+        gettext("note"): equation.note and translated(equation.note),
     }
-    if equation.agrees and not equation.remark:
+    if equation.agrees and not equation.note:
         return
     number = f"({equation.number}) " if equation.number else ""
     console.print(Text(f"{number}{translated(equation.name)}", style="cyan"))

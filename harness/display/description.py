@@ -14,7 +14,15 @@ if TYPE_CHECKING:
 
 
 def show_description(console: Console, description: "Description") -> None:
-    """Print a description in the words of the scene files."""
+    """Print a description in the words of the scene files.
+
+    Parameters
+    ----------
+    console : Console
+        Console to print on.
+    description : Description
+        Content of one scene file.
+    """
     system = description.system
     console.print(system.title, style="bold")
     if system.source:

@@ -19,7 +19,15 @@ if TYPE_CHECKING:
 
 
 def show_free_motion(console: Console, found: "FreeMotion") -> None:
-    """Print the condition of free motion and the controls that satisfy it."""
+    """Print the condition of free motion and the controls that satisfy it.
+
+    Parameters
+    ----------
+    console : Console
+        Console to print on.
+    found : FreeMotion
+        Condition (10) and the verdicts for one scene.
+    """
     if found.condition_trees is None:
         _show_list(console, "condition of free motion (10): not written out", [found.left_out or ""])
     else:
@@ -58,11 +66,12 @@ TITLES = {
 
 def _show_universal(console: Console, found: "UniversalControls") -> None:
     generic = "; for generic values of the parameters left open" if found.generic else ""
+    conditions = () if found.verdict == "none" else found.conditions  # without laws the reason names one
     needed = [
         f"needs {formula(each.expression)} = 0, at {formula(each.place)} in (10), from {', '.join(each.effects)}"
-        for each in found.conditions[:CONDITIONS_SHOWN]
+        for each in conditions[:CONDITIONS_SHOWN]
     ]
-    more = len(found.conditions) - len(needed)
+    more = len(conditions) - len(needed)
     rest = [f"and {more} longer conditions"] if more > 0 else []
     laws = [line for law in found.laws for line in _universal_law(law)]
     _show_list(console, TITLES[found.verdict], [*laws, found.reason + generic, *needed, *rest])
@@ -106,7 +115,7 @@ def _verdict(motion: "MotionVerdict") -> str:
 
 
 def _first(motion: "MotionVerdict") -> str:
-    """``lambda1 = 132*(t - t0)^10 + ...``, numbers of many digits shortened."""
+    """Return ``lambda1 = 132*(t - t0)^10 + ...``, numbers of many digits shortened."""
     if motion.first is None:
         return ""
     power = {0: "", 1: "*(t - t0)"}.get(motion.first.order, f"*(t - t0)^{motion.first.order}")
@@ -118,7 +127,17 @@ def _sample(sample: Iterable[float], law: "Law") -> str:
 
 
 def formula(expression: object) -> str:
-    """One line in the notation of the scene files."""
+    """Return one line in the notation of the scene files.
+
+    Parameters
+    ----------
+    expression : SymPy expression
+        Expression of a result about free motion.
+
+    Returns
+    -------
+    str
+    """
     return SceneNotation().doprint(expression).replace("**", "^")
 
 
@@ -139,7 +158,18 @@ FUNCTION_NAMES = {each.head: each.scene for each in FUNCTIONS}
 
 
 def power_series(value: Expr) -> str:
-    """Return a truncated series, its terms in the order that they have."""
+    """Return a truncated series with its terms in their order.
+
+    Parameters
+    ----------
+    value : SymPy expression
+        A polynomial whose terms are in their order.
+
+    Returns
+    -------
+    str
+        ``0`` if all terms are zero.
+    """
     terms = [formula(term) if not term.is_Add else f"({formula(term)})" for term in _terms(value)]
     return " + ".join(terms).replace("+ -", "- ") if terms else "0"
 

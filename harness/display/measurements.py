@@ -1,4 +1,4 @@
-"""What computing costs and keeps: terms and effects, accuracy, hard cases."""
+"""Print costs of terms and effects, accuracy studies, and results of hard cases."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -22,7 +22,15 @@ NANOSECONDS = 1e9  # in a second
 
 
 def show_costs(console: Console, costs: "MeasuredCosts") -> None:
-    """Print the terms of (3) and (7) and the effects of a scene, with what each costs."""
+    """Print the terms of (3) and (7) and the effects of a scene, each with its cost.
+
+    Parameters
+    ----------
+    console : Console
+        Console to print on.
+    costs : MeasuredCosts
+        Operations, and seconds for each evaluation.
+    """
     unit = f"ns in {costs.measured_in}"
     terms = Table("eq.", "term", "status", "operations", unit, title=visible_line(costs.scene), title_justify="left")
     for term in costs.terms:
@@ -57,23 +65,31 @@ def _indispensable(status: str) -> str:
 
 
 TITLES = {
-    Group.SERIES: "One series, added up at t = {instant}",
-    Group.TAYLOR: "The Taylor engine, to t = {instant}",
-    Group.RUNGE_KUTTA: "The Runge-Kutta engine, to t = {instant}",
-    Group.SOLVER: "Others on the same motion program, to t = {instant}",
-    Group.DRIFT: "Cures of drift at equal tolerance, to t = {instant}",
-    Group.SOLVE: "The two solves at equal tolerance, to t = {instant}",
+    Group.SERIES: "One series, added up at t = {time}",
+    Group.TAYLOR: "The Taylor engine, to t = {time}",
+    Group.RUNGE_KUTTA: "The Runge-Kutta engine, to t = {time}",
+    Group.SOLVER: "Others on the same motion program, to t = {time}",
+    Group.STABILIZATION: "Stabilization methods at equal tolerance, to t = {time}",
+    Group.SOLVE: "The two solves at equal tolerance, to t = {time}",
 }
 
 
 def show_study(console: Console, study: "Study") -> None:
-    """Print every measurement, what was left out and why, and the advice that follows."""
+    """Print every measurement, the methods left out with the reasons, and the advice.
+
+    Parameters
+    ----------
+    console : Console
+        Console to print on.
+    study : Study
+        Errors and seconds of each method.
+    """
     console.print(visible_line(f"{study.scene}: {study.title}"), soft_wrap=True)
     for group, title in TITLES.items():
         rows = [m for m in study.measurements if m.group is group]
         if not rows:
             continue
-        table = Table(title=title.format(instant=float(rows[0].instant)), title_justify="left")
+        table = Table(title=title.format(time=float(rows[0].time)), title_justify="left")
         for name in ("method", "setting"):
             table.add_column(name)
         for name in ("relative error", "seconds", "seconds to prepare", "operations"):
@@ -113,7 +129,15 @@ def _price(price: "Price") -> str:
 
 
 def show_stability(console: Console, reports: Sequence["CaseReport"]) -> None:
-    """Print what each method keeps of each hard case, with the advice."""
+    """Print the correct digits of each method in each hard case, with the advice.
+
+    Parameters
+    ----------
+    console : Console
+        Console to print on.
+    reports : sequence of CaseReport
+        Results of each method, one report for each case.
+    """
     from ..explanations import advice
 
     table = Table("case", "method", "quantity", "digits", "outcome")

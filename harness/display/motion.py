@@ -1,4 +1,4 @@
-"""A motion on the console: its power series, where a simulation ends and how well it was followed, a sweep of many."""
+"""Print power series, simulations with their reports, and sweeps on the console."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from math import isnan
@@ -24,7 +24,17 @@ SHOWN_TEXT = 24  # characters of an exact number
 
 
 def show_series(console: "Console", motion: "MotionSeries", values: "Values | None" = None) -> None:
-    """Print the power series of a motion, how far they hold, and values asked for."""
+    """Print the power series of a motion, their radii, and the values asked for.
+
+    Parameters
+    ----------
+    console : Console
+        Console to print on.
+    motion : MotionSeries
+        The power series.
+    values : Values or None
+        Sums at one time.
+    """
     from rich.table import Table
 
     from ..series.radius import described
@@ -40,7 +50,7 @@ def show_series(console: "Console", motion: "MotionSeries", values: "Values | No
     console.print(table)
     radius = motion.radius
     size = "" if radius.estimate is None else f"{radius.estimate:.8g}, {described(radius)}; "
-    console.print(f"{motion.arithmetic} arithmetic; radius of convergence: {size}{radius.remark}", soft_wrap=True)
+    console.print(f"{motion.arithmetic} arithmetic; radius of convergence: {size}{radius.note}", soft_wrap=True)
     if motion.switch is not None:
         console.print(f"This is the motion as long as {motion.switch} keeps its sign.", soft_wrap=True)
     for z in radius.singularities:
@@ -58,14 +68,26 @@ def _show_continuation(console: "Console", continuation: "Continuation") -> None
 
     names = [*continuation.coordinates, *continuation.velocities]
     table = Table("t", *names, title="Continued by further expansions", title_justify="left")
-    rows = [continuation.instants, *continuation.coordinates.values(), *continuation.velocities.values()]
+    rows = [continuation.times, *continuation.coordinates.values(), *continuation.velocities.values()]
     for row in zip(*rows, strict=True):
         table.add_row(*(_rounded(mpmath.mpf(text)) for text in row))
     console.print(table)
 
 
 def short_number(text: str) -> str:
-    """Return a number in ``p/q`` or decimal notation: as it is where it is exact and short, else rounded."""
+    """Return a number in ``p/q`` or decimal notation.
+
+    A short exact number keeps its form. Others are rounded to `SHOWN_DIGITS` digits.
+
+    Parameters
+    ----------
+    text : str
+        Number as p/q or as decimal digits.
+
+    Returns
+    -------
+    str
+    """
     from ..number_texts import number
 
     return text if len(text) <= SHOWN_TEXT and "." not in text else _rounded(number(text))
@@ -75,16 +97,36 @@ def _rounded(value: mpmath.mpf) -> str:
     return mpmath.nstr(value, SHOWN_DIGITS)
 
 
-LISTED = 3  # instants that are told one by one
+LISTED = 3  # times that are told one by one
 
 
 def show_simulation(console: "Console", simulation: "Simulation") -> None:
-    """Print the end of a motion, and the report."""
+    """Print the end of a motion, and the report.
+
+    Parameters
+    ----------
+    console : Console
+        Console to print on.
+    simulation : Simulation
+        The motion.
+    """
     show_report(console, simulation.scene, simulation.title, simulation.report)
 
 
 def show_report(console: "Console", scene: str, title: str, report: "Report") -> None:
-    """Print the end of a scene's motion, and the report."""
+    """Print the end of a scene's motion, and the report.
+
+    Parameters
+    ----------
+    console : Console
+        Console to print on.
+    scene : str
+        Name of the scene.
+    title : str
+        Title of the scene.
+    report : Report
+        Final state and quality of the motion.
+    """
     from rich.table import Table
 
     from ..simulation.output import report_document
@@ -103,7 +145,7 @@ def show_report(console: "Console", scene: str, title: str, report: "Report") ->
 
 
 def _quality(report: "Report") -> Iterator[str]:
-    from ..explanations import engine_text, remarks
+    from ..explanations import engine_text, notes
 
     if report.correction is not None:
         name, size = report.correction
@@ -114,13 +156,13 @@ def _quality(report: "Report") -> Iterator[str]:
     left = ", ".join(f"{name} {value:.1e}" for name, value in report.residuals.items())
     yield f"residuals of the constraints: {left}; condition number of G: {report.condition:.3g}"
     yield f"energy error: {report.energy_error:.1e}"
-    steps = f"{report.steps} steps by {engine_text(report.legs)}"
+    steps = f"{report.steps} steps by {engine_text(report.segments)}"
     yield f"{steps}, in {report.precision} precision at tolerance {report.tol:.1e}"
     if report.choice is not None:
         yield _choice(report.choice)
     code = f" {report.code} code" if report.code else ""
     yield f"{report.compile_seconds:.3f} s to compile{code}, {report.run_seconds:.3g} s to run"
-    yield from remarks(report)
+    yield from notes(report)
     yield from _switchings(report.switchings)
     if report.relative_degrees:
         degrees = ", ".join(map(str, report.relative_degrees))
@@ -130,7 +172,7 @@ def _quality(report: "Report") -> Iterator[str]:
 
 
 def _choice(choice: "Choice") -> str:
-    """Why an engine was taken."""
+    """Return the reason for the choice of an engine."""
     seconds = f"{choice.taylor:.2g} s by taylor, {choice.runge_kutta:.2g} s by runge-kutta with the C compiler"
     work = f"{choice.steps} steps of {choice.operations} operations"
     if choice.refused:
@@ -139,7 +181,7 @@ def _choice(choice: "Choice") -> str:
 
 
 def _ending(report: "Report") -> str:
-    """Why the motion ends where it does."""
+    """Return the reason why the motion ends."""
     if report.ending.crossed is not None:
         return f"The motion ends at t = {float(report.t):.10g}, where {report.ending.crossed} crosses zero."
     of = report.ending.of
@@ -148,31 +190,60 @@ def _ending(report: "Report") -> str:
 
 
 def _switchings(switchings: "Sequence[Switching]") -> Iterator[str]:
-    """Yield what happened where the motion is not analytic."""
+    """Yield the events at which the motion is not analytic."""
     for switching in switchings[:LISTED]:
-        if switching.passage == "joint released":
+        if switching.outcome == "joint released":
             yield f"At t = {switching.t:.10g}, where {switching.function} crosses zero, a joint is released."
             continue
-        yield f"At t = {switching.t:.10g} the surface {switching.function} = 0 is {_passed(switching.passage)}."
+        yield f"At t = {switching.t:.10g} the surface {switching.function} = 0 is {_passed(switching.outcome)}."
     if len(switchings) > LISTED:
         yield f"The motion switches {len(switchings)} times in all, the last time at t = {switchings[-1].t:.10g}."
 
 
-def _passed(passage: str) -> str:
-    return {"held": "reached, and held on to", "released": "left again"}.get(passage, passage)
+def _passed(outcome: str) -> str:
+    return {"sliding": "reached, and sliding begins", "released": "left again"}.get(outcome, outcome)
 
 
-def distrust(doubt: "AccuracyViolation") -> str:
-    """Return the sentence that says why a motion is no result."""
-    if isnan(doubt.missed):
-        return f"holonom: this is no result: {doubt.reason}; end the run before that."
+HINT_OF_ROOT = (
+    "holonom: warning: a force contains the square root of a function of the velocities. If the function vanishes, "
+    "as in v/sqrt(v^2 + w^2) at rest, steps miss the jump of the force. If the motion is along a line, "
+    "write signum(v) for it, whose zeros end a step."
+)
+
+
+def rejection(violation: "AccuracyViolation") -> str:
+    """Return the message for a simulation that failed the accuracy check.
+
+    Parameters
+    ----------
+    violation : AccuracyViolation
+        Accuracy criterion that the motion misses.
+
+    Returns
+    -------
+    str
+        One line that begins with ``holonom: error:``.
+    """
+    if isnan(violation.missed):
+        return f"holonom: error: simulation rejected: {violation.reason}. End the run before that."
     return (
-        f"holonom: this is no result: {doubt.reason}; take a smaller --max-step, another --engine or more --precision."
+        f"holonom: error: simulation rejected: {violation.reason}. "
+        "Reduce --max-step, change --engine or increase --precision."
     )
 
 
 def show_sweep(console: "Console", sweep: "Sweep", statuses: Mapping[str, int]) -> None:
-    """Print where the rows are, and how many came about how."""
+    """Print the folder of the rows and the number of rows by status.
+
+    Parameters
+    ----------
+    console : Console
+        Console to print on.
+    sweep : Sweep
+        A finished sweep.
+    statuses : mapping of str to int
+        Number of rows by status.
+    """
     from rich.table import Table
 
     document = sweep.document

@@ -1,4 +1,7 @@
-"""How far a long command has come: a bar on standard error if that is a terminal, nothing in a pipe."""
+"""Show the progress of a long command as a bar on standard error.
+
+Nothing is shown if standard error is not a terminal.
+"""
 
 import sys
 from collections.abc import Callable, Iterator
@@ -13,21 +16,56 @@ if TYPE_CHECKING:
 
 @contextmanager
 def progress(title: str, steps: int) -> Iterator[Callable[[], None]]:
-    """Show a bar while the block runs; what it gives is called after each step."""
+    """Show a bar while the block runs.
+
+    Parameters
+    ----------
+    title : str
+        Text in front of the bar.
+    steps : int
+        Number of steps.
+
+    Yields
+    ------
+    callable
+        Call it after each step, without arguments.
+    """
     with _bar(title, steps) as bar:
         yield (lambda: None) if bar is None else lambda: bar.advance(bar.task_ids[0])
 
 
 @contextmanager
 def motion_progress(title: str) -> Iterator[Callable[[float], None] | None]:
-    """Show a bar while the block runs; what it gives takes the fraction that is done, and is None in a pipe."""
+    """Show a bar while the block runs.
+
+    Parameters
+    ----------
+    title : str
+        Text in front of the bar.
+
+    Yields
+    ------
+    callable or None
+        Takes the completed fraction, from 0 to 1; None if no bar is shown.
+    """
     with _bar(title, 1.0) as bar:
         yield bar and (lambda fraction: bar.update(bar.task_ids[0], completed=fraction))
 
 
 @contextmanager
 def sweep_progress(rows: int) -> Iterator[Callable[[int], None] | None]:
-    """Show rows, rate and time left while the block runs; what it gives takes the rows done, and is None in a pipe."""
+    """Show completed rows, rate and remaining time while the block runs.
+
+    Parameters
+    ----------
+    rows : int
+        Number of rows of the sweep.
+
+    Yields
+    ------
+    callable or None
+        Takes the number of completed rows; None if no bar is shown.
+    """
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
 
     rate = TextColumn("{task.fields[rate]}")
@@ -42,7 +80,10 @@ def sweep_progress(rows: int) -> Iterator[Callable[[int], None] | None]:
 
 @contextmanager
 def _bar(title: str, total: float, *columns: object) -> "Iterator[Progress | None]":
-    """Provide a bar with one task, its columns those of rich unless they are given; None in a pipe."""
+    """Yield a bar with one task; None in a pipe.
+
+    The columns are those of rich unless others are given.
+    """
     if not sys.stderr.isatty():
         yield None
         return

@@ -11,16 +11,25 @@ from .text import counted, styled
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from ..stability.branches import Branches
     from ..stability.equilibria import Equilibria
     from ..stability.linearization import Linearization
 
 ROUNDING = 1e-9  # share of a size that is shown as zero
 SHOWN_COORDINATES = 8  # columns for which there is room
-MOVING = "The motion goes on from here: these eigenvalues belong to this instant and say nothing about stability."
+MOVING = "The motion goes on from here: these eigenvalues belong to this time and say nothing about stability."
 
 
 def show_linearization(console: "Console", found: "Linearization") -> None:
-    """Print eigenvalues, frequencies, damping and modes, and what the controls reach."""
+    """Print eigenvalues, frequencies, damping, modes, and the controllable rank.
+
+    Parameters
+    ----------
+    console : Console
+        Console to print on.
+    found : Linearization
+        Linear system about one state.
+    """
     from rich.table import Table
 
     table = Table("eigenvalue", "frequency", "damping", title=_title(found), title_justify="left")
@@ -44,7 +53,15 @@ def show_linearization(console: "Console", found: "Linearization") -> None:
 
 
 def show_equilibria(console: "Console", equilibria: "Equilibria") -> None:
-    """Print where the equilibria are, how stable, and what is not known."""
+    """Print the equilibria, their stability, and the limits of the search.
+
+    Parameters
+    ----------
+    console : Console
+        Console to print on.
+    equilibria : Equilibria
+        Equilibria for constant controls.
+    """
     from rich.table import Table
 
     title = ", ".join([visible_line(equilibria.scene), *(f"{u} = {x:.10g}" for u, x in equilibria.controls.items())])
@@ -63,13 +80,40 @@ def show_equilibria(console: "Console", equilibria: "Equilibria") -> None:
         console.print(f"Whole turns of {', '.join(equilibria.turns)} are left out.")
 
 
+def show_branches(console: "Console", branches: "Branches") -> None:
+    """Print the number of equilibria of each stability at each value of the control.
+
+    Parameters
+    ----------
+    console : Console
+        Console to print on.
+    branches : Branches
+        Equilibria for each value of a control.
+    """
+    from rich.table import Table
+
+    from ..stability.equilibria import Stability
+
+    there = {each.stability for found in branches for each in found}
+    kinds = [kind for kind in Stability if kind in there]
+    fixed = [f"{u} = {x:.10g}" for u, x in branches.at[0].controls.items() if u != branches.control]
+    table = Table(branches.control, title=", ".join([visible_line(branches.at[0].scene), *fixed]), title_justify="left")
+    for kind in kinds:
+        table.add_column(styled(kind), justify="right")
+    for found in branches:
+        counts = (sum(each.stability is kind for each in found) for kind in kinds)
+        table.add_row(f"{found.controls[branches.control]:.8g}", *map(str, counts))
+    console.print(table)
+    console.print("Numbers of equilibria found; there may be others.")
+
+
 def _title(found: "Linearization") -> str:
     where = "at an equilibrium" if found.at is None else f"at t = {found.at:.10g}"
     return f"{visible_line(found.scene)}, linearised {where}; modes by coordinates"
 
 
 def _rounded(value: complex, size: float) -> complex:
-    """Return the number without parts that are rounding beside a size."""
+    """Return the number without parts that are rounding errors relative to a size."""
     real, imaginary = (0.0 if abs(part) <= ROUNDING * size else float(part) for part in (value.real, value.imag))
     return complex(real, imaginary)
 

@@ -1,4 +1,4 @@
-"""How words, numbers and formulas are written on a console."""
+"""Format words, numbers and formulas for a console."""
 
 import io
 from collections.abc import Callable, Iterable
@@ -35,34 +35,92 @@ STYLES = {
 
 
 class PlainConsole(Console):
-    """A console that takes text for text: no markup, and nothing in it that steers a terminal."""
+    """A console that prints plain text, without markup or terminal control codes."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(highlight=False, markup=False, emoji=False, **options)
 
     def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterable[Segment]:
-        """Render as any console does, unseen characters by their codes."""
+        """Render as any console does, with invisible characters as codes.
+
+        Parameters
+        ----------
+        renderable : RenderableType
+            Text, table or other object to print.
+        options : ConsoleOptions or None
+            None for the console's own.
+
+        Yields
+        ------
+        Segment
+            Piece of text with its style, or a control segment.
+        """
         for segment in super().render(renderable, options):
             yield segment if segment.control else segment._replace(text=visible(segment.text))
 
 
 def html_of(show: Callable[[Console], None]) -> str:
-    """Return what is shown on a console, as HTML for a notebook."""
+    """Return the console output as HTML for a notebook.
+
+    Parameters
+    ----------
+    show : callable
+        Prints on the console that it takes.
+
+    Returns
+    -------
+    str
+        One ``pre`` element with inline styles.
+    """
     return _shown(show).export_html(inline_styles=True, code_format=HTML)
 
 
 def text_of(show: Callable[[Console], None]) -> str:
-    """Return what is shown on a console, as plain text."""
+    """Return the console output as plain text.
+
+    Parameters
+    ----------
+    show : callable
+        Prints on the console that it takes.
+
+    Returns
+    -------
+    str
+        Lines without trailing spaces.
+    """
     return "\n".join(line.rstrip() for line in _shown(show).export_text().splitlines())
 
 
 def styled(verdict: str) -> Text:
-    """Return a verdict in its colour."""
+    """Return a verdict in its colour.
+
+    Parameters
+    ----------
+    verdict : str
+        A key of `STYLES`.
+
+    Returns
+    -------
+    Text
+        Translated into the current language.
+    """
     return Text(translated(verdict), style=STYLES[verdict])
 
 
 def counted(count: int, what: str) -> str:
-    """Return how many of what there are, in words."""
+    """Return a count with its noun.
+
+    Parameters
+    ----------
+    count : int
+        Number of things, not negative.
+    what : str
+        Singular noun whose plural ends with s.
+
+    Returns
+    -------
+    str
+    """
     return f"{count or 'no'} {what}{'' if count == 1 else 's'}"
 
 

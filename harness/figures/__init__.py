@@ -1,1 +1,4 @@
-"""Figures: what a run computed, drawn. One file a figure, one style for all."""
+"""Figures of computed results, in one style.
+
+Each kind of figure has a module.
+"""

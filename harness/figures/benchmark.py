@@ -1,4 +1,4 @@
-"""Measurements as figures: what accuracy costs, and the digits that each method keeps in hard cases."""
+"""Draw accuracy studies, and the correct digits of each method in hard cases."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -24,7 +24,7 @@ SECONDS, OPERATIONS = translatable("time / s"), translatable("operations")
 
 @dataclass(frozen=True)
 class View:
-    """What one panel shows."""
+    """The content of one panel."""
 
     title: str
     shows: Callable[[Measurement], bool]
@@ -32,17 +32,28 @@ class View:
 
 
 PANELS = (
-    View(translatable("Methods, to t = %(until)g"), lambda m: _in_contest(m) and digits_of(m) <= FEW_DIGITS, SECONDS),
-    View(translatable("The same by operations"), lambda m: _in_contest(m) and digits_of(m) <= FEW_DIGITS, OPERATIONS),
+    View(translatable("Methods, to t = %(until)g"), lambda m: _is_compared(m) and digits_of(m) <= FEW_DIGITS, SECONDS),
+    View(translatable("The same by operations"), lambda m: _is_compared(m) and digits_of(m) <= FEW_DIGITS, OPERATIONS),
     View(translatable("Many digits, to t = %(until)g"), lambda m: m.group is Group.TAYLOR, SECONDS),
     View(translatable("The same by operations"), lambda m: m.group is Group.TAYLOR, OPERATIONS),
-    View(translatable("One series, to t = %(instant)g, order by order"), lambda m: m.group is Group.SERIES, SECONDS),
-    View(translatable("Cures of drift and the two solves"), lambda m: m.group in {Group.DRIFT, Group.SOLVE}, SECONDS),
+    View(translatable("One series, to t = %(time)g, order by order"), lambda m: m.group is Group.SERIES, SECONDS),
+    View(
+        translatable("Stabilization methods and the two solves"),
+        lambda m: m.group in {Group.STABILIZATION, Group.SOLVE},
+        SECONDS,
+    ),
 )
 
 
 def draw_study(study: "Study", path: Path) -> None:
     """Draw a study in six panels, as SVG.
+
+    Parameters
+    ----------
+    study : Study
+        Measurements with their scene and machine.
+    path : Path
+        SVG file to write.
 
     Raises
     ------
@@ -53,14 +64,24 @@ def draw_study(study: "Study", path: Path) -> None:
         figure = new_figure(*STUDY)
         for axes, panel in zip(figure.subplots(3, 2).flat, PANELS, strict=True):
             _draw_panel(axes, [m for m in study.measurements if panel.shows(m)], panel.quantity)
-            axes.set_title(gettext(panel.title, until=float(study.until), instant=_instant_of_series(study)))
+            axes.set_title(gettext(panel.title, until=float(study.until), time=_time_of_series(study)))
         figure.suptitle(gettext("What accuracy costs: %(scene)s", scene=study.scene), x=0.01, ha="left")
         figure.supxlabel(str(study.machine), x=0.01, ha="left", fontsize="small")
         write_figure(figure, path)
 
 
 def digits_of(measurement: Measurement) -> float:
-    """Decimal digits that a run kept."""
+    """Return the correct decimal digits of a run.
+
+    Parameters
+    ----------
+    measurement : Measurement
+        Its relative error is positive.
+
+    Returns
+    -------
+    float
+    """
     return -math.log10(measurement.error)
 
 
@@ -80,12 +101,12 @@ def _draw_panel(axes: "Axes", measurements: Sequence[Measurement], quantity: str
         axes.legend(fontsize="small", loc="upper left", bbox_to_anchor=(0.0, -0.2), ncols=2)
 
 
-def _in_contest(measurement: Measurement) -> bool:
+def _is_compared(measurement: Measurement) -> bool:
     return measurement.group in WHOLE_MOTION
 
 
-def _instant_of_series(study: "Study") -> float:
-    return float(next((m.instant for m in study.measurements if m.group is Group.SERIES), study.until))
+def _time_of_series(study: "Study") -> float:
+    return float(next((m.time for m in study.measurements if m.group is Group.SERIES), study.until))
 
 
 WIDTH, HEIGHT_OF_ROW, HEIGHT_OF_SWEEP, MARGINS = 8.0, 0.2, 3.2, 1.4  # inches
@@ -93,7 +114,14 @@ MOST_DIGITS = 16.5
 
 
 def draw_stability(reports: Sequence[CaseReport], file: Path) -> None:
-    """Draw the digits that every method keeps of every case, as SVG.
+    """Draw the correct digits of every method in every case, as SVG.
+
+    Parameters
+    ----------
+    reports : sequence of CaseReport
+        The hard cases, in the order in which they are drawn.
+    file : Path
+        SVG file to write.
 
     Raises
     ------
@@ -113,7 +141,7 @@ def draw_stability(reports: Sequence[CaseReport], file: Path) -> None:
 
 
 def _rows(report: CaseReport) -> list[Result | str]:
-    """Return the name of a case, then what has digits to show."""
+    """Yield the name of a case, then the methods with digits to show."""
     return [report.case.name, *(result for result in report.results if result.digits is not None)]
 
 

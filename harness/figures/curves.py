@@ -1,4 +1,4 @@
-"""Curves over the time in panels below each other, the legend of each above it; drift under each cure among them."""
+"""Draw curves over the time in panels below each other, and constraint drift."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -20,12 +20,24 @@ class Panel:
     """One panel."""
 
     ylabel: str  # what is drawn, with its unit
-    curves: Mapping[str, tuple[NDArray, NDArray]]  # instants and values, by what the legend calls them
+    curves: Mapping[str, tuple[NDArray, NDArray]]  # times and values, by what the legend calls them
     scale: Literal["linear", "log"] = "linear"  # of the values
 
 
 def draw_curves(panels: Sequence[Panel], xlabel: str) -> str:
     """Draw panels over one axis, as SVG.
+
+    Parameters
+    ----------
+    panels : sequence of Panel
+        From top to bottom.
+    xlabel : str
+        Label of the common axis, with its unit.
+
+    Returns
+    -------
+    str
+        SVG document.
 
     Raises
     ------
@@ -36,9 +48,9 @@ def draw_curves(panels: Sequence[Panel], xlabel: str) -> str:
         figure = new_figure(WIDTH, HEIGHT_OF_PANEL * len(panels))
         drawn = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
         for axes, panel in zip(drawn, panels, strict=True):
-            for place, (label, (instants, values)) in enumerate(panel.curves.items()):
+            for place, (label, (times, values)) in enumerate(panel.curves.items()):
                 style = {"color": PALETTE[place % len(PALETTE)], "linestyle": LINES[place % len(LINES)]}
-                axes.plot(instants, values, label=label, **style)
+                axes.plot(times, values, label=label, **style)
             axes.set(ylabel=panel.ylabel, yscale=panel.scale)
             legend_above(axes)
         drawn[-1].set_xlabel(xlabel)
@@ -46,16 +58,30 @@ def draw_curves(panels: Sequence[Panel], xlabel: str) -> str:
 
 
 def draw_drift(motions: Mapping[Stabilization, Simulation]) -> str:
-    """Draw the residuals of the constraints and the error of the energy of one motion under each cure of drift, as SVG.
+    """Draw the residuals of constraints and energy under each stabilization, as SVG.
 
-    What is zero is not drawn: the axes are logarithmic.
+    Zeros are not drawn: the axes are logarithmic.
+
+    Parameters
+    ----------
+    motions : mapping of Stabilization to Simulation
+        The same motion under each stabilization, with residuals and energy.
+
+    Returns
+    -------
+    str
+        SVG document.
     """
     errors = {
         gettext("distance from the constraints\n(dimensionless)"): lambda motion: motion.residuals["position"],
         gettext("energy out of balance\n(units of the scene)"): lambda motion: motion.energy["energy_error"],
     }
     panels = [
-        Panel(what, {str(cure): (each.instants, _nonzero(of(each))) for cure, each in motions.items()}, "log")
+        Panel(
+            what,
+            {str(stabilization): (each.times, _nonzero(of(each))) for stabilization, each in motions.items()},
+            "log",
+        )
         for what, of in errors.items()
     ]
     return draw_curves(panels, gettext("t (units of the scene)"))

@@ -1,10 +1,11 @@
-"""A system in motion, drawn as it looks: as SVG that moves by itself, without a script, or as a strip of positions.
+"""Draw a system in motion, as an animated SVG or as a strip of positions.
 
     film = film_of(simulation, drawing)
     animation(film), strip(film)        # SVG, in the reader's ink like all figures
 
-The strip shows some instants over each other, the later the stronger. Of both the scale and the time are drawn at the
-foot. What never moves, a hinge or a rail, is drawn in ink; what moves, in colour, bodies leaving a trace.
+The animation needs no script. The strip shows positions at several times, later ones more strongly. Both show the
+scale and the time at the foot. Fixed parts, such as a hinge or a rail, are drawn in ink; moving parts are drawn in
+colour, and bodies leave a trace.
 """
 
 import math
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from ..simulation.result import Simulation
 
 FRAMES = 180  # at most
-ROUNDS = 6.0  # a film ends when a body has gone so many times through the whole picture
+ROUNDS = 6.0  # a film ends when a body has gone this many times through the whole picture
 SHORTEST, LONGEST = 4.0, 12.0  # seconds that a film takes
 POSITIONS = 9  # in a strip
 FAINTEST = 0.12  # opacity of the first of them
@@ -48,10 +49,10 @@ STYLE = (
 
 @dataclass(frozen=True)
 class Film:
-    """What a drawing looks like along a motion."""
+    """The shapes of a drawing at the times of a motion."""
 
     title: str
-    instants: NDArray[np.float64]  # shape (k,): equidistant
+    times: NDArray[np.float64]  # shape (k,): equidistant
     shapes: tuple[Shape, ...]
     # shape (k, numbers of the shape): x and y of a shape's places in their order, then, of a circle, the radius
     numbers: tuple[NDArray[np.float64], ...]
@@ -59,11 +60,11 @@ class Film:
     @property
     def span(self) -> float:
         """Time from the first to the last frame."""
-        return float(self.instants[-1] - self.instants[0])
+        return float(self.times[-1] - self.times[0])
 
     @property
     def seconds(self) -> float:
-        """Time that it takes to see it."""
+        """Duration of the film in seconds."""
         return min(max(self.span, SHORTEST), LONGEST)
 
     @property
@@ -72,31 +73,62 @@ class Film:
         return self.span / self.seconds
 
     def parts(self) -> Iterator[tuple[Shape, NDArray[np.float64], bool]]:
-        """Yield each shape with its numbers, and whether it moves."""
+        """Yield each shape with its numbers and its mobility.
+
+        Yields
+        ------
+        shape : Shape
+        numbers : ndarray, shape (k, numbers of the shape)
+            As in `Film`.
+        moves : bool
+            True if the shape moves by more than rounding.
+        """
         least = STEADY * max(map(np.ptp, extents(self.shapes, self.numbers)))
         for shape, numbers in zip(self.shapes, self.numbers, strict=True):
             yield shape, numbers, bool(np.ptp(numbers, axis=0).max() > least)
 
 
 def film_of(simulation: "Simulation", drawing: Drawing) -> Film:
-    """Return the film of a motion, or of its beginning where it goes through the picture too often.
+    """Return the film of a motion.
 
-    The motion has many equidistant instants; the film has 180 frames at most.
+    If the motion crosses the picture too often, the film shows its beginning. It has 180 frames at most.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        Its times are many and equidistant; it has the coordinates.
+    drawing : Drawing
+        Shapes of the system.
+
+    Returns
+    -------
+    Film
     """
-    instants = simulation.instants.astype(float)
-    numbers = drawing.numbers(instants, simulation.coordinates)
+    times = simulation.times.astype(float)
+    numbers = drawing.numbers(times, simulation.coordinates)
     last = _last_frame(drawing.shapes, numbers)
     chosen = slice(0, last + 1, math.ceil(last / FRAMES))
-    return Film(simulation.title, instants[chosen], drawing.shapes, tuple(each[chosen] for each in numbers))
+    return Film(simulation.title, times[chosen], drawing.shapes, tuple(each[chosen] for each in numbers))
 
 
 def animation(film: Film) -> str:
-    """Return a film as SVG that moves; it begins again when it is over."""
+    """Return a film as SVG that moves; it begins again when it is over.
+
+    Parameters
+    ----------
+    film : Film
+        Shapes of the system at equidistant times.
+
+    Returns
+    -------
+    str
+        SVG document.
+    """
     stage = _Stage(film, HIGHEST)
     stage.draw_traces()
     stage.draw(stage.group(), slice(None), moving=True)
     stage.draw(stage.group(**STILL), slice(1), moving=False)
-    stage.draw_foot(range(len(film.instants)))
+    stage.draw_foot(range(len(film.times)))
     return stage.text()
 
 
@@ -104,8 +136,18 @@ def strip(film: Film) -> str:
     """Return a film as SVG that stands still.
 
     Positions over each other, side by side if it is tall, in a column if flat.
+
+    Parameters
+    ----------
+    film : Film
+        Shapes of the system at equidistant times.
+
+    Returns
+    -------
+    str
+        SVG document.
     """
-    frames = np.unique(np.linspace(0, len(film.instants) - 1, POSITIONS).round().astype(int))
+    frames = np.unique(np.linspace(0, len(film.times) - 1, POSITIONS).round().astype(int))
     width, height = map(np.ptp, extents(film.shapes, film.numbers))
     arrange = _row if width < TALL * height else _column if height < FLAT * width else _superposition
     stage = arrange(film, frames)
@@ -137,7 +179,9 @@ def _column(film: Film, frames: NDArray[np.int_]) -> "_Stage":
 
 
 class _Stage:
-    """A sheet with the scale of a film for so many pictures across and down; y is downward, as in SVG.
+    """An SVG page with the scale of a film for pictures across and down.
+
+    The y axis points down, as in SVG.
 
     Attributes
     ----------
@@ -162,20 +206,20 @@ class _Stage:
         return SubElement(self.root, "g", attributes)
 
     def draw(self, parent: Element, frames: slice, moving: bool) -> None:
-        """Draw what moves, or what does not, at some frames."""
+        """Draw the moving or the fixed shapes at some frames."""
         for shape, numbers, moves in self.film.parts():
             if moves is moving:
                 tag, attributes, columns = self._element(shape, numbers[frames], moves)
                 _animate(SubElement(parent, tag, attributes), columns, self.film.seconds)
 
     def draw_apart(self, frame: int, x: float, y: float) -> None:
-        """Draw all of a frame, moved aside."""
+        """Draw all shapes of a frame, shifted."""
         shift = {"transform": f"translate({x:.1f},{y:.1f})"}
         self.draw(self.group(**shift), slice(frame, frame + 1), moving=True)
         self.draw(self.group(**STILL, **shift), slice(1), moving=False)
 
     def draw_traces(self) -> None:
-        """Draw the way of each body."""
+        """Draw the trajectory of each body."""
         traces = self.group()
         for shape, numbers, moves in self.film.parts():
             if moves and shape is Shape.POINT:
@@ -183,17 +227,17 @@ class _Stage:
                 SubElement(traces, "polyline", {"class": "trace", "points": way})
 
     def draw_foot(self, frames: Sequence[int] | NDArray[np.int_]) -> None:
-        """Draw the scale, and the time as a line with a mark that runs along it, or marks of some instants."""
+        """Draw the scale, and the time as a line with a moving mark or several marks."""
         level = self.foot + FOOT / 2 - 8
         self._draw_scale(MARGIN + 4, level)
         self._draw_clock(WIDTH / 2, WIDTH - MARGIN - 4, level, frames)
 
     def text(self) -> str:
-        """Return the sheet as text."""
+        """Return the page as text."""
         return visible(ElementTree.tostring(self.root, encoding="unicode")) + "\n"
 
     def _element(self, shape: Shape, numbers: NDArray[np.float64], moves: bool) -> tuple[str, dict, dict]:
-        """Tag, attributes and, frame by frame, further attributes of a shape."""
+        """Return tag, attributes and the further attributes of a shape at each frame."""
         match shape:
             case Shape.POINT:
                 mark = {"class": "body", "r": f"{BODY}"} if moves else {"class": "hinge", "r": f"{HINGE}"}
@@ -215,24 +259,24 @@ class _Stage:
     def _draw_clock(self, start: float, end: float, level: float, frames: Sequence[int] | NDArray[np.int_]) -> None:
         clock = self.group()
         SubElement(clock, "polyline", {"points": _places([start, level, end, level])})
-        places = [f"{start + (end - start) * frame / (len(self.film.instants) - 1):.1f}" for frame in frames]
+        places = [f"{start + (end - start) * frame / (len(self.film.times) - 1):.1f}" for frame in frames]
         mark = {"class": "body", "r": "4", "cy": f"{level:.1f}"}
-        if len(frames) == len(self.film.instants):
+        if len(frames) == len(self.film.times):
             _animate(SubElement(clock, "circle", mark), {"cx": places}, self.film.seconds)
         else:
             for x, opacity in zip(places, _opacities(frames), strict=True):
                 SubElement(clock, "circle", {**mark, "cx": x, "opacity": f"{opacity:.2f}"})
-        for x, instant, anchor in ((start, self.film.instants[0], "start"), (end, self.film.instants[-1], "end")):
-            _write(clock, x, level + 22, f"t = {instant:.4g}", anchor)
+        for x, time, anchor in ((start, self.film.times[0], "start"), (end, self.film.times[-1], "end")):
+            _write(clock, x, level + 22, f"t = {time:.4g}", anchor)
 
     def _pixels(self, numbers: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Pixels of places, x and y by turns."""
+        """Return positions in pixels, x and y by turns."""
         columns = numbers.shape[1]
         return np.resize(self.origin, columns) + numbers * np.resize([self.scale, -self.scale], columns)
 
 
 def _animate(element: Element, frames: dict[str, list[str]], seconds: float) -> None:
-    """Give an element the attributes of the first frame, and let it run through the others."""
+    """Give an element the attributes of the first frame, and animate the others."""
     for name, texts in frames.items():
         element.set(name, texts[0])
         if len(texts) > 1:
@@ -258,13 +302,26 @@ def _places(pixels: Iterable[float]) -> str:
 
 
 def _round_length(longest: float) -> float:
-    """1, 2 or 5 times a power of ten, and not longer than that."""
+    """Return the largest of 1, 2 or 5 times a power of ten up to a length."""
     power = 10.0 ** math.floor(math.log10(longest))
     return next(digit * power for digit in (5, 2, 1) if digit * power <= longest)
 
 
 def extents(shapes: Sequence[Shape], numbers: Sequence[NDArray[np.float64]]) -> list[NDArray[np.float64]]:
-    """Least and greatest x, least and greatest y."""
+    """Return least and greatest x, least and greatest y.
+
+    Parameters
+    ----------
+    shapes : sequence of Shape
+        Kinds of the shapes.
+    numbers : sequence of ndarray, shape (k, numbers of the shape)
+        Numbers of each shape, as in `Film`.
+
+    Returns
+    -------
+    list of ndarray, shape (2,)
+        Least and greatest x, then least and greatest y.
+    """
     return [
         np.array([min(low.min() for low, _ in sides), max(high.max() for _, high in sides)])
         for sides in ([_sides(shape, row, axis) for shape, row in zip(shapes, numbers, strict=True)] for axis in (0, 1))
@@ -278,7 +335,10 @@ def _sides(shape: Shape, numbers: NDArray[np.float64], axis: int) -> tuple[NDArr
 
 
 def _last_frame(shapes: Sequence[Shape], numbers: Sequence[NDArray[np.float64]]) -> int:
-    """Return the last frame, or the one at which a body has gone through the picture so far often enough."""
+    """Return the last frame of the film.
+
+    It is earlier than the end if a body has crossed the picture too often.
+    """
     places = [row[:, :2] if shape is Shape.CIRCLE else row for shape, row in zip(shapes, numbers, strict=True)]
     xy = np.concatenate([row.reshape(len(row), -1, 2) for row in places], axis=1)
     gone = np.cumsum(np.linalg.norm(np.diff(xy, axis=0), axis=2), axis=0).max(axis=1)

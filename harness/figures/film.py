@@ -1,4 +1,4 @@
-"""Films of motions as files: SVG that moves by itself, a page that holds it, GIF, or MP4 by the program ffmpeg."""
+"""Write films of motions as SVG, HTML, GIF or MP4; MP4 needs the program ffmpeg."""
 
 import shutil
 from collections.abc import Callable, Mapping
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..files import write_whole
 from ..hidden import visible_line
 from ..program.drawing import Shape
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from ..simulation.result import Simulation
 
-EVEN = 1e-9  # of the time span: by how much instants may differ from equidistant ones
+EVEN = 1e-9  # of the time span: by how much times may differ from equidistant ones
 INCHES, DOTS, MARGIN = 6.0, 100, 0.05  # width, dots per inch, and room around the picture in terms of its size
 PAGE = '<!DOCTYPE html>\n<html><head><meta charset="utf-8"><title>{title}</title></head>\n<body>{svg}</body></html>\n'
 ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;"})
@@ -36,7 +36,12 @@ class MovingPicture:
         self.film = film
 
     def save(self, path: str | Path) -> None:
-        """Write it as SVG, HTML, GIF or MP4, as the name says.
+        """Write the film as SVG, HTML, GIF or MP4, by the suffix of the name.
+
+        Parameters
+        ----------
+        path : str or Path
+            File to write; its suffix is .svg, .html, .gif or .mp4.
 
         Raises
         ------
@@ -52,24 +57,43 @@ class MovingPicture:
 def moving_picture(simulation: "Simulation") -> MovingPicture:
     """Return the film of a motion.
 
+    Parameters
+    ----------
+    simulation : Simulation
+        A motion with a drawing and its trajectory at equidistant times.
+
+    Returns
+    -------
+    MovingPicture
+
     Raises
     ------
     HolonomError
         The system has no drawing, the scene does not observe the trajectory, or the samples are not equidistant.
     """
-    instants = simulation.instants.astype(float)
-    even = np.linspace(instants[0], instants[-1], len(instants))
+    times = simulation.times.astype(float)
+    even = np.linspace(times[0], times[-1], len(times))
     if simulation.drawing is None:
-        raise HolonomError(Failure.NOT_FILMED, detail="the system has no drawing")
+        raise HolonomError(ErrorKind.NOT_FILMED, detail="the system has no drawing")
     if not simulation.coordinates:
-        raise HolonomError(Failure.NOT_FILMED, detail="the scene does not observe its trajectory")
-    if len(instants) < 2 or np.abs(instants - even).max() > EVEN * np.ptp(instants):
-        raise HolonomError(Failure.NOT_FILMED, detail="the samples are not equidistant")
+        raise HolonomError(ErrorKind.NOT_FILMED, detail="the scene does not observe its trajectory")
+    if len(times) < 2 or np.abs(times - even).max() > EVEN * np.ptp(times):
+        raise HolonomError(ErrorKind.NOT_FILMED, detail="the samples are not equidistant")
     return MovingPicture(film_of(simulation, simulation.drawing))
 
 
 def film_format(path: Path) -> Callable[[Film], str | bytes]:
-    """Return what makes the content of a file of that name.
+    """Return the function that makes the content of a file of that name.
+
+    Parameters
+    ----------
+    path : Path
+        Name of the file; its suffix selects the format.
+
+    Returns
+    -------
+    callable
+        Takes a `Film`; returns str for SVG and HTML, bytes for GIF and MP4.
 
     Raises
     ------
@@ -77,9 +101,9 @@ def film_format(path: Path) -> Callable[[Film], str | bytes]:
         There is no such format, or ffmpeg, which MP4 needs, is not installed.
     """
     if path.suffix not in FORMATS:
-        raise HolonomError(Failure.NO_SUCH_FORMAT, path, ", ".join(FORMATS))
+        raise HolonomError(ErrorKind.NO_SUCH_FORMAT, path, ", ".join(FORMATS))
     if path.suffix == ".mp4" and shutil.which("ffmpeg") is None:
-        raise HolonomError(Failure.NO_FFMPEG, path)
+        raise HolonomError(ErrorKind.NO_FFMPEG, path)
     return FORMATS[path.suffix]
 
 
@@ -100,19 +124,19 @@ def _frames(film: Film, suffix: str) -> bytes:
         axes.set(xlim=(left - room, right + room), ylim=(low - room, high + room), aspect="equal")
         axes.set_title(visible_line(film.title), fontsize="small")
         moves = [_artist(axes, shape, numbers) for shape, numbers in zip(film.shapes, film.numbers, strict=True)]
-        count = len(film.instants)
+        count = len(film.times)
         writer = {".gif": PillowWriter, ".mp4": FFMpegWriter}[suffix](fps=count / film.seconds)
         with writer.saving(figure, str(folder / f"film{suffix}"), DOTS):
             for frame in range(count):
                 for move in moves:
                     move(frame)
-                axes.set_xlabel(f"t = {film.instants[frame]:.4g}")
+                axes.set_xlabel(f"t = {film.times[frame]:.4g}")
                 writer.grab_frame(facecolor="white")
         return (folder / f"film{suffix}").read_bytes()
 
 
 def _artist(axes: "Axes", shape: Shape, numbers: NDArray[np.float64]) -> Callable[[int], None]:
-    """Add a shape; return what moves it to a frame."""
+    """Add a shape; return the function that moves it to a frame."""
     if shape is Shape.CIRCLE:
         from matplotlib.patches import Circle
 

@@ -1,4 +1,4 @@
-"""A motion as a figure: over the time, and from above with an effect and without it."""
+"""Draw a motion over the time, and a path with and without an effect."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..language import gettext, translated
 from .style import BLUE, LINES, PALETTE, VERMILION, figure_style, lettered, new_figure, svg_text, write_figure
 
@@ -28,6 +28,15 @@ IN_A_COLUMN = 12  # curves in a column of a legend
 def draw_motion(simulation: "Simulation", file: Path, curves: Sequence[str] | None = None) -> None:
     """Draw a motion, or some curves of it, into a file, SVG or PNG.
 
+    Parameters
+    ----------
+    simulation : Simulation
+        The motion.
+    file : Path
+        File to write; the suffix .png selects PNG, any other SVG.
+    curves : sequence of str or None
+        As for `motion_figure`.
+
     Raises
     ------
     HolonomError
@@ -42,8 +51,14 @@ def motion_figure(simulation: "Simulation", curves: Sequence[str] | None = None)
 
     Parameters
     ----------
+    simulation : Simulation
+        The motion.
     curves : sequence of str or None
         Names of quantities as in `Simulation.keys`; None for all but residuals and sensitivities.
+
+    Returns
+    -------
+    Figure
 
     Raises
     ------
@@ -67,7 +82,7 @@ def motion_figure(simulation: "Simulation", curves: Sequence[str] | None = None)
         figure = new_figure(WIDTH, HEIGHT_OF_PANEL * len(drawn))
         panels = figure.subplots(len(drawn), 1, sharex=True, squeeze=False)[:, 0]
         for panel, (title, curves) in zip(panels, drawn, strict=True):
-            _draw(panel, simulation.instants.astype(float), curves)
+            _draw(panel, simulation.times.astype(float), curves)
             panel.set_ylabel(gettext("%(quantity)s\n(units of the scene)", quantity=title))
         panels[0].set_title(translated(simulation.title))
         panels[-1].set_xlabel(gettext("t (units of the scene)"))
@@ -77,14 +92,25 @@ def motion_figure(simulation: "Simulation", curves: Sequence[str] | None = None)
 def _chosen(groups: Mapping[str, Mapping[str, NDArray]], names: Sequence[str]) -> dict[str, dict[str, NDArray]]:
     known = {name for group in groups.values() for name in group}
     if unknown := [name for name in names if name not in known] or [""] * (not names):
-        raise HolonomError(Failure.NO_CURVE, detail=f"{unknown[0]!r}; there are {', '.join(sorted(known))}")
+        raise HolonomError(ErrorKind.NO_CURVE, detail=f"{unknown[0]!r}; there are {', '.join(sorted(known))}")
     return {title: {name: group[name] for name in group if name in names} for title, group in groups.items()}
 
 
 def of_like_size(curves: Mapping[str, NDArray]) -> list[dict[str, NDArray]]:
-    """Curves in groups, each of which can be read on one axis: the largest first, none hundreds of times another.
+    """Return groups of curves, each of which can be read on one axis.
 
-    Curves that are zero but for rounding go with the smallest.
+    Within a group the sizes differ by a factor of hundreds at most. Curves that are zero except for rounding are in the
+    group with the smallest values.
+
+    Parameters
+    ----------
+    curves : mapping of str to ndarray, shape (k,)
+        Samples by name of the quantity.
+
+    Returns
+    -------
+    list of dict
+        The group with the largest values first; names keep their order within a group.
     """
     sizes = {name: float(np.max(np.abs(samples.astype(float)), initial=0.0)) for name, samples in curves.items()}
     parts: list[dict[str, NDArray]] = []
@@ -97,11 +123,11 @@ def of_like_size(curves: Mapping[str, NDArray]) -> list[dict[str, NDArray]]:
     return [{name: curves[name] for name in curves if name in part} for part in parts]
 
 
-def _draw(axes: "Axes", instants: NDArray[np.float64], curves: Mapping[str, NDArray]) -> None:
+def _draw(axes: "Axes", times: NDArray[np.float64], curves: Mapping[str, NDArray]) -> None:
     for index, (name, samples) in enumerate(curves.items()):
         line = LINES[index // len(PALETTE) % len(LINES)]
         colour = PALETTE[index % len(PALETTE)]
-        axes.plot(instants, samples.astype(float), linestyle=line, color=colour, label=lettered(name))
+        axes.plot(times, samples.astype(float), linestyle=line, color=colour, label=lettered(name))
     columns = math.ceil(len(curves) / IN_A_COLUMN)
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), ncols=columns)
 
@@ -110,7 +136,26 @@ HEIGHT_OF_WAYS = 4.8  # inches
 
 
 def draw_with_and_without(present: "Simulation", absent: "Simulation", across: str, along: str) -> str:
-    """Draw the way of a body in the plane of two coordinates, with an effect and without it, as SVG."""
+    """Draw the path of a body in a plane, with and without an effect, as SVG.
+
+    The plane is that of two coordinates.
+
+    Parameters
+    ----------
+    present : Simulation
+        Motion with the effect.
+    absent : Simulation
+        Motion without the effect.
+    across : str
+        Name of the horizontal coordinate.
+    along : str
+        Name of the vertical coordinate.
+
+    Returns
+    -------
+    str
+        SVG document.
+    """
     reach = 1.05 * max(abs(motion.coordinates[name]).max() for motion in (present, absent) for name in (across, along))
     with figure_style():
         figure = new_figure(WIDTH, HEIGHT_OF_WAYS)
@@ -127,7 +172,7 @@ def _draw_way(axes: "Axes", motion: "Simulation", across: str, along: str, colou
     x, y = motion.coordinates[across], motion.coordinates[along]
     axes.plot(x, y, color=colour, linewidth=1)
     axes.plot(x[:1], y[:1], "o", color=colour, label=gettext("start"))
-    axes.plot(x[-1:], y[-1:], "s", color=colour, label=f"t = {motion.instants[-1]:g}")
+    axes.plot(x[-1:], y[-1:], "s", color=colour, label=f"t = {motion.times[-1]:g}")
     axes.set_title(translated(motion.title), fontsize="small")
     axes.set_aspect("equal")
     axes.legend(loc="upper right")

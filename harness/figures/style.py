@@ -1,4 +1,4 @@
-"""One style for all figures: SVG with its text as text, the same bytes from the same numbers, on light and dark pages.
+"""Style of all figures: reproducible SVG with text, for light and dark pages.
 
     with figure_style():
         figure = new_figure(9, 4)
@@ -6,9 +6,9 @@
         left.plot(times, values, color=BLUE, label="...")
     write_figure(figure, Path("build/motion.svg"))
 
-Axes, text and grid are drawn in `INK`, which stands for the reader's own ink: dark on a light page, light on a dark
-one, inside an <img> as well as inside a page. Nothing is drawn behind them. Colours are those of Okabe and Ito that
-show on both, told apart with any colour vision; still, let markers and line styles say the same once more.
+Axes, text and grid are drawn in `INK`, which is replaced by the reader's text colour: dark on a light page, light on
+a dark one, inside an <img> as well as inside a page. The background is transparent. Colours are those of Okabe and
+Ito that are visible on both and distinct with any colour vision. Markers and line styles must repeat the distinction.
 
 References
 ----------
@@ -26,7 +26,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 from ..extras import missing_package
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..files import write_whole
 from ..hidden import visible
 from ..language import spoken
@@ -83,6 +83,10 @@ COLOUR_OF_INK = f"<style>{INK_RULE}</style>"
 def figure_style() -> Iterator[None]:
     """Draw in this style inside the block; Matplotlib's own settings return after it.
 
+    Yields
+    ------
+    None
+
     Raises
     ------
     HolonomError
@@ -98,7 +102,7 @@ def figure_style() -> Iterator[None]:
 
 
 def _fonts() -> list[str]:
-    """Return the fonts in which labels are set, in the language spoken."""
+    """Return the fonts of labels in the current language."""
     wanted = OPEN_FONTS.get(spoken(), ())
     if not wanted:
         return [LATIN]
@@ -109,7 +113,20 @@ def _fonts() -> list[str]:
 
 
 def new_figure(width: float, height: float) -> "Figure":
-    """Return an empty figure of that size in inches, of no window and no global state; panels do not overlap.
+    """Return an empty figure without window or global state.
+
+    Panels do not overlap.
+
+    Parameters
+    ----------
+    width : float
+        In inches.
+    height : float
+        In inches.
+
+    Returns
+    -------
+    Figure
 
     Raises
     ------
@@ -123,12 +140,28 @@ def new_figure(width: float, height: float) -> "Figure":
 
 
 def legend_above(axes: "Axes") -> None:
-    """Put the legend of a panel above it, where it lies on no data."""
+    """Put the legend of a panel above it, where it covers no data.
+
+    Parameters
+    ----------
+    axes : Axes
+        Panel whose curves have labels.
+    """
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
 
 
 def lettered(name: str) -> str:
-    """Return the name of a quantity as a reader writes it: λ₁ for lambda1, φ̇ for dot(phi)."""
+    """Return the name of a quantity in symbols: λ₁ for lambda1, φ̇ for dot(phi).
+
+    Parameters
+    ----------
+    name : str
+        ASCII name of a quantity.
+
+    Returns
+    -------
+    str
+    """
     if rate := RATE.fullmatch(name):
         letter, *rest = lettered(rate[2])
         return letter + DOTS[rate[1]] + "".join(rest)
@@ -137,7 +170,17 @@ def lettered(name: str) -> str:
 
 
 def lettered_text(text: str) -> str:
-    """Return a text in which names of quantities are written in their letters."""
+    """Return a text with names of quantities in symbols.
+
+    Parameters
+    ----------
+    text : str
+        Words that are names of Greek letters are replaced.
+
+    Returns
+    -------
+    str
+    """
     return WORD.sub(lambda word: lettered(word[0]), text)
 
 
@@ -151,10 +194,14 @@ def _in_greek(name: str) -> str:
 
 
 def write_figure(figure: "Figure", path: Path) -> None:
-    """Write a figure as SVG, or as PNG on white where the name says so, whole or not at all.
+    """Write a figure as SVG, or as PNG on white if the suffix is .png.
+
+    The file appears complete or not at all.
 
     Parameters
     ----------
+    figure : Figure
+        The figure to write.
     path : Path
         The file; what it held is replaced. The same figure gives the same bytes.
 
@@ -173,7 +220,18 @@ class Picture:
         self.figure = figure
 
     def save(self, path: str | Path) -> None:
-        """Write it as SVG or PNG, as the name says."""
+        """Write the figure as SVG or PNG, by the suffix of the name.
+
+        Parameters
+        ----------
+        path : str or Path
+            File to write; the suffix .png selects PNG, any other SVG.
+
+        Raises
+        ------
+        HolonomError
+            The file cannot be written.
+        """
         with figure_style():
             write_figure(self.figure, Path(path))
 
@@ -183,7 +241,18 @@ class Picture:
 
 
 def svg_text(figure: "Figure") -> str:
-    """Return a figure as the text of an SVG document, its ink the reader's."""
+    """Return a figure as the text of an SVG document, its ink the reader's.
+
+    Parameters
+    ----------
+    figure : Figure
+        Drawn in `figure_style`.
+
+    Returns
+    -------
+    str
+        SVG document.
+    """
     buffer = io.StringIO()
     _take_text_for_text(figure)
     with import_matplotlib().rc_context(WRITING):
@@ -201,7 +270,7 @@ def _png(figure: "Figure") -> bytes:
 
 
 def _take_text_for_text(figure: "Figure") -> None:
-    """See that no title or label is read as a formula, which Matplotlib would look for between dollar signs."""
+    """Escape dollar signs in titles and labels, which Matplotlib reads as formulas."""
     from matplotlib.text import Text
 
     for written in figure.findobj(Text):
@@ -209,12 +278,22 @@ def _take_text_for_text(figure: "Figure") -> None:
 
 
 def import_matplotlib() -> ModuleType:
-    """Matplotlib, or the sentence that it is missing."""
+    """Return Matplotlib.
+
+    Returns
+    -------
+    module
+
+    Raises
+    ------
+    HolonomError
+        Matplotlib is not installed, or its settings file is not UTF-8.
+    """
     try:
         import matplotlib
     except ImportError:
         raise missing_package("matplotlib") from None
     except UnicodeDecodeError as error:  # in the settings that it finds in the working directory, or at home
         place, byte = "matplotlibrc", error.object[error.start]
-        raise HolonomError(Failure.NOT_UTF8, place, f"0x{byte:02x}") from None
+        raise HolonomError(ErrorKind.NOT_UTF8, place, f"0x{byte:02x}") from None
     return matplotlib

@@ -1,11 +1,11 @@
-"""A sweep as a picture: a map over two parameters, or a curve over one."""
+"""Draw a sweep as a map over two parameters, or as a curve over one."""
 
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from .style import BLUE, figure_style, new_figure
 
 if TYPE_CHECKING:
@@ -16,13 +16,24 @@ if TYPE_CHECKING:
     from ..sweeps.run import Sweep
 
 WIDTH, HEIGHT = 7.0, 5.0  # inches
-BESIDE = ("row", "residual", "status", "remark")
+BESIDE = ("row", "residual", "status", "note")
 
 
 def sweep_figure(sweep: "Sweep", quantity: str | None = None) -> "Figure":
-    """Return the figure of a column of a sweep, else of the first that is kept.
+    """Return the figure of a column of a sweep, by default of the first quantity.
 
-    Of rows without a value nothing is drawn.
+    Rows without a value are not drawn.
+
+    Parameters
+    ----------
+    sweep : Sweep
+        A finished sweep over one parameter, or over two in a grid.
+    quantity : str or None
+        Name of a column; None for `plotted`.
+
+    Returns
+    -------
+    Figure
 
     Raises
     ------
@@ -31,8 +42,8 @@ def sweep_figure(sweep: "Sweep", quantity: str | None = None) -> "Figure":
     """
     names = [axis["name"] for axis in sweep.document["parameters"]]
     shown = quantity or plotted(sweep.document)
-    if shown not in sweep.document["columns"] or shown in ("status", "remark"):
-        raise HolonomError(Failure.NOT_PLOTTED, detail=f"the sweep keeps no {shown}")
+    if shown not in sweep.document["columns"] or shown in ("status", "note"):
+        raise HolonomError(ErrorKind.NOT_PLOTTED, detail=f"the sweep keeps no {shown}")
     table = sweep.dataset.to_table(columns=[*names, shown])
     columns = [np.array(table.column(name).to_numpy(zero_copy_only=False), dtype=float) for name in [*names, shown]]
     with figure_style():
@@ -50,13 +61,37 @@ def sweep_figure(sweep: "Sweep", quantity: str | None = None) -> "Figure":
 
 
 def require_plottable(axes: "SweepAxes") -> None:
-    """Refuse to draw what neither curve nor map can show: more than two parameters, or two that are no grid."""
+    """Raise if a sweep is neither a curve nor a map.
+
+    It may vary one parameter, or two in a grid.
+
+    Parameters
+    ----------
+    axes : SweepAxes
+        Parameters of the sweep.
+
+    Raises
+    ------
+    HolonomError
+        More than two parameters vary, or two that are sampled.
+    """
     if len(axes.names) > 2 or (len(axes.names) == 2 and axes.samples):
-        raise HolonomError(Failure.NOT_PLOTTED, detail="a curve takes one parameter, a map two in grids or lists")
+        raise HolonomError(ErrorKind.NOT_PLOTTED, detail="a curve takes one parameter, a map two in grids or lists")
 
 
 def plotted(document: dict[str, Any]) -> str:
-    """Return the first quantity that a sweep keeps; its residual where it keeps none."""
+    """Return the first quantity that a sweep records; its residual if there is none.
+
+    Parameters
+    ----------
+    document : dict
+        JSON document of the sweep.
+
+    Returns
+    -------
+    str
+        Name of a column.
+    """
     names = {axis["name"] for axis in document["parameters"]}
     kept = [name for name in document["columns"] if name not in names and name not in BESIDE]
     return kept[0] if kept else "residual"

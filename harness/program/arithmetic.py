@@ -1,6 +1,6 @@
-"""One walk over expressions for every target: numbers, C text, Python syntax trees, heyoka expressions.
+"""Evaluation of expressions in each target, such as C text or heyoka expressions.
 
-A target is an arithmetic, that is what a number, a constant and each operation become in it.
+A target is an arithmetic: it defines the form of a number, of a constant and of each operation.
 """
 
 from collections.abc import Callable, Mapping
@@ -30,7 +30,7 @@ INFIX = {
 
 @dataclass(frozen=True)
 class Arithmetic(Generic[Value]):
-    """What the parts of an expression become."""
+    """The form of numbers, constants and operations in a target."""
 
     number: Callable[[Fraction], Value]  # takes a Fraction
     constants: Mapping[Constant, Value]
@@ -39,7 +39,20 @@ class Arithmetic(Generic[Value]):
     operations: Mapping[Operation, Callable[..., Value]]
 
     def value(self, expression: Expression, names: Mapping[str, Value]) -> Value:
-        """Return what an expression becomes, given what its names have become."""
+        """Return the form of an expression, given the forms of its names.
+
+        Parameters
+        ----------
+        expression : Expression
+            Expression to translate.
+        names : mapping of str to Value
+            Form of each name in the expression.
+
+        Returns
+        -------
+        Value
+            Form in the target.
+        """
         match expression:
             case Call(Operation.POWER, (base, Fraction() as exponent)):
                 return self.power(self.value(base, names), exponent)
@@ -49,7 +62,20 @@ class Arithmetic(Generic[Value]):
                 return self.atom(atom, names)
 
     def atom(self, atom: Atom, names: Mapping[str, Value]) -> Value:
-        """Return what a name, a number or a constant becomes."""
+        """Return the form of a name, a number or a constant.
+
+        Parameters
+        ----------
+        atom : Atom
+            A name, a number or a constant.
+        names : mapping of str to Value
+            Form of each name.
+
+        Returns
+        -------
+        Value
+            Form in the target.
+        """
         match atom:
             case Name(text):
                 return names[text]
@@ -60,7 +86,21 @@ class Arithmetic(Generic[Value]):
 
 
 def run_program(program: Program, inputs: Mapping[str, Value], arithmetic: Arithmetic[Value]) -> dict[str, Value]:
-    """Carry a program out, assignment by assignment, for a value of each input; each output's value in their order."""
+    """Evaluate a program, given a value of each input.
+
+    Parameters
+    ----------
+    program : Program
+    inputs : mapping of str to Value
+        Value of each input of the program.
+    arithmetic : Arithmetic[Value]
+        Arithmetic of the values.
+
+    Returns
+    -------
+    dict of str to Value
+        Value of each output, in order.
+    """
     names = dict(inputs)
     for name, expression in program.assignments:
         names[name] = arithmetic.value(expression, names)

@@ -1,4 +1,4 @@
-"""A motion program compiled by the system's C compiler."""
+"""Motion programs compiled by the system's C compiler."""
 
 import ctypes
 import os
@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..sandbox import LimitExceeded, Limits, Place, Sandbox, run_process
 from ..supervisor import doing
 from ..temporary import private_directory
@@ -50,6 +50,7 @@ class CFunction:
         Parameters
         ----------
         inputs : array_like, shape (inputs,) or (inputs, points)
+            Inputs of the program in its order.
 
         Returns
         -------
@@ -75,6 +76,14 @@ class CFunction:
 def compile_c(program: Program) -> CFunction:
     """Compile a program with the system's C compiler and load it.
 
+    Parameters
+    ----------
+    program : Program
+
+    Returns
+    -------
+    CFunction
+
     Raises
     ------
     HolonomError
@@ -84,9 +93,25 @@ def compile_c(program: Program) -> CFunction:
 
 
 def load_c(source: str, *options: str) -> ctypes.CDLL:
-    """Compile C99 source into a shared object in a private directory, and load it. Raises as `compile_c`.
+    """Compile C99 source into a shared object and load it.
 
-    It stays usable when the directory is gone.
+    The object is written to a private directory. It stays usable when the directory is removed.
+
+    Parameters
+    ----------
+    source : str
+        Source text in C99.
+    *options : str
+        Further options of the compiler.
+
+    Returns
+    -------
+    CDLL
+
+    Raises
+    ------
+    HolonomError
+        As `compile_c`.
     """
     with private_directory() as directory:
         source_file, library = directory / "motion.c", directory / "motion.so"
@@ -94,49 +119,77 @@ def load_c(source: str, *options: str) -> ctypes.CDLL:
         try:
             compile_shared([source_file], library, NATIVE, *OPTIONS, *options)
         except HolonomError as refused:
-            if refused.failure is not Failure.COMPILER_REFUSED:
+            if refused.kind is not ErrorKind.COMPILER_REFUSED:
                 raise
             compile_shared([source_file], library, *OPTIONS, *options)
         try:
             return ctypes.CDLL(str(library))
         except OSError as error:
-            raise HolonomError(Failure.COMPILER_UNUSABLE, detail=f"it made no library; {error}") from None
+            raise HolonomError(ErrorKind.COMPILER_UNUSABLE, detail=f"it made no library; {error}") from None
 
 
 def unload(library: ctypes.CDLL) -> None:
-    """Close a library whose functions and numbers are not used any more."""
+    """Close a library whose functions and numbers are not used any more.
+
+    Parameters
+    ----------
+    library : CDLL
+        Library from `load_c`.
+    """
     close = ctypes.CDLL(None).dlclose
     close.argtypes = (ctypes.c_void_p,)
     close(library._handle)
 
 
 def compile_shared(sources: Sequence[Path], library: Path, *options: str) -> None:
-    """Compile C sources into a shared object. Raises as `compile_c`."""
+    """Compile C sources into a shared object.
+
+    Parameters
+    ----------
+    sources : sequence of Path
+        Files in C.
+    library : Path
+        Shared object to write.
+    *options : str
+        Options of the compiler.
+
+    Raises
+    ------
+    HolonomError
+        As `compile_c`.
+    """
     command = [*_compiler(), *map(str, sources), "-o", str(library), *options, "-lm"]
     said = bytearray()
     try:
         with doing("compiling C"):
             status = run_process(command, Place(library.parent, os.environ, COMPILER_LIMITS), said)
     except LimitExceeded as exceeded:
-        raise HolonomError(Failure.COMPILER_UNUSABLE, detail=f"{command[0]} took more than {exceeded.detail}") from None
+        raise HolonomError(
+            ErrorKind.COMPILER_UNUSABLE, detail=f"{command[0]} took more than {exceeded.detail}"
+        ) from None
     except OSError as error:
-        raise HolonomError(Failure.COMPILER_UNUSABLE, detail=f"{command[0]}: {error.strerror}") from None
+        raise HolonomError(ErrorKind.COMPILER_UNUSABLE, detail=f"{command[0]}: {error.strerror}") from None
     if status != 0:
         shown = " ".join(said.decode(errors="replace").split())[:SHOWN]
-        raise HolonomError(Failure.COMPILER_REFUSED, detail=shown or f"exit status {status}")
+        raise HolonomError(ErrorKind.COMPILER_REFUSED, detail=shown or f"exit status {status}")
     if not library.exists():
-        raise HolonomError(Failure.COMPILER_UNUSABLE, detail=f"{command[0]} made no library")
+        raise HolonomError(ErrorKind.COMPILER_UNUSABLE, detail=f"{command[0]} made no library")
 
 
 def has_compiler() -> bool:
-    """Return True if there is a C compiler."""
+    """Return True if there is a C compiler.
+
+    Returns
+    -------
+    bool
+    """
     with suppress(HolonomError):
         return bool(_compiler())
     return False
 
 
 def _compiler() -> list[str]:
-    """Return the compiler's command: what CC says, or the first that is installed."""
+    """Return the compiler's command: the value of CC, or the first installed one."""
     if named := os.environ.get("CC"):
         command = _words(named)
         found = shutil.which(command[0])
@@ -144,7 +197,7 @@ def _compiler() -> list[str]:
         command = [""]
         found = next(filter(None, map(shutil.which, COMPILERS)), None)
     if found is None:
-        raise HolonomError(Failure.COMPILER_MISSING)
+        raise HolonomError(ErrorKind.COMPILER_MISSING)
     return [found, *command[1:]]
 
 
@@ -154,5 +207,5 @@ def _words(command: str) -> list[str]:
     except ValueError:
         words = []
     if not words:
-        raise HolonomError(Failure.COMPILER_UNUSABLE, detail=f"CC is '{command}'")
+        raise HolonomError(ErrorKind.COMPILER_UNUSABLE, detail=f"CC is '{command}'")
     return words

@@ -37,16 +37,23 @@ LANE_FUNCTIONS = {
 
 @dataclass(frozen=True)
 class Target:
-    """What C computes with: how it declares a value, and its arithmetic."""
+    """The form of statements and formulas in C or a similar language."""
 
-    declaration: str
+    statement: str
     arithmetic: Arithmetic[Formula]
 
 
 def c_source(program: Program) -> str:
     """Return a program as C99, ``motion`` and ``motion_batch``.
 
-    A translation unit that needs the standard library alone.
+    Parameters
+    ----------
+    program : Program
+
+    Returns
+    -------
+    str
+        A translation unit that needs the standard library alone.
     """
     places = range(len(program.inputs))
     one = scalar_statements(program, [f"in[{place}]" for place in places])
@@ -59,7 +66,7 @@ def c_source(program: Program) -> str:
         table="\n".join(_table(program)),
         helpers=HELPERS,
         one=indent("\n".join(one), " " * 4),
-        lanes=lanes_support(many),
+        lanes=batch_support(many),
         many=indent(many, " " * 8),
         inputs=len(program.inputs),
         outputs=len(program.outputs),
@@ -69,20 +76,51 @@ def c_source(program: Program) -> str:
 def scalar_statements(program: Program, inputs: Sequence[str]) -> Iterator[str]:
     """Return the program for one point, as statements of C that fill an array ``out``.
 
-    Each input is given as an expression of C. They need `HELPERS` and the mathematical functions.
+    The statements need `HELPERS` and the mathematical functions.
+
+    Parameters
+    ----------
+    program : Program
+    inputs : sequence of str
+        Expression of C for each input.
+
+    Returns
+    -------
+    iterator of str
+        One statement for each item.
     """
     return statements(program, ONE, inputs, [f"out[{place}] = {{value}};" for place in range(len(program.outputs))])
 
 
 def title_of(program: Program) -> str:
-    """One line on what the program is."""
+    """Return a one-line description of the program.
+
+    Parameters
+    ----------
+    program : Program
+
+    Returns
+    -------
+    str
+        Scene, number of operations, method of the solve and range.
+    """
     scene = f" of {program.scene}" if program.scene else ""
     operations = f"{program.operations} operations, {program.solve} solve ({program.method})"
     return f"Motion program{scene}: {operations}{_redundancy(program)}; {range_of(program)}"
 
 
 def range_of(program: Program) -> str:
-    """Return the states at which no pivot of the program vanishes."""
+    """Return the states at which no pivot of the program vanishes.
+
+    Parameters
+    ----------
+    program : Program
+
+    Returns
+    -------
+    str
+        A clause that begins with "valid where".
+    """
     if program.method == "supported":
         return "valid where forces and constraints determine the motion, if the rank of the mass matrix is constant"
     return (
@@ -98,7 +136,20 @@ def _redundancy(program: Program) -> str:
 
 
 def comment_text(text: str) -> str:
-    """Text that cannot end the comment it stands in: JSON's own escapes, without its quotes."""
+    """Escape text for a comment, by JSON's escapes without the quotes.
+
+    The result cannot end the comment.
+
+    Parameters
+    ----------
+    text : str
+        Any text.
+
+    Returns
+    -------
+    str
+        Text without characters beyond ASCII and without the end of a comment.
+    """
     return json.dumps(text)[1:-1].replace("*/", "*\\/")
 
 
@@ -109,32 +160,49 @@ def _table(program: Program) -> Iterator[str]:
 
 
 def statements(program: Program, target: Target, inputs: Sequence[str], writes: Sequence[str]) -> Iterator[str]:
-    """Yield the program as statements of C.
+    """Yield the program as statements of C or of a language with the same formulas.
 
     Parameters
     ----------
+    program : Program
     target : Target
-        `ONE` point, or `MANY` in lanes.
+        `ONE` point, or `MANY` in lanes; or another language's.
     inputs : sequence of str
-        For each input an expression of C; those that the program does not use are not read.
+        For each input an expression; those that the program does not use are not read.
     writes : sequence of str
         For each output the statement that puts ``{value}`` where it belongs.
+
+    Yields
+    ------
+    str
+        One statement.
     """
     used, names = names_used(program), {}
     for index, (name, value) in enumerate(zip(program.inputs, inputs, strict=True)):
         names[name] = infix.atom(f"v{index}")
         if name in used:
-            yield f"{target.declaration} v{index} = {value};"
+            yield target.statement.format(name=f"v{index}", formula=value)
     for index, (name, expression) in enumerate(program.assignments, start=len(program.inputs)):
         formula = target.arithmetic.value(expression, names)
         names[name] = infix.atom(f"v{index}")
-        yield f"{target.declaration} v{index} = {formula.text};"
+        yield target.statement.format(name=f"v{index}", formula=formula.text)
     for value, write in zip(program.outputs.values(), writes, strict=True):
         yield write.format(value=target.arithmetic.atom(value, names).text)
 
 
-def lanes_support(text: str) -> str:
-    """Return what statements for `MANY` need before them: the type, and the functions that they call lane by lane."""
+def batch_support(text: str) -> str:
+    """Return the vector type and the functions that statements for `MANY` need.
+
+    Parameters
+    ----------
+    text : str
+        Statements for `MANY`.
+
+    Returns
+    -------
+    str
+        Definitions in C.
+    """
     arities = {name: 2 if name in ("pow", "atan2") else 1 for name in (*FUNCTIONS.values(), "pow")}
     called = set(re.findall(r"\blanes_(\w+)\(", text))
     return template("lanes.h") + "".join(
@@ -151,7 +219,7 @@ def _lanes(value: Fraction | float) -> Formula:
 
 
 def _arithmetic(prefix: str, number: Callable[[Fraction | float], Formula]) -> Arithmetic[Formula]:
-    """C's arithmetic, given what its functions' names begin with and how it writes a number."""
+    """Return C's arithmetic for a prefix of its functions and a format of its numbers."""
 
     def power(base: Formula, exponent: Fraction) -> Formula:
         if exponent < 0:
@@ -177,5 +245,5 @@ def _arithmetic(prefix: str, number: Callable[[Fraction | float], Formula]) -> A
     )
 
 
-ONE = Target("const double", _arithmetic("", _scalar))
-MANY = Target("const lanes", _arithmetic("lanes_", _lanes))
+ONE = Target("const double {name} = {formula};", _arithmetic("", _scalar))
+MANY = Target("const lanes {name} = {formula};", _arithmetic("lanes_", _lanes))

@@ -1,4 +1,4 @@
-"""Directional derivatives of a program, as a program that computes them beside its own outputs.
+"""Directional derivatives of a program, as a program that computes both.
 
 Forward differentiation, assignment by assignment (Griewank & Walther, Evaluating Derivatives, 2nd ed., section 3.2).
 """
@@ -16,7 +16,19 @@ TWO = Fraction(2)
 
 
 def derivative_name(name: str, direction: str) -> str:
-    """Return the name of a derivative, ``d(x, m)``."""
+    """Return the name of a derivative, ``d(x, m)``.
+
+    Parameters
+    ----------
+    name : str
+        Quantity to differentiate.
+    direction : str
+        Name of the direction, such as a parameter.
+
+    Returns
+    -------
+    str
+    """
     return f"d({name}, {direction})"
 
 
@@ -26,6 +38,7 @@ def differentiated(program: Program, seeds: Seeds) -> Program:
     Parameters
     ----------
     program : Program
+        The program to differentiate.
     seeds : mapping
         Input, then direction, to the derivative of this input in this direction; what is missing is zero. Names in it
         are inputs of the new program, behind those of the old one.
@@ -35,7 +48,6 @@ def differentiated(program: Program, seeds: Seeds) -> Program:
     Program
         Outputs as before, then ``d(output, direction)`` for each output and direction; zero is the number 0. A sign
         counts as constant.
-
     """
     tape = _Tape({*program.inputs, *(name for name, _ in program.assignments)})
     found = run_program(
@@ -167,7 +179,10 @@ def _function(tape: _Tape, operation: Operation, slope: Slope) -> Callable[[_Dua
 
 
 def _scaled(tape: _Tape, x: _Dual, slope: Callable[[], Atom]) -> Mapping[str, Atom]:
-    """Return the derivatives of a function of one value by its slope, which is made where it is needed alone."""
+    """Return the derivatives of a function of one value, given its slope.
+
+    The slope is only evaluated if it is needed.
+    """
     if not x.rates:
         return {}
     factor = slope()
@@ -244,6 +259,19 @@ def _angle(tape: _Tape, y: _Dual, x: _Dual) -> _Dual:
 
 
 def along(names: Iterable[str], directions: Iterable[str]) -> dict[str, dict[str, Expression]]:
-    """Return seeds for quantities that change in directions: the derivatives of each are inputs."""
+    """Return seeds for quantities whose directional derivatives are inputs.
+
+    Parameters
+    ----------
+    names : iterable of str
+        Inputs of a program.
+    directions : iterable of str
+        Names of the directions.
+
+    Returns
+    -------
+    dict of str to dict of str to Expression
+        Seeds for `differentiated`: input, then direction, to a name such as ``d(x, m)``.
+    """
     directions = tuple(directions)
     return {name: {k: Name(derivative_name(name, k)) for k in directions} for name in names}

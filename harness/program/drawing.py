@@ -1,6 +1,6 @@
-"""How a system looks: shapes in a plane, their numbers a program of the time and the coordinates.
+"""Drawings of a system: shapes in a plane, as a program of time and coordinates.
 
-`maxima/drawing.mac` says which shapes there are, and what they are made of.
+`maxima/drawing.mac` defines the shapes and their numbers.
 """
 
 from collections.abc import Mapping
@@ -34,22 +34,24 @@ class Drawing:
     program: Program
     tables: tuple[Table, ...] = ()  # whose polynomials it takes
 
-    def numbers(self, instants: NDArray, coordinates: Mapping[str, NDArray]) -> list[NDArray[np.float64]]:
+    def numbers(self, times: NDArray, coordinates: Mapping[str, NDArray]) -> list[NDArray[np.float64]]:
         """Return the numbers of each shape along a motion.
 
         Parameters
         ----------
-        instants : ndarray, shape (k,)
-        coordinates : mapping of str to ndarray of shape (k,)
+        times : ndarray, shape (k,)
+            Times, in the scene's unit.
+        coordinates : mapping of str to ndarray, shape (k,)
+            Value of each coordinate at the times.
 
         Returns
         -------
         list of ndarray, shape (k, numbers of the shape)
             x and y of its places in their order, then, of a circle, the radius.
         """
-        known = {"t": instants, **coordinates}
+        known = {"t": times, **coordinates}
         for table, pieces in zip(self.tables, pieces_of_tables(self.tables), strict=True):
-            known |= dict(zip(table.inputs, pieces.at(instants), strict=True))
+            known |= dict(zip(table.inputs, pieces.at(times), strict=True))
         given = [np.asarray(known.get(name, 0.0), dtype=float) for name in self.program.inputs]
         found = dict(zip(self.program.outputs, NumpyFunction(self.program)(given), strict=True))
         return [

@@ -1,8 +1,9 @@
-"""What a scene pays for: the terms of (3) and (7) and the effects, with the operations and the time that each takes.
+"""Operations and evaluation time of the terms of (3) and (7) and of the effects.
 
-A term costs what a program of that term alone takes. An effect costs what the scene's program takes more than the one
-without it; left out, what it would take more with it. A cost may be negative: without an effect another order of
-elimination may be needed. A pair of switches costs what both add beyond what each adds alone.
+A term costs as much as a program of that term alone. The cost of an effect is the difference between the scene's
+program and the program without it; for an absent effect, between the program with it and the scene's. A cost may be
+negative, because an effect can change the order of elimination. A pair of switches costs the excess over the sum of
+both.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -15,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from ..documents import ask
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..formats import Document, read
 from ..language import translatable
 from ..sandbox import Limits
@@ -33,7 +34,7 @@ ATTEMPTS = 50  # points tried in search of one where the program's values are fi
 
 
 class Status(StrEnum):
-    """Whether a scene has a term or an effect, and if not, why."""
+    """The presence of a term or an effect in a scene, or the reason of its absence."""
 
     PRESENT = translatable("present")
     ABSENT_BY_CHOICE = translatable("absent by choice")
@@ -41,7 +42,7 @@ class Status(StrEnum):
 
 
 class Measure(StrEnum):
-    """What the programs were compiled to before their times were measured."""
+    """The compilation of the programs whose times were measured."""
 
     C = "C"
     NUMPY = "NumPy"
@@ -86,7 +87,7 @@ class Costs:
 
 @dataclass(frozen=True)
 class TermCost:
-    """What a term costs: nothing where it is absent."""
+    """The cost of a term, zero if it is absent."""
 
     equation: str
     term: str
@@ -97,7 +98,10 @@ class TermCost:
 
 @dataclass(frozen=True)
 class EffectCost:
-    """What an effect or a pair of switches adds, or would add; None where nothing can be solved without, or with it."""
+    """The additional cost of an effect or a pair of switches.
+
+    It is None if the equations cannot be solved without or with it.
+    """
 
     name: str
     status: Status
@@ -107,7 +111,7 @@ class EffectCost:
 
 @dataclass(frozen=True, repr=False)
 class MeasuredCosts(Shown):
-    """What a scene pays for, in operations and in time for one evaluation."""
+    """The costs of a scene, in operations and in time for one evaluation."""
 
     scene: str | None
     operations: int
@@ -119,16 +123,43 @@ class MeasuredCosts(Shown):
 
 
 def scene_costs(file: Source | Path, request: Request, limits: Limits) -> MeasuredCosts:
-    """Return what a scene pays for, its programs asked of Maxima.
+    """Return the costs of a scene, from programs that Maxima derives.
 
-    Raises as `holonom.documents.ask` and `measure_costs`.
+    Parameters
+    ----------
+    file : Source or Path
+        Scene file.
+    request : Request
+        Scene, solve and settings.
+    limits : Limits
+        Limits of each run of Maxima.
+
+    Returns
+    -------
+    MeasuredCosts
+        Costs in operations and in seconds.
+
+    Raises
+    ------
+    HolonomError
+        As `holonom.documents.ask` and `measure_costs`.
     """
     asked = (Document.EFFECTS, file, request.scene, request.solve)
     return measure_costs(read_costs(ask(*asked, settings=request.settings, limits=limits)))
 
 
 def read_costs(text: str) -> Costs:
-    """Read the document of what a scene pays for.
+    """Read the document of the costs of a scene.
+
+    Parameters
+    ----------
+    text : str
+        JSON document of the costs.
+
+    Returns
+    -------
+    Costs
+        Programs whose costs are to be measured.
 
     Raises
     ------
@@ -139,9 +170,19 @@ def read_costs(text: str) -> Costs:
 
 
 def measure_costs(costs: Costs) -> MeasuredCosts:
-    """Count the operations of a scene's programs and measure their times, at one regular point.
+    """Count the operations of a scene's programs and measure their times at one point.
 
-    Times are those of compiled C, or of NumPy where there is no C compiler.
+    The point is regular. Times are those of compiled C, or of NumPy without a C compiler.
+
+    Parameters
+    ----------
+    costs : Costs
+        Programs of the scene, of its terms and of its effects.
+
+    Returns
+    -------
+    MeasuredCosts
+        Costs in operations and in seconds.
 
     Raises
     ------
@@ -199,7 +240,7 @@ def _batches(programs: Sequence[Program], point: Mapping[str, float]) -> tuple[M
     try:
         timer = Timer()
     except HolonomError as error:
-        if error.failure is not Failure.COMPILER_MISSING:
+        if error.kind is not ErrorKind.COMPILER_MISSING:
             raise
         return Measure.NUMPY, list(map(python_batch, map(NumpyFunction, programs), given))
     with ThreadPoolExecutor() as compilers:
@@ -207,7 +248,10 @@ def _batches(programs: Sequence[Program], point: Mapping[str, float]) -> tuple[M
 
 
 def _regular_point(program: Program, names: Mapping[str, None]) -> dict[str, float]:
-    """Return the first point of a sequence without symmetry where the program's values are finite."""
+    """Return the first point of a sequence at which the program's values are finite.
+
+    The points have no symmetry.
+    """
     evaluate = NumpyFunction(program)
     for point in _points(names):
         with np.errstate(all="ignore"):

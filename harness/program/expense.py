@@ -1,10 +1,13 @@
-"""Expansions in numbers of many digits: the memory that they take, found out before, and a limit of their time."""
+"""Memory and time limits of expansions with many digits.
+
+The memory is estimated before the expansion.
+"""
 
 import math
 
 import numpy as np
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..sandbox import MIB
 from ..supervisor import limit_expected_time
 from .heyoka_function import dynamics, import_heyoka, zero_multipliers
@@ -17,7 +20,17 @@ BYTES_BESIDE_DIGITS = 32  # of one of MPFR's numbers
 
 
 def order_for(digits: float) -> int:
-    """Order to which heyoka expands for a tolerance of so many digits.
+    """Return the order to which heyoka expands for a tolerance in digits.
+
+    Parameters
+    ----------
+    digits : float
+        Decimal digits of the tolerance.
+
+    Returns
+    -------
+    int
+        Order of the Taylor series.
 
     References
     ----------
@@ -27,12 +40,16 @@ def order_for(digits: float) -> int:
 
 
 def require_means(problem: MotionProblem, precision: Precision, order: int) -> None:
-    """Refuse expansions that the memory of the machine does not hold; limit the time of those that it holds.
+    """Reject expansions that exceed the free memory; limit the time of the others.
 
     Parameters
     ----------
     problem : MotionProblem
         With a value for each parameter.
+    precision : Precision
+        Numbers of the expansion.
+    order : int
+        Highest order of the expansion.
 
     Raises
     ------
@@ -58,4 +75,4 @@ def require_means(problem: MotionProblem, precision: Precision, order: int) -> N
     free = psutil.virtual_memory().available / MIB
     if needed > free:
         said = f"an expansion in {precision.digits} digits takes about {needed:.0f} MiB of memory"
-        raise HolonomError(Failure.MEMORY_TOO_SMALL, detail=f"{said}, and {free:.0f} are free")
+        raise HolonomError(ErrorKind.MEMORY_TOO_SMALL, detail=f"{said}, and {free:.0f} are free")

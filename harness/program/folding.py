@@ -8,7 +8,19 @@ ZERO, ONE = Fraction(0), Fraction(1)
 
 
 def folded(operation: Operation, arguments: list[Expression]) -> Expression:
-    """Return the operation on its arguments, done where it is arithmetic of numbers alone."""
+    """Return the operation on its arguments, evaluated if all of them are numbers.
+
+    Parameters
+    ----------
+    operation : Operation
+    arguments : list of Expression
+        Arguments, themselves folded.
+
+    Returns
+    -------
+    Expression
+        A number, an argument, or the call.
+    """
     match operation, arguments:
         case Operation.ADD, _:
             return _collected(operation, arguments, ZERO)

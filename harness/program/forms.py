@@ -1,4 +1,4 @@
-"""The motion program of a scene, asked of Maxima, and the forms it can be taken away in."""
+"""The motion program of a scene and its forms in other languages."""
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from ..documents import ask
 from ..extras import naming_the_extra
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..files import write_files, write_whole
 from ..formats import Document
 from ..sandbox import Limits
@@ -15,7 +15,7 @@ from ..source import Source, source_of
 from .identifiers import default_name
 from .motion_program import Program, read_program
 from .request import Request
-from .targets import JSON, target
+from .targets import JSON, MODULES, target
 
 if TYPE_CHECKING:
     from .c_function import CFunction
@@ -25,7 +25,13 @@ Written = str | Mapping[str, str] | bytes
 
 
 class MotionProgram:
-    """The motion program of a scene, and the forms in which it can be taken elsewhere."""
+    """Motion program of a scene, in the forms in which it can be written.
+
+    Examples
+    --------
+    >>> type(scene.program()).__name__
+    'MotionProgram'
+    """
 
     def __init__(self, file: Source | Path, request: Request, limits: Limits) -> None:
         self._source, self._request = source_of(file, limits), request
@@ -43,39 +49,90 @@ class MotionProgram:
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        """Names of what it takes."""
+        """Names of the inputs."""
         return self.program.inputs
 
     @property
     def outputs(self) -> tuple[str, ...]:
-        """Names of what it computes."""
+        """Names of the outputs."""
         return tuple(self.program.outputs)
 
     @property
     def operations(self) -> int:
-        """What one evaluation costs."""
+        """Number of operations of one evaluation."""
         return self.program.operations
 
     @naming_the_extra()
     def compile(self) -> "CFunction":
-        """Return a function of an array (inputs,) or (inputs, points), compiled by the system's C compiler."""
+        """Return a function of arrays (inputs,) or (inputs, points), compiled as C.
+
+        Returns
+        -------
+        CFunction
+            Function with one result for each output.
+        """
         from .c_function import compile_c
 
         return compile_c(self.program)
 
     @naming_the_extra()
     def lambdify(self) -> "NumpyFunction":
-        """Return the same function by NumPy alone."""
+        """Return the same function by NumPy alone.
+
+        Returns
+        -------
+        NumpyFunction
+            Function with one result for each output.
+        """
         from .numpy_function import NumpyFunction
 
         return NumpyFunction(self.program)
 
-    def to_python(self) -> str:
-        """Return a Python module that needs the standard library alone."""
-        return self.written("python")
+    def to_python(self, module: str | None = None, parameters: Sequence[str] = (), name: str | None = None) -> Written:
+        """Return a Python module for the standard library or for another package.
+
+        Parameters
+        ----------
+        module : str or None
+            ``"numpy"``, ``"jax"`` or ``"casadi"``: functions of arrays: the motion, the control law, the rates of
+            the state. Without it, a function of numbers with the scene's parameters.
+        parameters : sequence of str
+            With a module: parameters that stay open although the scene gives them values.
+        name : str or None
+            With a module: its name, with which those of CasADi's functions begin; None for the file's name.
+
+        Returns
+        -------
+        str
+            Source text of the module.
+        """
+        return self.written("python", name, parameters, module)
+
+    def to_matlab(self, parameters: Sequence[str] = (), name: str | None = None) -> Written:
+        """Return a function for MATLAB and GNU Octave, for a file of its name.
+
+        Parameters
+        ----------
+        parameters : sequence of str
+            Parameters that stay open although the scene gives them values.
+        name : str or None
+            Name of the function; None for the file's name.
+
+        Returns
+        -------
+        str
+            Source text of the function.
+        """
+        return self.written("matlab", name, parameters)
 
     def to_javascript(self) -> str:
-        """Return a script for a page or for Node that needs nothing but Math."""
+        """Return a script for a page or for Node that needs nothing but Math.
+
+        Returns
+        -------
+        str
+            Source text of the script.
+        """
         return self.written("javascript")
 
     def to_c(self, directory: str | Path, name: str | None = None, parameters: Sequence[str] = ()) -> None:
@@ -93,25 +150,56 @@ class MotionProgram:
         write_files(Path(directory), self.written("c", name, parameters))
 
     def to_fmu(self, file: str | Path, name: str | None = None, parameters: Sequence[str] = ()) -> None:
-        """Write an FMI 3.0 unit for model exchange; otherwise like `to_c`."""
+        """Write an FMI 3.0 unit for model exchange; otherwise like `to_c`.
+
+        Parameters
+        ----------
+        file : str or Path
+            File to write, usually with the suffix ``.fmu``.
+        name : str or None
+            Name of the model; None for the file's name.
+        parameters : sequence of str
+            Parameters that stay open although the scene gives them values.
+        """
         write_whole(Path(file), self.written("fmu", name, parameters))
 
-    def written(self, form: str, name: str | None = None, parameters: Sequence[str] = ()) -> Written:
-        """Return it in a form of `targets.FORMS`: a text, the texts of files by their names, or the bytes of one file.
+    def written(
+        self, form: str, name: str | None = None, parameters: Sequence[str] = (), package: str | None = None
+    ) -> Written:
+        """Return the program in a form of `targets.FORMS`.
+
+        Parameters
+        ----------
+        form : str
+            Name of the form.
+        name : str or None
+            Name with which public names begin; None for the file's name.
+        parameters : sequence of str
+            Parameters that stay open although the scene gives them values.
+        package : str or None
+            Package of `targets.MODULES` that Python computes with; None for the standard library.
+
+        Returns
+        -------
+        str, mapping of str to str or bytes
+            A text, a mapping of file names to texts, or the bytes of one file.
 
         Raises
         ------
         HolonomError
-            The form is a text, which takes no name and no parameters; or as `to_c`.
+            The form is a motion program, which takes no name and no parameters; there is no such package, or the form
+            is not Python; or as `to_c`.
         """
-        module = None if form == JSON else target(form)
+        if package and (form != "python" or package not in MODULES):
+            raise HolonomError(ErrorKind.NO_SUCH_MODULE, detail=f"{package} with {form}")
+        module = None if form == JSON else target(f"{form}_{package}" if package else form)
         if hasattr(module, "write_model"):
             from .model import scene_model
 
             model = scene_model(self._source, self._request, parameters, self._source.limits)
             return module.write_model(model, name or default_name(self._source.file))
         if name or parameters:
-            raise HolonomError(Failure.NO_NAME_IN_TEXT, detail=form)
+            raise HolonomError(ErrorKind.NO_NAME_IN_TEXT, detail=form)
         return self.document if module is None else module.write(self.program)
 
     def __repr__(self) -> str:

@@ -1,6 +1,6 @@
-"""A motion program in heyoka: its expressions, functions compiled from them, the dynamics for its integrators.
+"""Motion programs in heyoka: expressions, compiled functions and dynamics.
 
-A value used twice is one expression object used twice, so that heyoka finds again what the program shares.
+A value that is used twice is one expression object, so heyoka recognizes shared values.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..extras import missing_package, require_room
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from .arithmetic import ELEMENTARY, Arithmetic, run_program
 from .motion_program import Constant, Operation, Program
 
@@ -27,7 +27,7 @@ COMPACT_FROM = 3000
 
 
 class HeyokaFunction:
-    """A motion program compiled by heyoka, in double precision.
+    """A motion program, compiled by heyoka in double precision.
 
     Parameters
     ----------
@@ -49,6 +49,7 @@ class HeyokaFunction:
         Parameters
         ----------
         inputs : array_like, shape (inputs,) or (inputs, points)
+            Inputs of the program in its order.
 
         Returns
         -------
@@ -60,6 +61,15 @@ class HeyokaFunction:
 
 def heyoka_function(program: Program) -> HeyokaFunction:
     """Compile a program with heyoka.
+
+    Parameters
+    ----------
+    program : Program
+
+    Returns
+    -------
+    HeyokaFunction
+        Function in double precision.
 
     Raises
     ------
@@ -76,10 +86,16 @@ def heyoka_expressions(
 
     Parameters
     ----------
+    program : Program
     inputs : mapping of str to expression
         What to put for each input: a variable, heyoka's time, a parameter, a control law.
     number : callable
         Takes a Fraction to one of heyoka's numbers; `float` is for double precision.
+
+    Returns
+    -------
+    dict of str to expression
+        Expression of each output.
 
     Raises
     ------
@@ -87,16 +103,14 @@ def heyoka_expressions(
         heyoka is not installed; an input is missing.
     """
     if missing := [name for name in program.inputs if name not in inputs]:
-        raise HolonomError(Failure.INPUT_MISSING, detail=missing[0])
+        raise HolonomError(ErrorKind.INPUT_MISSING, detail=missing[0])
     return run_program(program, inputs, _arithmetic(import_heyoka(), number))
 
 
 def dynamics(
     program: Program, given: Mapping[str, expression], number: Callable[[Fraction], object] = float
 ) -> list[tuple[expression, expression]]:
-    """First-order equations of motion for heyoka's integrators.
-
-    Each coordinate and its velocity, then each velocity and its acceleration. Raises as `heyoka_expressions`.
+    """Return first-order equations of motion for heyoka's integrators.
 
     Parameters
     ----------
@@ -107,6 +121,16 @@ def dynamics(
         time, coordinates and velocities.
     number : callable
         As for `heyoka_expressions`.
+
+    Returns
+    -------
+    list of (expression, expression)
+        Each coordinate and its velocity, then each velocity and its acceleration.
+
+    Raises
+    ------
+    HolonomError
+        As `heyoka_expressions`.
     """
     variables = _variables(program)
     coordinates = [name for name in program.inputs if f"ddot({name})" in program.outputs]
@@ -159,11 +183,20 @@ def _arithmetic(heyoka: ModuleType, number: Callable[[Fraction], object]) -> Ari
 
 
 def import_heyoka() -> ModuleType:
-    """Import heyoka, or say that it is missing.
+    """Import heyoka with its disk cache and its messages disabled.
 
-    It would keep machine code in the home directory and run whatever it finds there another time: a flipped bit, or a
-    hand that was not ours, gave other motions. So it keeps none. What it has to say it would say on standard output,
-    which may carry a document; what matters of it comes as exceptions.
+    The disk cache would run any machine code it finds in the home directory; altered code would give other motions. The
+    messages would be written to standard output, which may contain a document. Errors are raised as exceptions.
+
+    Returns
+    -------
+    ModuleType
+        The package heyoka.
+
+    Raises
+    ------
+    HolonomError
+        heyoka is not installed.
     """
     try:
         import heyoka
@@ -177,5 +210,17 @@ def import_heyoka() -> ModuleType:
 
 
 def zero_multipliers(names: Iterable[str], zero: Any) -> dict[str, Any]:
-    """Multipliers as inputs of a program that has them among its inputs and does not use them."""
+    """Return zero for multipliers that are unused inputs of a program.
+
+    Parameters
+    ----------
+    names : iterable of str
+        Names of the multipliers.
+    zero : float or heyoka number
+        Zero in the precision of the program.
+
+    Returns
+    -------
+    dict of str to expression
+    """
     return dict.fromkeys(names, import_heyoka().expression(zero))

@@ -5,13 +5,18 @@ import unicodedata
 from collections.abc import Sequence
 from pathlib import Path
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 
 IDENTIFIER = re.compile(r"[A-Za-z]\w*", re.ASCII)
 
 
 def require_identifier(name: str) -> None:
-    """Refuse a name that is no identifier.
+    """Reject an invalid identifier.
+
+    Parameters
+    ----------
+    name : str
+        Letters, digits and ``_`` of ASCII, a letter first.
 
     Raises
     ------
@@ -19,11 +24,24 @@ def require_identifier(name: str) -> None:
         It cannot name a function.
     """
     if not IDENTIFIER.fullmatch(name):
-        raise HolonomError(Failure.NOT_AN_IDENTIFIER, detail=name)
+        raise HolonomError(ErrorKind.NOT_AN_IDENTIFIER, detail=name)
 
 
 def identifiers(names: Sequence[str]) -> list[str]:
-    """Return names as ends of identifiers, each another: what C does not know becomes ``_``."""
+    """Return distinct ends of identifiers for names.
+
+    Characters that C does not allow become ``_``.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Any names.
+
+    Returns
+    -------
+    list of str
+        One for each name, in order.
+    """
     found: list[str] = []
     for name in names:
         plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
@@ -35,6 +53,17 @@ def identifiers(names: Sequence[str]) -> list[str]:
 
 
 def default_name(scene_file: Path) -> str:
-    """Return the name of a scene file as an identifier."""
+    """Return the name of a scene file as an identifier.
+
+    Parameters
+    ----------
+    scene_file : Path
+        Path of the scene file; only its name without suffix is used.
+
+    Returns
+    -------
+    str
+        An identifier of C.
+    """
     name = identifiers([scene_file.stem])[0]
     return name if IDENTIFIER.fullmatch(name) else f"scene_{name}"

@@ -1,6 +1,7 @@
-"""A scene as a model for other programs: straight-line programs in which controls and parameters are still open.
+"""A scene as a model for other programs, with open controls and parameters.
 
-One JSON document from Maxima, `maxima/record/model.mac`; `maxima/program/model.mac` says what each program computes.
+It consists of straight-line programs, in one JSON document from Maxima (`maxima/record/model.mac`). The outputs of each
+program are defined in `maxima/program/model.mac`.
 """
 
 from collections.abc import Mapping, Sequence
@@ -8,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..documents import NAME, ask
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..formats import Document, read
 from ..sandbox import Limits
 from ..source import Source
@@ -51,6 +52,11 @@ class Model:
     outputs: Program | None = None
 
     @property
+    def histories(self) -> tuple[str, ...]:
+        """Names of the controls, of their rates, and of their second rates."""
+        return tuple(history.format(name) for history in ("{}", "dot({})", "ddot({})") for name in self.controls)
+
+    @property
     def found(self) -> tuple[str, ...]:
         """Names of the controls that servo-constraints find."""
         return () if self.servo is None else tuple(self.servo.outputs)
@@ -61,13 +67,35 @@ class Model:
         return () if self.outputs is None else tuple(self.outputs.outputs)
 
     @property
+    def state(self) -> tuple[str, ...]:
+        """Names of the coordinates, then of the velocities."""
+        return (*self.coordinates, *(f"dot({name})" for name in self.coordinates))
+
+    @property
     def under_law(self) -> tuple[str, ...]:
         """Names of the controls that have a law."""
         return () if self.law is None else tuple(name for name in self.controls if name in self.law.outputs)
 
 
 def scene_model(file: Source | Path, request: Request, parameters: Sequence[str], limits: Limits) -> Model:
-    """Ask Maxima for a scene as a model, in which parameters stay open although the scene gives them values.
+    """Return the model of a scene by Maxima, with some of its parameters left open.
+
+    They stay open although the scene gives them values.
+
+    Parameters
+    ----------
+    file : Source or Path
+        Scene file.
+    request : Request
+        Scene, solve and settings.
+    parameters : sequence of str
+        Names of the parameters to leave open.
+    limits : Limits
+        Limits of each run of Maxima.
+
+    Returns
+    -------
+    Model
 
     Raises
     ------
@@ -77,13 +105,22 @@ def scene_model(file: Source | Path, request: Request, parameters: Sequence[str]
     """
     for name in parameters:
         if not NAME.fullmatch(name):
-            raise HolonomError(Failure.NOT_A_PARAMETER, detail=name)
+            raise HolonomError(ErrorKind.NOT_A_PARAMETER, detail=name)
     asked = (request.scene, request.solve, parameters)
     return read_model(ask(Document.MODEL, file, *asked, settings=request.settings, limits=limits))
 
 
 def read_model(text: str) -> Model:
     """Read the document of a model.
+
+    Parameters
+    ----------
+    text : str
+        JSON document of the model.
+
+    Returns
+    -------
+    Model
 
     Raises
     ------

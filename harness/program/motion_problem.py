@@ -1,7 +1,7 @@
-"""A scene's motion as Maxima hands it over: programs of (t, q, dot q) alone, and the state that it starts from.
+"""A scene's motion from Maxima: programs of (t, q, dot q), and the initial state.
 
-One JSON document from Maxima, `maxima/record/motion_problem.mac`; `maxima/program/motion_problem.mac` says what each
-program computes.
+They come in one JSON document (`maxima/record/motion_problem.mac`). The outputs of each program are defined in
+`maxima/program/motion_problem.mac`.
 """
 
 from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from ..described import Correction
 from ..documents import ask
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..formats import Document, read
 from ..sandbox import Limits
 from ..source import Source, source_of
@@ -30,12 +30,13 @@ NO_JOINTS: Mapping[str, str] = {}
 DOUBLE_DIGITS = 17  # decimal digits that tell any two doubles apart
 
 
-class By(StrEnum):
-    """What a switching function is of, the highest of these."""
+class DependsOn(StrEnum):
+    """The highest of the quantities that a switching function depends on."""
 
     TIME = "time"
     CONFIGURATION = "configuration"
     VELOCITY = "velocity"
+    REACTION = "reaction"
 
 
 class Sign(NamedTuple):
@@ -43,14 +44,14 @@ class Sign(NamedTuple):
 
     name: str  # the input of the programs that stands for it
     of: str  # the switching function whose sign it is, as Maxima prints it
-    by: By
+    by: DependsOn
 
 
 class Origin(StrEnum):
-    """Where an initial value comes from when the parameters change.
+    """The origin of an initial value if the parameters change.
 
-    ``GIVEN``: the scene gives it. ``NEAR``: the constraints fix it, near the scene's guess. ``FOLLOWED``: they fix it,
-    near the value that it has for the scene's parameters. ``ONLY``: they fix it, and contain it linearly.
+    ``GIVEN``: the scene gives it. ``NEAR``: the constraints determine it, near the scene's guess. ``FOLLOWED``: they
+    determine it, near its value for the scene's parameters. ``ONLY``: they determine it, and contain it linearly.
     """
 
     GIVEN = "given"
@@ -91,7 +92,7 @@ class MotionProblem:
     source: str
     scene: str
     title: str
-    time_span: tuple[str, str] | None  # first and last instant, as decimal digits; None where the scene names none
+    time_span: tuple[str, str] | None  # first and last time, as decimal digits; None where the scene names none
     observe: tuple[str, ...]  # what the scene observes: trajectory, multipliers, constraint_forces, energy, residuals
     # coordinates, multipliers: names, n and g of them
     coordinates: tuple[str, ...]
@@ -113,7 +114,7 @@ class MotionProblem:
     # ``energy``, the energy function, and ``power``, its rate along the motion; they need the multipliers
     energy: Program
     drawing: "Drawing | None"  # how the system looks; None where it does not say
-    # the last instant at which the drives have values, where tables or special functions give them
+    # the last time at which the drives have values, where tables or special functions give them
     law_end: str | None = None
     written_out: tuple[str, ...] = ()  # special functions of the time, which programs hold as sums of polynomials
     # the controls, by name, ``ddot(u)`` of those that servo-constraints move; None if they are not observed
@@ -124,6 +125,7 @@ class MotionProblem:
     servo_matrix: Program | None = None
     # how many of the constraints, the last ones, servo-constraints keep, so that their multipliers are zero
     servo: int = 0
+    reacting: tuple[str, ...] = ()  # multipliers that forces contain
     # of each output that servo-constraints prescribe: which of its rates the controls are in
     relative_degrees: tuple[int, ...] = ()
     # the initial value that differs most from the scene's guess, and by how much; None without a guess
@@ -135,7 +137,8 @@ class MotionProblem:
     released: tuple[Release, ...] = ()
     signs: tuple[Sign, ...] = ()  # of the functions whose changes of sign switch the motion; empty where it is analytic
     # ``switch[i]``, the functions, with what decides how the motion passes their zeros, ``switch_rate[i]``,
-    # ``drive[i]`` and ``grip[i]``, and ``momentum[s]``; None without signs
+    # ``drive[i]`` and ``grip[i]``, and ``momentum[s]``; ``regular`` where forces contain multipliers,
+    # positive where they are determined. None without signs and without such forces
     switching: Program | None = None
     tables: tuple[Table, ...] = ()  # of the law, each of more polynomials than one
     parameters: tuple[str, ...] = ()  # those that stay open
@@ -149,9 +152,23 @@ class MotionProblem:
     _compiled: dict[Hashable, tuple[object, Any]] = field(default_factory=dict, compare=False, repr=False)
 
     def once(self, what: Hashable, part: object, build: "Callable[[], Built]") -> "Built":
-        """Return what is built of a part, a program mostly, once for all values of what is open; anew where nothing is.
+        """Return the result of `build` for a part, cached for all values of open inputs.
 
-        `what` tells apart what is built of the same part.
+        Without open inputs, nothing is cached.
+
+        Parameters
+        ----------
+        what : Hashable
+            Distinguishes the results for one part.
+        part : object
+            Object that the result depends on, in most cases a program.
+        build : callable
+            Function without arguments that makes the result.
+
+        Returns
+        -------
+        object
+            The result of `build`.
         """
         if not self.open_inputs:
             return build()
@@ -166,7 +183,10 @@ class MotionProblem:
 
     @property
     def open_inputs(self) -> tuple[str, ...]:
-        """Inputs behind the time, the state, the multipliers and the signs: open parameters, and what tables are."""
+        """Names of the open parameters and of the inputs of tables.
+
+        They follow the time, the state, the multipliers and the signs.
+        """
         return (*self.parameters, *(name for table in self.tables for name in table.inputs))
 
     @property
@@ -182,7 +202,7 @@ class MotionProblem:
 
     @property
     def dependent(self) -> bool:
-        """Whether constraints may depend on one another."""
+        """True if constraints may be dependent."""
         return self.obstacle is not None or len(self.independent) < len(self.multipliers)
 
     @property
@@ -197,30 +217,76 @@ class MotionProblem:
 
 
 def require_signs_known(problem: MotionProblem) -> None:
-    """Refuse a motion whose signs are still open."""
+    """Reject a motion whose signs are still open.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+
+    Raises
+    ------
+    HolonomError
+        The motion depends on a sign.
+    """
     if problem.signs:
-        raise HolonomError(Failure.NOT_ANALYTIC, problem.scene, problem.signs[0].of)
+        raise HolonomError(ErrorKind.NOT_ANALYTIC, problem.scene, problem.signs[0].of)
 
 
 def require_analytic(problem: MotionProblem) -> None:
-    """Refuse a motion that is not analytic to whoever follows one analytic motion alone."""
+    """Reject a motion that is not analytic everywhere.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+
+    Raises
+    ------
+    HolonomError
+        The motion depends on a sign or a table, ends constraints, or has forces that contain multipliers.
+    """
     require_signs_known(problem)
+    if problem.reacting:
+        raise HolonomError(ErrorKind.REACTING, problem.scene, detail="and the motion is not followed by switching")
     if problem.released:
-        raise HolonomError(Failure.NOT_ANALYTIC, problem.scene, problem.released[0].of)
+        raise HolonomError(ErrorKind.NOT_ANALYTIC, problem.scene, problem.released[0].of)
     if problem.tables:
         knot = min(table.knots[0] for table in problem.tables)
-        raise HolonomError(Failure.NOT_ANALYTIC, problem.scene, function_of_knot(knot))
+        raise HolonomError(ErrorKind.NOT_ANALYTIC, problem.scene, function_of_knot(knot))
 
 
 def function_of_knot(knot: Fraction) -> str:
-    """Return the function whose sign tells on which side of an instant the time is, as Maxima prints it."""
+    """Return the function of time that changes its sign at a knot, as text of Maxima.
+
+    Parameters
+    ----------
+    knot : Fraction
+        Time at which the function is zero, in the scene's unit.
+
+    Returns
+    -------
+    str
+        Such as ``t-1/2``.
+    """
     return f"t{'+' if knot < 0 else '-'}{abs(knot)}" if knot else "t"
 
 
 def require_expandable(problem: MotionProblem) -> None:
-    """Refuse a motion whose programs do not have the derivatives of its drives, but for the first ones."""
+    """Reject a motion with programs that lack higher derivatives of the drives.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+
+    Raises
+    ------
+    HolonomError
+        Special functions of the time are written out as sums of polynomials.
+    """
     if problem.written_out:
-        raise HolonomError(Failure.SPECIAL_EXPANDED, problem.scene, problem.written_out[0])
+        raise HolonomError(ErrorKind.SPECIAL_EXPANDED, problem.scene, problem.written_out[0])
 
 
 def motion_problem(
@@ -234,10 +300,20 @@ def motion_problem(
 
     Parameters
     ----------
+    file : Source or Path
+        Scene file.
+    request : Request
+        Scene, solve and settings.
+    limits : Limits
+        Limits of each run of Maxima.
     digits : int
         Significant digits of the initial state.
     open_parameters : sequence of str
         Parameters that are inputs of the programs, whether they have values or not; names of others do no harm.
+
+    Returns
+    -------
+    MotionProblem
 
     Raises
     ------
@@ -256,9 +332,30 @@ def problem_document(
     digits: int = DOUBLE_DIGITS,
     open_parameters: Sequence[str] = (),
 ) -> str:
-    """Return the document of a scene's motion, as Maxima writes it, for `read_problem`.
+    """Return Maxima's document of a scene's motion for `read_problem`.
 
-    Arguments as for `motion_problem`.
+    Parameters
+    ----------
+    file : Source or Path
+        Scene file.
+    request : Request
+        Scene, solve and settings.
+    limits : Limits
+        Limits of each run of Maxima.
+    digits : int
+        Significant digits of the initial state.
+    open_parameters : sequence of str
+        Parameters that are inputs of the programs; names of other quantities are ignored.
+
+    Returns
+    -------
+    str
+        JSON document.
+
+    Raises
+    ------
+    HolonomError
+        As `motion_problem`.
     """
     asked = (request.scene, request.solve, digits, tuple(open_parameters))
     return ask(Document.MOTION_PROBLEM, file, *asked, settings=request.settings, limits=limits)
@@ -269,8 +366,14 @@ def read_problem(text: str, joints: Mapping[str, str] = NO_JOINTS) -> MotionProb
 
     Parameters
     ----------
+    text : str
+        JSON document of `problem_document`.
     joints : mapping of str to str
         As `Description.joints`.
+
+    Returns
+    -------
+    MotionProblem
 
     Raises
     ------
@@ -305,7 +408,21 @@ def _problem(document: Mapping[str, Any], joints: Mapping[str, str]) -> MotionPr
 
 
 def computing(program: Program, wanted: Collection[str]) -> Program:
-    """Return the part of a program that some of its outputs need, with the same inputs."""
+    """Return the part of a program that computes some of its outputs.
+
+    It has the same inputs.
+
+    Parameters
+    ----------
+    program : Program
+    wanted : collection of str
+        Names of outputs to keep.
+
+    Returns
+    -------
+    Program
+        Program with the assignments that these outputs need.
+    """
     outputs = {name: value for name, value in program.outputs.items() if name in wanted}
     needed = set().union(*map(names_in, outputs.values()))
     kept = []

@@ -1,4 +1,4 @@
-"""The motion program: a straight-line program for accelerations and multipliers, as typed, frozen objects.
+"""Straight-line programs for accelerations and multipliers, as frozen objects.
 
 One JSON document from Maxima:
 
@@ -18,7 +18,7 @@ from enum import StrEnum
 from fractions import Fraction
 from typing import Any
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..formats import Document, read, require
 from ..structs import structured
 from .request import Solve
@@ -30,7 +30,7 @@ DECIMAL = re.compile(r"-?\d+(\.\d*)?([eE][+-]?\d{1,4})?")
 
 
 class Operation(StrEnum):
-    """What a program can do; the value is the head of the MathJSON tree."""
+    """The operations of a program; the value is the head of the MathJSON tree."""
 
     ADD = "Add"
     MULTIPLY = "Multiply"
@@ -110,13 +110,37 @@ class Program:
 
     @staticmethod
     def of_document(document: Any) -> "Program":
-        """Read a motion program that is part of a larger document. Raises as `read_program`."""
+        """Read a program that is part of a larger document.
+
+        Parameters
+        ----------
+        document : dict
+            Decoded JSON of the program.
+
+        Returns
+        -------
+        Program
+
+        Raises
+        ------
+        HolonomError
+            As `read_program`.
+        """
         require(Document.PROGRAM, document)
         return _checked(document)
 
 
 def read_program(text: str) -> Program:
     """Read the document of a motion program.
+
+    Parameters
+    ----------
+    text : str
+        JSON document of the program.
+
+    Returns
+    -------
+    Program
 
     Raises
     ------
@@ -135,15 +159,33 @@ def _checked(document: Mapping[str, Any]) -> Program:
 
 
 def count_operations(program: Program) -> int:
-    """Count what a program costs, independently of the number it carries.
+    """Count the operations of a program.
 
     Every +, -, multiplication, division, power, root and function call counts one: a sum or product of k terms k - 1.
+    The count does not depend on the numbers in the program.
+
+    Parameters
+    ----------
+    program : Program
+
+    Returns
+    -------
+    int
     """
     return sum(operations_in(expression) for _, expression in program.assignments)
 
 
 def operations_in(expression: Expression) -> int:
-    """Operations in one expression, counted as `count_operations` says."""
+    """Count the operations in one expression, by the rule of `count_operations`.
+
+    Parameters
+    ----------
+    expression : Expression
+
+    Returns
+    -------
+    int
+    """
     match expression:
         case Call(operation, arguments):
             own = len(arguments) - 1 if operation in VARIADIC else 1
@@ -153,7 +195,16 @@ def operations_in(expression: Expression) -> int:
 
 
 def names_in(expression: Expression) -> Set[str]:
-    """Return names of the values that an expression is made of."""
+    """Return names of the values that an expression is made of.
+
+    Parameters
+    ----------
+    expression : Expression
+
+    Returns
+    -------
+    set of str
+    """
     match expression:
         case Name(text):
             return {text}
@@ -164,13 +215,32 @@ def names_in(expression: Expression) -> Set[str]:
 
 
 def names_used(program: Program) -> Set[str]:
-    """Return names that the assignments and outputs of a program are made of."""
+    """Return names that the assignments and outputs of a program are made of.
+
+    Parameters
+    ----------
+    program : Program
+
+    Returns
+    -------
+    set of str
+    """
     expressions = [*(expression for _, expression in program.assignments), *program.outputs.values()]
     return set().union(*map(names_in, expressions))
 
 
 def calls_in(expression: Expression) -> Iterator[Call]:
-    """Yield the operations in an expression, each before those in its arguments."""
+    """Yield the operations in an expression, each before those in its arguments.
+
+    Parameters
+    ----------
+    expression : Expression
+
+    Yields
+    ------
+    Call
+        An operation with its arguments.
+    """
     if isinstance(expression, Call):
         yield expression
         for argument in expression.arguments:
@@ -188,7 +258,7 @@ def _expression(tree: object, levels: int) -> Expression:
 
 
 def _takes(head: str, arguments: int) -> bool:
-    """Return True if there is an operation of that head with so many arguments."""
+    """Return True if there is an operation of that head with this number of arguments."""
     if head not in OPERATIONS:
         return False
     if head in VARIADIC:
@@ -224,7 +294,7 @@ def _within_double(number: Fraction) -> Fraction:
     try:
         float(number)
     except OverflowError:
-        raise HolonomError(Failure.NUMBER_TOO_LARGE) from None
+        raise HolonomError(ErrorKind.NUMBER_TOO_LARGE) from None
     return number
 
 
@@ -245,7 +315,7 @@ def _require_known(names: Set[str], known: Set[str]) -> None:
 
 
 def _refusal(detail: str) -> HolonomError:
-    return HolonomError(Failure.NOT_A_PROGRAM, detail=detail)
+    return HolonomError(ErrorKind.NOT_A_PROGRAM, detail=detail)
 
 
 def _shown(text: str) -> str:

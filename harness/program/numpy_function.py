@@ -1,9 +1,9 @@
 """A motion program as a NumPy function over arrays of points.
 
-The program becomes a Python syntax tree, node by node, and the tree a function: no text of the document is ever read
-as code, and its names are replaced. Carrying the program out ufunc by ufunc takes six times as long for one point
-(measured on a chain of 64 masses). A variable is taken again once its value is no longer needed, and large arrays are
-cut into blocks that stay in the cache: each takes a third of the time off.
+The program becomes a Python syntax tree, node by node, and the tree a function. No text of the document is read as
+code, and its names are replaced. Evaluation of the program ufunc by ufunc takes six times as long for one point
+(measured on a chain of 64 masses). A variable is reused when its value is no longer needed, and large arrays are cut
+into blocks that stay in the cache. Each saves a third of the time.
 """
 
 import ast
@@ -61,6 +61,7 @@ class NumpyFunction:
         Parameters
         ----------
         inputs : sequence of ndarray, each of shape (k,)
+            One array for each input of the program.
 
         Returns
         -------
@@ -76,7 +77,16 @@ class NumpyFunction:
 
 
 def needs_scipy(program: Program) -> bool:
-    """Return True if a program calls functions that NumPy does not have."""
+    """Return True if a program calls functions that NumPy does not have.
+
+    Parameters
+    ----------
+    program : Program
+
+    Returns
+    -------
+    bool
+    """
     return any(call.operation in OF_SCIPY for _, expression in program.assignments for call in calls_in(expression))
 
 
@@ -101,7 +111,10 @@ def _called_of_scipy(names: Sequence[str]) -> Mapping[str, np.ufunc]:
 
 
 def _statements(program: Program) -> Iterator[ast.stmt]:
-    """Yield assignments to few variables, v0, v1, ...: each is taken again after the last use of its value."""
+    """Yield assignments to few variables, v0, v1, ....
+
+    A variable is reused after the last use of its value.
+    """
     variables = {name: f"v{index}" for index, name in enumerate(program.inputs)}
     yield ast.Assign(
         [ast.Tuple([_store(v) for v in variables.values()], ast.Store(), **PLACE)], _load("inputs"), **PLACE
@@ -122,7 +135,10 @@ def _statements(program: Program) -> Iterator[ast.stmt]:
 
 
 def _last_uses(program: Program) -> Mapping[str, int]:
-    """Index of the assignment that uses a value last; past the end for what the outputs use."""
+    """Return the index of the last assignment that uses each value.
+
+    It is past the end for outputs.
+    """
     uses = {used: index for index, (_, expression) in enumerate(program.assignments) for used in names_in(expression)}
     kept = {value.text: len(program.assignments) for value in program.outputs.values() if isinstance(value, Name)}
     return uses | kept
@@ -149,7 +165,10 @@ def _call_by_name(name: str, *arguments: ast.expr) -> ast.expr:
 
 
 def _chained(operator: ast.operator, *arguments: ast.expr) -> ast.expr:
-    """Pairs of pairs: a sum of thousands of terms is a tree of a dozen levels, which Python compiles."""
+    """Combine terms in pairs, and these pairs in pairs.
+
+    A sum of thousands of terms becomes a tree of a dozen levels, which Python can compile.
+    """
     if len(arguments) == 1:
         return arguments[0]
     middle = len(arguments) - len(arguments) // 2

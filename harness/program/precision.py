@@ -1,4 +1,4 @@
-"""The floating-point numbers that heyoka computes with: double, extended, quadruple, or of any number of digits."""
+"""Floating-point precisions of heyoka: double, extended, quadruple or more digits."""
 
 import math
 import sys
@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from .heyoka_function import import_heyoka
 
 GUARD_DIGITS = 10  # given and computed with beyond the digits asked for
@@ -40,14 +40,32 @@ class Precision:
         return distance
 
     def ratio(self, value: Fraction) -> Any:
-        """Return the number nearest to a rational one."""
+        """Return the number nearest to a rational one.
+
+        Parameters
+        ----------
+        value : Fraction
+            The rational number.
+
+        Returns
+        -------
+        float, longdouble, real128 or real
+            A number of this precision.
+        """
         return self.number(str(value.numerator)) / self.number(str(value.denominator))
 
 
 def read_precision(text: str) -> Precision:
     """Return the numbers that an option asks for.
 
-    ``double``, ``extended``, ``quadruple``, or a number of decimal digits.
+    Parameters
+    ----------
+    text : str
+        ``double``, ``extended``, ``quadruple``, or a number of decimal digits.
+
+    Returns
+    -------
+    Precision
 
     Raises
     ------
@@ -58,7 +76,7 @@ def read_precision(text: str) -> Precision:
         return HARDWARE[text]()
     if not text.isdecimal() or len(text) > len(str(MOST_DIGITS)) or not 1 <= int(text) <= MOST_DIGITS:
         raise HolonomError(
-            Failure.NOT_A_PRECISION,
+            ErrorKind.NOT_A_PRECISION,
             detail=f"{text} is no precision: double, extended, quadruple, or from 1 to {MOST_DIGITS} digits",
         )
     return _of_digits(int(text))
@@ -70,7 +88,7 @@ def _double() -> Precision:
 
 def _extended() -> Precision:
     if np.finfo(np.longdouble).nmant != 63:
-        raise HolonomError(Failure.NOT_A_PRECISION, detail="this machine has no extended precision")
+        raise HolonomError(ErrorKind.NOT_A_PRECISION, detail="this machine has no extended precision")
     return _binary("extended", 64, 16445, np.longdouble, _scientific(21), {"fp_type": np.longdouble})
 
 
@@ -108,7 +126,7 @@ def _binary(
     text: Callable[[Any], str],
     options: Mapping[str, Any],
 ) -> Precision:
-    """Numbers whose significand has so many bits, the smallest of them 2^-exponents."""
+    """Numbers whose significand has this many bits, the smallest of them 2^-exponents."""
     digits, sure_digits = math.ceil(bits * math.log10(2)) + 1, math.floor((bits - 1) * math.log10(2))
     return Precision(name, digits, sure_digits, _highest_order(exponents), number, text, options)
 

@@ -1,11 +1,11 @@
-"""What is asked of a scene file: which scene, how the multipliers are solved for, numbers for what is open."""
+"""The request to a scene file: scene, solve of the multipliers, and settings."""
 
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..options import LONGEST, option, within_reach
 
 SETTING = re.compile(r"([^\W\d]\w*)=(-?\d+(?:\.\d+)?(?:e-?\d+)?(?:/\d+)?)", re.IGNORECASE)
@@ -33,7 +33,19 @@ class Request:
 
 
 def read_settings(texts: Iterable[str]) -> dict[str, str]:
-    """Read settings as they stand on a command line: ``NAME=VALUE``, an integer, a decimal or a quotient of integers.
+    """Read settings ``NAME=VALUE`` from a command line.
+
+    A value is an integer, a decimal or a quotient of integers.
+
+    Parameters
+    ----------
+    texts : iterable of str
+        Settings of the command line; the last one of a name counts.
+
+    Returns
+    -------
+    dict of str to str
+        Values as text, by name.
 
     Raises
     ------
@@ -43,9 +55,9 @@ def read_settings(texts: Iterable[str]) -> dict[str, str]:
     settings = {}
     for text in texts:
         if (found := SETTING.fullmatch(text)) is None:
-            raise HolonomError(Failure.NOT_A_SETTING, detail=text)
+            raise HolonomError(ErrorKind.NOT_A_SETTING, detail=text)
         if not within_reach(found[2]):
-            raise HolonomError(Failure.SETTING_TOO_LARGE, detail=text if len(text) < LONGEST else found[1])
+            raise HolonomError(ErrorKind.SETTING_TOO_LARGE, detail=text if len(text) < LONGEST else found[1])
         settings[found[1]] = found[2]
     return settings
 

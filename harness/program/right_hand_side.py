@@ -6,20 +6,23 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from .motion_problem import MotionProblem, computing, require_analytic
 from .numpy_function import NumpyFunction
 
 
 @dataclass(frozen=True, repr=False)
 class RightHandSide:
-    """f(t, y) of dy/dt = f(t, y), y the coordinates and then the velocities; arrays of states are columns."""
+    """The function f(t, y) of dy/dt = f(t, y).
+
+    The state y contains the coordinates, then the velocities. Arrays of states have them as columns.
+    """
 
     problem: MotionProblem
 
     def __post_init__(self) -> None:
         if self.problem.motion is None:
-            raise HolonomError(Failure.NO_PIVOTS, detail=self.problem.obstacle)
+            raise HolonomError(ErrorKind.NO_PIVOTS, detail=self.problem.obstacle)
         require_analytic(self.problem)
 
     def __repr__(self) -> str:
@@ -27,12 +30,12 @@ class RightHandSide:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What the components of y are."""
+        """Names of the components of y."""
         return self.problem.state
 
     @property
     def t0(self) -> float:
-        """The initial instant."""
+        """The initial time."""
         return float(self.problem.start["t"])
 
     @property
@@ -48,5 +51,5 @@ class RightHandSide:
     def __call__(self, t: float, y: ArrayLike) -> NDArray[np.float64]:
         """Return the velocities and accelerations."""
         state = np.asarray(y, dtype=float)
-        instants = np.broadcast_to(np.asarray(t, dtype=float), state.shape[1:])
-        return np.concatenate([state[len(state) // 2 :], self._accelerations([instants, *state])])
+        times = np.broadcast_to(np.asarray(t, dtype=float), state.shape[1:])
+        return np.concatenate([state[len(state) // 2 :], self._accelerations([times, *state])])

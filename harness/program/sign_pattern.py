@@ -1,20 +1,21 @@
-"""Programs of a motion whose signs are known: each is a number, or what keeps the motion on its surface.
+"""Programs of a motion with known signs, each a number or a sliding value.
 
-A motion that is not analytic everywhere comes with signs as inputs of its programs (`maxima/program/switching.mac`).
-While they stay the same it is an analytic motion like any other: its problem is the same one with the signs put in.
-A sign that holds the motion on its surface is a value along the way, -drive(0)/grip.
+A motion that is not analytic everywhere has signs as inputs of its programs (`maxima/program/switching.mac`). While
+they stay the same, the motion is analytic, and its problem has the signs put in. The sign that keeps a motion sliding
+on its surface is the value -drive(0)/grip along the motion.
 """
 
 from collections.abc import Callable, Hashable, Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
+from itertools import product
 
 from .drawing import Drawing
 from .folding import ZERO, folded
-from .motion_problem import MotionProblem, computing
+from .motion_problem import DependsOn, MotionProblem, computing
 from .motion_program import Call, Constant, Expression, Name, Operation, Program, count_operations
 
-SLIDING = "held"  # stands in a pattern for the sign that keeps the motion on its surface
+SLIDING = "sliding"  # stands in a pattern for the sign that keeps the motion on its surface
 Pattern = Mapping[str, int | str]
 
 
@@ -23,8 +24,15 @@ def problem_in(problem: MotionProblem, pattern: Pattern) -> MotionProblem:
 
     Parameters
     ----------
+    problem : MotionProblem
+        The motion, with or without signs.
     pattern : mapping of str to int or str
         1, -1 or `SLIDING` for each sign; one at most is held, of those that `holdable` names.
+
+    Returns
+    -------
+    MotionProblem
+        The motion without signs; `problem` itself if it has none.
     """
     if not problem.signs:
         return problem
@@ -40,6 +48,19 @@ def program_in(problem: MotionProblem, program: Program, pattern: Pattern) -> Pr
     """Return a program of the motion with the signs of a pattern.
 
     Its inputs are those of the motion, but for the signs.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    program : Program
+        One of its programs.
+    pattern : Pattern
+        1, -1 or `SLIDING` for each sign.
+
+    Returns
+    -------
+    Program
     """
     for name, sign in pattern.items():
         if sign == SLIDING:
@@ -48,37 +69,163 @@ def program_in(problem: MotionProblem, program: Program, pattern: Pattern) -> Pr
 
 
 def drawing_at_any_time(problem: MotionProblem) -> Drawing:
-    """Return how the system looks, each sign as it is at the state drawn.
+    """Return the drawing of the system, with each sign evaluated at the drawn state.
 
     Its program takes the time, the coordinates, the velocities and the multipliers alone.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion; it has a drawing.
+
+    Returns
+    -------
+    Drawing
     """
     program = problem.drawing.program
     for index, sign in reversed(list(enumerate(problem.signs, start=1))):
         function = computing(problem.switching, {f"switch[{index}]"})
         value = Call(Operation.SIGN, (function.outputs[f"switch[{index}]"],))
+        if sign.by is DependsOn.REACTION:
+            program = with_numbers(program, {sign.name: Fraction(1)})  # no drawing contains it
+            continue
         assignments = (*function.assignments, (sign.name, value))
         program = _preceded(replace(function, assignments=assignments, outputs={sign.name: Name(sign.name)}), program)
     return replace(problem.drawing, program=program)
 
 
 def drawing_in_numbers(problem: MotionProblem) -> Drawing:
-    """As `drawing_at_any_time`, with the values of the open parameters put in."""
+    """Return `drawing_at_any_time` with the values of the open parameters put in.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion; it has a drawing.
+
+    Returns
+    -------
+    Drawing
+    """
     drawing = drawing_at_any_time(problem)
     return replace(drawing, program=in_numbers(problem, drawing.program))
 
 
 def holdable(problem: MotionProblem, name: str) -> bool:
-    """Return True if a sign can hold the motion on its surface: forces alone contain it, and linearly."""
+    """Return True if a motion can slide on a sign's surface.
+
+    Then only forces contain the sign, and they are linear in it.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    name : str
+        One of its signs.
+
+    Returns
+    -------
+    bool
+    """
     return problem.switching is not None and f"grip[{_index(problem, name)}]" in problem.switching.outputs
 
 
+def driven(problem: MotionProblem, name: str) -> bool:
+    """Return True if the accelerations on both sides of a sign's surface are known.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    name : str
+        One of its signs.
+
+    Returns
+    -------
+    bool
+    """
+    return problem.switching is not None and f"drive[{_index(problem, name)}]" in problem.switching.outputs
+
+
+def signs_of_reactions(problem: MotionProblem, pattern: Pattern) -> list[Pattern]:
+    """Return the patterns with all signs of the multipliers that forces contain.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    pattern : Pattern
+        1, -1 or `SLIDING` for each sign.
+
+    Returns
+    -------
+    list of Pattern
+        The pattern with 1 and -1 for each of these signs: 2^m patterns for m signs.
+    """
+    names = [sign.name for sign in problem.signs if sign.by is DependsOn.REACTION]
+    return [{**pattern, **dict(zip(names, signs, strict=True))} for signs in product((1, -1), repeat=len(names))]
+
+
+def uniqueness(problem: MotionProblem, pattern: Pattern) -> list[tuple[int, Program]]:
+    """Return functions that have a known sign if accelerations are unique.
+
+    The determinant D of `maxima/program/reacting_forces.mac` is positive for each pattern of the signs of multipliers,
+    with the largest friction to both sides if the motion slides on a surface. Then the drive falls with the sliding
+    sign. With one multiplier it does so between two values that the surfaces determine.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    pattern : Pattern
+        1, -1 or `SLIDING` for each sign.
+
+    Returns
+    -------
+    list of (int, Program)
+        Sign that the output must have, 1 or -1, and the program of one output.
+    """
+    if not problem.reacting:
+        return []
+    held = next((name for name, sign in pattern.items() if sign == SLIDING), None)
+    patterns = signs_of_reactions(problem, pattern)
+    regular = computing(problem.switching, {"regular"})
+    sides = [pattern | ({held: to} if held else {}) for pattern in patterns for to in ((1, -1) if held else (1,))]
+    found = [(1, program_in(problem, regular, each)) for each in sides]
+    if held is None or len(patterns) <= 2:
+        return found
+    grip = computing(problem.switching, {f"grip[{_index(problem, held)}]"})
+    return found + [(-1, program_in(problem, grip, each)) for each in sides]
+
+
 def in_numbers(problem: MotionProblem, program: Program) -> Program:
-    """Return a program of the motion with the values of the open parameters put in."""
+    """Return a program of the motion with the values of the open parameters put in.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion, with the values.
+    program : Program
+        One of its programs.
+
+    Returns
+    -------
+    Program
+    """
     return with_numbers(program, problem.values) if problem.parameters else program
 
 
 def with_values_in(problem: MotionProblem) -> MotionProblem:
-    """Return the motion with the values of its parameters put into its programs, none left open."""
+    """Return the motion with the values of all open parameters put into its programs.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+
+    Returns
+    -------
+    MotionProblem
+    """
     if not problem.parameters:
         return problem
     return replace(
@@ -94,7 +241,17 @@ def with_values_in(problem: MotionProblem) -> MotionProblem:
 
 
 def at_start(problem: MotionProblem) -> MotionProblem:
-    """Return the motion as it begins: each table is the polynomial around the start."""
+    """Return the motion as it begins: each table is the polynomial around the start.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+
+    Returns
+    -------
+    MotionProblem
+    """
     if not problem.tables:
         return problem
 
@@ -116,8 +273,8 @@ def _begun(motion: MotionProblem, problem: MotionProblem) -> MotionProblem:
 def sharing_programs(problem: MotionProblem, known: dict[Hashable, MotionProblem]) -> MotionProblem:
     """Return a motion with the numbers of its laws as values of parameters.
 
-    The pieces of a law, of a table above all, differ in their numbers alone: motions that do so are given the same
-    programs, and what is compiled of them is compiled once.
+    The pieces of a law, of a table above all, differ only in their numbers. Motions with the same programs share them,
+    and their compiled functions.
 
     Parameters
     ----------
@@ -125,6 +282,10 @@ def sharing_programs(problem: MotionProblem, known: dict[Hashable, MotionProblem
         Without signs.
     known : dict
         The motions given so far; changed in place.
+
+    Returns
+    -------
+    MotionProblem
     """
     numbers: dict[str, Fraction] = {}
     assigned = {name for name, _ in problem.matrices.assignments}
@@ -177,30 +338,49 @@ def _with_names_for_numbers(expression: Expression, start: str, numbers: dict[st
 
 
 def _text(problem: MotionProblem) -> Hashable:
-    """Return what two motions have in common that differ in values and start alone."""
+    """Return the common part of motions that only differ in values and initial state."""
     programs: list[Program | None] = []
     _with_programs(problem, lambda program: programs.append(program) or program)
     return tuple((each.inputs, each.assignments, tuple(each.outputs.items())) for each in programs)
 
 
 def switching_function(problem: MotionProblem, quantity: str, name: str, pattern: Pattern) -> Program:
-    """One function that decides how the motion passes a surface.
+    """Return one function that decides how the motion passes a surface.
 
     Parameters
     ----------
-    problem, pattern
-        As for `problem_in`.
+    problem : MotionProblem
+        The motion.
     quantity : str
-        ``switch`` or ``switch_rate``; ``drive``, the rate that the value which the pattern has for the sign contributes
-        to of its own function, for a sign that `holdable` is true of.
+        ``switch``, the function whose sign it is; ``switch_rate``, its rate; or ``drive``, the first of its rates that
+        contains accelerations, with the sign's value from the pattern.
     name : str
         One of the signs.
+    pattern : Pattern
+        As for `problem_in`.
+
+    Returns
+    -------
+    Program
+        Program with one output.
     """
     return program_in(problem, computing(problem.switching, {f"{quantity}[{_index(problem, name)}]"}), pattern)
 
 
 def with_numbers(program: Program, numbers: Mapping[str, Fraction]) -> Program:
-    """Return a program with numbers for some of its inputs; what is multiplied by zero is dropped."""
+    """Return a program with numbers for some of its inputs, without zero products.
+
+    Parameters
+    ----------
+    program : Program
+    numbers : mapping of str to Fraction
+        Values of inputs, by name.
+
+    Returns
+    -------
+    Program
+        Program without these inputs.
+    """
     known: dict[str, Expression] = dict(numbers)
     kept = []
     for name, expression in program.assignments:
@@ -218,7 +398,7 @@ def with_numbers(program: Program, numbers: Mapping[str, Fraction]) -> Program:
 
 
 def _with_programs(problem: MotionProblem, changed: Callable[[Program], Program]) -> MotionProblem:
-    """Return the motion with each of its programs changed, but for that of the switching."""
+    """Return the motion with its programs changed, except the switching program."""
     return replace(
         problem,
         motion=problem.motion and changed(problem.motion),
@@ -239,7 +419,7 @@ def _index(problem: MotionProblem, name: str) -> int:
 
 
 def _holding(problem: MotionProblem, name: str) -> Program:
-    """Return the program of a sign that holds the motion on its surface: its one output has the sign's name."""
+    """Return the program of a sliding sign; its one output has the sign's name."""
     index = _index(problem, name)
     program = with_numbers(computing(problem.switching, {f"drive[{index}]", f"grip[{index}]"}), {name: ZERO})
     value = Call(Operation.DIVIDE, (
@@ -249,7 +429,10 @@ def _holding(problem: MotionProblem, name: str) -> Program:
 
 
 def _preceded(first: Program, program: Program) -> Program:
-    """Return a program after another one has computed one of its inputs; both take the same inputs otherwise."""
+    """Return a program after another one that computes one of its inputs.
+
+    Both take the same inputs otherwise.
+    """
     (sign,) = first.outputs
     taken = {name for name, _ in program.assignments} | set(program.inputs)
     own = {name: _untaken(f"{sign}_{name}", taken) for name, _ in first.assignments if name != sign}
@@ -280,7 +463,10 @@ def _substituted(expression: Expression, known: Mapping[str, Expression]) -> Exp
 
 
 def _vanishing_weight(arguments: tuple[Expression, ...], known: Mapping[str, Expression]) -> bool:
-    """Return True if a factor made of signs alone is zero: of a law in many pieces all terms but one are told by it."""
+    """Return True if a factor made of signs alone is zero.
+
+    It removes all terms but one of a law in many pieces.
+    """
     for each in arguments:
         of_signs = isinstance(each, Call) and all(name in known for name in _names_met(each))
         if of_signs and _substituted(each, known) == ZERO:
@@ -289,7 +475,7 @@ def _vanishing_weight(arguments: tuple[Expression, ...], known: Mapping[str, Exp
 
 
 def _names_met(expression: Expression) -> Iterator[str]:
-    """Yield names in an expression one after another: whoever has seen enough stops here."""
+    """Yield the names in an expression lazily."""
     match expression:
         case Name(text):
             yield text

@@ -1,7 +1,7 @@
-"""Tables that a law is given by: of thousands of cubic polynomials one counts at an instant.
+"""Tables of control laws: thousands of cubic polynomials, one for each interval.
 
-Programs have the letters of such a polynomial among their inputs, t_k and the coefficients of powers of t - t_k
-(`maxima/laws/table.mac`); its numbers are data, and found by the time.
+Programs have such a polynomial among their inputs, as t_k and the coefficients of powers of t - t_k
+(`maxima/laws/table.mac`). Its numbers are data, selected by the time.
 """
 
 from collections.abc import Iterator, Mapping
@@ -21,12 +21,12 @@ class Table:
 
     @cached_property
     def begins(self) -> tuple[Fraction, ...]:
-        """The instants at which the polynomials begin."""
+        """The times at which the polynomials begin."""
         return tuple(Fraction(piece[0]) for piece in self.pieces)
 
     @property
     def knots(self) -> tuple[Fraction, ...]:
-        """The instants at which one polynomial follows on another."""
+        """The times at which one polynomial follows on another."""
         return self.begins[1:]
 
     @property

@@ -1,4 +1,4 @@
-"""What tables are at instants: their polynomials as arrays, and programs of the time that take them."""
+"""Values of tables at given times, and programs of time that use them."""
 
 from collections.abc import Sequence
 from typing import Any, Literal
@@ -14,8 +14,8 @@ from .table import Table
 Numbers = NDArray[Any]
 
 
-class OfTime:
-    """A program of the time, and of what tables are then, as a function of the time alone.
+class TimeFunction:
+    """A program of time and the values of tables, as a function of time alone.
 
     Parameters
     ----------
@@ -26,9 +26,9 @@ class OfTime:
     def __init__(self, program: Program, tables: Sequence[Table]) -> None:
         self._function, self._tables = NumpyFunction(program), pieces_of_tables(tables)
 
-    def __call__(self, instants: Numbers) -> Numbers:
-        """Return the outputs at instants, shape (outputs, ...)."""
-        return self._function([instants, *(row for table in self._tables for row in table.at(instants))])
+    def __call__(self, times: Numbers) -> Numbers:
+        """Return the outputs at times, shape (outputs, ...)."""
+        return self._function([times, *(row for table in self._tables for row in table.at(times))])
 
 
 class PiecesOfTable:
@@ -40,14 +40,36 @@ class PiecesOfTable:
         self._numbers = np.array([begins, *rows])  # shape (5, pieces)
         self._knots = np.array([float(t) for t in begins[1:]])
 
-    def at(self, instants: Numbers, side: Literal["left", "right"] = "left") -> Numbers:
-        """Return the polynomials that count at instants in double precision, shape (5, k); one for one instant.
+    def at(self, times: Numbers, side: Literal["left", "right"] = "left") -> Numbers:
+        """Return the polynomials at times in double precision.
 
-        At a knot it is the one that ends there, on its right side the one that begins.
+        At a knot this is the polynomial that ends there; on its right side, the one that begins.
+
+        Parameters
+        ----------
+        times : float or ndarray, shape (k,)
+            Times in the scene's unit.
+        side : {"left", "right"}
+            Polynomial to take at a knot.
+
+        Returns
+        -------
+        ndarray, shape (5,) or (5, k)
+            Time at which the polynomial begins, then its four coefficients.
         """
-        return self._numbers[:, self._knots.searchsorted(instants, side)]
+        return self._numbers[:, self._knots.searchsorted(times, side)]
 
 
 def pieces_of_tables(tables: Sequence[Table]) -> list[PiecesOfTable]:
-    """Return those of each table, in double precision."""
+    """Return the pieces of each table in double precision.
+
+    Parameters
+    ----------
+    tables : sequence of Table
+        Tables of a law.
+
+    Returns
+    -------
+    list of PiecesOfTable
+    """
     return [PiecesOfTable(table, read_precision("double")) for table in tables]

@@ -1,4 +1,4 @@
-"""Times of one evaluation at one point, of compiled programs and of functions of Python."""
+"""Times of one evaluation of compiled programs and of Python functions."""
 
 import ctypes
 import time
@@ -30,22 +30,78 @@ class Timer:
         self._seconds.restype = ctypes.c_double
 
     def one_point(self, function: Compiled, point: NDArray[np.float64], outputs: int) -> float:
-        """Seconds for one call of ``function(in, out)``."""
+        """Measure one call of ``function(in, out)``.
+
+        Parameters
+        ----------
+        function : Compiled
+            Compiled function.
+        point : ndarray, shape (inputs,)
+            Its inputs.
+        outputs : int
+            Number of its outputs.
+
+        Returns
+        -------
+        float
+            Shortest time measured, in seconds.
+        """
         return shortest_times({0: self.batch(function, point, outputs)})[0]
 
     def batch(self, function: Compiled, point: NDArray[np.float64], outputs: int) -> Batch:
-        """Return a batch of calls of ``function(in, out)``."""
+        """Return a batch of calls of ``function(in, out)``.
+
+        Parameters
+        ----------
+        function : Compiled
+            Compiled function.
+        point : ndarray, shape (inputs,)
+            Its inputs.
+        outputs : int
+            Number of its outputs.
+
+        Returns
+        -------
+        Batch
+            Function from the number of calls to the seconds of one call.
+        """
         result = np.empty(outputs)
         address = ctypes.cast(function, ctypes.c_void_p)
         return lambda calls: self._seconds(address, point.ctypes.data, result.ctypes.data, calls)
 
     def evaluation(self, function: CFunction, point: NDArray[np.float64]) -> Batch:
-        """Return a batch of evaluations of a compiled program at a point."""
+        """Return a batch of evaluations of a compiled program at a point.
+
+        Parameters
+        ----------
+        function : CFunction
+            Compiled program.
+        point : ndarray, shape (inputs,)
+            Its inputs.
+
+        Returns
+        -------
+        Batch
+            Function from the number of calls to the seconds of one call.
+        """
         return self.batch(function.one, point, len(function.outputs))
 
 
 def python_batch(function: Callable[[Sequence[float]], object], point: Sequence[float]) -> Batch:
-    """Return a batch of calls of a function of Python."""
+    """Return a batch of calls of a function of Python.
+
+    Parameters
+    ----------
+    function : callable
+        Function of a sequence of numbers.
+    point : sequence of float
+        Its inputs.
+
+    Returns
+    -------
+    Batch
+        Function from the number of calls to the seconds of one call.
+    """
 
     def seconds(calls: int) -> float:
         start = time.perf_counter()
@@ -57,9 +113,19 @@ def python_batch(function: Callable[[Sequence[float]], object], point: Sequence[
 
 
 def shortest_times(batches: Mapping[Key, Batch]) -> dict[Key, float]:
-    """Measure several functions side by side: the seconds that one call of each takes.
+    """Measure the seconds of one call of several functions.
 
-    The functions take turns, so that what slows the machine down for a while slows all of them.
+    The functions take turns, so that a temporary slowdown of the machine affects all of them.
+
+    Parameters
+    ----------
+    batches : mapping of Key to Batch
+        Batches of calls, by a key.
+
+    Returns
+    -------
+    dict of Key to float
+        Shortest time of one call, in seconds, by the same key.
     """
     calls = {key: max(1, int(BATCH / max(_first_guess(batch), SHORTEST))) for key, batch in batches.items()}
     rounds = [{key: batch(calls[key]) for key, batch in batches.items()} for _ in range(ROUNDS)]
@@ -67,5 +133,8 @@ def shortest_times(batches: Mapping[Key, Batch]) -> dict[Key, float]:
 
 
 def _first_guess(batch: Batch) -> float:
-    """Seconds of a call, as far as a few tell: one that is disturbed must not pass for all."""
+    """Return the shortest time of a few calls, in seconds.
+
+    One disturbed call has no effect on it.
+    """
     return min(batch(1) for _ in range(GUESSES))

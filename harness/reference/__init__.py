@@ -1,1 +1,1 @@
-"""The reference: a page for each entry of a description, each command, each document and each name in Python."""
+"""The reference: pages of entries, commands, documents and Python names."""

@@ -1,4 +1,4 @@
-"""Functions that a user of Maxima calls, and the entries of two of them, as `entries.toml` explains them."""
+"""Functions that a user of Maxima calls, and their entries, from `entries.toml`."""
 
 import re
 import tomllib
@@ -15,7 +15,7 @@ FUNCTIONS = ("holonomic_system", "holonomic_scene")
 
 @dataclass(frozen=True)
 class Refusal:
-    """An entry that is refused, and a part of the sentence that says why."""
+    """An entry that raises an error, and a part of its message."""
 
     given: str
     said: str
@@ -24,7 +24,7 @@ class Refusal:
 
 @dataclass(frozen=True)
 class EntryText:
-    """What there is to know about an entry."""
+    """The text about an entry."""
 
     function: str
     name: str
@@ -39,7 +39,7 @@ class EntryText:
 
 @dataclass(frozen=True)
 class FunctionText:
-    """What there is to know about a function of the description."""
+    """The text about a function of the description."""
 
     name: str
     summary: str
@@ -48,19 +48,39 @@ class FunctionText:
     entries: tuple[EntryText, ...]
 
     def with_entries(self, *replacing: str) -> str:
-        """Return the entries of the example, those given in the place of the ones of the same names."""
+        """Return the entries of the example, with some of them replaced.
+
+        Parameters
+        ----------
+        *replacing : str
+            Entries ``name = value`` that replace others.
+
+        Returns
+        -------
+        str
+            Entries, separated by commas.
+        """
         by_name = {_name_of(entry): entry for entry in (*self.context, *replacing)}
         return ",\n  ".join(by_name.values())
 
     def complete_call(self) -> str:
-        """Return the complete example, an expression of Maxima."""
+        """Return the complete example, an expression of Maxima.
+
+        Returns
+        -------
+        str
+            Maxima expression.
+        """
         first = "system, " if self.name == "holonomic_scene" else ""
         return f"{self.name}({first}\n  {self.with_entries()})"
 
 
 @dataclass(frozen=True)
 class PartText:
-    """Function called by itself: a step of the derivation, or a writer of entries for a body, a joint or a load."""
+    """The text about a function: a step, or a writer of entries.
+
+    A step belongs to the derivation. Writers are for bodies, joints and loads.
+    """
 
     name: str
     call: str
@@ -73,13 +93,25 @@ class PartText:
 
 @cache
 def part_texts() -> tuple[PartText, ...]:
-    """Return the functions that write entries for bodies, joints and loads."""
+    """Return the functions that write entries for bodies, joints and loads.
+
+    Returns
+    -------
+    tuple of PartText
+        Texts of the functions.
+    """
     return _parts("part")
 
 
 @cache
 def step_texts() -> tuple[PartText, ...]:
-    """Return the steps of the derivation, in the paper's order."""
+    """Return the steps of the derivation, in the paper's order.
+
+    Returns
+    -------
+    tuple of PartText
+        Texts of the steps.
+    """
     return _parts("step")
 
 
@@ -94,7 +126,7 @@ def _parts(kind: str) -> tuple[PartText, ...]:
 
 
 def _names_used(text: str, context: Mapping[str, str]) -> list[str]:
-    """Return the names of the context that a text uses, those that their values use among them, in their order."""
+    """Return the names of the context that a text uses, directly or through values."""
     used = {name for name in context if re.search(rf"(?<!')\b{name}\b(?! =)", text)}
     below = {each for name in used for each in _names_used(context[name], context)}
     return [name for name in context if name in used | below]
@@ -102,7 +134,13 @@ def _names_used(text: str, context: Mapping[str, str]) -> list[str]:
 
 @cache
 def function_texts() -> tuple[FunctionText, ...]:
-    """Return the two functions with their entries."""
+    """Return the two functions with their entries.
+
+    Returns
+    -------
+    tuple of FunctionText
+        Texts of both functions.
+    """
     described = _described()
     return tuple(_function(name, described[name]) for name in FUNCTIONS)
 

@@ -1,6 +1,7 @@
-"""Help for Maxima, of the text on entries: an info file with its index, examples and a demonstration.
+"""Maxima help files from the entry texts: info file, examples and demonstration.
 
-Maxima finds a topic by the byte where it begins and the number of its characters. All is ASCII, where the two agree.
+Maxima finds a topic by the byte where it begins and the number of its characters. The text is ASCII, so that both
+counts agree.
 """
 
 import textwrap
@@ -19,21 +20,29 @@ SYSTEM, SCENE = "system", "paid_out"  # what the examples assign
 
 
 def help_files() -> Mapping[str, str]:
-    """Return the text of each file, by its name; ``maxima/help.lisp`` says what each is for."""
-    info, index = info_with_index()
+    """Return the text of each file, by its name.
+
+    ``maxima/help.lisp`` describes the files.
+
+    Returns
+    -------
+    mapping of str to str
+        Texts by file name.
+    """
+    info, index = _info_with_index()
     return {
         INFO: info,
         "holonom-index.lisp": index,
         "examples.demo": examples(),
-        "holonom.dem": demonstration(),
+        "holonom.dem": _demonstration(),
     }
 
 
 # ---- ? holonomic_system -----------------------------------------------------------------------------------------
 
 
-def info_with_index() -> tuple[str, str]:
-    """Return the info file, and the Lisp that tells Maxima where each topic stands in it."""
+def _info_with_index() -> tuple[str, str]:
+    """Return the info file, and the Lisp index with the position of each topic."""
     first = function_texts()[0].name
     text = f"This is {INFO}: how a system and its scenes are described.\n\n"
     text += NODE.format(info=INFO, node="Top", links=f"Next: {DEFINITIONS},  Up: (dir)")
@@ -53,7 +62,10 @@ def info_with_index() -> tuple[str, str]:
 
 
 def _topics() -> Iterator[tuple[str, str]]:
-    """Yield names of topics and their texts; where several share a name, Maxima shows title <1> and title <2>."""
+    """Yield names of topics and their texts.
+
+    If several topics share a name, Maxima shows title <1> and title <2>.
+    """
     topics = [*_named_topics()]
     shared, met = Counter(name for name, _ in topics), Counter()
     for name, text in topics:
@@ -72,7 +84,7 @@ def _function(function: FunctionText) -> str:
     entries = "".join(_filled(f"{entry.name}: {entry.type}", 10, 14) for entry in function.entries)
     return (
         f" -- Function: {function.name}\n{_filled(function.summary)}\n{_shown(function.call)}\n"
-        f"{_filled('For instance:')}\n{_shown(assignment(function))}\n"
+        f"{_filled('For instance:')}\n{_shown(_assignment(function))}\n"
         f"{_filled('Its entries, in any order; each has a topic of its own:')}\n{entries}"
     )
 
@@ -121,8 +133,14 @@ def _lisp(text: str) -> str:
 
 
 def examples() -> str:
-    """Return what ``example(topic)`` runs, in the form of Maxima's manual.demo."""
-    system, scene = map(assignment, function_texts())
+    """Return the input of ``example(topic)``, in the form of Maxima's manual.demo.
+
+    Returns
+    -------
+    str
+        Text of the file.
+    """
+    system, scene = map(_assignment, function_texts())
     steps = "".join("\n".join([f"\n&& {step.name}\n", *step.context, f"{step.example};\n"]) for step in step_texts())
     return (
         "/* Run by example(topic). */\n\n"
@@ -132,14 +150,17 @@ def examples() -> str:
     )
 
 
-def demonstration() -> str:
-    """Return what ``demo(holonom)`` runs: the paper's example by hand, the library being loaded."""
+def _demonstration() -> str:
+    """Return the input of ``demo(holonom)``.
+
+    It derives the paper's example step by step. The library is already loaded.
+    """
     return "".join(
         line for line in BY_HAND.read_text(encoding="utf-8").splitlines(True) if not line.startswith("load(")
     )
 
 
-def assignment(function: FunctionText) -> str:
+def _assignment(function: FunctionText) -> str:
     """Return the complete example of a function as a statement."""
     name = SYSTEM if function.name == "holonomic_system" else SCENE
     return f"{name} : {function.complete_call()}$"

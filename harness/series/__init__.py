@@ -1,1 +1,1 @@
-"""The initial motion as power series: coefficients, continuation, radius of convergence."""
+"""The initial motion as power series, with continuation and radius of convergence."""

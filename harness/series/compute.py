@@ -1,4 +1,4 @@
-"""The power series of a scene's motion, asked of Maxima or of heyoka."""
+"""The power series of a scene's motion, by Maxima or heyoka."""
 
 from pathlib import Path
 
@@ -11,7 +11,21 @@ from .request import SeriesRequest
 
 
 def compute_series(file: Source | Path, request: SeriesRequest, limits: Limits) -> MotionSeries:
-    """Expand a scene's motion, in Maxima or, where a precision is asked for, with heyoka.
+    """Expand a scene's motion, by Maxima, or by heyoka if a precision is given.
+
+    Parameters
+    ----------
+    file : Source or Path
+        Scene file.
+    request : SeriesRequest
+        Scene, order and numbers to compute with.
+    limits : Limits
+        Limits of each run of Maxima.
+
+    Returns
+    -------
+    MotionSeries
+        Coefficients about the initial time, and the continuation if the request has an end.
 
     Raises
     ------

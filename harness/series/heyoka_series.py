@@ -1,10 +1,10 @@
-"""The initial motion of a scene as power series, and its continuation, by heyoka's Taylor integrators.
+"""Power series of the initial motion, and its continuation, by heyoka.
 
-An integrator expands its state at every step, to an order that its tolerance decides: the order is asked for in those
-terms, and the coefficients of the first step are taken. Multipliers and constraint forces are no state; each is the
-rate of an additional one, which starts from zero.
+heyoka's Taylor integrators expand their state at every step, to an order that depends on the tolerance. The tolerance
+is chosen by the order, and the coefficients of the first step are taken. Multipliers and constraint forces are not in
+the state. Each is the derivative of an additional state variable that is initially zero.
 
-A continuation is what the integrators are for: step by step, each step's tolerance the precision of the numbers.
+A continuation integrates step by step, with the precision of the numbers as tolerance.
 """
 
 from collections.abc import Sequence
@@ -17,7 +17,7 @@ from typing import Any
 import mpmath
 import numpy as np
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..program.expense import order_for, require_means
 from ..program.heyoka_function import dynamics, heyoka_expressions, import_heyoka, zero_multipliers
 from ..program.motion_problem import MotionProblem, motion_problem, require_expandable
@@ -35,9 +35,25 @@ ONCE, OFTEN = 0, 3  # LLVM's levels of optimisation: compiled in a tenth of the 
 
 
 def expand_by_heyoka(file: Source | Path, request: SeriesRequest, limits: Limits) -> MotionSeries:
-    """Expand a scene's motion with heyoka, and continue it where that is asked for.
+    """Expand a scene's motion with heyoka, and continue it if the request says so.
 
-    Raises as `motion_problem`, `expand` and `continue_motion`.
+    Parameters
+    ----------
+    file : Source or Path
+        Scene file.
+    request : SeriesRequest
+        Its precision is not None; its end, if any, is that of the continuation.
+    limits : Limits
+        Limits of each run of Maxima.
+
+    Returns
+    -------
+    MotionSeries
+
+    Raises
+    ------
+    HolonomError
+        As `motion_problem`, `expand` and `continue_motion`.
     """
     precision = read_precision(str(request.precision))
     asked = Request(request.scene, settings=request.settings)
@@ -51,6 +67,20 @@ def expand_by_heyoka(file: Source | Path, request: SeriesRequest, limits: Limits
 def expand(problem: MotionProblem, order: int, precision: Precision) -> MotionSeries:
     """Expand a motion in power series, to order 2 or more.
 
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion, whose initial values have at least the digits of the precision.
+    order : int
+        Highest power of t - t0, at least 2.
+    precision : Precision
+        Numbers of heyoka.
+
+    Returns
+    -------
+    MotionSeries
+        Series of coordinates, multipliers and observed constraint forces, without continuation.
+
     Raises
     ------
     HolonomError
@@ -62,7 +92,7 @@ def expand(problem: MotionProblem, order: int, precision: Precision) -> MotionSe
     coefficients = integrator.tc
     if not np.all(np.isfinite(coefficients)):
         raise HolonomError(
-            Failure.ORDER_TOO_HIGH, detail=f"the coefficients leave the range of {precision.name} or are singular"
+            ErrorKind.ORDER_TOO_HIGH, detail=f"the coefficients leave the range of {precision.name} or are singular"
         )
     coordinates = zip(problem.coordinates, coefficients, strict=False)
     rates = zip(_reactions(problem), map(_rate, coefficients[len(problem.state) :]), strict=True)
@@ -87,7 +117,21 @@ def _of_state(problem: MotionProblem) -> Program:
 
 
 def continue_motion(problem: MotionProblem, until: Fraction, precision: Precision) -> Continuation:
-    """Follow a motion step by step, to the instant `until`.
+    """Integrate a motion step by step to the time `until`.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion, whose initial values have at least the digits of the precision.
+    until : Fraction
+        Final time, in the scene's unit; it may be before the initial time.
+    precision : Precision
+        Numbers of heyoka; their rounding is the tolerance.
+
+    Returns
+    -------
+    Continuation
+        States after each step, the initial one first.
 
     Raises
     ------
@@ -107,17 +151,30 @@ def continue_motion(problem: MotionProblem, until: Fraction, precision: Precisio
     outcome, *_ = integrator.propagate_until(last, callback=keep_state, max_steps=MOST_STEPS)
     if outcome != import_heyoka().taylor_outcome.time_limit:
         _refuse_to_continue(float(integrator.time), len(states))
-    instants, values = zip(*states, strict=True)
+    times, values = zip(*states, strict=True)
     rows = [(name, _texts(row, precision)) for name, row in zip(problem.state, zip(*values, strict=True), strict=True)]
     n = len(problem.coordinates)
-    return Continuation(precision.sure_digits, _texts(instants, precision), dict(rows[:n]), dict(rows[n:]))
+    return Continuation(precision.sure_digits, _texts(times, precision), dict(rows[:n]), dict(rows[n:]))
 
 
 def expanding_integrator(problem: MotionProblem, order: int, precision: Precision, effort: int = ONCE) -> Any:
-    """Set up heyoka's integrator for one expansion; its state ends with the integrals of multipliers and forces.
+    """Return heyoka's integrator for one expansion.
 
-    The coefficients of the multipliers reach the order, those of the state go one further; the effort is ``ONCE`` or
-    ``OFTEN``.
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion to expand.
+    order : int
+        Highest power of t - t0 for the multipliers; the state is expanded to one order more.
+    precision : Precision
+        Numbers of heyoka.
+    effort : int
+        Level of LLVM's optimisation, ``ONCE`` or ``OFTEN``.
+
+    Returns
+    -------
+    taylor_adaptive
+        Its state ends with the integrals of multipliers and constraint forces.
 
     Raises
     ------
@@ -126,7 +183,7 @@ def expanding_integrator(problem: MotionProblem, order: int, precision: Precisio
     """
     if order > precision.highest_order:
         raise HolonomError(
-            Failure.ORDER_TOO_HIGH, detail=f"in {precision.name} heyoka reaches order {precision.highest_order}"
+            ErrorKind.ORDER_TOO_HIGH, detail=f"in {precision.name} heyoka reaches order {precision.highest_order}"
         )
     heyoka = import_heyoka()
     variables = {"t": heyoka.time, **{name: heyoka.expression(name) for name in problem.state}}
@@ -143,7 +200,19 @@ def expanding_integrator(problem: MotionProblem, order: int, precision: Precisio
 
 
 def continuing_integrator(problem: MotionProblem, precision: Precision) -> Any:
-    """Set up heyoka's integrator of a motion, its tolerance the precision of the numbers.
+    """Return heyoka's integrator of a motion, with the precision as tolerance.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion to continue.
+    precision : Precision
+        Numbers of heyoka.
+
+    Returns
+    -------
+    taylor_adaptive
+        Its state is that of the motion: coordinates, then velocities.
 
     Raises
     ------
@@ -172,7 +241,7 @@ def _integrator(
 
 
 def _reactions(problem: MotionProblem) -> list[str]:
-    """Return names of what is no state: multipliers and constraint forces."""
+    """Return names of multipliers and constraint forces."""
     return [name for name in problem.motion.outputs if not name.startswith("ddot(")]
 
 
@@ -181,7 +250,7 @@ def _unused(problem: MotionProblem, precision: Precision) -> dict[str, Any]:
 
 
 def _rate(coefficients: Sequence[Any]) -> list[Any]:
-    """Coefficients of the derivative."""
+    """Return the coefficients of the derivative."""
     return [coefficients[n] * n for n in range(1, len(coefficients))]
 
 
@@ -189,9 +258,9 @@ def _texts(row: Sequence[Any], precision: Precision) -> NumberTexts:
     return tuple(map(precision.text, row))
 
 
-def _refuse_to_continue(instant: float, states: int) -> None:
+def _refuse_to_continue(time_point: float, states: int) -> None:
     many = states > MOST_STEPS
     reason = f"it arrived after {MOST_STEPS} steps" if many else "its radius of convergence shrinks to nothing"
     raise HolonomError(
-        Failure.NO_CONTINUATION, detail=f"the motion cannot be continued beyond t = {instant:.10g}, where {reason}"
+        ErrorKind.NO_CONTINUATION, detail=f"the motion cannot be continued beyond t = {time_point:.10g}, where {reason}"
     )

@@ -1,7 +1,7 @@
-"""The initial motion of a scene as power series, asked of Maxima, and what follows from their coefficients.
+"""Power series of the initial motion, derived by Maxima, and their evaluation.
 
-Coefficients are kept as text: exact numbers as p/q, rounded ones as decimal digits. They become mpmath's numbers, of
-as many digits, where something is computed from them.
+Coefficients are stored as text: exact numbers as p/q, rounded ones as decimal digits. Computations convert them to
+mpmath's numbers with as many digits.
 """
 
 import math
@@ -13,7 +13,7 @@ from typing import Any
 
 import mpmath
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..formats import Document, Publication, published, read
 from ..number_texts import number, numbers
 from ..program.motion_program import Program
@@ -29,17 +29,17 @@ NumberTexts = tuple[str, ...]
 
 @dataclass(frozen=True)
 class Continuation:
-    """States of a motion at the instants where it was expanded anew, the last at the instant asked for."""
+    """States of a motion at the centres of its expansions, the last at the final time."""
 
     digits: int
-    instants: NumberTexts
+    times: NumberTexts
     coordinates: Mapping[str, NumberTexts]
     velocities: Mapping[str, NumberTexts]
 
 
 @dataclass(frozen=True, repr=False)
 class MotionSeries(Shown):
-    """The power series of one motion about its initial instant.
+    """The power series of one motion about its initial time.
 
     Attributes
     ----------
@@ -79,24 +79,42 @@ class MotionSeries(Shown):
             return replace(POLYNOMIAL, coefficients=self.order + 1)
         with mpmath.workdps(self.digits):
             found = estimate_radius([numbers(series) for _, series in self.all_series()])
-            found = replace(found, remark=UNPROVED.remark) if found == POLYNOMIAL else found
+            found = replace(found, note=UNPROVED.note) if found == POLYNOMIAL else found
             return decided(found, [numbers(row) for row in self.coordinates.values()], self.program, number(self.t0))
 
     def up_to(self, order: int) -> "MotionSeries":
-        """Return the same series without the powers above a lower order."""
+        """Return the same series without the powers above a lower order.
+
+        Parameters
+        ----------
+        order : int
+            Highest power that is kept, at most that of the series.
+
+        Returns
+        -------
+        MotionSeries
+        """
         groups = ("coordinates", "multipliers", "constraint_forces")
         kept = {group: {name: row[: order + 1] for name, row in getattr(self, group).items()} for group in groups}
         return replace(self, order=order, **kept)
 
     def all_series(self) -> Iterator[tuple[str, NumberTexts]]:
-        """Name and coefficients of each series."""
+        """Yield name and coefficients of each series.
+
+        Yields
+        ------
+        name : str
+            Coordinate, multiplier or constraint force.
+        coefficients : tuple of str, shape (order + 1,)
+            Those of (t - t0)^0, (t - t0)^1, and so on.
+        """
         for group in (self.coordinates, self.multipliers, self.constraint_forces):
             yield from group.items()
 
 
 @dataclass(frozen=True)
 class Values:
-    """What the series add up to at an instant, and the size of what is left out of the sums."""
+    """Sums of the series at a given time, with their truncation errors."""
 
     time: Fraction
     values: Mapping[str, mpmath.mpf]
@@ -104,7 +122,16 @@ class Values:
 
 
 def read_series(text: str) -> MotionSeries:
-    """Read what Maxima writes.
+    """Read the power series that Maxima writes.
+
+    Parameters
+    ----------
+    text : str
+        JSON document of the power series.
+
+    Returns
+    -------
+    MotionSeries
 
     Raises
     ------
@@ -115,33 +142,58 @@ def read_series(text: str) -> MotionSeries:
 
 
 def values_at(motion: MotionSeries, time: Fraction) -> Values:
-    """Add the series up at an instant inside the radius of convergence.
+    """Add the series up at a given time inside the radius of convergence.
+
+    Parameters
+    ----------
+    motion : MotionSeries
+        The series to add up.
+    time : Fraction
+        The time t, in the scene's unit.
+
+    Returns
+    -------
+    Values
+        Sums by name, and the largest truncation error.
 
     Raises
     ------
     HolonomError
-        The instant is not inside the radius of convergence; or that is unknown and the terms do not fall; a sign in
+        The time is not inside the radius of convergence; or that is unknown and the terms do not fall; a sign in
         the system or the law may have changed before.
     """
     with mpmath.workdps(motion.digits):
         step = mpmath.mpf(time.numerator) / time.denominator - number(motion.t0)
         if motion.switch is not None and step:
-            raise HolonomError(Failure.SERIES_SWITCHED, motion.scene, motion.switch)
+            raise HolonomError(ErrorKind.SERIES_SWITCHED, motion.scene, motion.switch)
         _require_inside(motion, time, float(abs(step)))
         series = {name: numbers(texts) for name, texts in motion.all_series()}
         left_out = max(truncation_error(c, motion.radius, float(step)) for c in series.values())
         if math.isinf(left_out):
             raise HolonomError(
-                Failure.BEYOND_RADIUS,
+                ErrorKind.BEYOND_RADIUS,
                 detail=f"the terms of the series about t = {motion.t0} do not fall at t = {float(time):g}; "
-                f"its radius of convergence is {motion.radius.remark}",
+                f"its radius of convergence is {motion.radius.note}",
             )
         sums = {name: mpmath.polyval(coefficients[::-1], step) for name, coefficients in series.items()}
         return Values(time, sums, left_out)
 
 
 def series_document(motion: MotionSeries, values: Values | None = None) -> dict[str, Any]:
-    """Return what `holonom series --json` writes."""
+    """Return the content of `holonom series --json`.
+
+    Parameters
+    ----------
+    motion : MotionSeries
+        The series; numbers are published as text unless they are doubles.
+    values : Values or None
+        Sums at one time, published as ``at``.
+
+    Returns
+    -------
+    dict
+        Content with format and version.
+    """
     radius = motion.radius
     t0 = float(number(motion.t0))
     content = {
@@ -158,7 +210,7 @@ def series_document(motion: MotionSeries, values: Values | None = None) -> dict[
             "estimate": radius.estimate,
             "uncertainty": radius.uncertainty,
             "singularities": [[t0 + z.real, z.imag] for z in radius.singularities],
-            "remark": radius.remark,
+            "note": radius.note,
             "located": radius.located,
             "coefficients": radius.coefficients,
             "unseen": radius.unseen,
@@ -180,9 +232,9 @@ def _require_inside(motion: MotionSeries, time: Fraction, distance: float) -> No
     if radius.estimate is None or distance < radius.estimate - radius.uncertainty:
         return
     nearest = ", ".join(f"{float(number(motion.t0)) + z.real:.6g}{z.imag:+.6g}i" for z in radius.singularities)
-    reason = f"its nearest singularities are at {nearest}" if nearest else radius.remark
+    reason = f"its nearest singularities are at {nearest}" if nearest else radius.note
     raise HolonomError(
-        Failure.BEYOND_RADIUS,
+        ErrorKind.BEYOND_RADIUS,
         detail=f"the series about t = {motion.t0} does not converge at t = {float(time):g}: its radius of convergence "
         f"is {radius.estimate:.6g}, {described(radius)}; {reason}",
     )

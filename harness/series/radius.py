@@ -1,15 +1,15 @@
-"""Where a power series ends: its radius of convergence and nearest singularities, from its coefficients.
+"""Estimate the radius of convergence and nearest singularities from coefficients.
 
-Near a singularity, or a complex pair of them, the coefficients follow in the end a three-term recurrence
+Near a singularity, or a complex pair of them, the coefficients approach a three-term recurrence
 
     c_n + (p_0 + p_1/n + p_2/n^2 + ...) c_(n-1) + (s_0 + s_1/n + s_2/n^2 + ...) c_(n-2) = 0,
 
-and the singularities z = t - t0 satisfy 1 + p_0 z + s_0 z^2 = 0. Without corrections, and from two such equations, this
-is Mercer and Roberts' test. Here the corrections are fitted over the later orders, which extrapolates that test to
-n = infinity, and Domb and Sykes' with it where one singularity stands alone; with two terms more, two pairs are told
-apart. Each number of corrections gives an estimate; those that agree best with their neighbours are taken, and what
-they differ by, times a factor of safety, is the uncertainty. Where they do not agree, the root test is left: |c_n|
-falls like R^-n at a finite radius R, and faster by some power of n! where the motion is entire.
+and the singularities z = t - t0 satisfy 1 + p_0 z + s_0 z^2 = 0. Without corrections, and from two such equations,
+this is Mercer and Roberts' test. Here the corrections are fitted over the later orders, which extrapolates that test
+to n = infinity, and Domb and Sykes' with it if there is a single singularity. Two more terms distinguish two pairs.
+Each number of corrections gives an estimate; those that agree best with their neighbours are taken, and their
+difference, times a factor of safety, is the uncertainty. If they do not agree, the root test is used: |c_n| falls
+like R^-n at a finite radius R, and faster by some power of n! if the motion is entire.
 
 A series in even or in odd powers alone is one in the square of the time: its singularities come in pairs ±z.
 
@@ -60,12 +60,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Radius:
-    """Radius of convergence about the initial instant."""
+    """Radius of convergence about the initial time."""
 
-    estimate: float | None  # None where there is none to state; the remark says why
+    estimate: float | None  # None where there is none to state; the note says why
     uncertainty: float | None
     singularities: tuple[complex, ...]  # the nearest ones, as t - t0
-    remark: str  # what was found, in words
+    note: str  # what was found, in words
     located: bool = False  # whether the equations of motion are singular there; the coefficients alone tell otherwise
     coefficients: int = field(default=0, compare=False)  # how many were looked at
     # strength, beside the singularity found, of one at nine tenths of its distance that would not show; None if nothing
@@ -87,14 +87,33 @@ TOO_FEW = Radius(
 def estimate_radius(series: Iterable[Sequence[mpmath.mpf]]) -> Radius:
     """Estimate the radius of convergence of a motion from its power series in t - t0.
 
-    The most certain estimate among those of the series that end first.
+    The result is the most certain of the estimates of the series with the smallest radii.
+
+    Parameters
+    ----------
+    series : iterable of sequence of mpf, shape (orders,)
+        Coefficients of each coordinate, the constant first.
+
+    Returns
+    -------
+    Radius
     """
     rows = list(series)
     return _of_so_many(_first_end([_radius_of(coefficients) for coefficients in rows]), len(rows[0]) if rows else 0)
 
 
 def described(radius: Radius) -> str:
-    """Return what a radius is known from."""
+    """Return the evidence for a radius, in words.
+
+    Parameters
+    ----------
+    radius : Radius
+        A finite radius.
+
+    Returns
+    -------
+    str
+    """
     if radius.located:
         return "where the equations of motion are singular"
     return (
@@ -104,7 +123,7 @@ def described(radius: Radius) -> str:
 
 
 def _of_so_many(radius: Radius, coefficients: int) -> Radius:
-    """Return an estimate with what so many coefficients do not show."""
+    """Return an estimate with the uncertainty left by the number of coefficients."""
     if radius.estimate is None:
         return replace(radius, coefficients=coefficients)
     unseen = radius.uncertainty / radius.estimate * NEARER**coefficients
@@ -112,14 +131,19 @@ def _of_so_many(radius: Radius, coefficients: int) -> Radius:
 
 
 def estimate_radii(series: Floats) -> list[Radius]:
-    """Estimate the radii of convergence of many motions, as `estimate_radius` does, many at a time.
+    """Estimate the radii of convergence of many motions at a time.
 
-    What comes out for a motion does not hang on the others.
+    The method is that of `estimate_radius`. The result for a motion does not depend on the others.
 
     Parameters
     ----------
     series : ndarray, shape (series, orders, motions)
         Finite coefficients.
+
+    Returns
+    -------
+    list of Radius
+        One for each motion.
     """
     import numpy as np
 
@@ -139,9 +163,23 @@ def _first_end(found: Sequence[Radius]) -> Radius:
 
 
 def truncation_error(coefficients: Sequence[mpmath.mpf], radius: Radius, time: float) -> float:
-    """Estimate what the terms left out of a power series add up to.
+    """Estimate the truncation error of a power series.
 
-    The sum of a geometric series above the last terms; infinite where that does not converge.
+    The estimate is the sum of a geometric series above the last terms; infinite if that diverges.
+
+    Parameters
+    ----------
+    coefficients : sequence of mpf, shape (order + 1,)
+        The constant first.
+    radius : Radius
+        Radius of convergence of the series.
+    time : float
+        t - t0, in the scene's unit.
+
+    Returns
+    -------
+    float
+        In the unit of the sum.
     """
     last = len(coefficients) - 1
     terms = [float(abs(c) * mpmath.mpf(abs(time)) ** n) for n, c in enumerate(coefficients)]
@@ -175,7 +213,7 @@ def _radius_of(coefficients: Sequence[mpmath.mpf]) -> Radius:
 
 
 def _radii_of_floats(series: Floats) -> list[Radius]:
-    """Radii of series in double precision, shape (m, orders)."""
+    """Return the radii of series in double precision, shape (m, orders)."""
     import numpy as np
 
     orders = series.shape[1]
@@ -193,7 +231,9 @@ def _radii_of_floats(series: Floats) -> list[Radius]:
 
 
 def _radii_of_balanced(scale: Floats, balanced: Floats) -> list[Radius]:
-    """Radii of series by the time in units of a scale, shape (m,), that makes their last coefficients of order one.
+    """Return the radii of series with balanced coefficients.
+
+    The unit of time is a scale, shape (m,), that makes their last coefficients of order one.
 
     Parameters
     ----------
@@ -212,7 +252,10 @@ def _radii_of_balanced(scale: Floats, balanced: Floats) -> list[Radius]:
 
 
 def _radii_of_strided(scale: Floats, balanced: Floats, stride: int) -> list[Radius]:
-    """Radii of series none of whose powers are missing, shape (m, orders), in the stride-th power of the time."""
+    """Return the radii of series without missing powers, shape (m, orders).
+
+    The variable is the stride-th power of the time.
+    """
     last = balanced.shape[1] - 1
     if last + 1 < FEWEST:
         return [TOO_FEW] * len(balanced)
@@ -231,7 +274,10 @@ def _radii_of_strided(scale: Floats, balanced: Floats, stride: int) -> list[Radi
 
 
 def _powers(balanced: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """First power and distance of the powers that occur: (0, 1), or (0, 2) for even and (1, 2) for odd ones."""
+    """Return first power and distance of the powers that occur.
+
+    These are (0, 1), or (0, 2) for even and (1, 2) for odd powers.
+    """
     import numpy as np
 
     later = np.abs(balanced[:, 2:])
@@ -241,7 +287,10 @@ def _powers(balanced: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
 
 
 def _envelope(balanced: Floats) -> tuple[NDArray[np.int64], Floats]:
-    """Later orders, shape (k,), and log|c_n| there of the largest of three neighbours each, shape (m, k)."""
+    """Return later orders, shape (k,), and the envelope of log|c_n|, shape (m, k).
+
+    The envelope is the largest of three neighbours.
+    """
     import numpy as np
 
     n = np.arange((balanced.shape[1] - 1) // 3 + 2, balanced.shape[1])
@@ -249,14 +298,20 @@ def _envelope(balanced: Floats) -> tuple[NDArray[np.int64], Floats]:
 
 
 def _growth(n: NDArray[np.int64], logarithms: Floats) -> Floats:
-    """Exponent a in |c_n|^(-1/n) ~ (n/e)^a: zero at a finite radius, 1/rho for an entire function of order rho."""
+    """Return the exponent a in |c_n|^(-1/n) ~ (n/e)^a.
+
+    It is zero for a finite radius, and 1/rho for an entire function of order rho.
+    """
     return -_slopes(n, logarithms, lambda n: [[math.lgamma(order + 1) for order in n], n])
 
 
 def _slopes(
     n: NDArray[np.int64], logarithms: Floats, columns: Callable[[NDArray[np.int64]], list[ArrayLike]]
 ) -> Floats:
-    """Coefficients of the first of the columns, fitted to logarithms together with the others and a constant."""
+    """Return the coefficients of the first column in a fit to logarithms.
+
+    The other columns and a constant are fitted together with it.
+    """
     import numpy as np
 
     slopes = np.empty(len(logarithms))
@@ -269,21 +324,27 @@ def _slopes(
 
 
 def _root_tests(n: NDArray[np.int64], logarithms: Floats, stride: int, scale: Floats) -> list[Radius]:
-    """log|c_n| = -n log R + b, and with a term a log n more: what that changes is uncertain."""
+    """Return radii by the fit log|c_n| = -n log R + b, and their uncertainties.
+
+    The uncertainty is the change of the result if a term a log n is added.
+    """
     import numpy as np
 
     slope = _slopes(n, logarithms, lambda n: [n])
     with_power = _slopes(n, logarithms, lambda n: [n, np.log(n)])
     error = np.maximum(ROOT_TEST_ERROR / n[-1], SAFETY * np.abs(slope - with_power)) / stride
     estimate = np.exp(-slope / stride) * scale
-    remark = "by the root test: the orders do not tell the nearest singularities apart"
+    note = "by the root test: the orders do not tell the nearest singularities apart"
     return [
-        Radius(r, u, (), remark) for r, u in zip(estimate.tolist(), (estimate * np.expm1(error)).tolist(), strict=True)
+        Radius(r, u, (), note) for r, u in zip(estimate.tolist(), (estimate * np.expm1(error)).tolist(), strict=True)
     ]
 
 
 def _fitted_radii(balanced: Floats, stride: int, scale: Floats) -> list[Radius | None]:
-    """Return the estimates of the recurrences whose corrections agree best with fewer and with other orders."""
+    """Return the estimates of the recurrences that agree best.
+
+    They are compared with those of fewer corrections and of other orders.
+    """
     import numpy as np
 
     choices = [choice for lags in LAGS for choice in _compared_fits(balanced, lags)]
@@ -305,7 +366,9 @@ def _fitted_radii(balanced: Floats, stride: int, scale: Floats) -> list[Radius |
 
 
 def _compared_fits(balanced: Floats, lags: int) -> list[tuple[Floats, NDArray[np.complex128]]]:
-    """For each number of corrections: how far its estimates and those with one less lie apart, and its roots.
+    """Return distances of estimates, and roots, for each number of corrections.
+
+    The distance is that from the estimates with one correction less.
 
     Returns
     -------
@@ -327,12 +390,14 @@ def _compared_fits(balanced: Floats, lags: int) -> list[tuple[Floats, NDArray[np
 
 
 def _radius(estimate: float, spread: float, singularities: Sequence[complex]) -> Radius:
-    kind = "a complex pair" if any(abs(z.imag) > spread * abs(z) for z in singularities) else "a real instant"
+    kind = "a complex pair" if any(abs(z.imag) > spread * abs(z) for z in singularities) else "a real time"
     return Radius(estimate, estimate * spread, tuple(singularities), f"the nearest singularity is {kind}")
 
 
 def _recurrence_roots(balanced: Floats, lags: int, n: NDArray[np.int64], most: int) -> list[NDArray[np.complex128]]:
-    """Roots of the characteristic equations, the nearest first, for each number of corrections, shape (m, lags).
+    """Return the roots of the characteristic equations, the nearest first.
+
+    They have the shape (m, lags) for each number of corrections.
 
     The columns of fewer corrections are the first of those of more: one factorisation serves them all.
     """
@@ -356,9 +421,9 @@ def _recurrence_roots(balanced: Floats, lags: int, n: NDArray[np.int64], most: i
 
 
 def _roots(recurrences: Floats) -> NDArray[np.complex128]:
-    """Return where 1 + p_1 z + p_2 z^2 + ... is zero, the nearest first, shape (m, lags).
+    """Return the zeros of 1 + p_1 z + p_2 z^2 + ..., the nearest first.
 
-    The reciprocals of eigenvalues.
+    They are reciprocals of eigenvalues, shape (m, lags).
     """
     import numpy as np
 
@@ -372,7 +437,10 @@ def _roots(recurrences: Floats) -> NDArray[np.complex128]:
 
 
 def _in_time(root: complex, stride: int, scale: float) -> list[complex]:
-    """Return the singularities in the time that a root in its stride-th power stands for."""
+    """Return the singularities in the time that belong to a root in its power.
+
+    The power is the stride-th.
+    """
     import numpy as np
 
     if stride == 1:

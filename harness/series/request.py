@@ -1,4 +1,4 @@
-"""Which power series are asked for."""
+"""Requests for power series."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -12,7 +12,7 @@ AUTOMATIC = "automatic"
 
 @dataclass(frozen=True)
 class SeriesRequest:
-    """Which power series of a scene file."""
+    """A request for power series of a scene file."""
 
     order: int = option(20, "Highest power of the time.", metavar="N", least=2, required=True)
     scene: str | None = None  # name of the scene; None for the last one

@@ -1,10 +1,10 @@
-"""Singularities of the equations of motion near the start, found in the equations themselves.
+"""Find singularities near the start from the equations of motion.
 
-A motion can be singular where a divisor of its program vanishes, or what stands under a root or a logarithm. These
-functions are followed along the power series into the complex plane of the time, and their zeros are found by Newton's
-method. A zero counts if the result of the program is singular there: on a small circle around it a Laurent expansion
-has negative powers, and a shorter series gives the same ones. Singularities that are too weak to show in the
-coefficients are found as well.
+A motion can be singular if a divisor of its program, or an argument of a root or logarithm, vanishes. These functions
+are continued along the power series into the complex plane of the time, and their zeros are found by Newton's method.
+A zero counts if the result of the program is singular there: on a small circle around it a Laurent expansion has
+negative powers, and a shorter series gives the same ones. This also finds singularities that are too weak to affect
+the coefficients.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -49,7 +49,9 @@ Evaluate = Callable[[Any], Sequence[Any]]
 
 
 def decided(radius: Radius, series: Sequence[Sequence[mpmath.mpf]], program: Program | None, t0: mpmath.mpf) -> Radius:
-    """Return the radius of convergence, by a singularity of the equations if one is nearer than the coefficients tell.
+    """Return the radius of convergence, by a singularity of the equations if nearer.
+
+    Otherwise it is the estimate from the coefficients.
 
     Parameters
     ----------
@@ -59,6 +61,12 @@ def decided(radius: Radius, series: Sequence[Sequence[mpmath.mpf]], program: Pro
         Of the coordinates, in powers of t - t0.
     program : Program or None
         Of t, coordinates and velocities; None if it is not known.
+    t0 : mpf
+        Initial time, in the scene's unit.
+
+    Returns
+    -------
+    Radius
     """
     if program is None or _switches(program):
         return radius
@@ -72,22 +80,22 @@ def decided(radius: Radius, series: Sequence[Sequence[mpmath.mpf]], program: Pro
 
 
 def _at_most(bound: float, radius: Radius) -> Radius:
-    remark = f"unknown, {bound:.8g} at most, where the equations of motion are singular; these orders do not tell more"
-    return replace(radius, remark=remark)
+    note = f"unknown, {bound:.8g} at most, where the equations of motion are singular; these orders do not tell more"
+    return replace(radius, note=note)
 
 
 def _located(zero: complex, zeros: Sequence[complex]) -> Radius:
-    """Return the radius that a singularity sets, with those as far away."""
+    """Return the radius set by a singularity, with all at the same distance."""
     as_far = [z for z in zeros if abs(abs(z) - abs(zero)) <= CLOSE * abs(zero)]
-    kind = "a real instant" if abs(zero.imag) <= CLOSE * abs(zero) else "a complex pair"
-    remark = f"the equations of motion are singular there; the nearest singularity is {kind}"
-    return Radius(abs(zero), CONVERGED * abs(zero), tuple(as_far), remark, located=True)
+    kind = "a real time" if abs(zero.imag) <= CLOSE * abs(zero) else "a complex pair"
+    note = f"the equations of motion are singular there; the nearest singularity is {kind}"
+    return Radius(abs(zero), CONVERGED * abs(zero), tuple(as_far), note, located=True)
 
 
 def _follows_state(program: Program) -> bool:
     """Return True if the accelerations depend on the state.
 
-    A motion may then be singular where its equations are not.
+    If so, a motion may be singular at times at which its equations are regular.
     """
     return not names_used(computing(program, program.outputs)).isdisjoint(program.inputs[1:])
 
@@ -102,7 +110,7 @@ def _switches(program: Program) -> bool:
 
 
 def _zeros(program: Program, series: Sequence[Sequence[mpmath.mpf]], t0: mpmath.mpf, bound: float) -> Iterator[complex]:
-    """Zeros of the critical functions, each once for each function."""
+    """Return the zeros of the critical functions, each once for each function."""
     critical = _critical_functions(program)
     if len(critical.outputs) * critical.operations > MOST_WORK:
         return
@@ -123,7 +131,10 @@ def _names_of(program: Program, place: int) -> set[str]:
 
 
 def _critical_functions(program: Program) -> Program:
-    """Return a program of divisors and arguments of roots and logarithms that are not constant."""
+    """Return a program of critical functions that are not constant.
+
+    These are divisors and arguments of roots and logarithms.
+    """
     found: dict[Expression, str] = {}
     assignments: list[tuple[str, Expression]] = []
     moving = set(program.inputs)
@@ -140,7 +151,7 @@ def _critical_functions(program: Program) -> Program:
 
 
 def _critical_arguments(call: Call) -> Iterator[Expression]:
-    """Yield what makes a call singular where it vanishes."""
+    """Yield the arguments whose zeros are singularities of a call."""
     one, (first, *rest) = Fraction(1), call.arguments
     square = Call(Operation.MULTIPLY, (first, first))
     match call.operation:
@@ -163,7 +174,7 @@ def _critical_arguments(call: Call) -> Iterator[Expression]:
 
 
 def _accurate_within(motion: Sequence[np.ndarray]) -> float:
-    """Distance up to which the truncated series stand for the motion."""
+    """Return the distance up to which the truncated series are accurate."""
     found = np.inf
     for row in motion:
         last = np.abs(row[-3:]).max()
@@ -176,7 +187,10 @@ def _accurate_within(motion: Sequence[np.ndarray]) -> float:
 
 
 def _zeros_of(function: Callable[[np.ndarray], np.ndarray], bound: float) -> list[complex]:
-    """Zeros of an analytic function within a distance, by Newton's method from many points at once."""
+    """Return the zeros of an analytic function within a distance.
+
+    Newton's method starts from many points at once.
+    """
     bound = min(bound, REACH)
     radii = np.concatenate([np.geomspace(1e-4, 1, RADII // 2), np.linspace(0.05, 1, RADII // 2)]) * bound
     z = (radii[:, None] * np.exp(2j * np.pi * (np.arange(ANGLES) + 0.3) / ANGLES)).ravel()
@@ -213,7 +227,10 @@ def _at(program: Program, motion: Sequence[np.ndarray], t0: float, z: np.ndarray
 
 
 def _in_digits(program: Program, series: Sequence[Sequence[mpmath.mpf]], t0: mpmath.mpf) -> Evaluate:
-    """Return all outputs of a program at a complex time t0 + z, along the series, in mpmath's numbers."""
+    """Return all outputs of a program at a complex time t0 + z, along the series.
+
+    The numbers are mpmath's.
+    """
     rows = [list(reversed(row)) for row in series]
 
     def evaluate(z: Any) -> Sequence[Any]:
@@ -225,7 +242,7 @@ def _in_digits(program: Program, series: Sequence[Sequence[mpmath.mpf]], t0: mpm
 
 
 def _is_singular(program: Program, series: Sequence[Sequence[mpmath.mpf]], t0: mpmath.mpf, zero: complex) -> bool:
-    """Return True if what a program computes is singular at a zero of one of its critical functions."""
+    """Return True if a program is singular at a zero of a critical function."""
     with mpmath.workdps(DIGITS):
         shorter = [row[: int(len(row) * SHORTER)] for row in series]
         found, others = (_negative_powers(program, rows, t0, mpmath.mpc(zero)) for rows in (series, shorter))
@@ -236,7 +253,10 @@ def _is_singular(program: Program, series: Sequence[Sequence[mpmath.mpf]], t0: m
 def _negative_powers(
     program: Program, series: Sequence[Sequence[mpmath.mpf]], t0: mpmath.mpf, zero: Any
 ) -> Sequence[tuple[Any, Any]]:
-    """Of each output the largest negative coefficient of its Laurent expansion around a zero, and its largest value."""
+    """Return the largest negative Laurent coefficient and the largest value by output.
+
+    The Laurent expansion is about a zero.
+    """
     evaluate, radius = _in_digits(program, series, t0), CIRCLE * abs(zero)
     turns = [mpmath.expjpi(mpmath.mpf(2 * k) / POINTS) for k in range(POINTS)]
     rows = list(zip(*(evaluate(zero + radius * turn) for turn in turns), strict=True))

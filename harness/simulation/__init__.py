@@ -1,1 +1,1 @@
-"""The motion of a scene in numbers: engines, what keeps the constraints, what came of it."""
+"""Numerical motion of a scene: engines, constraint stabilization and results."""

@@ -1,15 +1,15 @@
-"""Whether a result may be called one: what it misses beside what its tolerance lets expect, and what may hide from it.
+"""Accuracy check of a result: its errors, compared with its tolerance.
 
-A method whose steps each err by its tolerance errs, over so many steps, by no more than their product times some power
-of ten, relative to the size of what is computed. A constraint or an energy that is missed by more was not followed: a
-feature was stepped over, digits were lost, or the tolerance was not held.
+A method whose steps each have an error of the tolerance has a total error of no more than their product times some
+power of ten, relative to the size of the quantity. A larger error of a constraint or of the energy shows a missed
+feature, lost digits or a tolerance that was not reached.
 
-Functions of the state may be faint nearly everywhere, and strong in a narrow place. An exponential is so small away
-from there, or so near to its limit, that rounding swallows it, and a high power is no better. What they do shows
-neither at a few states, however chosen, nor at the beginning of a step.
+A function of the state may be faint nearly everywhere and strong in a small region. Rounding swallows an exponential
+that is small, or near to its limit; a high power is similar. Its effect shows neither at a few states nor at the
+beginning of a step.
 """
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -29,7 +29,7 @@ FINEST = 1e-15  # relative error of a step, however fine its tolerance: residual
 
 
 class AccuracyViolation(NamedTuple):
-    """A quantity that is out of proportion."""
+    """A quantity with an error too large for the tolerance."""
 
     # ``position``, ``velocity``, ``energy``, ``multipliers``, or ``acceleration``: of the equations of motion within a
     # step
@@ -40,16 +40,31 @@ class AccuracyViolation(NamedTuple):
 
     @property
     def reason(self) -> str:
-        """Say in a clause by how much the quantity is missed."""
+        """Clause that names the quantity, its error and the expected error."""
         what = MISSED.get(self.quantity, f"the {self.quantity} that the constraints allow")
         if np.isnan(self.missed):
             return f"{what} has no finite value"
-        amount = f"is missed by {self.missed:.1e} of its size"
-        return f"{what} {amount}, where the tolerance lets expect {self.expected:.1e} at most"
+        return (
+            f"relative error of {what} is {self.missed:.1e}; at most {self.expected:.1e} is expected at this tolerance"
+        )
 
 
-def doubts(missed: Mapping[str, float], tol: float, steps: int) -> Iterator[AccuracyViolation]:
-    """Yield what is out of proportion to the tolerance, of what is missed by quantity, relative to its size."""
+def violations(missed: Mapping[str, float], tol: float, steps: int) -> Iterator[AccuracyViolation]:
+    """Yield the quantities whose relative error is too large for the tolerance.
+
+    Parameters
+    ----------
+    missed : mapping of str to float
+        Relative error by quantity.
+    tol : float
+        Tolerance of a step.
+    steps : int
+        Number of steps taken.
+
+    Yields
+    ------
+    AccuracyViolation
+    """
     most = float(expected(tol, steps))
     for quantity, value in missed.items():
         if not value <= most:
@@ -57,12 +72,39 @@ def doubts(missed: Mapping[str, float], tol: float, steps: int) -> Iterator[Accu
 
 
 def trusted(missed: Mapping[str, Vector], tol: float, steps: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Of which of k motions nothing is out of proportion; each quantity has shape (k,)."""
+    """Return True for each of k motions without unexpected errors.
+
+    Parameters
+    ----------
+    missed : mapping of str to ndarray, shape (k,)
+        Relative errors by quantity.
+    tol : float
+        Tolerance of a step.
+    steps : ndarray of int, shape (k,)
+        Number of steps of each motion.
+
+    Returns
+    -------
+    ndarray of bool, shape (k,)
+    """
     return np.logical_and.reduce([values <= expected(tol, steps) for values in missed.values()])
 
 
 def expected(tol: float, steps: int | NDArray[np.int64]) -> float | Vector:
-    """Return the relative error that a tolerance lets expect after some steps, at most."""
+    """Return the largest relative error to expect from a tolerance after some steps.
+
+    Parameters
+    ----------
+    tol : float
+        Tolerance of a step.
+    steps : int or ndarray of int, shape (k,)
+        Number of steps taken.
+
+    Returns
+    -------
+    float or ndarray, shape (k,)
+        ``MARGIN`` times the tolerance, at least `FINEST`, times the number of steps.
+    """
     return MARGIN * max(tol, FINEST) * np.maximum(1, steps)
 
 
@@ -73,7 +115,7 @@ def energy_missed(
     exchanged: float | Vector,
     small: Vector,
 ) -> float | Vector:
-    """Return an energy error relative to the size of the energies that it is an error of; of one motion or of k.
+    """Return an energy error relative to the size of the energies, of one motion or k.
 
     Parameters
     ----------
@@ -84,6 +126,11 @@ def energy_missed(
     small : ndarray, shape (n,) or (n, k)
         Velocities no larger than that make no error: steps of the tolerance, which is one of their nominal sizes too,
         may add up to them.
+
+    Returns
+    -------
+    float or ndarray, shape (k,)
+        Absolute if the energies have no size.
     """
     scale = np.maximum(np.maximum(energy_scale(*start), energy_scale(*end)), exchanged)
     at_rest = np.max(np.diagonal(end[0].mass) * np.transpose(small) ** 2, axis=-1, initial=0.0)
@@ -92,11 +139,21 @@ def energy_missed(
 
 
 def energy_scale(at: Matrices, state: Vector) -> float | Vector:
-    """Size of the energies that are exchanged at a state: v^T A v and |h_s q_s|, which rounding is relative to.
+    """Return the size of the exchanged energies at a state: v^T A v and |h_s q_s|.
+
+    Rounding errors are relative to it.
 
     Parameters
     ----------
+    at : Matrices
+        Matrices at the state.
     state : ndarray, shape (2n,) or (2n, k)
+        Coordinates, then velocities.
+
+    Returns
+    -------
+    float or ndarray, shape (k,)
+        Energy, in the scene's unit.
     """
     q, v = np.abs(np.split(state, 2))
     return np.einsum("i...,ij...,j...->...", v, np.abs(at.mass), v) + np.sum(np.abs(at.force) * q, axis=0)
@@ -107,14 +164,51 @@ HIGH = 16  # exponents from which a power is as faint as an exponential
 
 
 def may_hide(program: Program, apart: Collection[str] = ("t",)) -> bool:
-    """Return True if a program contains such a function of the state, or of any other of its inputs but those apart."""
-    moving = set(program.inputs).difference(apart)
+    """Return True if a program contains a function that is faint nearly everywhere.
+
+    Parameters
+    ----------
+    program : Program
+        Program to search.
+    apart : collection of str
+        Inputs that the function may depend on without consequence.
+
+    Returns
+    -------
+    bool
+    """
+    return _contains(program, set(program.inputs).difference(apart), _is_faint)
+
+
+def has_root_of(program: Program, names: Collection[str]) -> bool:
+    """Return True if a program contains the square root of a function of some inputs.
+
+    Parameters
+    ----------
+    program : Program
+        Program to search.
+    names : collection of str
+        Names of the inputs.
+
+    Returns
+    -------
+    bool
+    """
+    return _contains(program, set(names), _is_root)
+
+
+def _contains(program: Program, moving: set[str], sought: Callable[[Call], bool]) -> bool:
     for name, expression in program.assignments:
-        if any(_is_faint(call) and names_in(call) & moving for call in calls_in(expression)):
+        if any(sought(call) and names_in(call) & moving for call in calls_in(expression)):
             return True
         if names_in(expression) & moving:
             moving.add(name)
     return False
+
+
+def _is_root(call: Call) -> bool:
+    exponent = call.arguments[1] if call.operation is Operation.POWER else None
+    return call.operation is Operation.SQRT or (isinstance(exponent, Fraction) and exponent.denominator == 2)
 
 
 def _is_faint(call: Call) -> bool:

@@ -1,7 +1,7 @@
-"""Controls that servo-constraints ask for: where along a motion they have no values.
+"""Matrix of the controls of servo-constraints, and its rank along a motion.
 
-They solve M u = r. M is looked at along the whole motion as switching functions are: a determinant of as many of its
-rows as there are controls is followed. If it changes its sign or touches zero, the rank of M decides.
+The controls solve M u = r. M is examined along the whole motion like a switching function: the determinant of as many
+of its rows as there are controls is evaluated. If it changes its sign or touches zero, the rank of M decides.
 """
 
 import numpy as np
@@ -22,7 +22,17 @@ BEHIND = 1e-9  # of the part that is looked at: how far behind a zero of the det
 
 
 def controls_may_fail(problem: MotionProblem) -> bool:
-    """Return True if servo-constraints find controls, from a matrix that changes along the motion."""
+    """Return True if servo-constraints find controls by a matrix that changes.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+
+    Returns
+    -------
+    bool
+    """
     if problem.servo_matrix is None:
         return False
     known = {*problem.parameters}
@@ -33,7 +43,7 @@ def controls_may_fail(problem: MotionProblem) -> bool:
 
 
 class ControlMatrix(SignedFunctions):
-    """The matrix of the controls that servo-constraints find, along one analytic part of a motion.
+    """The matrix of the controls of servo-constraints along one mode of a motion.
 
     Parameters
     ----------
@@ -53,7 +63,17 @@ class ControlMatrix(SignedFunctions):
         self._scale: Numbers | float = 1.0  # of each row
 
     def lost(self, step: Step) -> float | None:
-        """Return the first instant of a step at which the matrix loses rank; None where it keeps it."""
+        """Return the first time of a step at which the matrix loses rank, or None.
+
+        Parameters
+        ----------
+        step : Step
+            A step of the mode.
+
+        Returns
+        -------
+        float or None
+        """
         while True:
             self._choose_rows(step)
             found = self._first_zero(step)
@@ -67,16 +87,28 @@ class ControlMatrix(SignedFunctions):
                 return None
             step = step._replace(start=behind)
 
-    def values(self, instants: Numbers, states: Numbers) -> Numbers:
-        """Return the determinant of the rows that are followed, shape (1, k)."""
-        return np.linalg.det(self._matrices(instants, states)[:, self._kept])[None]
+    def values(self, times: Numbers, states: Numbers) -> Numbers:
+        """Return the determinant of the rows that are followed.
 
-    def _matrices(self, instants: Numbers, states: Numbers) -> Numbers:
-        found = as_floats(np.array(self._evaluate(self._inputs(instants, states))))
+        Parameters
+        ----------
+        times : ndarray, shape (k,)
+            Times of the states.
+        states : ndarray, shape (2n, k)
+            Coordinates, then velocities.
+
+        Returns
+        -------
+        ndarray, shape (1, k)
+        """
+        return np.linalg.det(self._matrices(times, states)[:, self._kept])[None]
+
+    def _matrices(self, times: Numbers, states: Numbers) -> Numbers:
+        found = as_floats(np.array(self._evaluate(self._inputs(times, states))))
         return found.T.reshape(-1, *self._shape) / self._scale
 
     def _choose_rows(self, step: Step) -> None:
-        """Follow the determinant of the rows with the largest pivots at the beginning of a step."""
+        """Choose the rows with the largest pivots at the beginning of a step."""
         from scipy.linalg import qr
 
         at = np.array([step.start])
@@ -89,7 +121,7 @@ class ControlMatrix(SignedFunctions):
         self._kept = np.sort(qr((matrix / self._scale).T, mode="r", pivoting=True)[1][: self._shape[1]])
 
     def _first_zero(self, step: Step) -> tuple[float, Step] | None:
-        """Return the first zero of the determinant in a step, with the part of the step around it."""
+        """Return the first zero of the determinant in a step, and the part around it."""
         self._rows = [("", -1, 1)]
         for part, places, values in self._looked_at(step):
             zeros = [t for t in self._zeros_in(part, places, values[0]) if t is not None]
@@ -98,7 +130,7 @@ class ControlMatrix(SignedFunctions):
         return None
 
     def _zeros_in(self, part: Step, places: Numbers, values: Vector) -> list[float | None]:
-        """Candidates in a part: at samples, between samples of different signs, and at minima between them."""
+        """Return candidates for zeros: samples, changes of sign, minima between samples."""
         largest = float(np.max(np.abs(values), where=np.isfinite(values), initial=0.0))
         near_zero = np.flatnonzero(np.abs(values) <= ZERO * largest)
         changes = np.flatnonzero(values[:-1] * values[1:] < 0)
@@ -109,7 +141,7 @@ class ControlMatrix(SignedFunctions):
         ]
 
     def _changed(self, part: Step, before: float, after: float) -> float | None:
-        """Return where the determinant changes its sign between two instants.
+        """Return where the determinant changes its sign between two times.
 
         None where it does so through infinity.
         """
@@ -119,20 +151,20 @@ class ControlMatrix(SignedFunctions):
         return zero if abs(self._value(part, zero)) <= bound else None
 
     def _touched(self, part: Step, place: float, places: Numbers, values: Vector, largest: float) -> float | None:
-        """Return a minimum of the determinant's size that is a zero, or that lies behind one."""
-        instant = part.start + (part.end - part.start) * self._precision.number(repr(float(place)))
-        value = self._value(part, instant)
-        before = places[places <= instant][-1]
+        """Return a minimum of the determinant's size if it is zero, or the zero before it."""
+        time = part.start + (part.end - part.start) * self._precision.number(repr(float(place)))
+        value = self._value(part, time)
+        before = places[places <= time][-1]
         if value * self._value(part, before) < 0:
-            return self._changed(part, before, instant)
-        return instant if abs(value) <= TOUCHED * largest else None
+            return self._changed(part, before, time)
+        return time if abs(value) <= TOUCHED * largest else None
 
-    def _value(self, part: Step, instant: float) -> float:
-        at = np.array([instant])
+    def _value(self, part: Step, time: float) -> float:
+        at = np.array([time])
         return float(self.values(at, part.states(at))[0, 0])
 
     def _loses_rank(self, zero: float, nearby: Step, step: Step) -> bool:
-        """Return True if all rows together move the controls in fewer directions than nearby."""
+        """Return True if the rank of the matrix at a zero is less than nearby."""
         around = np.array([zero, nearby.start, (nearby.start + nearby.end) / 2, nearby.end])
         matrices = self._matrices(around, step.states(around))
         here, *others = (float(np.linalg.svd(each, compute_uv=False)[-1]) for each in matrices)
@@ -140,7 +172,10 @@ class ControlMatrix(SignedFunctions):
 
 
 def _minima(values: Vector) -> list[float]:
-    """Places between 0 and 1 of the minima of a function's size, told by the polynomial through its samples."""
+    """Return places between 0 and 1 of the minima of a function's size.
+
+    They are found by the polynomial through its samples.
+    """
     inner = values[1:-1]
     if not np.isfinite(inner).all() or np.min(np.abs(inner)) > np.ptp(inner):
         return []

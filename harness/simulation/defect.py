@@ -1,13 +1,12 @@
-"""What a step may have passed over: a force that is felt in a narrow place only.
+"""Defect control: detection of localized forces that a step has missed.
 
-A step is as long as the motion at its beginning, or at its stages, lets expect. Exponentials, and high powers, can be
-so faint there that rounding swallows them, and yet be strong where the step passes: a well of the potential that is
-entered and left within one step leaves even the energy as it was. So where the equations of motion contain such
-functions of the state, the dense output of each step is held against them: over every part of it the velocities must
-change by the integral of the accelerations that the equations give there.
+The length of a step follows from the motion at its beginning or at its stages. Exponentials and high powers can be lost
+to rounding there and be strong inside the step: a well of the potential that is entered and left within one step does
+not even change the energy. If the equations of motion contain such functions of the state, the dense output of each
+step is compared with them: in each part of it the velocities must change by the integral of the accelerations.
 
-What is guaranteed: where such a function acts for longer than 1/4096 of the time span, and changes the velocities by
-more than the tolerance lets expect, it is not passed over in silence.
+If such a function acts for longer than 1/4096 of the time span, and changes the velocities by more than the tolerance
+lets expect, a miss is reported.
 """
 
 from math import ceil
@@ -26,7 +25,7 @@ NODES, WEIGHTS = leggauss(10)
 
 
 class DefectControl:
-    """The largest difference between what the velocities gain within the steps and what the equations say.
+    """The largest difference between velocity changes and integrated accelerations.
 
     Parameters
     ----------
@@ -47,7 +46,13 @@ class DefectControl:
         self.missed = 0.0
 
     def take(self, step: Step) -> None:
-        """Look into a step that is long."""
+        """Compare the states of a step with its accelerations if the step is long.
+
+        Parameters
+        ----------
+        step : Step
+            A step with its mode.
+        """
         length = step.end - step.start
         parts = ceil(float(length) / self._span * PARTS)
         if parts > 1:
@@ -57,8 +62,8 @@ class DefectControl:
 
     def _missed_between(self, edges: Numbers, step: Step) -> float:
         half = (edges[1:] - edges[:-1]) / 2
-        instants = (edges[:-1, None] + half[:, None] * (1 + self._nodes)).ravel()
-        accelerations = step.mode.engine.solutions(instants, step.states(instants)).accelerations
+        times = (edges[:-1, None] + half[:, None] * (1 + self._nodes)).ravel()
+        accelerations = step.mode.engine.solutions(times, step.states(times)).accelerations
         n = len(accelerations)
         gained = half * (accelerations.reshape(n, len(half), -1) * self._weights).sum(axis=2)
         velocities = step.states(edges)[n:]
@@ -69,5 +74,5 @@ class DefectControl:
 
 
 def _size(missed: float) -> float:
-    """Return what is no number is larger than all that are."""
+    """Return the error, infinite if it is not a number."""
     return missed if missed == missed else np.inf

@@ -1,7 +1,7 @@
-"""The motions of a scene file, derived once for all values of the parameters that are set from outside.
+"""Motions of a scene file, derived once for all values of its parameters.
 
-A setting that is a parameter of the scene stays open in the programs and gets its value afterwards; any other, a number
-of masses say, changes what is derived. Where numbers tell more than names do, as a mass that is zero, the motion is
+A setting of a parameter of the scene stays open in the programs and gets its value afterwards. Any other setting, such
+as a number of masses, changes the derivation. If the equations need a number, such as a mass of zero, the motion is
 derived with the numbers in it.
 """
 
@@ -9,14 +9,14 @@ from collections.abc import Collection, Mapping
 from fractions import Fraction
 
 from ..documents import NAME
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..program.motion_problem import DOUBLE_DIGITS, MotionProblem, motion_problem
 from ..program.request import Request
 from ..source import Source
 
 
 class Derivations:
-    """What Maxima has derived from a scene file."""
+    """The derivations of a scene file by Maxima."""
 
     def __init__(self, source: Source) -> None:
         self._source = source
@@ -28,7 +28,23 @@ class Derivations:
 
         Its open parameters, if it has any, have the values of the settings.
 
-        `also_open` names more of them, with the scene's values. Raises as `motion_problem`.
+        Parameters
+        ----------
+        request : Request
+            Scene, solve and settings.
+        digits : int
+            Decimal digits of the initial values.
+        also_open : collection of str
+            Further parameters to leave open, with the scene's values.
+
+        Returns
+        -------
+        MotionProblem
+
+        Raises
+        ------
+        HolonomError
+            As `motion_problem`.
         """
         names = open_names(request, digits, also_open)
         opened = self._at_settings(request, names) if names else None
@@ -41,7 +57,7 @@ class Derivations:
         return self._closed[key]
 
     def _at_settings(self, request: Request, names: tuple[str, ...]) -> MotionProblem | None:
-        """Return the motion with open parameters set, or None if it takes numbers to derive it."""
+        """Return the motion with open parameters set, or None if numbers are needed."""
         known = self._opened.setdefault((request.scene, request.solve, names), [])
         for settings, problem in known:
             if all(
@@ -54,15 +70,39 @@ class Derivations:
 
 
 def open_names(request: Request, digits: int, also_open: Collection[str] = ()) -> tuple[str, ...]:
-    """Return names of what stays open where it is a parameter: what is set or named, in double precision."""
+    """Return the names of parameters to leave open, in double precision only.
+
+    Parameters
+    ----------
+    request : Request
+        Its settings name the parameters.
+    digits : int
+        Decimal digits of the initial values.
+    also_open : collection of str
+        Further names.
+
+    Returns
+    -------
+    tuple of str
+        In alphabetical order; empty beyond double precision.
+    """
     names = {name for name in (*request.settings, *also_open) if NAME.fullmatch(name)}
     return tuple(sorted(names)) if digits == DOUBLE_DIGITS else ()
 
 
 def stands(problem: MotionProblem) -> bool:
-    """Return True if the programs of a motion, with its parameters open, solve its equations at the start.
+    """Return True if the programs of a motion have finite values at the start.
 
-    True also where no parameter is open.
+    It is True if no parameter is open.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion, with values of its open parameters.
+
+    Returns
+    -------
+    bool
     """
     if not problem.parameters:
         return True
@@ -83,7 +123,7 @@ def stands(problem: MotionProblem) -> bool:
 
 
 def _moved(problem: MotionProblem, settings: Mapping[str, str]) -> MotionProblem | None:
-    """Return the motion for other settings; None where its programs do not stand, or its start does not follow."""
+    """Return the motion for other settings; None if its programs or start fail."""
     from .initial_state import at_values
 
     if not problem.parameters:
@@ -94,7 +134,7 @@ def _moved(problem: MotionProblem, settings: Mapping[str, str]) -> MotionProblem
     try:
         moved = at_values(problem, values)
     except HolonomError as error:
-        if error.failure is not Failure.START_UNFOLLOWED:
+        if error.kind is not ErrorKind.NO_INITIAL_STATE:
             raise
         if values != problem.values:
             return None

@@ -26,12 +26,15 @@ PROBES = (0.3127, -0.7411, 1.2713)  # seeds of states at which power that vanish
 
 
 class EnergyBalance:
-    """Energy of a motion, and the power that goes into it: at instants, shape (k,), and states, shape (2n, k).
+    """The energy of a motion, and its input power.
+
+    It takes times of shape (k,) and states of shape (2n, k).
 
     Parameters
     ----------
     multipliers : callable
-        Takes these to multipliers, shape (g, k). It is called only where constraints move, and do work.
+        Takes these to multipliers, shape (g, k). It is called only where constraints move, and do work, or where forces
+        contain multipliers.
 
     Attributes
     ----------
@@ -52,10 +55,12 @@ class EnergyBalance:
         self._inputs = Inputs(problem, self._precision)
         self._rows = {name: row for row, name in enumerate(problem.energy.outputs)}
         self._multipliers = multipliers
-        self._moving = _constraints_move(problem)
+        self._with_multipliers = bool(problem.reacting) or _constraints_move(problem)
         hidden = bool(problem.tables) or may_hide(computing(problem.energy, {"power"}), problem.parameters)
         self.passing = 0.0
-        self.conservative = not self._moving and not hidden and self._without_power(2 * len(problem.coordinates))
+        self.conservative = (
+            not self._with_multipliers and not hidden and self._without_power(2 * len(problem.coordinates))
+        )
 
     @property
     def inner_states(self) -> int:
@@ -67,18 +72,56 @@ class EnergyBalance:
         """Points in [-1, 1] and weights."""
         return _gauss_legendre(self.inner_states, self._precision)
 
-    def energy(self, instants: Numbers, states: Numbers) -> Numbers:
-        """Return the energy function at states of the motion."""
-        return self._output("energy", instants, states, None)
+    def energy(self, times: Numbers, states: Numbers) -> Numbers:
+        """Return the energy function at states of the motion.
 
-    def power(self, instants: Numbers, states: Numbers) -> Numbers:
-        """Power of what is not conservative and of the controls, at states of the motion."""
-        return self._output("power", instants, states, self._multipliers(instants, states) if self._moving else None)
+        Parameters
+        ----------
+        times : ndarray, shape (k,)
+            Times of the states.
+        states : ndarray, shape (2n, k)
+            Coordinates, then velocities.
 
-    def instants_between(self, starts: Sequence[Any], ends: Sequence[Any]) -> Numbers:
-        """Return where `works` needs the motion in intervals: `inner_states` in each, one interval after the other.
+        Returns
+        -------
+        ndarray, shape (k,)
+            Energy, in the scene's unit.
+        """
+        return self._output("energy", times, states, None)
 
-        None at all where there is nothing to integrate.
+    def power(self, times: Numbers, states: Numbers) -> Numbers:
+        """Return the power of non-conservative forces and controls at states.
+
+        Parameters
+        ----------
+        times : ndarray, shape (k,)
+            Times of the states.
+        states : ndarray, shape (2n, k)
+            Coordinates, then velocities.
+
+        Returns
+        -------
+        ndarray, shape (k,)
+            Power, in the scene's unit.
+        """
+        return self._output(
+            "power", times, states, self._multipliers(times, states) if self._with_multipliers else None
+        )
+
+    def times_between(self, starts: Sequence[Any], ends: Sequence[Any]) -> Numbers:
+        """Return the times at which `works` needs the motion, interval by interval.
+
+        Parameters
+        ----------
+        starts : sequence of number
+            First time of each interval.
+        ends : sequence of number
+            Last time of each interval.
+
+        Returns
+        -------
+        ndarray
+            `inner_states` times for each interval; empty if the power is zero.
         """
         if self.conservative:
             return zeros(self._precision, 0)
@@ -86,24 +129,30 @@ class EnergyBalance:
         return (begins[:, None] + (np.array(ends) - begins)[:, None] / 2 * (1 + self._quadrature[0])).ravel()
 
     def works(self, starts: Numbers, ends: Numbers, between: Sequence[tuple[Numbers, Numbers]]) -> Numbers:
-        """Integrals of the power over k intervals of the motion, by what is between their starts and ends.
+        """Return the integrals of the power over k intervals of the motion.
 
         Parameters
         ----------
         starts, ends : ndarray, shape (k,)
+            First and last time of each interval.
         between : sequence of (ndarray, ndarray)
-            In all the `instants_between` of these intervals, and the states then, shape (2n, ...).
+            In all the `times_between` of these intervals, and the states at these times, shape (2n, ...).
+
+        Returns
+        -------
+        ndarray, shape (k,)
+            Work, in the scene's unit of energy.
         """
         if self.conservative:
             return zeros(self._precision, len(starts))
-        instants, states = (np.concatenate(each, axis=-1) for each in zip(*between, strict=True))
-        power = self.power(instants, states).reshape(len(starts), -1)
+        times, states = (np.concatenate(each, axis=-1) for each in zip(*between, strict=True))
+        power = self.power(times, states).reshape(len(starts), -1)
         parts = ((ends - starts) / 2)[:, None] * (power * self._quadrature[1])
         self.passing = float(np.max(np.abs(as_floats(np.cumsum(parts, axis=1))), initial=self.passing))
         return parts.sum(axis=1)
 
-    def _output(self, name: str, instants: Numbers, states: Numbers, multipliers: Numbers | None) -> Numbers:
-        return self._evaluate(self._inputs(instants, states, multipliers))[self._rows[name]]
+    def _output(self, name: str, times: Numbers, states: Numbers, multipliers: Numbers | None) -> Numbers:
+        return self._evaluate(self._inputs(times, states, multipliers))[self._rows[name]]
 
     def _numbers(self, values: Vector) -> Numbers:
         return np.array([self._precision.number(repr(float(value))) for value in values])
@@ -111,8 +160,8 @@ class EnergyBalance:
     def _without_power(self, size: int) -> bool:
         """Constraints at rest do no work; whether anything else does shows at any state."""
         states = self._numbers(np.outer(np.arange(1, size + 1), PROBES).ravel() % 1).reshape(size, -1)
-        instants = self._numbers(np.array(PROBES))
-        return not any(self._output("power", instants, states, None))
+        times = self._numbers(np.array(PROBES))
+        return not any(self._output("power", times, states, None))
 
 
 def _gauss_legendre(n: int, precision: Precision) -> tuple[Numbers, Numbers]:
@@ -126,7 +175,10 @@ def _gauss_legendre(n: int, precision: Precision) -> tuple[Numbers, Numbers]:
 
 @cache
 def _in_digits(n: int, digits: int) -> tuple[list[str], list[str]]:
-    """Return the roots of P_n, and 2/((1 - x^2) P_n'(x)^2) (Abramowitz & Stegun 25.4.29)."""
+    """Return the roots of P_n, and 2/((1 - x^2) P_n'(x)^2), to a number of digits.
+
+    The formula is 25.4.29 of Abramowitz & Stegun.
+    """
 
     def with_slope(x: mpmath.mpf) -> tuple[mpmath.mpf, mpmath.mpf]:
         before, value = mpmath.mpf(1), x
@@ -148,7 +200,7 @@ def _in_digits(n: int, digits: int) -> tuple[list[str], list[str]]:
 
 
 def _constraints_move(problem: MotionProblem) -> bool:
-    """Return True if a constraint contains the time, be it through a control, or one that servo-constraints move."""
+    """Return True if time, a control or a servo-constraint moves a constraint."""
     if problem.servo:
         return True
     residuals_alone = {name for name in problem.matrices.outputs if name.startswith("residual[")}

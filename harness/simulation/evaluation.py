@@ -1,8 +1,7 @@
-"""Programs as functions in the numbers of a run: compiled by heyoka in some milliseconds, and not to the utmost.
+"""Programs as functions in a precision, compiled by heyoka without optimisation.
 
-One evaluation takes about a microsecond in double precision, most of it the call; the compilation's optimiser would
-take longer than it ever gains at the few states where these are wanted. At very few of them NumPy is done before
-heyoka has compiled.
+One evaluation takes about a microsecond in double precision, most of it the call. The compilation's optimiser would
+take longer than it gains at the few states of interest. For very few states, NumPy is done before heyoka has compiled.
 """
 
 import os
@@ -29,6 +28,13 @@ Evaluation = Callable[[Numbers], Numbers]
 def evaluation(program: Program, precision: Precision) -> Evaluation:
     """Compile a program.
 
+    Parameters
+    ----------
+    program : Program
+        Program to compile.
+    precision : Precision
+        Numbers of inputs and outputs.
+
     Returns
     -------
     callable
@@ -54,8 +60,22 @@ def evaluation(program: Program, precision: Precision) -> Evaluation:
 def evaluation_once(problem: MotionProblem, program: Program, precision: Precision) -> Evaluation:
     """Compile a program of a problem, once for all values of its open parameters.
 
-    Where none is open, NumPy evaluates a program in double precision until compiling pays. What is kept for motions to
-    come is compiled at once: else their last bits would depend on the motions before.
+    Without open parameters, NumPy evaluates a program in double precision until compilation is worthwhile. A function
+    that is kept for later motions is compiled at once: else their last bits would depend on the motions before.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion, which keeps the compiled function.
+    program : Program
+        One of its programs.
+    precision : Precision
+        Numbers of inputs and outputs.
+
+    Returns
+    -------
+    callable
+        As `evaluation`.
     """
 
     def build() -> Evaluation:
@@ -66,10 +86,10 @@ def evaluation_once(problem: MotionProblem, program: Program, precision: Precisi
 
 
 class LazyCompiledFunction:
-    """A program in double precision that is compiled once NumPy has taken as long for it as that takes.
+    """A program in double precision, compiled as soon as that is worthwhile.
 
-    Times are counted, not measured, so that the same calls have the same results everywhere: measured on programs of 17
-    to 434 operations.
+    NumPy evaluates it until it has taken as long as compilation takes. Times are estimated by numbers of calls, so that
+    the same calls have the same results everywhere: measured on programs of 17 to 434 operations.
     """
 
     def __init__(self, program: Program, precision: Precision) -> None:
@@ -88,15 +108,22 @@ class LazyCompiledFunction:
         return self._compiled(inputs)
 
 
-def lane_evaluation(problem: MotionProblem, program: Program) -> Evaluation:
-    """Compile a program of a problem, once, to be evaluated at many points in double precision.
+def batch_evaluation(problem: MotionProblem, program: Program) -> Evaluation:
+    """Compile a program of a problem, once, for many points in double precision.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion, which keeps the compiled function.
+    program : Program
+        One of its programs.
 
     Returns
     -------
     callable
-        Takes the inputs, shape (inputs, points), to the outputs, shape (outputs, points). What comes out at a point
-        does not hang on the other points, to the last bit: all go through the same vector instructions, because what
-        is missing to full vectors is filled up.
+        Takes the inputs, shape (inputs, points), to the outputs, shape (outputs, points). The result at a point does
+        not depend on the other points, to the last bit: points are filled up to full vectors, so that all go through
+        the same vector instructions.
     """
     heyoka = import_heyoka()
 
@@ -106,11 +133,22 @@ def lane_evaluation(problem: MotionProblem, program: Program) -> Evaluation:
         compact = program.operations >= COMPACT_FROM
         return in_full_vectors(heyoka.cfunc(outputs, vars=list(variables.values()), compact_mode=compact))
 
-    return problem.once("lanes", program, build)
+    return problem.once("elements", program, build)
 
 
 def in_full_vectors(function: Callable[[Numbers], Numbers]) -> Evaluation:
-    """Return a function of heyoka's that takes points in full vectors only, shape (inputs, points)."""
+    """Return a function of heyoka's that takes points in full vectors only.
+
+    Parameters
+    ----------
+    function : callable
+        Function compiled by heyoka in double precision.
+
+    Returns
+    -------
+    callable
+        Takes inputs, shape (inputs, points), of any number of points to outputs, shape (outputs, points).
+    """
     width = import_heyoka().recommended_simd_size()
 
     def evaluate(inputs: Numbers) -> Numbers:
@@ -123,7 +161,19 @@ def in_full_vectors(function: Callable[[Numbers], Numbers]) -> Evaluation:
 
 
 def zeros(precision: Precision, *shape: int) -> Numbers:
-    """Return an array of zeros of these numbers."""
+    """Return an array of zeros of a precision.
+
+    Parameters
+    ----------
+    precision : Precision
+        Numbers of the array.
+    *shape : int
+        Shape of the array.
+
+    Returns
+    -------
+    ndarray
+    """
     if precision.name == "double":
         return np.zeros(shape)
     array = np.empty(shape, dtype=np.asarray([precision.number("0")]).dtype)
@@ -132,7 +182,18 @@ def zeros(precision: Precision, *shape: int) -> Numbers:
 
 
 def as_floats(numbers: Numbers) -> NDArray[np.float64]:
-    """Return the same numbers in double precision."""
+    """Return numbers in double precision.
+
+    Parameters
+    ----------
+    numbers : ndarray
+        Numbers of any precision.
+
+    Returns
+    -------
+    ndarray of float
+        A new array of the same shape.
+    """
     if getattr(numbers, "dtype", None) == np.float64:
         return numbers.copy()
     array = np.asarray(numbers)
@@ -144,6 +205,10 @@ def one_blas_thread() -> AbstractContextManager[object]:
 
     Matrices here have some dozens of rows. On a busy machine BLAS takes twenty times as long for them with its threads
     as without, as measured.
+
+    Returns
+    -------
+    context manager
     """
     if os.environ.get("OPENBLAS_NUM_THREADS") == "1":  # told before it was loaded, as the command line does
         return nullcontext()

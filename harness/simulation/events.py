@@ -1,7 +1,7 @@
-"""The end of a motion at an event: the first instant at which one of the scene's expressions crosses zero.
+"""Final events: the first zero crossing of one of the scene's expressions.
 
-They are looked at part by part, as switching functions are (`zeros.py`), through the engine's dense output. The
-motion is followed to its end once before it is recorded, so that the recording ends with a step of the engine.
+They are examined part by part, like switching functions (`zeros.py`), through the engine's dense output. The motion is
+integrated to its end once before it is recorded, so that the recording ends with a step of the engine.
 """
 
 from collections.abc import Sequence
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..program.motion_program import Program, names_in
 from ..program.precision import Precision
 from .engines.engine import Step
@@ -26,15 +26,29 @@ POLE = 1e3  # times what an expression is nearby: at a change of its sign it has
 
 
 class Ending(NamedTuple):
-    """What the scene lets a motion end at."""
+    """The events at which the scene ends a motion."""
 
     of: tuple[str, ...]  # the expressions whose first zero crossing ends the motion, as Maxima prints them
-    # the one that crossed zero at the last instant; None where none did before the time span was over
+    # the one that crossed zero at the last time; None where none did before the time span was over
     crossed: str | None
 
 
 def first_event(motion: "HybridMotion", precision: Precision, end: Any) -> Crossing | None:
-    """Follow a motion, from its start, to the first zero crossing of one of its events; None where there is none.
+    """Integrate a motion to the first zero crossing of one of its events.
+
+    Parameters
+    ----------
+    motion : HybridMotion
+        The motion; it is integrated to the event or to the end.
+    precision : Precision
+        Numbers of the motion.
+    end : number
+        Last time of the motion.
+
+    Returns
+    -------
+    Crossing or None
+        None if no event crosses zero.
 
     Raises
     ------
@@ -81,7 +95,16 @@ class Events(SignedFunctions):
     def first_event(self, step: Step, sides: dict[str, int]) -> Crossing | None:
         """Return the first crossing within a step.
 
-        `sides` are the signs that expressions have had since they left zero; what this step shows is added.
+        Parameters
+        ----------
+        step : Step
+            A step of the mode.
+        sides : dict of str to int
+            Signs that expressions have had since they left zero; those of this step are added.
+
+        Returns
+        -------
+        Crossing or None
 
         Raises
         ------
@@ -109,7 +132,10 @@ class Events(SignedFunctions):
         return np.max(np.abs(np.where(np.isfinite(values), values, 0.0)), axis=1)
 
     def _see_sides(self, values: Numbers, sizes: Numbers, sides: dict[str, int]) -> list[str]:
-        """Add the sides that are seen for the first time; those of expressions that are zero at the beginning."""
+        """Add the signs of expressions that are seen for the first time.
+
+        They belong to expressions that are zero at the beginning.
+        """
         begun = []
         for name, row, size in zip(self._names, values, sizes, strict=True):
             seen = np.flatnonzero(np.abs(row) > ZERO * size)
@@ -121,13 +147,13 @@ class Events(SignedFunctions):
         return begun
 
     def _require_values(self, places: Numbers, values: Numbers, found: Crossing | None) -> None:
-        """Refuse what has no real, finite value at an instant that the motion reaches."""
+        """Reject an expression without a real, finite value at a time of the motion."""
         for row, place in np.argwhere(~np.isfinite(values)):
             if found is None or places[place] <= found.t:
                 self._refuse(self._names[row], places[place])
 
     def _require_crossing(self, found: Crossing, part: Step, values: Numbers) -> None:
-        """Refuse a change of sign through infinity, which is no zero."""
+        """Reject a change of sign through infinity."""
         row = [name for name, *_ in self._rows].index(found.name)
         at = np.array([found.t])
         seen = np.abs(values[self._names.index(found.name)])
@@ -135,11 +161,23 @@ class Events(SignedFunctions):
             self._refuse(found.name, found.t)
 
     def _refuse(self, name: str, t: Any) -> None:
-        raise HolonomError(Failure.NO_EVENT_VALUE, detail=f"{name} at t = {float(t):.10g}")
+        raise HolonomError(ErrorKind.NO_EVENT_VALUE, detail=f"{name} at t = {float(t):.10g}")
 
-    def values(self, instants: Numbers, states: Numbers) -> Numbers:
-        """As `SignedFunctions.values`; expressions whose side is not known are left out."""
-        multipliers = None if self._solutions is None else self._solutions(instants, states).multipliers
-        found = np.array([as_floats(row) for row in self._evaluate(self._inputs(instants, states, multipliers))])
+    def values(self, times: Numbers, states: Numbers) -> Numbers:
+        """Return the expressions whose side is known, each times its sign.
+
+        Parameters
+        ----------
+        times : ndarray, shape (l,)
+            Times of the states.
+        states : ndarray, shape (2n, l)
+            Coordinates, then velocities.
+
+        Returns
+        -------
+        ndarray, shape (expressions, l)
+        """
+        multipliers = None if self._solutions is None else self._solutions(times, states).multipliers
+        found = np.array([as_floats(row) for row in self._evaluate(self._inputs(times, states, multipliers))])
         places = [self._names.index(name) for name, *_ in self._rows]
         return np.array([side for *_, side in self._rows], dtype=float)[:, None] * found[places]

@@ -1,7 +1,7 @@
-"""What kinds of hard case a motion is.
+"""Kinds of hard case of a motion.
 
-Its matrices tell at the start and at the end; what the engines meet on the way, redundant constraints, singular
-configurations, vanishing gradients, they tell themselves.
+The matrices at the start and at the end show them. The engines report others on the way: redundant constraints,
+singular configurations and vanishing gradients.
 """
 
 from collections.abc import Iterator, Sequence
@@ -32,12 +32,12 @@ DECAYED = 4.0  # times the length of a step, a rate of decay: what follows such 
 AT_ONCE = 32  # states whose matrices are held together
 
 
-class HardCase(StrEnum):
+class Difficulty(StrEnum):
     """A kind of motion on which a plain method loses its digits."""
 
     NEARLY_DEPENDENT = translatable("nearly dependent constraints")
     REDUNDANT = translatable("redundant constraints")
-    SINGULAR_PASSAGE = translatable("passage through a singular configuration")
+    SINGULAR_CONFIGURATION = translatable("motion through a singular configuration")
     STIFF = translatable("stiffness")
     OVERFLOW = translatable("overflow")
     MASS_RATIO = translatable("large mass ratio")
@@ -47,7 +47,7 @@ class HardCase(StrEnum):
 
 
 @dataclass(frozen=True)
-class Instant:
+class MotionState:
     """A state of a motion, with the matrices of its mode."""
 
     matrices: MotionMatrices
@@ -61,46 +61,60 @@ class Instant:
 
 
 def hard_cases(
-    independent: Sequence[int], start: Instant, end: Instant, multipliers: Vector, steps: int
-) -> Iterator[HardCase]:
+    independent: Sequence[int], start: MotionState, end: MotionState, multipliers: Vector, steps: int
+) -> Iterator[Difficulty]:
     """Yield the kinds of hard case that a motion is.
 
     Parameters
     ----------
     independent : sequence of int
         Constraints, from 0, that are not known to follow from the others.
+    start, end : MotionState
+        First and last state of the motion.
     multipliers : ndarray, shape (g,)
-        The largest sizes that they had at the instants that were kept.
+        Their largest sizes at the recorded times.
     steps : int
-        That the motion took.
+        Number of steps of the motion.
 
     Yields
     ------
-    HardCase
+    Difficulty
         Redundant constraints that the program leaves out, nearly dependent constraints, large mass ratio, overflow,
         free motion, long run, stiffness.
     """
     ends = [start.here, end.here]
     if len(independent) < len(multipliers):
-        yield HardCase.REDUNDANT
+        yield Difficulty.REDUNDANT
     if any(ILL_CONDITIONED < condition(at.under(independent)) < DEPENDENT for at in ends):
-        yield HardCase.NEARLY_DEPENDENT
+        yield Difficulty.NEARLY_DEPENDENT
     if any(_mass_ratio(at) > UNEQUAL_MASSES for at in ends):
-        yield HardCase.MASS_RATIO
+        yield Difficulty.MASS_RATIO
     if any(_largest(at) > UNSQUARED for at in ends):
-        yield HardCase.OVERFLOW
+        yield Difficulty.OVERFLOW
     if _free(ends, multipliers):
-        yield HardCase.FREE_CANCELLATION
+        yield Difficulty.FREE_CANCELLATION
     if steps > MANY_STEPS:
-        yield HardCase.LONG_RUN
+        yield Difficulty.LONG_RUN
     if stiffness(start) > STIFF or _held_back(start, end, steps):
-        yield HardCase.STIFF
+        yield Difficulty.STIFF
 
 
-def dependence(problem: MotionProblem, at: Instant) -> str | None:
-    """Why no fixed order of pivots can solve the equations of motion at a state, if none can.
+def dependence(problem: MotionProblem, at: MotionState) -> str | None:
+    """Return the reason why no fixed order of pivots solves the equations, if any.
 
-    A clause; constraints that are known to follow from others are left apart.
+    Constraints that are known to be dependent are not counted.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    at : MotionState
+        State at which the rank is determined.
+
+    Returns
+    -------
+    str or None
+        A clause.
     """
     found = at.here.under(problem.independent)
     rank = rank_of(weighted_constraints(found.mass, found.jacobian).singular_values())
@@ -110,8 +124,15 @@ def dependence(problem: MotionProblem, at: Instant) -> str | None:
     return translatable("of %(g)s constraints only %(rank)s are independent at t = %(t)g", g=g, rank=rank, t=at.t)
 
 
-def stiffness(at: Instant) -> float:
-    """Ratio of the largest to the smallest square of a frequency that small deviations from a motion have.
+def stiffness(at: MotionState) -> float:
+    """Return the ratio of the largest to the smallest squared frequency.
+
+    The frequencies are those of small deviations from the motion.
+
+    Parameters
+    ----------
+    at : MotionState
+        State of the motion.
 
     Returns
     -------
@@ -132,13 +153,19 @@ def stiffness(at: Instant) -> float:
     return float(moving.max() / moving.min()) if moving.size else 1.0
 
 
-def fastest_decay(at: Instant) -> float:
-    """Largest rate at which small deviations from a motion decay more than they oscillate; zero where none does.
+def fastest_decay(at: MotionState) -> float:
+    """Return the largest decay rate of small deviations that exceeds their frequency.
+
+    Parameters
+    ----------
+    at : MotionState
+        State of the motion.
 
     Returns
     -------
     float
-        From the derivatives of the accelerations with respect to coordinates and velocities, as `stiffness`.
+        Per unit of time; zero if no decay rate exceeds its frequency. It follows from the derivatives of the
+        accelerations with respect to coordinates and velocities.
     """
     here = at.here
     free = _free_directions(here)
@@ -153,22 +180,23 @@ def fastest_decay(at: Instant) -> float:
     return float(-exponents.real[-exponents.real >= np.abs(exponents.imag)].min(initial=0.0))
 
 
-def _held_back(start: Instant, end: Instant, steps: int) -> bool:
-    """Return True if many steps were as short as a decay demands that is over long ago."""
+def _held_back(start: MotionState, end: MotionState, steps: int) -> bool:
+    """Return True if many steps were limited by a decay that has ended long before."""
     return steps > MANY_STEPS and fastest_decay(end) * (end.t - start.t) > DECAYED * steps
 
 
 def _free_directions(at: Matrices) -> Matrix:
-    """Return what the constraints leave free, in columns orthonormal in the mass metric."""
+    """Return an orthonormal basis, in the mass metric, of the constraints' null space."""
     weighted = weighted_constraints(at.mass, at.jacobian)
     left, values, _ = np.linalg.svd(weighted.directions)
     return weighted.unweighted(left[:, rank_of(values) :])
 
 
-def _change_of_accelerations(at: Instant, moves: Matrix) -> Matrix:
-    """Return derivatives of the accelerations, shape (n, k), along moves of the state, shape (2n, k).
+def _change_of_accelerations(at: MotionState, moves: Matrix) -> Matrix:
+    """Return derivatives of the accelerations along moves of the state.
 
-    A a - J^T lambda = h, J a = -c, differentiated: one factorization solves for all of them.
+    They have shape (n, k), the moves (2n, k). A a - J^T lambda = h, J a = -c, differentiated: one factorization solves
+    for all of them.
     """
     here, matrices = at.here, at.matrices
     rank = rank_of(weighted_constraints(here.mass, here.jacobian).singular_values())
@@ -192,9 +220,10 @@ def _change_of_accelerations(at: Instant, moves: Matrix) -> Matrix:
 
 
 def _mass_ratio(at: Matrices) -> float:
-    """Ratio of the largest to the smallest mass; of a singular mass matrix, of those of directions left free.
+    """Return the ratio of the largest to the smallest mass.
 
-    Euler parameters near (1, 0, 0, 0) have a small entry on the diagonal, and no small mass.
+    If the mass matrix is singular, masses of the free directions are taken. Euler parameters near (1, 0, 0, 0) have a
+    small entry on the diagonal, but not a small mass.
     """
     masses = at.mass.diagonal()[at.mass.diagonal() > 0]
     if masses.size == len(at.mass):
@@ -215,7 +244,7 @@ def _largest(at: Matrices) -> float:
 
 
 def _free(ends: Sequence[Matrices], multipliers: Vector) -> bool:
-    """Return True if the constraints made no force to speak of, although there are other forces."""
+    """Return True if the constraint forces are negligible, although other forces act."""
     forces = max(float(np.abs(at.force).max(initial=0.0)) for at in ends)
     reaction = max(float((np.abs(at.jacobian.T) @ multipliers).max(initial=0.0)) for at in ends)
     return 0 < forces < np.inf and len(multipliers) > 0 and reaction <= FREE * forces

@@ -1,17 +1,18 @@
-"""A motion that is analytic in parts: followed in each by the engines, and led from one to the next.
+"""Motions that are analytic in modes, integrated by the engines from mode to mode.
 
-While the signs in its equations stay the same a motion is analytic. An engine follows it with these signs; where a
-switching function leaves its sign, the step is cut, and what the equations say on both sides decides how it goes on:
+While the signs in its equations stay the same, a motion is analytic. An engine integrates it with these signs. If a
+switching function changes its sign, the step is cut, and the equations on both sides decide the continuation:
 
-- where both sides lead across the surface, it is crossed;
-- where both lead back to it, the motion is held on it, as dry friction sticks, until one of them does not
+- if both sides lead across the surface, it is crossed;
+- if both lead back to it, the motion slides on it, as dry friction sticks, until one of them does not
   (Filippov, Differential Equations with Discontinuous Righthand Sides, section 4);
-- where a joint is released, its constraints end: the state goes on as it is, and the accelerations jump;
-- where a law's rate jumps, the velocities do: the momenta dL/d dot(q) change along the constraints' gradients alone, by
-  the impulse that makes the new velocities keep the constraints (Pars, A Treatise on Analytical Dynamics, chapter 14).
+- if a joint is released, its constraints end: the state stays the same, and the accelerations jump;
+- if the rate of a control law jumps, the velocities do: the momenta dL/d dot(q) change along the constraints' gradients
+  alone, by the impulse that makes the new velocities satisfy the constraints (Pars, A Treatise on Analytical Dynamics,
+  chapter 14).
 
-What mechanics does not decide is refused: a law that jumps in a constraint, an energy that does as a function of the
-state, an impulse of a surface whose law of impact is not given.
+Undetermined continuations are rejected: a control law that jumps in a constraint, an energy that jumps as a function of
+the state, an impulse of a surface without a law of impact.
 """
 
 from bisect import bisect_right
@@ -26,11 +27,19 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..failures import Failure, HolonomError
-from ..program.motion_problem import By, MotionProblem, Sign, function_of_knot
+from ..failures import ErrorKind, HolonomError
+from ..program.motion_problem import DependsOn, MotionProblem, Sign, function_of_knot
 from ..program.motion_program import names_used
 from ..program.precision import Precision
-from ..program.sign_pattern import SLIDING, Pattern, holdable, switching_function
+from ..program.sign_pattern import (
+    SLIDING,
+    Pattern,
+    driven,
+    holdable,
+    signs_of_reactions,
+    switching_function,
+    uniqueness,
+)
 from .constraints.factorization import factored_constraints
 from .constraints.projection import settle
 from .control_matrix import controls_may_fail
@@ -40,7 +49,7 @@ from .evaluation import Evaluation, Numbers, as_floats, evaluation
 from .events import Events
 from .inputs import Inputs
 from .matrices import Matrices, Vector
-from .mode import Mode
+from .mode import UNIQUE, Mode
 from .nominal import nominal_of, with_nominal
 from .request import SimulationRequest
 from .residuals import residuals
@@ -48,44 +57,45 @@ from .time_events import time_events
 from .zeros import Crossing
 
 ZERO = 1e-12  # of what a switching function or its rate is at nominal sizes: no sign
-CONTINUOUS = 1e-9  # relative change at an instant that is rounding
-LATER = (1 / 7, 3 / 7, 6 / 7)  # of the nominal time: instants at which a function of the time is looked at
+CONTINUOUS = 1e-9  # relative change at a given time that is rounding
+LATER = (1 / 7, 3 / 7, 6 / 7)  # of the nominal time: times at which a function of the time is looked at
 CROWD, CROWDED = 64, 1e-7  # switchings in a part of the time span: more have no end
+NOT_UNIQUE = "forces that contain multipliers may leave no acceleration, or several (Painleve's paradoxes)"
 SOON = 1e-9  # of the time span: how far ahead the sign of a function of the time is looked for where it vanishes
 
 
-class Passage(StrEnum):
+class EventOutcome(StrEnum):
     """How a motion passes a surface."""
 
     CROSSED = "crossed"
-    SLIDING = "held"
+    SLIDING = "sliding"
     RELEASED = "released"
     IMPULSE = "crossed with an impulse"
     JOINT_RELEASED = "joint released"
 
 
 class Switching(NamedTuple):
-    """An instant at which a motion is not analytic."""
+    """A time at which a motion is not analytic."""
 
     t: float
     function: str  # what changes its sign there, as Maxima prints it
-    passage: Passage
+    outcome: EventOutcome
 
 
 class ModeInterval(NamedTuple):
-    """A mode at work from an instant on."""
+    """A mode at work from a time on."""
 
     start: Any
     mode: Mode
 
 
 class HybridMotion:
-    """A motion followed through its switchings, and no farther in one step than it may depend on the time.
+    """A motion through its switchings, with steps limited by its dependence on time.
 
     Parameters
     ----------
     end : number
-        The last instant.
+        The last time.
 
     Raises
     ------
@@ -130,12 +140,12 @@ class HybridMotion:
 
     @property
     def time(self) -> Any:
-        """The instant that is reached."""
+        """The time that is reached."""
         return self.mode.engine.time
 
     @property
     def state(self) -> Numbers:
-        """The state at this instant."""
+        """The state at this time."""
         return self.mode.engine.state
 
     @property
@@ -150,18 +160,18 @@ class HybridMotion:
 
     @property
     def unresolved(self) -> float | None:
-        """The first instant from which an expression of the time changes too fast to be looked at ahead."""
+        """The first time after which an expression of time changes too fast to examine."""
         found = (interval.mode.by_time.unresolved for interval in self.intervals)
         return min((t for t in found if t is not None), default=None)
 
     @property
-    def legs(self) -> list[EngineSegment]:
+    def segments(self) -> list[EngineSegment]:
         """Which engine followed the motion from when to when."""
         ends = [*(float(interval.start) for interval in self.intervals[1:]), float(self.time)]
         found: list[EngineSegment] = []
         for interval, end in zip(self.intervals, ends, strict=True):
-            for leg in interval.mode.engine.legs:
-                cut = leg._replace(start=max(leg.start, float(interval.start)), end=min(leg.end, end))
+            for segment in interval.mode.engine.segments:
+                cut = segment._replace(start=max(segment.start, float(interval.start)), end=min(segment.end, end))
                 if cut.start < cut.end:
                     if found and found[-1]._replace(start=cut.start, end=cut.end) == cut:
                         cut = cut._replace(start=found.pop().start)
@@ -169,19 +179,24 @@ class HybridMotion:
         return found
 
     def close(self) -> None:
-        """Give back what the engines hold outside of Python; the motion is not followed any more."""
+        """Free resources of the engines outside of Python. The motion cannot be continued."""
         for mode in self._modes.values():
             mode.engine.close()
 
     def advance(self, until: Any) -> None:
-        """Follow the motion to an instant.
+        """Integrate to a time.
+
+        Parameters
+        ----------
+        until : number
+            Last time.
 
         Raises
         ------
         HolonomError
             The motion cannot be followed so far.
         """
-        if self.problem.signs or self.problem.released or controls_may_fail(self.problem):
+        if self.problem.switching or self.problem.released or controls_may_fail(self.problem):
             deque(self.integrate(until), maxlen=0)
             return
         while self.time != until:
@@ -190,7 +205,22 @@ class HybridMotion:
             self.mode.require_way_on(until)
 
     def integrate(self, until: Any) -> Iterator[Step]:
-        """Follow the motion to an instant, step by step, each with its mode; raises as `advance`."""
+        """Integrate to a time and yield each step with its mode.
+
+        Parameters
+        ----------
+        until : number
+            Last time.
+
+        Yields
+        ------
+        Step
+
+        Raises
+        ------
+        HolonomError
+            As `advance`.
+        """
         while self.time != until:
             for step in self._to_stop(self._next_stop(until)):
                 release = self._first_release(step)
@@ -216,14 +246,14 @@ class HybridMotion:
         return min([until, *limits, *ticking, *(self._precision.number(repr(t)) for t in ahead)])
 
     def _pass_knots(self) -> None:
-        """At a knot a law goes on with the same value and rates up to the second, and so does the motion."""
+        """Continue at a knot of a law, which is continuous up to its second derivative."""
         while self._knots and self._knots[-1][0] <= self.time != self._end:
             t, exact = self._knots.pop()
-            self.switchings.append(Switching(float(t), function_of_knot(exact), Passage.CROSSED))
+            self.switchings.append(Switching(float(t), function_of_knot(exact), EventOutcome.CROSSED))
 
     def _to_stop(self, stop: Any) -> Iterator[Step]:
         mode = self.mode
-        if not self.problem.signs:
+        if self.problem.switching is None:
             yield from mode.integrate(stop)
             return
         for step in mode.integrate(stop):
@@ -237,8 +267,8 @@ class HybridMotion:
                 self._cross(crossing, step.states(np.array([crossing.t]))[:, 0])
                 return
         if self._to_come and self._precision.ratio(self._to_come[0]) == self.time != self._end:
-            instant = self._to_come.popleft()
-            changes = {name: event.to for name, event in self._time_events.items() if event.t == instant}
+            time_point = self._to_come.popleft()
+            changes = {name: event.to for name, event in self._time_events.items() if event.t == time_point}
             self._switch({**mode.pattern, **changes}, list(changes), self.time, self.state.copy(), ())
 
     # ---- releases ----
@@ -254,29 +284,39 @@ class HybridMotion:
         return self._conditions[mode].first_event(step, self._sides)
 
     def _release(self, crossing: Crossing, step: Step) -> None:
-        """Go on without the constraints of a release: from the same state, for that needs no impulse."""
+        """Continue without the constraints of a release, from the same state.
+
+        A release needs no impulse.
+        """
         state = step.states(np.array([crossing.t]))[:, 0]
         begun = self._started_at(crossing.t, state)
         after = next(each.after for each in self.problem.released if each.of == crossing.name)
         self._begin(replace(after, start=begun.start, values=begun.values, nominal=begun.nominal))
         self.mode.engine.restart(crossing.t, state)
-        self.switchings.append(Switching(float(crossing.t), crossing.name, Passage.JOINT_RELEASED))
+        self.switchings.append(Switching(float(crossing.t), crossing.name, EventOutcome.JOINT_RELEASED))
 
     # ---- switching ----
 
     def _cross(self, crossing: Crossing, state: Numbers) -> None:
         """Go on from a surface of the state, or of the time."""
         t, name, before = crossing.t, crossing.name, self.mode.pattern
+        if name == UNIQUE:
+            self._refuse(t, NOT_UNIQUE)
         again = t == self.intervals[-1].start and name in self._left
         if again or self._crowded(t):
             self._refuse(t, f"{self._signs[name].of} changes its sign again and again")
         pattern, sign = {**before, name: crossing.to}, self._signs[name]
-        if before[name] != SLIDING and sign.by is not By.TIME:
+        if before[name] != SLIDING and sign.by not in (DependsOn.TIME, DependsOn.REACTION):
             pattern[name] = self._sign_behind(sign, pattern, t, state, crossing.to)
         self._switch(pattern, [name], t, state, (name,))
 
     def _switch(self, pattern: Pattern, names: list[str], t: Any, state: Numbers, left: tuple[str, ...]) -> None:
-        """Go on with another mode, in which some signs are others; `left` are the surfaces that are left."""
+        """Continue in another mode with some signs changed.
+
+        `left` are the surfaces that the motion leaves.
+        """
+        if self._signs[names[0]].by is not DependsOn.REACTION:
+            pattern = self._with_reactions(pattern, t, state)
         before, after = self.mode, self._mode_of(pattern, self._started_at(t, state))
         moved = self._passed(before, after, self._signs[names[0]], t, state)
         after.engine.restart(t, moved)
@@ -284,33 +324,36 @@ class HybridMotion:
         self.intervals.append(ModeInterval(t, after))
         self._impulse = self._impulse + (after.energy_at(t, moved) - before.energy_at(t, state))
         if before.pattern[names[0]] == SLIDING:
-            passage = Passage.RELEASED
+            outcome = EventOutcome.RELEASED
         elif pattern[names[0]] == SLIDING:
-            passage = Passage.SLIDING
+            outcome = EventOutcome.SLIDING
         else:
             change = self.nominal.share(as_floats(moved - state), as_floats(state))
-            passage = Passage.CROSSED if change <= CONTINUOUS else Passage.IMPULSE
-        self.switchings += [Switching(float(t), self._signs[name].of, passage) for name in names]
+            outcome = EventOutcome.CROSSED if change <= CONTINUOUS else EventOutcome.IMPULSE
+        self.switchings += [Switching(float(t), self._signs[name].of, outcome) for name in names]
 
     def _sign_behind(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers, to: int | None = None) -> int | str:
         """Return the sign with which a motion goes on from a surface of the state.
 
         None for `to` where it starts on it.
         """
-        if sign.by is By.CONFIGURATION and not self._vanishes("switch_rate", sign, pattern, t, state):
+        if sign.by is DependsOn.CONFIGURATION and not self._vanishes("switch_rate", sign, pattern, t, state):
             return to or (1 if self._output("switch_rate", sign, pattern, t, state) > 0 else -1)
-        if holdable(self.problem, sign.name):
+        if driven(self.problem, sign.name):
             return self._decided(sign, pattern, t, state)
         if to is None:
             self._refuse(t, f"{sign.of} is zero, and not in forces alone, which leaves open how the motion goes on")
         return to
 
     def _decided(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> int | str:
-        """Return what the motions on both sides of a surface say about the sign of the motion that is on it."""
-        above, below = (self._output("drive", sign, {**pattern, sign.name: to}, t, state) for to in (1, -1))
+        """Return the sign of a motion on a surface, decided by the motions on both sides."""
+        sides = (self._with_reactions({**pattern, sign.name: to}, t, state) for to in (1, -1))
+        above, below = (self._output("drive", sign, side, t, state) for side in sides)
         if above * below > 0:
             return 1 if above > 0 else -1
         if above < 0 < below:
+            if not holdable(self.problem, sign.name):
+                self._refuse(t, f"{sign.of} is held at zero by more forces than one that contain multipliers")
             if other := next((name for name, value in pattern.items() if value == SLIDING and name != sign.name), None):
                 self._refuse(t, f"{self._signs[other].of} and {sign.of} are both held at zero")
             return SLIDING
@@ -318,8 +361,33 @@ class HybridMotion:
             self._refuse(t, f"{sign.of} is zero, and the motion may leave to either side")
         return 1 if above >= 0 and below >= 0 else -1
 
+    def _with_reactions(self, pattern: Pattern, t: Any, state: Numbers) -> Pattern:
+        """Return a pattern with the signs of the multipliers in forces.
+
+        A multiplier of zero has any sign.
+        """
+        if not self.problem.reacting:
+            return pattern
+        for side, function in self._unique(pattern):
+            if not side * function(self._inputs(t, state))[0] > 0:
+                self._refuse(t, NOT_UNIQUE)
+        signs = [sign for sign in self.problem.signs if sign.by is DependsOn.REACTION]
+
+        def least(each: Pattern) -> float:
+            return min((each[sign.name] * self._output("switch", sign, each, t, state) for sign in signs), default=0.0)
+
+        return max(signs_of_reactions(self.problem, pattern), key=least)
+
+    def _unique(self, pattern: Pattern) -> list[tuple[int, Evaluation]]:
+        """Return functions that show unique accelerations, each with its sign there."""
+        what = UNIQUE, frozenset(pattern.items())
+        if what not in self._functions:
+            found = uniqueness(self.problem, pattern)
+            self._functions[what] = [(side, evaluation(program, self._precision)) for side, program in found]
+        return self._functions[what]
+
     def _passed(self, before: Mode, after: Mode, sign: Sign, t: Any, state: Numbers) -> Numbers:
-        """Return the state behind an instant of switching."""
+        """Return the state behind a time of switching."""
         floats, n = as_floats(state), len(state) // 2
         old, new = before.matrices(float(t), floats), after.matrices(float(t), floats)
         left = residuals(new, floats, np.zeros(n), self.nominal)["position"]
@@ -339,7 +407,7 @@ class HybridMotion:
         continuous = self.nominal.share(as_floats(moved - state), floats) <= CONTINUOUS
         if self.problem.servo and not continuous:
             self._require_reactions(new, as_floats(moved - state)[n:], kick, sign, t)
-        if sign.by is not By.TIME:
+        if sign.by is not DependsOn.TIME:
             jump = abs(float(after.energy_at(t, state) - before.energy_at(t, state)))
             if not continuous:
                 self._refuse(t, f"an impact decides how the motion goes on as {sign.of} changes its sign")
@@ -348,7 +416,7 @@ class HybridMotion:
         return moved
 
     def _require_reactions(self, at: Matrices, change: Vector, kick: Vector, sign: Sign, t: Any) -> None:
-        """Refuse a change of velocities that takes an impulse of the controls that servo-constraints find."""
+        """Reject a change of velocities that needs an impulse by servo-constraints."""
         reactions = at.jacobian[: len(self.problem.reactions)].T
         impulse = at.mass @ change - kick
         left = impulse - reactions @ np.linalg.lstsq(reactions, impulse)[0]
@@ -356,25 +424,25 @@ class HybridMotion:
             self._refuse(t, f"servo-constraints would take an impulse of the controls as {sign.of} changes its sign")
 
     def _first_pattern(self, t: Any, state: Numbers) -> Pattern:
-        """Signs at the start, each function after those that it may contain."""
+        """Return the signs at the start, each function after its inputs."""
         pattern: dict[str, int | str] = dict.fromkeys(self._signs, 1)
         for name, event in self._time_events.items():
             pattern[name] = event.to if self._precision.ratio(event.t) <= t else -event.to
         while self._to_come and self._precision.ratio(self._to_come[0]) <= t:
             self._to_come.popleft()
         for sign in self.problem.signs:
-            if sign.name in self._time_events:
+            if sign.name in self._time_events or sign.by is DependsOn.REACTION:
                 continue
             if self._vanishes("switch", sign, pattern, t, state):
                 pattern[sign.name] = self._leaving(sign, pattern, t, state)
                 self._left = (*self._left, sign.name)
             else:
                 pattern[sign.name] = 1 if self._output("switch", sign, pattern, t, state) > 0 else -1
-        return pattern
+        return self._with_reactions(pattern, t, state)
 
     def _leaving(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> int | str:
         """Return the sign with which a motion starts from a surface."""
-        if sign.by is By.TIME:
+        if sign.by is DependsOn.TIME:
             soon = t + self._precision.number(repr(SOON * self._span))
             return 1 if self._output("switch", sign, pattern, soon, state) >= 0 else -1
         return self._sign_behind(sign, pattern, t, state)
@@ -383,16 +451,19 @@ class HybridMotion:
         return len(self.intervals) > CROWD and float(t - self.intervals[-CROWD].start) < CROWDED * self._span
 
     def _refuse(self, t: Any, reason: str) -> None:
-        raise HolonomError(Failure.NO_WAY_ON, detail=f"{float(t):.10g}, where {reason}")
+        raise HolonomError(ErrorKind.NO_WAY_ON, detail=f"{float(t):.10g}, where {reason}")
 
-    # ---- numbers at an instant ----
+    # ---- numbers at a given time ----
 
     def _output(self, name: str, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> float:
         """Value of a `switching_function`, which is compiled when it is first asked for."""
         return float(self._function(name, sign, pattern)[0](self._inputs(t, state))[0])
 
     def _vanishes(self, name: str, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> bool:
-        """Return True if a `switching_function` is rounding, beside what it changes by as the state and the time do."""
+        """Return True if a `switching_function` is within rounding of zero.
+
+        Its rounding is relative to its changes with the state and the time.
+        """
         function, places = self._function(name, sign, pattern)
         number = self._precision.number
         others = [(t + number(repr(share * self.nominal.time)), state) for share in LATER]
@@ -405,7 +476,7 @@ class HybridMotion:
         return abs(here) <= ZERO * float(np.sum(changes, where=np.isfinite(changes)))
 
     def _function(self, name: str, sign: Sign, pattern: Pattern) -> tuple[Evaluation, list[int]]:
-        """Return a `switching_function`, and the places in the state of what it contains."""
+        """Return a `switching_function`, and the state indices of its inputs."""
         what = name, sign.name, frozenset(pattern.items())
         if what not in self._functions:
             program = switching_function(self.problem, name, sign.name, pattern)

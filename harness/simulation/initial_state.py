@@ -1,9 +1,9 @@
-"""Where motions start that differ in their parameters: eqs. (12) and (19) in numbers, many motions at a time.
+"""Initial states for many parameter values: eqs. (12) and (19) numerically.
 
-What the scene gives is evaluated; what the constraints fix is solved for by Newton's method, the corrections being the
-least ones in the mass metric, or the only ones, as `maxima/program/parametric_start.mac` says of each. Data of limited
-digits that miss a constraint by less than a share of 1e-9 are corrected in the same way. `maxima/derivation/
-initial_state.mac` does the same to 60 digits for one motion.
+Given values are evaluated. The constraints determine the others by Newton's method, with the least corrections in the
+mass metric or the only ones, by `maxima/program/parametric_start.mac`. Data of limited digits that violate a constraint
+by less than a share of 1e-9 are corrected in the same way. `maxima/derivation/initial_state.mac` does the same to 60
+digits for one motion.
 """
 
 from collections.abc import Iterable, Mapping
@@ -14,21 +14,21 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..failures import Failure, HolonomError
-from ..program.motion_problem import By, MotionProblem, Origin, computing
+from ..failures import ErrorKind, HolonomError
+from ..program.motion_problem import DependsOn, MotionProblem, Origin, computing
 from ..program.sign_pattern import at_start, problem_in
-from .evaluation import Numbers, lane_evaluation
+from .evaluation import Numbers, batch_evaluation
 from .inputs import Inputs
-from .matrices import LaneMatrices
+from .matrices import BatchMatrices
 from .nearest_root import ITERATIONS, ROUNDING, SETTLED, Linearized, NearestRoots
 from .nominal import nominal_of, share_of
 from .residuals import constraint_residuals, scaled_residual
 
 LIMITED_DIGITS = 1e-9  # share of the largest datum by which data may be corrected, and of coordinates a residual
-SOON = 1e-9  # of the first instant, or of the nominal time: after it, for functions that vanish there
+SOON = 1e-9  # of the first time, or of the nominal time: after it, for functions that vanish there
 
 
-class Starts(NamedTuple):
+class FoundStates(NamedTuple):
     """States that motions start from."""
 
     states: Numbers  # shape (2n, k): coordinates, then velocities
@@ -36,7 +36,7 @@ class Starts(NamedTuple):
 
 
 class InitialStates:
-    """The states that a problem's motions start from, as a function of the open parameters.
+    """The initial states of a problem's motions as a function of the open parameters.
 
     Parameters
     ----------
@@ -52,10 +52,10 @@ class InitialStates:
     def __init__(self, problem: MotionProblem) -> None:
         start = problem.parametric_start
         if start.obstacle is not None:
-            raise HolonomError(Failure.START_UNFOLLOWED, problem.scene, start.obstacle)
-        self._instant, self._n = float(problem.start["t"]), len(problem.coordinates)
-        self._evaluate = lane_evaluation(problem, start.program)
-        self._matrices, self._redundant = LaneMatrices(problem), problem.dependent
+            raise HolonomError(ErrorKind.NO_INITIAL_STATE, problem.scene, start.obstacle)
+        self._time, self._n = float(problem.start["t"]), len(problem.coordinates)
+        self._evaluate = batch_evaluation(problem, start.program)
+        self._matrices, self._redundant = BatchMatrices(problem), problem.dependent
         self._nominal = nominal_of(problem)
         n = self._n
         present = {name for name in problem.matrices.outputs if name.startswith("J[")}
@@ -69,7 +69,7 @@ class InitialStates:
             for half, part in ((0, origins[:n]), (1, origins[n:]))
         ]
 
-    def __call__(self, values: Numbers) -> Starts:
+    def __call__(self, values: Numbers) -> FoundStates:
         """Return the states for many values of the open parameters.
 
         Parameters
@@ -78,7 +78,7 @@ class InitialStates:
 
         Returns
         -------
-        Starts
+        FoundStates
             What comes out for one column of values does not hang on the others.
         """
         states, found = self._evaluate(values), np.ones(values.shape[1], dtype=bool)
@@ -86,34 +86,54 @@ class InitialStates:
             for group in self._groups:
                 found &= self._corrected(group, states, values)
                 if len(group.solved) and group.only:
-                    lanes = np.arange(len(found))
-                    found &= self._solved(states, values, group, group.solved, group.open, True, lanes)
+                    elements = np.arange(len(found))
+                    found &= self._solved(states, values, group, group.solved, group.open, True, elements)
                 elif len(group.solved):
                     found &= self._solved_nearby(states, values, group)
-            at = self._matrices(self._instant, states, values)
+            at = self._matrices(self._time, states, values)
             for residual in constraint_residuals(at, states, self._nominal).values():
                 found &= residual <= LIMITED_DIGITS
-        return Starts(states, found & np.isfinite(states).all(axis=0))
+        return FoundStates(states, found & np.isfinite(states).all(axis=0))
 
     def correction(self, values: Numbers, states: Numbers) -> tuple[str, str] | None:
-        """Return the datum that was corrected most to make the state of one motion, and by how much.
+        """Return the most corrected datum of one motion's state, and its correction.
 
-        None if none was.
+        Parameters
+        ----------
+        values : ndarray, shape (p, 1)
+            Open parameters of one motion.
+        states : ndarray, shape (2n, 1)
+            State for these values.
+
+        Returns
+        -------
+        (str, str) or None
+            Name and size of the correction; None without a correction.
         """
         name, size, now = self._largest_change(Origin.GIVEN, values, states)
         nominal = self._nominal.state[list(self._origins).index(name)] if name else 1.0
         return (name, f"{size:.2g}") if size > ROUNDING * max(nominal, abs(now)) else None
 
     def moved(self, values: Numbers, states: Numbers) -> tuple[str, str] | None:
-        """Return the value that differs most from the guess in the state of one motion, and by how much.
+        """Return the value of a state that differs most from its guess.
 
-        None without one.
+        Parameters
+        ----------
+        values : ndarray, shape (p, 1)
+            Open parameters of one motion.
+        states : ndarray, shape (2n, 1)
+            State for these values.
+
+        Returns
+        -------
+        (str, str) or None
+            Name and difference; None without a guess.
         """
         name, size, _ = self._largest_change(Origin.NEAR, values, states)
         return (name, f"{size:.3g}") if name else None
 
     def _largest_change(self, origin: Origin, values: Numbers, states: Numbers) -> tuple[str, float, float]:
-        """Of the values of an origin: the name of the one that changed most, by how much, and what it is now."""
+        """Return the name, the change and the value of an origin's most changed value."""
         data, state = self._evaluate(values)[:, 0], states[:, 0]
         changes = (
             (name, abs(float(now - before)), float(now))
@@ -123,11 +143,11 @@ class InitialStates:
         return max(changes, key=lambda change: change[1], default=("", 0.0, 0.0))
 
     def _corrected(self, group: "_Group", states: Numbers, values: Numbers) -> NDArray[np.bool_]:
-        """Correct the data, in place, where they are given in too few digits; whether no more was needed."""
+        """Correct data of limited digits in place. Return True if no more was needed."""
         if not len(group.given) or not len(group.bound):
             return np.ones(states.shape[1], dtype=bool)
         rows, n = group.given + group.half * self._n, self._n
-        at, data = self._matrices(self._instant, states, values), states[rows]
+        at, data = self._matrices(self._time, states, values), states[rows]
         residual, moved = (at.residual_rate, states[n:]) if group.half else (at.residual, states[:n])
         sizes = np.split(self._nominal.state, 2)[group.half]
         missed = scaled_residual(residual[group.bound], at.jacobian[group.bound], moved, sizes) > ROUNDING
@@ -136,13 +156,16 @@ class InitialStates:
         return np.max(np.abs(states[rows] - data), axis=0) <= LIMITED_DIGITS * np.where(size > 0, size, 1.0)
 
     def _solved_nearby(self, states: Numbers, values: Numbers, group: "_Group") -> NDArray[np.bool_]:
-        """Put the numbers nearest to those there, in place, that the constraints allow; whether there are any."""
+        """Replace numbers by the nearest ones that satisfy the constraints, in place.
+
+        Return True if there are any.
+        """
         unknown, places = group.solved, group.solved + group.half * self._n
 
-        def linearize(points: Numbers, lanes: NDArray[np.int64]) -> Linearized:
-            trial = states[:, lanes].copy()
+        def linearize(points: Numbers, elements: NDArray[np.int64]) -> Linearized:
+            trial = states[:, elements].copy()
             trial[places] = points
-            at = self._matrices(self._instant, trial, values[:, lanes])
+            at = self._matrices(self._time, trial, values[:, elements])
             residual = (at.residual_rate if group.half else at.residual)[group.open]
             return Linearized(residual, at.jacobian[np.ix_(group.open, unknown)], at.mass[np.ix_(unknown, unknown)])
 
@@ -162,13 +185,16 @@ class InitialStates:
         only: bool,
         active: Numbers,
     ) -> NDArray[np.bool_]:
-        """Newton's method, in place, for some of the numbers from some of the constraints; whether it arrived."""
+        """Solve some of the constraints for some of the numbers by Newton's method.
+
+        The numbers are changed in place. Return True if it converges.
+        """
         places = unknown + group.half * self._n
         arrived = np.zeros(states.shape[1], dtype=bool)
         for _ in range(ITERATIONS):
             if not len(active):
                 break
-            at = self._matrices(self._instant, states[:, active], values[:, active])
+            at = self._matrices(self._time, states[:, active], values[:, active])
             residual = (at.residual_rate if group.half else at.residual)[rows]
             jacobian = at.jacobian[np.ix_(rows, unknown)]
             mass = None if only else at.mass[np.ix_(unknown, unknown)]
@@ -182,9 +208,9 @@ class InitialStates:
 
 
 class InitialStatesBySign:
-    """The same of a motion with signs: those that the time decides have at the start the value they have just after it.
+    """The initial states of a motion with signs.
 
-    No other sign decides about constraints, or they would jump.
+    Signs of time have the value just after the initial time. Other signs do not affect constraints, which would jump.
 
     Parameters
     ----------
@@ -203,26 +229,50 @@ class InitialStatesBySign:
         self._of: dict[tuple[float, ...], InitialStates] = {}
         self._in_pattern([1.0] * len(problem.signs))
         self._clocks = {
-            index: lane_evaluation(problem, computing(problem.switching, {f"switch[{index + 1}]"}))
+            index: batch_evaluation(problem, computing(problem.switching, {f"switch[{index + 1}]"}))
             for index, sign in enumerate(problem.signs)
-            if sign.by is By.TIME
+            if sign.by is DependsOn.TIME
         }
 
-    def __call__(self, values: Numbers) -> Starts:
+    def __call__(self, values: Numbers) -> FoundStates:
         """As `InitialStates`."""
         signs, k = self._signs(values), values.shape[1]
         states, found = np.full((len(self._problem.state), k), np.nan), np.zeros(k, dtype=bool)
         for pattern in np.unique(signs, axis=1).T:
             here = (signs == pattern[:, None]).all(axis=0)
             states[:, here], found[here] = self._in_pattern(pattern)(values[:, here])
-        return Starts(states, found)
+        return FoundStates(states, found)
 
     def correction(self, values: Numbers, states: Numbers) -> tuple[str, str] | None:
-        """As `InitialStates.correction`."""
+        """Return the most corrected datum, as `InitialStates.correction`.
+
+        Parameters
+        ----------
+        values : ndarray, shape (p, 1)
+            Open parameters of one motion.
+        states : ndarray, shape (2n, 1)
+            State for these values.
+
+        Returns
+        -------
+        (str, str) or None
+        """
         return self._in_pattern(self._signs(values)[:, 0]).correction(values, states)
 
     def moved(self, values: Numbers, states: Numbers) -> tuple[str, str] | None:
-        """As `InitialStates.moved`."""
+        """Return the value farthest from its guess, as `InitialStates.moved`.
+
+        Parameters
+        ----------
+        values : ndarray, shape (p, 1)
+            Open parameters of one motion.
+        states : ndarray, shape (2n, 1)
+            State for these values.
+
+        Returns
+        -------
+        (str, str) or None
+        """
         return self._in_pattern(self._signs(values)[:, 0]).moved(values, states)
 
     def _in_pattern(self, pattern: Iterable[float]) -> InitialStates:
@@ -233,27 +283,45 @@ class InitialStatesBySign:
         return self._of[signs]
 
     def _signs(self, values: Numbers) -> Numbers:
-        """Signs at the start, shape (signs, k), each function after those that it may contain."""
+        """Return the signs at the start, shape (signs, k).
+
+        Each function follows those that it may contain.
+        """
         k, problem = values.shape[1], self._problem
         signs, unused, inputs = np.ones((len(problem.signs), k)), np.zeros((len(problem.state), k)), Inputs(problem)
         scale = max(self._time, abs(self._start))
         for index, clock in self._clocks.items():
             now, soon = (
-                clock(inputs(instant, unused, signs=signs, values=values))[0]
-                for instant in (self._start, self._start + SOON * scale)
+                clock(inputs(time, unused, signs=signs, values=values))[0]
+                for time in (self._start, self._start + SOON * scale)
             )
             signs[index] = np.where(np.where(np.abs(now) > ROUNDING * scale, now, soon) >= 0, 1.0, -1.0)
         return signs
 
 
 def initial_states_of(problem: MotionProblem) -> InitialStates | InitialStatesBySign:
-    """Return the states that a problem's motions start from; raises as these do."""
+    """Return the initial states of a problem's motions.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        With open parameters.
+
+    Returns
+    -------
+    InitialStates or InitialStatesBySign
+
+    Raises
+    ------
+    HolonomError
+        The start cannot follow the parameters.
+    """
     begun = at_start(problem)
     return InitialStatesBySign(begun) if begun.signs else InitialStates(begun)
 
 
 class _Group:
-    """Coordinates or velocities: which are given, and which constraints fix the others.
+    """Coordinates or velocities: the given ones, and the constraints of the others.
 
     Parameters
     ----------
@@ -274,7 +342,18 @@ class _Group:
 
 
 def at_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionProblem:
-    """Return the motion for other values of its open parameters, its start good to double precision.
+    """Return the motion for other parameter values, its start in double precision.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        With open parameters.
+    values : mapping of str to Fraction
+        By name; parameters that are missing keep their values.
+
+    Returns
+    -------
+    MotionProblem
 
     Raises
     ------
@@ -284,45 +363,91 @@ def at_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionP
     """
     if Origin.FOLLOWED in problem.parametric_start.origins.values():
         reason = "no closed form gives it for all values of the parameters; put near values into initial_guess"
-        raise HolonomError(Failure.START_UNFOLLOWED, problem.scene, reason)
+        raise HolonomError(ErrorKind.NO_INITIAL_STATE, problem.scene, reason)
     complete = {name: values.get(name, problem.values.get(name)) for name in problem.parameters}
     numbers = np.array([[float(complete[name])] for name in problem.parameters])
     initial_states = initial_states_of(problem)
     starts = initial_states(numbers)
     if not starts.found[0]:
-        raise HolonomError(Failure.START_UNFOLLOWED, problem.scene, "no state satisfies the constraints")
+        raise HolonomError(ErrorKind.NO_INITIAL_STATE, problem.scene, "no state satisfies the constraints")
     found = started(problem, complete, starts.states[:, 0])
     correction, moved = (told(numbers, starts.states) for told in (initial_states.correction, initial_states.moved))
     return replace(found, correction=correction, moved=moved or problem.moved)
 
 
 def started(problem: MotionProblem, values: Mapping[str, Fraction], state: Numbers) -> MotionProblem:
-    """Return the motion for values of its open parameters, from a state that belongs to them, shape (2n,)."""
+    """Return the motion for parameter values, from a state for them.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        With open parameters.
+    values : mapping of str to Fraction
+        Of all open parameters.
+    state : ndarray, shape (2n,)
+        Coordinates, then velocities.
+
+    Returns
+    -------
+    MotionProblem
+    """
     texts = {name: repr(float(number)) for name, number in zip(problem.state, state, strict=True)}
     return replace(with_values(problem, values), start={"t": problem.start["t"], **texts})
 
 
 def with_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionProblem:
-    """Return the motion with values of its open parameters, its start as it was."""
+    """Return the motion with values of its open parameters and the same start.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        With open parameters.
+    values : mapping of str to Fraction
+        Of all open parameters.
+
+    Returns
+    -------
+    MotionProblem
+    """
     return replace(problem, values=dict(values))
 
 
 def least_step(mass: Numbers | None, jacobian: Numbers, residual: Numbers, redundant: bool) -> Numbers:
-    """Return the least correction in the metric, or the only one: shapes (u, u, k), (b, u, k), (b, k) to (u, k)."""
-    b, u, lanes = jacobian.shape
+    """Return the least correction in the metric, or the only one.
+
+    Parameters
+    ----------
+    mass : ndarray, shape (u, u, k), or None
+        Metric of the u unknowns; None if the correction is the only one.
+    jacobian : ndarray, shape (b, u, k)
+        Derivatives of b constraints by the unknowns.
+    residual : ndarray, shape (b, k)
+        Values of these constraints.
+    redundant : bool
+        True if constraints may depend on one another.
+
+    Returns
+    -------
+    ndarray, shape (u, k)
+        NaN for a singular system.
+    """
+    b, u, elements = jacobian.shape
     if mass is None:
         matrix, right = np.moveaxis(jacobian, 2, 0), -residual.T
     else:
-        matrix = np.zeros((lanes, u + b, u + b))
+        matrix = np.zeros((elements, u + b, u + b))
         matrix[:, :u, :u] = np.moveaxis(mass, 2, 0)
         matrix[:, :u, u:] = -np.moveaxis(jacobian, 2, 0).swapaxes(1, 2)
         matrix[:, u:, :u] = np.moveaxis(jacobian, 2, 0)
-        right = np.concatenate([np.zeros((lanes, u)), -residual.T], axis=1)
+        right = np.concatenate([np.zeros((elements, u)), -residual.T], axis=1)
     return _solution(matrix, right, redundant and mass is not None)[:, :u].T
 
 
 def _solution(matrices: Numbers, rights: Numbers, redundant: bool) -> Numbers:
-    """Solutions of linear systems, each by itself, whatever the others are; nan where there is none."""
+    """Return solutions of linear systems, each independent of the others.
+
+    It is nan for a singular system.
+    """
     if redundant or matrices.shape[1] != matrices.shape[2]:
         return np.array([_least(matrix, right, redundant) for matrix, right in zip(matrices, rights, strict=True)])
     try:
@@ -339,7 +464,7 @@ def _regular(matrix: Numbers, right: Numbers) -> Numbers:
 
 
 def _least(matrix: Numbers, right: Numbers, redundant: bool) -> Numbers:
-    """Return the solution of least squares; where it must be the only one, nan if it is not."""
+    """Return the solution of least squares; nan if it must be unique and is not."""
     if not (np.isfinite(matrix).all() and np.isfinite(right).all()):
         return np.full(matrix.shape[1], np.nan)
     found, _, rank, _ = np.linalg.lstsq(matrix, right, rcond=None)

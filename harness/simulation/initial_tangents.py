@@ -1,7 +1,7 @@
-"""How the start of a motion moves with its parameters and initial values: the derivative of eqs. (12) and (19).
+"""Derivatives of the initial state by parameters and initial values.
 
-What the scene gives moves as it says; the constraints, differentiated, move the rest: J d = -r, d least in the mass
-metric where that leaves something open.
+They are the derivative of eqs. (12) and (19). Given values have given derivatives. The differentiated constraints
+determine the others: J d = -r, with d least in the mass metric if it is not unique.
 """
 
 from collections.abc import Iterator, Sequence
@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..program.differentiation import derivative_name, differentiated
 from ..program.motion_problem import MotionProblem
 from ..program.numpy_function import NumpyFunction
@@ -37,7 +37,10 @@ class ConstraintVariation:
         self._variation = Variation(problem, problem.matrices, outputs, directions) if outputs else None
 
     def __call__(self, t: float, state: Numbers, moves: Numbers) -> tuple[Numbers, Numbers]:
-        """Return the changes of f and of df/dt, each of shape (g, p), for moves of shape (2n, p)."""
+        """Return the changes of f and of df/dt, each of shape (g, p).
+
+        The moves have shape (2n, p).
+        """
         if self._variation is None:
             return (np.zeros((0, moves.shape[1])),) * 2
         found = self._variation(np.array([t]), state[:, None], moves[:, :, None])[:, :, 0]
@@ -45,7 +48,7 @@ class ConstraintVariation:
 
 
 def initial_tangents(problem: MotionProblem, analytic: MotionProblem, directions: Sequence[str]) -> Numbers:
-    """Return how the state at the start moves in directions, shape (2n, p).
+    """Return the derivatives of the initial state in directions.
 
     Parameters
     ----------
@@ -53,6 +56,10 @@ def initial_tangents(problem: MotionProblem, analytic: MotionProblem, directions
         The motion, and the same one without signs, as it begins.
     directions : sequence of str
         Parameters, by their `size_of`; coordinates and velocities, whose initial values move by one.
+
+    Returns
+    -------
+    ndarray, shape (2n, p)
 
     Raises
     ------
@@ -74,12 +81,12 @@ def initial_tangents(problem: MotionProblem, analytic: MotionProblem, directions
                     break
             else:
                 reason = f"the constraints do not let the initial values follow {name}"
-                raise HolonomError(Failure.START_UNFOLLOWED, problem.scene, reason)
+                raise HolonomError(ErrorKind.NO_INITIAL_STATE, problem.scene, reason)
     return moves
 
 
 def _data(problem: MotionProblem, directions: Sequence[str]) -> Numbers:
-    """Return how the given values move, and the numbers that a search begins with; shape (2n, p)."""
+    """Return derivatives of the given values and of the guesses, shape (2n, p)."""
     moves = np.zeros((len(problem.state), len(directions)))
     for k, name in enumerate(directions):
         if name in problem.state:
@@ -89,7 +96,7 @@ def _data(problem: MotionProblem, directions: Sequence[str]) -> Numbers:
     if not parameters:
         return moves
     if start.obstacle is not None:
-        raise HolonomError(Failure.START_UNFOLLOWED, problem.scene, start.obstacle)
+        raise HolonomError(ErrorKind.NO_INITIAL_STATE, problem.scene, start.obstacle)
     seeds = {name: {name: size_of(problem, name)} for name in parameters}
     program = differentiated(start.program, seeds)
     found = dict(zip(program.outputs, NumpyFunction(program)(problem.numbers), strict=True))
@@ -99,9 +106,10 @@ def _data(problem: MotionProblem, directions: Sequence[str]) -> Numbers:
 
 
 def _free(problem: MotionProblem, half: int, direction: str) -> Iterator[NDArray[np.int64]]:
-    """Yield places in a half of the state that may follow.
+    """Yield places in a half of the state that the constraints may change.
 
-    They are what the scene does not give; where that is not enough for an initial value, all but this value.
+    First they are the values that the scene does not give. If these are not enough for an initial value, they are all
+    but this value.
     """
     n = len(problem.coordinates)
     others = [(s, name) for s, name in enumerate(problem.state[half * n :][:n]) if name != direction]
@@ -111,16 +119,22 @@ def _free(problem: MotionProblem, half: int, direction: str) -> Iterator[NDArray
 
 
 def _require_unique(problem: MotionProblem, at: Matrices, free: NDArray[np.int64], direction: str) -> None:
-    """Refuse a start that is the nearest of many to a guess off the constraints: it moves with their curvature, too."""
+    """Reject a start that is the nearest of many to a guess off the constraints.
+
+    It moves with the curvature of the constraints, too.
+    """
     if direction in problem.state or problem.moved is None or float(problem.moved[1]) == 0:
         return
     if np.linalg.matrix_rank(at.jacobian[:, free]) < len(free):
         reason = "it is the nearest of many to initial_guess; give more of it in initial_state"
-        raise HolonomError(Failure.START_UNFOLLOWED, problem.scene, reason)
+        raise HolonomError(ErrorKind.NO_INITIAL_STATE, problem.scene, reason)
 
 
 def _least(at: Matrices, missed: Numbers, free: NDArray[np.int64], redundant: bool) -> Numbers:
-    """Return the least move of some places, in the mass metric, that makes up for what constraints miss, shape (g,)."""
+    """Return the least move of some places that corrects residuals of shape (g,).
+
+    It is least in the mass metric.
+    """
     touched = np.flatnonzero((at.jacobian[:, free] != 0).any(axis=1))
     if not len(touched):
         return np.zeros(len(free))
@@ -129,6 +143,6 @@ def _least(at: Matrices, missed: Numbers, free: NDArray[np.int64], redundant: bo
 
 
 def _consistent(left: Numbers, at: Matrices, moves: Numbers, missed: Numbers) -> bool:
-    """Return True if what constraints still miss is rounding, beside the terms that it is the sum of."""
+    """Return True if the remaining residuals are rounding errors of their terms."""
     terms = np.abs(at.jacobian) @ np.abs(moves) + np.abs(missed)
     return bool((np.abs(left) <= CONSISTENT * terms).all())

@@ -1,4 +1,7 @@
-"""The inputs of a motion's programs: t, state, multipliers, signs, open parameters, tables, in this order."""
+"""Inputs of a motion's programs, in their order.
+
+They are t, the state, multipliers, signs, open parameters and tables.
+"""
 
 from collections.abc import Sequence
 from functools import cached_property
@@ -16,13 +19,47 @@ from .evaluation import Numbers, as_floats, zeros
 def named_inputs(
     problem: MotionProblem, t: Any, state: Sequence[Any], zero: Any, open_values: Sequence[Any]
 ) -> dict[str, Any]:
-    """Return the inputs by name, as terms of another language; multipliers are zero."""
+    """Return the inputs of a motion's programs by name, as terms of another language.
+
+    Multipliers are zero.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion, which gives the names.
+    t : term
+        The time.
+    state : sequence of term, shape (2n,)
+        Coordinates, then velocities.
+    zero : term
+        The number zero.
+    open_values : sequence of term
+        The open inputs, in their order.
+
+    Returns
+    -------
+    dict of str to term
+    """
     names = "t", *problem.state, *problem.multipliers, *problem.open_inputs
     return dict(zip(names, (t, *state, *[zero] * len(problem.multipliers), *open_values), strict=True))
 
 
 def heyoka_inputs(problem: MotionProblem, zero: Any = 0.0) -> dict[str, Any]:
-    """Return the inputs for heyoka's integrators: its time, variables and, for open inputs, its parameters."""
+    """Return the inputs for heyoka's integrators by name.
+
+    The open inputs are heyoka's parameters.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion, which gives the names.
+    zero : number
+        Zero in the numbers of the integrator.
+
+    Returns
+    -------
+    dict of str to expression
+    """
     heyoka = import_heyoka()
     variables, count = map(heyoka.expression, problem.state), len(problem.open_inputs)
     return named_inputs(problem, heyoka.time, variables, heyoka.expression(zero), [heyoka.par[k] for k in range(count)])
@@ -39,7 +76,7 @@ class Inputs:
 
     def __call__(
         self,
-        instants: Any,
+        times: Any,
         states: Numbers,
         multipliers: Numbers | None = None,
         signs: Sequence[Any] = (),
@@ -50,7 +87,7 @@ class Inputs:
 
         Parameters
         ----------
-        instants : number or ndarray, shape (k,)
+        times : number or ndarray, shape (k,)
         states : ndarray, shape (2n,) or (2n, k)
         multipliers : ndarray, shape (g, k), or None
             None for zeros.
@@ -68,26 +105,32 @@ class Inputs:
         signs = signs if accelerations is None else (*accelerations, *signs)
         behind = self._multipliers.stop + len(signs)
         found = zeros(self._precision, behind + self._open, *states.shape[1:])
-        found[0], found[self._state] = instants, states
+        found[0], found[self._state] = times, states
         if multipliers is not None:
             found[self._multipliers] = multipliers
         for place, sign in enumerate(signs, start=self._multipliers.stop):
             found[place] = sign
-        found[behind:].T[...] = (self.open_values(instants) if values is None else values).T
+        found[behind:].T[...] = (self.open_values(times) if values is None else values).T
         return found
 
-    def open_values(self, instants: Any, side: Literal["left", "right"] = "left") -> Numbers:
-        """Return the open parameters and what tables are at instants: shape (p,) or, with tables, (p, k).
+    def open_values(self, times: Any, side: Literal["left", "right"] = "left") -> Numbers:
+        """Return the open parameters and the values of tables at times.
 
         Parameters
         ----------
-        instants : number or ndarray, shape (k,)
+        times : number or ndarray, shape (k,)
+            Times of the states.
         side : str
             ``left`` for the polynomial that ends at a knot, ``right`` for the one that begins there.
+
+        Returns
+        -------
+        ndarray, shape (p,) or, with tables, (p, k)
+            Open parameters, then polynomials of tables.
         """
         if not self._tables:
             return self._lasting
-        floats = as_floats(instants)
+        floats = as_floats(times)
         lasting = np.repeat(self._lasting[:, None], len(floats), axis=1) if floats.ndim else self._lasting
         return np.concatenate([lasting, *(pieces.at(floats, side) for pieces in self._tables)])
 

@@ -1,6 +1,6 @@
-"""The matrices of a motion at a state: what the solves with pivots start from.
+"""Matrices of a motion at a state, for the solves with pivots.
 
-A a - J^T lambda = h,  J a = -c, beside the constraints f and their rate df/dt.
+They are those of A a - J^T lambda = h, J a = -c, with the constraints f and their rate df/dt.
 """
 
 import math
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..program.motion_problem import MotionProblem, require_signs_known
 from ..program.precision import read_precision
-from .evaluation import Numbers, evaluation_once, lane_evaluation
+from .evaluation import Numbers, batch_evaluation, evaluation_once
 from .inputs import Inputs
 from .nominal import Nominal, nominal_of
 
@@ -36,7 +36,17 @@ class Matrices(NamedTuple):
     finite: bool | NDArray[np.bool_]  # whether all of them are numbers, none infinite
 
     def under(self, constraints: Sequence[int]) -> "Matrices":
-        """Return the same under some of the constraints alone, counted from 0."""
+        """Return the matrices under some of the constraints alone.
+
+        Parameters
+        ----------
+        constraints : sequence of int
+            Indices of constraints, counted from 0.
+
+        Returns
+        -------
+        Matrices
+        """
         of_constraints = ("jacobian", "curvature", "residual", "residual_rate")
         return self._replace(**{name: getattr(self, name)[list(constraints)] for name in of_constraints})
 
@@ -79,17 +89,29 @@ class MotionMatrices:
         return self._layout.matrices_at_each(self._evaluate(self._inputs(t, state.T)).T)
 
     def independent(self, t: float, state: Vector) -> Matrices:
-        """Evaluate the matrices of the constraints that do not follow from others."""
+        """Evaluate the matrices of the constraints that do not follow from others.
+
+        Parameters
+        ----------
+        t : float
+            Time of the state.
+        state : ndarray, shape (2n,)
+            Coordinates, then velocities.
+
+        Returns
+        -------
+        Matrices
+        """
         return self(t, state).under(self._kept)
 
 
-class LaneMatrices:
-    """The matrices of many motions of one problem, each with its own values of the open parameters."""
+class BatchMatrices:
+    """The matrices of many motions of one problem, each with its own parameter values."""
 
     def __init__(self, problem: MotionProblem) -> None:
         require_signs_known(problem)
         self._layout, self._inputs = _Layout(problem), Inputs(problem)
-        self._evaluate = lane_evaluation(problem, problem.matrices)
+        self._evaluate = batch_evaluation(problem, problem.matrices)
 
     def __call__(self, t: float | Numbers, states: Numbers, values: Numbers) -> Matrices:
         """Evaluate the matrices.
@@ -109,7 +131,7 @@ class LaneMatrices:
 
 
 class _Layout:
-    """Where the outputs of the program of the matrices go."""
+    """The layout of the outputs of the program of the matrices."""
 
     def __init__(self, problem: MotionProblem) -> None:
         n, g = len(problem.coordinates), len(problem.multipliers)
@@ -123,7 +145,7 @@ class _Layout:
         self._places = np.array([_place(name, starts, n) for name in problem.matrices.outputs], dtype=int)
 
     def matrices(self, outputs: Numbers) -> Matrices:
-        """Return the program's outputs, shape (outputs, ...), as matrices of shapes (..., ...)."""
+        """Return the program's outputs, shape (outputs, ...), as matrices (..., ...)."""
         rest = outputs.shape[1:]
         values = np.zeros((self._size, *rest))
         values[self._places] = outputs
@@ -131,7 +153,10 @@ class _Layout:
         return Matrices(*(values[part].reshape(*shape, *rest) for part, shape in self._parts), finite)
 
     def matrices_at_each(self, outputs: Numbers) -> Matrices:
-        """Return the same of what the program computes, shape (..., outputs), each of shape (...) and its own."""
+        """Return matrices of the program's outputs, shape (..., outputs).
+
+        Each matrix has the leading axes (...), followed by its own shape.
+        """
         rest = outputs.shape[:-1]
         values = np.zeros((*rest, self._size))
         values[..., self._places] = outputs
@@ -140,7 +165,12 @@ class _Layout:
 
 
 def start_of(problem: MotionProblem) -> tuple[float, Vector]:
-    """Instant and state at which a motion starts.
+    """Return the time and the state at which a motion starts.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion, with numbers for its start.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""A mode of a motion: the smooth motion of one pattern of signs, and what belongs to it."""
+"""A mode of a motion: the smooth motion of one pattern of signs."""
 
 from collections.abc import Collection, Hashable, Iterator, Mapping
 from dataclasses import replace
@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ..failures import Failure, HolonomError
-from ..program.motion_problem import By, MotionProblem, computing
+from ..failures import ErrorKind, HolonomError
+from ..program.motion_problem import DependsOn, MotionProblem, computing
 from ..program.motion_program import Program
 from ..program.precision import Precision
 from ..program.sign_pattern import (
@@ -19,16 +19,17 @@ from ..program.sign_pattern import (
     program_in,
     sharing_programs,
     switching_function,
+    uniqueness,
 )
 from .constraints.program_projection import ProgramProjection
-from .constraints.singularity import no_controls, require_gradient, shortly_before, vanishing_instants
+from .constraints.singularity import no_controls, require_gradient, shortly_before, vanishing_times
 from .control_matrix import ControlMatrix, controls_may_fail
 from .energy import EnergyBalance
-from .engines.choice import Between
+from .engines.choice import OutputCounts
 from .engines.engine import Solutions, Step, Task
 from .engines.fallback import FallbackEngine
 from .evaluation import Evaluation, Numbers, as_floats, evaluation, evaluation_once
-from .hard_cases import Instant, dependence
+from .hard_cases import MotionState, dependence
 from .inputs import Inputs
 from .matrices import MotionMatrices, start_of
 from .request import SimulationRequest
@@ -36,12 +37,25 @@ from .time_dependence import time_dependence
 from .time_events import TimeEvent
 from .zeros import SignedFunctions
 
+UNIQUE = "unique"  # name of the surfaces on which accelerations cease to be unique
+NO_ROUNDING: Mapping[str, float] = {}
+FREE = 1e-12  # of the nominal size of a multiplier: no reaction
+
 
 class Surfaces(SignedFunctions):
-    """The surfaces on which a pattern of signs ends, but for signs whose changes are known without looking."""
+    """The surfaces on which a pattern of signs ends.
+
+    Signs whose changes are known beforehand have none.
+    """
 
     def __init__(
-        self, problem: MotionProblem, pattern: Pattern, precision: Precision, span: float, known: Collection[str] = ()
+        self,
+        problem: MotionProblem,
+        pattern: Pattern,
+        precision: Precision,
+        span: float,
+        known: Collection[str] = (),
+        rounding: Mapping[str, float] = NO_ROUNDING,
     ) -> None:
         super().__init__(precision, span)
         self._inputs = Inputs(problem, precision)
@@ -49,23 +63,44 @@ class Surfaces(SignedFunctions):
             if sign.name not in known:
                 value = pattern[sign.name]
                 self._rows += [(sign.name, to, -to) for to in ((1, -1) if value == SLIDING else (-value,))]
+        of_signs, unique = list(self._rows), uniqueness(problem, pattern)
+        self._rows += [(UNIQUE, 0, side) for side, _ in unique]
+        self._rounding = np.array([[rounding.get(name, 0.0)] for name, *_ in self._rows])
         what = "surfaces", precision.name, frozenset(pattern.items()), frozenset(known)
         self._functions = problem.once(
             what,
             problem.switching,
-            lambda: [evaluation(_inside(problem, pattern, name, to), precision) for name, to, _ in self._rows],
+            lambda: [
+                evaluation(program, precision)
+                for program in (
+                    *(_inside(problem, pattern, name, to) for name, to, _ in of_signs),
+                    *(program for _, program in unique),
+                )
+            ],
         )
 
-    def values(self, instants: Numbers, states: Numbers) -> Numbers:
-        """Return how far inside of its pattern the motion is, by each surface; negative outside."""
-        inputs = self._inputs(instants, states)
+    def values(self, times: Numbers, states: Numbers) -> Numbers:
+        """Return the values of the switching functions, negative outside of the pattern.
+
+        Parameters
+        ----------
+        times : ndarray, shape (k,)
+            Times of the states.
+        states : ndarray, shape (2n, k)
+            Coordinates, then velocities.
+
+        Returns
+        -------
+        ndarray, shape (surfaces, k)
+        """
+        inputs = self._inputs(times, states)
         found = [as_floats(function(inputs)[0]) for function in self._functions]
         inside = np.array([side for *_, side in self._rows], dtype=float)
-        return inside[:, None] * np.reshape(found, (len(self._rows), len(instants)))
+        return inside[:, None] * np.reshape(found, (len(self._rows), len(times))) + self._rounding
 
 
 def _inside(problem: MotionProblem, pattern: Pattern, name: str, to: int) -> Program:
-    """Return the function whose sign tells on which side of a surface the motion is."""
+    """Return the function whose sign is the side of a surface."""
     if pattern[name] == SLIDING:
         return switching_function(problem, "drive", name, {**pattern, name: to})
     return switching_function(problem, "switch", name, pattern)
@@ -98,16 +133,18 @@ class Mode:
     ) -> None:
         self.whole, self.pattern, self._precision, self._time_events = problem, pattern, precision, time_events
         analytic = problem_in(problem, pattern)
-        if any(sign.by is By.TIME for sign in problem.signs):
+        if any(sign.by is DependsOn.TIME for sign in problem.signs):
             analytic = sharing_programs(analytic, known)
         self.matrices, self._inputs = MotionMatrices(analytic), Inputs(analytic, precision)
-        obstacle = analytic.obstacle or dependence(analytic, Instant(self.matrices, *start_of(analytic)))
+        obstacle = analytic.obstacle or dependence(analytic, MotionState(self.matrices, *start_of(analytic)))
         self.problem = replace(analytic, obstacle=obstacle)
         self.balance = EnergyBalance(self.problem, self._multipliers, precision)
-        between = None if problem.signs or problem.tables else Between(request.samples or 0, self.balance.inner_states)
+        between = (
+            None if problem.signs or problem.tables else OutputCounts(request.samples or 0, self.balance.inner_states)
+        )
         self.engine = FallbackEngine(Task(self.problem, request, precision, end, self.matrices), between)
         self._start, self._end = float(problem.start["t"]), float(end)
-        self._doubtful = vanishing_instants(self.problem, self.matrices, self._end)
+        self._doubtful = vanishing_times(self.problem, self.matrices, self._end)
         to_come = (float(event.t) for name, event in time_events.items() if pattern[name] != event.to)
         self.by_time = time_dependence(
             in_numbers(self.problem, self.problem.matrices),
@@ -122,7 +159,22 @@ class Mode:
     @cached_property
     def surfaces(self) -> Surfaces:
         """The surfaces on which the pattern ends."""
-        return Surfaces(self.whole, self.pattern, self._precision, self._end - self._start, self._time_events)
+        span = self._end - self._start
+        return Surfaces(self.whole, self.pattern, self._precision, span, self._time_events, self._reactions_of_rounding)
+
+    @property
+    def _reactions_of_rounding(self) -> Mapping[str, float]:
+        """By the names of signs, multipliers so small that rounding decides about them."""
+        sizes = self._reaction_sizes() if self.whole.reacting else {}
+        return {sign.name: FREE * sizes[sign.of] for sign in self.whole.signs if sign.by is DependsOn.REACTION}
+
+    def _reaction_sizes(self) -> Mapping[str, float]:
+        """Nominal sizes of the multipliers."""
+        t, state = start_of(self.whole)
+        at, nominal = self.matrices(t, state), self.matrices.nominal
+        work = max(nominal.energy(at.mass), float(np.max(np.abs(at.force) * nominal.coordinates)))
+        ways = np.max(np.abs(at.jacobian) * nominal.coordinates, axis=1)
+        return dict(zip(self.whole.multipliers, work / ways, strict=True))
 
     @cached_property
     def momenta(self) -> Any:
@@ -135,37 +187,61 @@ class Mode:
 
         return self.whole.once(("momenta", self._precision.name, frozenset(self.pattern.items())), switching, build)
 
-    def controls(self, instants: Numbers, states: Numbers) -> Numbers:
-        """Return the observed controls at instants, shape (k,), and states, shape (2n, k).
+    def controls(self, times: Numbers, states: Numbers) -> Numbers:
+        """Return the observed controls.
+
+        Parameters
+        ----------
+        times : ndarray, shape (k,)
+            Times of the states.
+        states : ndarray, shape (2n, k)
+            Coordinates, then velocities.
+
+        Returns
+        -------
+        ndarray, shape (controls, k)
 
         Raises
         ------
         HolonomError
-            One has no value at one of the instants.
+            One has no value at one of the times.
         """
         if self.problem.controls is None:
-            return np.empty((0, len(instants)))
-        found = self._controls(self._inputs(instants, states))
-        _require_values("control", self.problem.controls, instants, found)
+            return np.empty((0, len(times)))
+        found = self._controls(self._inputs(times, states))
+        _require_values("control", self.problem.controls, times, found)
         return found
 
     @cached_property
     def _controls(self) -> Evaluation:
         return evaluation_once(self.problem, self.problem.controls, self._precision)
 
-    def outputs(self, instants: Numbers, states: Numbers, solutions: Solutions) -> Numbers:
-        """Return the outputs that the scene names, at instants, shape (k,), and states, shape (2n, k).
+    def outputs(self, times: Numbers, states: Numbers, solutions: Solutions) -> Numbers:
+        """Return the outputs of the scene.
+
+        Parameters
+        ----------
+        times : ndarray, shape (k,)
+            Times of the states.
+        states : ndarray, shape (2n, k)
+            Coordinates, then velocities.
+        solutions : Solutions
+            Accelerations and multipliers at these states.
+
+        Returns
+        -------
+        ndarray, shape (outputs, k)
 
         Raises
         ------
         HolonomError
-            One has no value at one of the instants.
+            One has no value at one of the times.
         """
         if self.problem.outputs is None:
-            return np.empty((0, len(instants)))
-        inputs = self._inputs(instants, states, solutions.multipliers, accelerations=solutions.accelerations)
+            return np.empty((0, len(times)))
+        inputs = self._inputs(times, states, solutions.multipliers, accelerations=solutions.accelerations)
         found = self._outputs(inputs)
-        _require_values("output", self.problem.outputs, instants, found)
+        _require_values("output", self.problem.outputs, times, found)
         return found
 
     @cached_property
@@ -174,11 +250,27 @@ class Mode:
 
     @cached_property
     def projection(self) -> ProgramProjection:
-        """What projects states in the numbers of the run."""
+        """The projection of states in the precision of the run."""
         return ProgramProjection(self.problem, self._precision)
 
     def integrate(self, until: Any) -> Iterator[Step]:
-        """Follow the motion as its engine does, to where servo-constraints leave their controls without values."""
+        """Integrate until the controls of servo-constraints have no values.
+
+        Parameters
+        ----------
+        until : number
+            Last time.
+
+        Yields
+        ------
+        Step
+            With this mode; the last step ends where the controls are lost.
+
+        Raises
+        ------
+        HolonomError
+            The controls have no values from a time on; or as `FallbackEngine.integrate`.
+        """
         for step in self.engine.integrate(until):
             step = step._replace(mode=self)
             lost = None if self._control_matrix is None else self._control_matrix.lost(step)
@@ -196,26 +288,50 @@ class Mode:
         return ControlMatrix(self.problem, self._precision, self._end - self._start)
 
     def require_way_on(self, until: Any) -> None:
-        """Refuse to go on where a constraint loses its gradient, or an expression of the time its smoothness."""
+        """Reject a vanishing constraint gradient or a nonsmooth expression of time.
+
+        Parameters
+        ----------
+        until : number
+            Last time that is asked for.
+
+        Raises
+        ------
+        HolonomError
+            The motion cannot continue from the time of the engine.
+        """
         now = self.engine.time
         if self.by_time.end is not None and float(now) >= self.by_time.end and now != until:
-            raise HolonomError(Failure.NO_WAY_ON, detail=f"{self.by_time.end:.10g}, where {self.by_time.reason}")
+            raise HolonomError(ErrorKind.NO_WAY_ON, detail=f"{self.by_time.end:.10g}, where {self.by_time.reason}")
         for t in self._doubtful:
             if shortly_before(t, self._start) == float(now):
-                require_gradient(self.problem, t, Instant(self.matrices, float(now), as_floats(self.engine.state)))
+                require_gradient(self.problem, t, MotionState(self.matrices, float(now), as_floats(self.engine.state)))
 
     def energy_at(self, t: Any, state: Numbers) -> Any:
-        """Return the energy at one state."""
+        """Return the energy at one state.
+
+        Parameters
+        ----------
+        t : number
+            Time of the state.
+        state : ndarray, shape (2n,)
+            Coordinates, then velocities.
+
+        Returns
+        -------
+        number
+            Energy, in the scene's unit.
+        """
         return self.balance.energy(np.array([t]), state[:, None])[0]
 
-    def _multipliers(self, instants: Numbers, states: Numbers) -> Numbers:
-        return self.engine.solutions(instants, states).multipliers
+    def _multipliers(self, times: Numbers, states: Numbers) -> Numbers:
+        return self.engine.solutions(times, states).multipliers
 
 
-def _require_values(what: str, program: Program, instants: Numbers, found: Numbers) -> None:
-    """Refuse values, shape (outputs, k), one of which is none."""
+def _require_values(what: str, program: Program, times: Numbers, found: Numbers) -> None:
+    """Reject values, shape (outputs, k), if one of them is not a finite number."""
     missing = np.argwhere(~np.isfinite(as_floats(found)).T)
     if len(missing):
         point, place = missing[0]
         reason = f"the {what} {list(program.outputs)[place]} has no value"
-        raise HolonomError(Failure.NO_WAY_ON, detail=f"{float(instants[point]):.10g}, where {reason}")
+        raise HolonomError(ErrorKind.NO_WAY_ON, detail=f"{float(times[point]):.10g}, where {reason}")

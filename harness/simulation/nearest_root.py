@@ -1,8 +1,8 @@
-"""The root of constraints that is nearest to a guess, of many motions at once, in double precision.
+"""Roots of constraints nearest to guesses, for many motions, in double precision.
 
-Newton's method is damped: a step is halved until the next correction with the same matrix is shorter, all of them being
-the least corrections in the mass metric (Deuflhard, Newton Methods for Nonlinear Problems, section 3.3). Unless it
-contracts at once, it begins again from points around the guess, and the nearest root that it finds is taken.
+Newton's method is damped: a step is halved until the next correction with the same matrix is shorter. All corrections
+are the least ones in the mass metric (Deuflhard, Newton Methods for Nonlinear Problems, section 3.3). Unless it
+contracts at once, it begins again from points around the guess, and the nearest root is taken.
 `maxima/algebra/sample_point.lisp` does the same for one motion to many digits.
 """
 
@@ -37,7 +37,7 @@ class Linearized(NamedTuple):
     mass: Numbers  # shape (u, u, k)
 
 
-# Takes points, shape (u, k), and the numbers of their lanes.
+# Takes points, shape (u, k), and the numbers of their elements.
 Linearize = Callable[[Numbers, NDArray[np.int64]], Linearized]
 Correct = Callable[[Linearized], Numbers]  # the least corrections in the mass metric, shape (u, k)
 
@@ -58,65 +58,73 @@ class NearestRoots:
 
     def __call__(self, guess: Numbers) -> tuple[Numbers, NDArray[np.bool_]]:
         """Return the roots, shape (u, k), and whether there are any."""
-        lanes = np.arange(guess.shape[1])
-        roots, found = self._newton(guess, lanes)
+        elements = np.arange(guess.shape[1])
+        roots, found = self._newton(guess, elements)
         if len(guess) <= MOST_SEARCHED:
-            searched = np.flatnonzero(~(found & self._contracts(guess, lanes)))
+            searched = np.flatnonzero(~(found & self._contracts(guess, elements)))
             roots[:, searched], found[searched] = self._search(guess, roots, found, searched)
         return roots, found
 
-    def _newton(self, start: Numbers, lanes: NDArray[np.int64]) -> tuple[Numbers, NDArray[np.bool_]]:
+    def _newton(self, start: Numbers, elements: NDArray[np.int64]) -> tuple[Numbers, NDArray[np.bool_]]:
         """Damped iteration from each start."""
-        points, found, active = start.copy(), np.zeros(len(lanes), dtype=bool), np.arange(len(lanes))
+        points, found, active = start.copy(), np.zeros(len(elements), dtype=bool), np.arange(len(elements))
         for _ in range(ITERATIONS):
             if not len(active):
                 break
             here = points[:, active]
-            at = self._linearize(here, lanes[active])
+            at = self._linearize(here, elements[active])
             change = self._correct(at)
             share = share_of(change, here, self._sizes)
-            points[:, active] = self._stepped(here, change, at, lanes[active], share <= SETTLED)
+            points[:, active] = self._stepped(here, change, at, elements[active], share <= SETTLED)
             found[active] = share <= SETTLED
             active = active[np.isfinite(share) & (share > ROUNDING)]
         return points, found & np.isfinite(points).all(axis=0)
 
     def _stepped(
-        self, here: Numbers, change: Numbers, at: Linearized, lanes: NDArray[np.int64], settled: NDArray[np.bool_]
+        self, here: Numbers, change: Numbers, at: Linearized, elements: NDArray[np.int64], settled: NDArray[np.bool_]
     ) -> Numbers:
-        """Points along the corrections from which the next ones are shorter; the full step where none is."""
+        """Return points along the corrections with shorter next corrections.
+
+        If there is none, it is the full step.
+        """
         result, size, share = here + change, np.max(np.abs(change), axis=0), 1.0
         open_ = np.flatnonzero(~settled)
         for _ in range(HALVINGS):
             if not len(open_):
                 break
             trial = here[:, open_] + share * change[:, open_]
-            following = self._following(trial, at, lanes, open_)
+            following = self._following(trial, at, elements, open_)
             good = np.max(np.abs(following), axis=0) <= (1 - share / 4) * size[open_]
             result[:, open_[good]] = trial[:, good]
             open_, share = open_[~good], share / 2
         return result
 
-    def _following(self, trial: Numbers, at: Linearized, lanes: NDArray[np.int64], some: NDArray[np.int64]) -> Numbers:
+    def _following(
+        self, trial: Numbers, at: Linearized, elements: NDArray[np.int64], some: NDArray[np.int64]
+    ) -> Numbers:
         """Return the corrections at other points with the same matrices."""
-        residual = self._linearize(trial, lanes[some]).residual
+        residual = self._linearize(trial, elements[some]).residual
         return self._correct(Linearized(residual, at.jacobian[..., some], at.mass[..., some]))
 
-    def _contracts(self, guess: Numbers, lanes: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Return True where constraints are so linear along the first correction that a guess is next to its root."""
-        at = self._linearize(guess, lanes)
+    def _contracts(self, guess: Numbers, elements: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Return True if a guess is next to its root.
+
+        Then the constraints are nearly linear along the first correction.
+        """
+        at = self._linearize(guess, elements)
         change = self._correct(at)
-        size, contracts = np.max(np.abs(change), axis=0), np.ones(len(lanes), dtype=bool)
+        size, contracts = np.max(np.abs(change), axis=0), np.ones(len(elements), dtype=bool)
         for share in ALONG:
-            left = self._following(guess + share * change, at, lanes, lanes) - (1 - share) * change
+            left = self._following(guess + share * change, at, elements, elements) - (1 - share) * change
             contracts &= np.max(np.abs(left), axis=0) <= CONTRACTION * size
         return contracts
 
     def _search(
-        self, guess: Numbers, roots: Numbers, found: NDArray[np.bool_], lanes: NDArray[np.int64]
+        self, guess: Numbers, roots: Numbers, found: NDArray[np.bool_], elements: NDArray[np.int64]
     ) -> tuple[Numbers, NDArray[np.bool_]]:
-        """Return the nearest roots from starts around the guesses of some lanes."""
-        near, here = guess[:, lanes], self._linearize(guess[:, lanes], lanes)
-        best, known = roots[:, lanes].copy(), found[lanes].copy()
+        """Return the nearest roots from starts around the guesses of some elements."""
+        near, here = guess[:, elements], self._linearize(guess[:, elements], elements)
+        best, known = roots[:, elements].copy(), found[elements].copy()
         share = NEARER if len(here.residual) < len(guess) else SAME
         distance = np.where(known, _distance(best - near, here.mass), np.inf)
         size = np.maximum(1e-300, np.max(np.abs(near), axis=0))
@@ -130,7 +138,7 @@ class NearestRoots:
                 far = distance[active] if reach is None else reach * np.where(size[active] > 1e-200, size[active], 1.0)
                 improved = np.zeros(len(active), dtype=bool)
                 for step in _starts(here.mass[..., active], far):
-                    points, arrived = self._newton(near[:, active] + step, lanes[active])
+                    points, arrived = self._newton(near[:, active] + step, elements[active])
                     way = np.where(arrived, _distance(points - near[:, active], here.mass[..., active]), np.inf)
                     better = way < share * distance[active]
                     improved |= better
@@ -141,7 +149,10 @@ class NearestRoots:
 
 
 def _starts(mass: Numbers, far: Numbers) -> Iterator[Numbers]:
-    """Yield steps from the guesses along each unknown, shape (u, k), by distance in the mass metric."""
+    """Yield steps from the guesses along each unknown, shape (u, k).
+
+    They are ordered by distance in the mass metric.
+    """
     u = len(mass)
     for unknown in range(u):
         own = mass[unknown, unknown]

@@ -1,10 +1,10 @@
-"""Nominal sizes: what a coordinate, a velocity and the time are large or small beside.
+"""Nominal sizes of coordinates, velocities and time.
 
-Tolerances, projections, events, switchings and residuals are relative to these sizes, so that a motion is the same in
-all units. A scene may give them, ``nominal = [x = 1e-6]``; the others are found. A coordinate is as large as at the
-start or, where it starts near zero, as the least of the others in the mass metric: A_ii q_i^2 is the same. Where all
-start at zero, the distance counts that velocities, forces or moving constraints make in the time span. The time is as
-long as the span, or what the first velocities take for the size of the coordinates; both give the size of velocities.
+Tolerances, projections, events, switchings and residuals are relative to these sizes, so that a motion does not depend
+on units. A scene may give them, ``nominal = [x = 1e-6]``; the others are found. A coordinate is as large as at the
+start or, if it starts near zero, as the least of the others in the mass metric: A_ii q_i^2 is the same. If all start at
+zero, the distance counts that velocities, forces or moving constraints make in the time span. The time is the length of
+the span, or the time that the first velocities take for the size of the coordinates. Both give the size of velocities.
 """
 
 from dataclasses import replace
@@ -19,7 +19,7 @@ from ..program.numpy_function import NumpyFunction
 from ..program.sign_pattern import program_in
 from .inputs import Inputs
 
-INSTANTS = 65  # of the time span at which forces and constraints are looked at where a motion starts at zero
+TIMES = 65  # of the time span at which forces and constraints are looked at where a motion starts at zero
 COARSE = 1e3  # power in which tolerances change: what is compiled with one serves many motions
 NEAR_ZERO = 1e-3  # of the largest coordinate, as it is and in the mass metric: a light one is small in that alone
 
@@ -49,10 +49,16 @@ class Nominal(NamedTuple):
         return self.velocities / self.time
 
     def absolute(self) -> float:
-        """Return the factor of a tolerance for a method that takes it as relative to the largest of all numbers.
+        """Return the tolerance factor of a method relative to the largest of all numbers.
 
-        Such a method takes it as absolute where all of them are below one. A velocity is a coordinate's in terms of the
-        time, and errors go with that: a share of a power of `COARSE` will do.
+        Such a method takes the tolerance as absolute if all numbers are below one. A velocity is relative to the size
+        of a coordinate divided by that of the time, and its errors are, too. A share of a power of `COARSE` is accurate
+        enough.
+
+        Returns
+        -------
+        float
+            At most one.
         """
         largest = np.max(self.state, initial=1.0)
         coordinates = np.min(self.coordinates, initial=np.inf) / min(1.0, self.time)
@@ -61,29 +67,90 @@ class Nominal(NamedTuple):
         return COARSE ** round(log(share) / log(COARSE))
 
     def energy(self, mass: Matrix) -> float:
-        """Of the nominal velocities: the largest A_ii v_i^2."""
+        """Return the energy of the nominal velocities: the largest A_ii v_i^2.
+
+        Parameters
+        ----------
+        mass : ndarray, shape (n, n)
+            A.
+
+        Returns
+        -------
+        float
+            In the scene's unit.
+        """
         return float(np.max(mass.diagonal() * self.velocities**2, initial=0.0))
 
     def share(self, change: Vector, state: Vector) -> float:
-        """Return the largest change of a state, as `share_of` has it."""
+        """Return the largest relative change of a state, as `share_of`.
+
+        Parameters
+        ----------
+        change : ndarray, shape (2n,)
+            Difference of two states.
+        state : ndarray, shape (2n,)
+            Coordinates, then velocities.
+
+        Returns
+        -------
+        float
+        """
         return float(share_of(change, state, self.state))
 
 
 def share_of(change: Matrix, numbers: Matrix, sizes: Vector) -> Vector:
-    """Return the largest change of numbers, shape (n,) or (n, k), relative to the largest of them."""
+    """Return the largest change of numbers, relative to the largest number.
+
+    All numbers are in units of their nominal sizes. The largest number counts as one at least.
+
+    Parameters
+    ----------
+    change : ndarray, shape (n,) or (n, k)
+        Differences of the numbers.
+    numbers : ndarray, shape (n,) or (n, k)
+        The numbers.
+    sizes : ndarray, shape (n,)
+        Nominal sizes.
+
+    Returns
+    -------
+    float or ndarray, shape (k,)
+    """
     change, numbers = np.abs(change.T) / sizes, np.abs(numbers.T) / sizes
     return np.max(change, axis=-1, initial=0.0) / np.max(numbers, axis=-1, initial=1.0)
 
 
 def with_nominal(problem: MotionProblem, span: float) -> MotionProblem:
-    """Return the motion with nominal sizes for all of its quantities, by the length of its time span."""
+    """Return the motion with nominal sizes for a time span of the given length.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion; sizes that the scene gives are kept.
+    span : float
+        Length of the time span, in the scene's unit.
+
+    Returns
+    -------
+    MotionProblem
+    """
     sizes = _completed(problem, span)
     named = zip(("t", *problem.state), (sizes.time, *map(float, sizes.state)), strict=True)
     return replace(problem, nominal=dict(named))
 
 
 def nominal_of(problem: MotionProblem) -> Nominal:
-    """Return the nominal sizes of a motion: those of `with_nominal`, or those found by the scene's own time span."""
+    """Return the nominal sizes of a motion.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion; missing sizes follow from the scene's time span.
+
+    Returns
+    -------
+    Nominal
+    """
     known = problem.nominal
     if known.keys() >= {"t", *problem.state}:
         return Nominal(known["t"], np.array([known[name] for name in problem.state]))
@@ -92,17 +159,25 @@ def nominal_of(problem: MotionProblem) -> Nominal:
 
 
 def nominal_at_each(problem: MotionProblem, mass: Matrix, states: Matrix, span: float) -> Nominal:
-    """Return the nominal sizes of k motions of one problem: shapes (k,) and (2n, k).
+    """Return the nominal sizes of k motions of one problem.
 
     One whose coordinates all start at zero has those of the problem's own motion.
 
     Parameters
     ----------
+    problem : MotionProblem
+        The common problem.
     mass : ndarray, shape (n, n, k)
+        A at the start of each motion.
     states : ndarray, shape (2n, k)
-        At the start.
+        Initial state of each motion.
     span : float
-        Length of the time span.
+        Length of the time span, in the scene's unit.
+
+    Returns
+    -------
+    Nominal
+        Shapes (k,) and (2n, k).
     """
     own = nominal_of(problem)
     roots = _roots(np.moveaxis(np.diagonal(mass), -1, 0))
@@ -129,7 +204,10 @@ def _completed(problem: MotionProblem, span: float) -> Nominal:
 
 
 def _with_given(problem: MotionProblem, coordinates: Matrix, time: Vector) -> Nominal:
-    """Sizes found of coordinates, shape (n, k), and times, shape (k,), but for those that the scene gives."""
+    """Return the sizes of coordinates, shape (n, k), and times, shape (k,).
+
+    Sizes that the scene gives replace those found.
+    """
 
     def chosen(name: str, found: Vector) -> Vector:
         return np.full_like(found, problem.nominal[name]) if name in problem.nominal else found
@@ -141,7 +219,9 @@ def _with_given(problem: MotionProblem, coordinates: Matrix, time: Vector) -> No
 
 
 def _sizes(roots: Matrix, states: Matrix, span: float, reach: float) -> tuple[Matrix, Vector]:
-    """Sizes of the coordinates, shape (n, k), and of the time, shape (k,), of k motions.
+    """Return the sizes of the coordinates and of the time of k motions.
+
+    Coordinates have shape (n, k), times (k,).
 
     Parameters
     ----------
@@ -169,16 +249,19 @@ def _sizes(roots: Matrix, states: Matrix, span: float, reach: float) -> tuple[Ma
 
 
 def _roots(masses: Matrix) -> Matrix:
-    """Roots of the masses, shape (n, k); of what has none, of the mean of the others."""
+    """Return the roots of the masses, shape (n, k).
+
+    If a mass is zero, it is the mean root of the others.
+    """
     there = masses > 0
     mean = np.where(there, masses, 0.0).sum(axis=0) / np.maximum(1, there.sum(axis=0))
     return np.sqrt(np.where(there, masses, np.where(mean > 0, mean, 1.0)))
 
 
 class _Start:
-    """The first state, and the matrices there and then, and at later instants of the time span.
+    """The initial state, with matrices at the initial time and later.
 
-    Signs are taken to be positive, for sizes hang on them little.
+    Signs are taken to be positive, because sizes depend on them little.
 
     Attributes
     ----------
@@ -188,16 +271,19 @@ class _Start:
 
     def __init__(self, problem: MotionProblem, state: Matrix, span: float) -> None:
         self._span, self._g = span, len(problem.multipliers)
-        instants = float(problem.start["t"]) + span * np.linspace(0, 1, INSTANTS)
+        times = float(problem.start["t"]) + span * np.linspace(0, 1, TIMES)
         pattern = {sign.name: 1 for sign in problem.signs}
         program = program_in(problem, problem.matrices, pattern) if pattern else problem.matrices
-        inputs = Inputs(problem)(instants, np.repeat(state, INSTANTS, axis=1))
+        inputs = Inputs(problem)(times, np.repeat(state, TIMES, axis=1))
         self._values = dict(zip(program.outputs, NumpyFunction(program).at_points(inputs), strict=True))
         self._places = range(1, len(problem.coordinates) + 1)
         self.roots = _roots(np.array([self._at(f"A[{s},{s}]")[:1] for s in self._places]).reshape(-1, 1))
 
     def reach(self) -> float:
-        """Return how far the mean force, or moving constraints, lead in the time span from rest, in the mass metric."""
+        """Return the distance from rest in the time span, in the mass metric.
+
+        The mean force or moving constraints make it.
+        """
         forces = np.array([np.abs(self._at(f"h[{s}]")) for s in self._places]) / self.roots
         largest = np.max(forces, axis=0, initial=0.0)
         known = largest[np.isfinite(largest)]
@@ -209,5 +295,5 @@ class _Start:
         return float(farthest)
 
     def _at(self, output: str) -> Vector:
-        """Return an output of the program at the instants; zero where it is so by structure."""
-        return self._values.get(output, np.zeros(INSTANTS))
+        """Return an output of the program at the times; zero where it is so by structure."""
+        return self._values.get(output, np.zeros(TIMES))

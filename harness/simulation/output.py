@@ -1,6 +1,6 @@
-"""A motion as files and as documents: samples as CSV, NumPy's NPZ or Parquet, its figure, its JSON. Each whole, or not.
+"""Output of a motion: samples (CSV, NPZ, Parquet), figure, film and JSON document.
 
-Numbers that no double can hold are written as decimal text.
+A file is written completely or not at all. Numbers beyond the range of doubles are written as decimal text.
 """
 
 import csv
@@ -16,9 +16,9 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from ..explanations import engine_text, remarks
+from ..explanations import engine_text, notes
 from ..extras import missing_package
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..files import whole_file
 from ..formats import Publication, published
 from ..hidden import visible_line
@@ -34,7 +34,16 @@ Format = Callable[[BinaryIO], AbstractContextManager[Write]]
 
 
 def require_formats(samples: Path | None, figure: Path | None, film: Path | None = None) -> None:
-    """Refuse names of files that cannot be written, before there is anything to write.
+    """Reject names of files in unsupported formats.
+
+    Parameters
+    ----------
+    samples : Path or None
+        File of the samples; None for no file.
+    figure : Path or None
+        File of the figure; None for no file.
+    film : Path or None
+        File of the film; None for no file.
 
     Raises
     ------
@@ -52,29 +61,55 @@ def require_formats(samples: Path | None, figure: Path | None, film: Path | None
 
 
 def require_memory(problem: MotionProblem, samples: int, memory_mib: int) -> None:
-    """Refuse more samples than the memory holds, before the motion is followed.
+    """Reject more samples than the memory holds, before the integration.
 
-    What they take and how many there is room for is told.
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion, which gives the numbers in a sample.
+    samples : int
+        Number of samples.
+    memory_mib : int
+        Available memory, in MiB.
+
+    Raises
+    ------
+    HolonomError
+        The samples need more memory; the message states the number that fits.
     """
     numbers = _numbers_a_sample(problem)
     needed = samples * numbers * BYTES_OF_NUMBER / MIB
     if needed > memory_mib:
         room = int(memory_mib * MIB / (numbers * BYTES_OF_NUMBER))
         said = f"{samples} samples take about {needed:.0f} MiB of memory, and there are {memory_mib} for {room}"
-        raise HolonomError(Failure.TOO_MANY_SAMPLES, detail=said)
+        raise HolonomError(ErrorKind.TOO_MANY_SAMPLES, detail=said)
 
 
 def require_disk(problem: MotionProblem, samples: int, path: Path) -> None:
-    """Refuse more samples than there is room for where they are to be written, before the motion is followed.
+    """Reject more samples than the disk holds, before the integration.
 
-    What they take and how many there is room for is told.
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion, which gives the numbers in a sample.
+    samples : int
+        Number of samples.
+    path : Path
+        CSV or Parquet file to be written.
+
+    Raises
+    ------
+    HolonomError
+        The folder has less room; the message states the number that fits.
     """
     folder = path.resolve().parent
     free = shutil.disk_usage(folder).free / MIB
     size = _numbers_a_sample(problem) * BYTES_ON_DISK[path.suffix]
     if samples * size / MIB > free:
         said = f"{samples} samples take about {samples * size / MIB:.0f} MiB of disk"
-        raise HolonomError(Failure.DISK_TOO_SMALL, path, f"{said}, and {folder} has room for {int(free * MIB / size)}")
+        raise HolonomError(
+            ErrorKind.DISK_TOO_SMALL, path, f"{said}, and {folder} has room for {int(free * MIB / size)}"
+        )
 
 
 def _numbers_a_sample(problem: MotionProblem) -> int:
@@ -89,7 +124,20 @@ def write_files(
     curves: Sequence[str] | None = None,
     film: Path | None = None,
 ) -> None:
-    """Write the samples of a motion, its figure, of all curves or some, and its film, as far as they are wanted.
+    """Write the requested files of a motion: samples, figure and film.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        The motion.
+    samples : Path or None
+        File of the samples; None for no file.
+    figure : Path or None
+        File of the figure; None for no file.
+    curves : sequence of str or None
+        Curves of the figure, as for `motion_figure`.
+    film : Path or None
+        File of the film; None for no file.
 
     Raises
     ------
@@ -109,6 +157,13 @@ def write_files(
 def write_samples(simulation: Simulation, path: Path) -> None:
     """Write the samples of a motion.
 
+    Parameters
+    ----------
+    simulation : Simulation
+        The motion.
+    path : Path
+        File to write; its suffix is .csv, .npz or .parquet.
+
     Raises
     ------
     HolonomError
@@ -119,15 +174,37 @@ def write_samples(simulation: Simulation, path: Path) -> None:
 
 
 def streams(path: Path) -> bool:
-    """Return True if a file is written sample by sample, and not from all of them at once."""
+    """Return True if a file is written sample by sample.
+
+    Parameters
+    ----------
+    path : Path
+        Name of the file.
+
+    Returns
+    -------
+    bool
+    """
     return path.suffix in BYTES_ON_DISK
 
 
 @contextmanager
 def sample_file(path: Path, digits: int) -> Iterator[Callable[[Sampled], None]]:
-    """Provide a file of samples that are written as they come. It is there when the block has ended well, and whole.
+    """Provide a file of samples that are written in blocks.
 
-    What it gives takes samples that follow those before.
+    The file appears, complete, if the block ends without an error.
+
+    Parameters
+    ----------
+    path : Path
+        File to write; its suffix is .csv, .npz or .parquet.
+    digits : int
+        Decimal digits of numbers beyond double precision.
+
+    Yields
+    ------
+    callable
+        Takes samples that follow those before.
 
     Raises
     ------
@@ -140,7 +217,17 @@ def sample_file(path: Path, digits: int) -> Iterator[Callable[[Sampled], None]]:
 
 
 def sample_format(path: Path) -> Format:
-    """Return what writes samples into a file.
+    """Return the function that writes samples into a file.
+
+    Parameters
+    ----------
+    path : Path
+        Name of the file.
+
+    Returns
+    -------
+    callable
+        Takes a binary file to a context manager, which provides a writer of columns by name.
 
     Raises
     ------
@@ -156,7 +243,10 @@ def sample_format(path: Path) -> Format:
 
 @contextmanager
 def _csv(file: BinaryIO) -> Iterator[Write]:
-    """Provide a line of names, then a line for each instant; a double as the shortest text that reads back the same."""
+    """Provide a CSV writer: a line of names, then a line for each time.
+
+    A double is the shortest text that reads back the same.
+    """
     named = False
 
     def write(columns: Columns) -> None:
@@ -216,7 +306,7 @@ def _import_parquet() -> tuple[ModuleType, ModuleType]:
 
 
 def _no_such_format(path: Path, suffixes: Iterable[str]) -> HolonomError:
-    return HolonomError(Failure.NO_SUCH_FORMAT, path, ", ".join(suffixes))
+    return HolonomError(ErrorKind.NO_SUCH_FORMAT, path, ", ".join(suffixes))
 
 
 FIGURES = (".svg", ".png")
@@ -226,7 +316,17 @@ BYTES_ON_DISK = {".csv": 20, ".parquet": 9}
 
 
 def simulation_document(simulation: Simulation) -> dict[str, Any]:
-    """Return the report, as `report_document`, and with it the samples by name under ``samples``."""
+    """Return `report_document` with the samples by name under ``samples``.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        The motion.
+
+    Returns
+    -------
+    dict
+    """
     digits = simulation.report.digits
     columns = {name: published_list(samples, digits) for name, samples in simulation.columns()}
     named = {"scene": simulation.scene, "title": simulation.title}
@@ -234,12 +334,24 @@ def simulation_document(simulation: Simulation) -> dict[str, Any]:
 
 
 def report_document(report: Report) -> dict[str, Any]:
-    """Return the report alone.
+    """Return the report as a document.
 
-    With ``trusted``, and beside legs and cases the sentences that people read, ``engine`` and ``remarks``.
+    It contains ``trusted``, and the sentences ``engine`` and ``notes`` next to segments and cases.
+
+    Parameters
+    ----------
+    report : Report
+        Report of a motion.
+
+    Returns
+    -------
+    dict
     """
-    said = {"engine": engine_text(report.legs), "remarks": tuple(remarks(report))}
-    lists = {name: tuple(each._asdict() for each in getattr(report, name)) for name in ("legs", "switchings", "doubts")}
+    said = {"engine": engine_text(report.segments), "notes": tuple(notes(report))}
+    lists = {
+        name: tuple(each._asdict() for each in getattr(report, name))
+        for name in ("segments", "switchings", "violations")
+    }
     correction, moved = (
         change and dict(zip(("name", "size"), change, strict=True)) for change in (report.correction, report.moved)
     )
@@ -257,7 +369,20 @@ def report_document(report: Report) -> dict[str, Any]:
 
 
 def published_list(samples: np.ndarray, digits: int) -> list[float | str]:
-    """Return samples for another program to read."""
+    """Return samples for another program to read.
+
+    Parameters
+    ----------
+    samples : ndarray, shape (k,)
+        Samples of one quantity.
+    digits : int
+        Decimal digits of numbers beyond double precision.
+
+    Returns
+    -------
+    list of float or str
+        Numbers that no double can hold as decimal text.
+    """
     return samples.tolist() if samples.dtype == float else [_published(sample, digits) for sample in samples]
 
 

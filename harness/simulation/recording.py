@@ -1,6 +1,6 @@
-"""What is kept of a motion while an engine follows it: states at instants, and the work done until then.
+"""Samples recorded during integration: states at times, and the work until then.
 
-They are handed on in stretches, so that a motion of any number of samples takes the memory of one stretch.
+They are processed in blocks, so that any number of samples takes the memory of one block.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -26,21 +26,28 @@ TOGETHER = 2**8
 class SampleBlock(NamedTuple):
     """Consecutive samples of a motion."""
 
-    instants: Numbers  # shape (k,)
+    times: Numbers  # shape (k,)
     states: Numbers  # shape (2n, k)
-    works: Numbers  # shape (k,): work done until each instant
+    works: Numbers  # shape (k,): work done until each time
     modes: list[Mode]  # of each
 
     def by_mode(self) -> Iterator[tuple[Mode, Numbers, Numbers]]:
-        """Yield runs of samples in one mode: the mode, its instants and states."""
+        """Yield runs of consecutive samples in one mode.
+
+        Yields
+        ------
+        mode : Mode
+        times : ndarray, shape (l,)
+        states : ndarray, shape (2n, l)
+        """
         first = 0
         for mode, run in groupby(self.modes):
             here = slice(first, first := first + sum(1 for _ in run))
-            yield mode, self.instants[here], self.states[:, here]
+            yield mode, self.times[here], self.states[:, here]
 
 
 class Interval(NamedTuple):
-    """A part of a step, up to an instant that is wanted or to the step's end."""
+    """A part of a step, up to a time that is wanted or to the step's end."""
 
     start: Any
     end: Any
@@ -49,15 +56,15 @@ class Interval(NamedTuple):
 
 
 class Recording:
-    """States of a motion at instants.
+    """States of a motion at times.
 
     Parameters
     ----------
     mode : Mode
         In which the motion begins.
-    instants : iterable of numbers, or None
+    times : iterable of numbers, or None
         In order, before the last; None for the ends of the steps.
-    hand_on : callable
+    process : callable
         Takes each `SampleBlock`.
 
     Attributes
@@ -67,17 +74,17 @@ class Recording:
     work : number
         Work done in all.
     largest_work : float
-        The largest work done up to an instant, between the samples and within a step as well.
+        The largest work done up to a time, between the samples and within a step as well.
     """
 
     def __init__(
-        self, mode: Mode, instants: Iterable[Any] | None, zero: Any, hand_on: Callable[[SampleBlock], None]
+        self, mode: Mode, times: Iterable[Any] | None, zero: Any, process: Callable[[SampleBlock], None]
     ) -> None:
-        self.mode, self._hand_on = mode, hand_on
-        self._steps = instants is None
-        self._waiting = iter(instants or ())
+        self.mode, self._process = mode, process
+        self._steps = times is None
+        self._waiting = iter(times or ())
         self._next = next(self._waiting, None)
-        self._instants: list[Any] = []
+        self._times: list[Any] = []
         self._states: list[Numbers] = []
         self._works: list[Any] = []
         self._modes: list[Mode] = []
@@ -86,13 +93,27 @@ class Recording:
         self.work = self._zero = zero
         self.largest_work = 0.0
 
-    def begin(self, instant: Any, state: Numbers) -> None:
-        """Keep the first state, if it is wanted."""
-        if self._steps or any(True for _ in self._wanted_until(instant)):
-            self._keep(instant, state.copy())
+    def begin(self, time: Any, state: Numbers) -> None:
+        """Record the first state if it is wanted.
+
+        Parameters
+        ----------
+        time : number
+            Initial time.
+        state : ndarray, shape (2n,)
+            Coordinates, then velocities.
+        """
+        if self._steps or any(True for _ in self._wanted_until(time)):
+            self._keep(time, state.copy())
 
     def take(self, step: Step) -> None:
-        """Keep what is wanted of a step, which begins where the last one ended."""
+        """Record samples of a step.
+
+        Parameters
+        ----------
+        step : Step
+            It begins at the end of the last one.
+        """
         start, impulse = step.start, step.impulse
         while start != step.end:
             wanted = [step.end] if self._steps else list(islice(self._wanted_until(step.end), PORTION))
@@ -104,7 +125,7 @@ class Recording:
         if step.mode is not self.mode or len(self._intervals) >= TOGETHER:
             self._settle()
             self.mode = step.mode
-        inside, at_ends = self.mode.balance.instants_between(starts, ends), [None] * len(ends)
+        inside, at_ends = self.mode.balance.times_between(starts, ends), [None] * len(ends)
         if wanted or len(inside):
             states = step.states(np.concatenate([np.array(wanted), inside]) if wanted else inside)
             at_ends[: len(wanted)] = states[:, : len(wanted)].T
@@ -127,35 +148,56 @@ class Recording:
                 self._keep(interval.end, interval.state)
         self.largest_work = max(largest(until, self.largest_work), self.mode.balance.passing)
 
-    def end(self, instant: Any, state: Numbers) -> None:
-        """Keep the last state, projected as it is, in the place of the one that the last step ended with."""
+    def end(self, time: Any, state: Numbers) -> None:
+        """Record the final state, projected, in place of the last step's.
+
+        Parameters
+        ----------
+        time : number
+            Last time.
+        state : ndarray, shape (2n,)
+            Projected coordinates, then velocities.
+        """
         self._settle()
-        if self._instants and self._instants[-1] == instant:
+        if self._times and self._times[-1] == time:
             self._states[-1] = state.copy()
         else:
-            self._keep(instant, state.copy())
+            self._keep(time, state.copy())
 
-    def hand_on(self) -> None:
-        """Hand on what has been kept since the last time."""
-        if self._instants:
-            arrays = np.array(self._instants), np.array(self._states).T, np.array(self._works)
-            self._hand_on(SampleBlock(*arrays, self._modes))
-        self._instants, self._states, self._works, self._modes = [], [], [], []
+    def flush(self) -> None:
+        """Process the samples since the last call."""
+        if self._times:
+            arrays = np.array(self._times), np.array(self._states).T, np.array(self._works)
+            self._process(SampleBlock(*arrays, self._modes))
+        self._times, self._states, self._works, self._modes = [], [], [], []
 
-    def _keep(self, instant: Any, state: Numbers) -> None:
-        if len(self._instants) == BLOCK:  # the last one stays, for `end` may change it
-            self.hand_on()
-        self._instants.append(instant)
+    def _keep(self, time: Any, state: Numbers) -> None:
+        if len(self._times) == BLOCK:  # the last one stays, for `end` may change it
+            self.flush()
+        self._times.append(time)
         self._states.append(state)
         self._works.append(self.work)
         self._modes.append(self.mode)
 
     def _wanted_until(self, end: Any) -> Iterator[Any]:
         while self._next is not None and self._next <= end:
-            instant, self._next = self._next, next(self._waiting, None)
-            yield instant
+            time, self._next = self._next, next(self._waiting, None)
+            yield time
 
 
 def largest(numbers: Numbers | list[Any], known: float) -> float:
-    """Return the largest of them and of what is known; no number where one of them is none."""
+    """Return the largest size of the numbers and a known one.
+
+    Parameters
+    ----------
+    numbers : ndarray or list of number
+        Numbers of any sign.
+    known : float
+        The largest so far.
+
+    Returns
+    -------
+    float
+        NaN if one of the numbers is NaN.
+    """
     return float(np.max(np.abs([*as_floats(numbers), known])))

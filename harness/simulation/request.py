@@ -1,4 +1,4 @@
-"""What a simulation is asked for."""
+"""The request of a simulation."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -15,11 +15,11 @@ EngineName = StrEnum("EngineName", {each.upper().replace("-", "_"): each for eac
 
 
 class Stabilization(StrEnum):
-    """What keeps the constraints, which the accelerations alone let go: rounding makes f grow with the time.
+    """The method of constraint stabilization against drift by rounding.
 
-    ``PROJECTION`` moves the state to the nearest one, in the mass metric, that keeps them; ``BAUMGARTE`` adds damped
-    springs to the accelerations (Comput. Methods Appl. Mech. Eng. 1 (1972) 1); ``GGL`` adds to the velocities, too,
-    in the way of Gear, Gupta and Leimkuhler (J. Comput. Appl. Math. 12 (1985) 77).
+    ``PROJECTION`` moves the state to the nearest one, in the mass metric, that satisfies the constraints. ``BAUMGARTE``
+    adds damped springs to the accelerations (Comput. Methods Appl. Mech. Eng. 1 (1972) 1). ``GGL`` also changes the
+    velocities, as Gear, Gupta and Leimkuhler do (J. Comput. Appl. Math. 12 (1985) 77).
     """
 
     PROJECTION = "projection"
@@ -32,9 +32,9 @@ class Stabilization(StrEnum):
 class SimulationRequest:
     """How a motion is to be followed."""
 
-    until: Fraction | None = option(None, "The last instant, in place of the scene's.", metavar="T")
+    until: Fraction | None = option(None, "The last time, in place of the scene's.", metavar="T")
     # 0 keeps the final state alone
-    samples: int | None = option(None, "Keep N equidistant instants, not the steps.", metavar="N", least=2)
+    samples: int | None = option(None, "Keep N equidistant times, not the steps.", metavar="N", least=2)
     # relative
     tol: float | None = option(None, "Tolerance of a step; without it, what the precision holds.")
     # only the Taylor engine knows others than double
@@ -43,8 +43,10 @@ class SimulationRequest:
         EngineName.AUTO,
         "What follows the motion; auto is the quicker of taylor and runge-kutta, and robust where that fails.",
     )
-    drift: Stabilization = option(
-        Stabilization.PROJECTION, "What keeps the constraints; the robust engine always projects."
+    stabilization: Stabilization = option(
+        Stabilization.PROJECTION,
+        "Constraint stabilization; the robust engine always projects. --drift is the former name.",
+        alias="drift",
     )
     max_step: float | None = option(None, "No step is to be longer.", metavar="H", above=0)
     sensitivities: tuple[str, ...] = option(
@@ -53,4 +55,4 @@ class SimulationRequest:
         metavar="NAME,...",
         spelt=("--sensitivity",),
     )
-    compact: bool | None = option(None, "heyoka's compact mode; without it, what pays.")
+    compact: bool | None = option(None, "heyoka's compact mode; without it, the faster one.")

@@ -16,16 +16,25 @@ from .nominal import Nominal
 
 
 def residuals(at: Matrices, state: Vector, accelerations: Vector, nominal: Nominal) -> Mapping[str, float]:
-    """Residuals of the constraints at a state: ``position``, ``velocity``, ``acceleration``.
+    """Return the residuals of the constraints at a state, by name.
+
+    The names are ``position``, ``velocity`` and ``acceleration``.
 
     Parameters
     ----------
     at : Matrices
-        At the state.
+        Matrices at the state.
     state : ndarray, shape (2n,)
+        Coordinates, then velocities.
     accelerations : ndarray, shape (n,)
+        Accelerations at the state.
     nominal : Nominal
         Sizes of the motion's quantities.
+
+    Returns
+    -------
+    dict of str to float
+        Dimensionless.
     """
     left = at.jacobian @ accelerations + at.curvature
     acceleration = scaled_residual(left, at.jacobian, accelerations, nominal.accelerations)
@@ -34,7 +43,22 @@ def residuals(at: Matrices, state: Vector, accelerations: Vector, nominal: Nomin
 
 
 def constraint_residuals(at: Matrices, state: Numbers, nominal: Nominal) -> dict[str, Numbers]:
-    """Return the first two of them, at one state or, with a last axis more, at k of them."""
+    """Return the residuals of position and velocity.
+
+    Parameters
+    ----------
+    at : Matrices
+        Matrices at the state.
+    state : ndarray, shape (2n,) or (2n, k)
+        Coordinates, then velocities.
+    nominal : Nominal
+        Sizes of the motion's quantities.
+
+    Returns
+    -------
+    dict of str to ndarray, shape () or (k,)
+        ``position`` and ``velocity``, dimensionless.
+    """
     coordinates, velocities = np.split(state, 2)
     return {
         "position": scaled_residual(at.residual, at.jacobian, coordinates, nominal.coordinates),
@@ -43,9 +67,19 @@ def constraint_residuals(at: Matrices, state: Numbers, nominal: Nominal) -> dict
 
 
 def condition(at: Matrices) -> float:
-    """Condition number of G = J A^-1 J^T, each constraint scaled to length one in the mass metric.
+    """Return the condition number of G = J A^-1 J^T.
 
-    Infinite where constraints depend on one another.
+    Each constraint is scaled to length one in the mass metric.
+
+    Parameters
+    ----------
+    at : Matrices
+        Matrices at a state.
+
+    Returns
+    -------
+    float
+        Infinite for dependent constraints.
 
     Raises
     ------
@@ -58,22 +92,26 @@ def condition(at: Matrices) -> float:
 
 
 def scaled_residual(residual: Numbers, jacobian: Numbers, moved: Numbers, sizes: Numbers) -> Numbers:
-    """Return how far the coordinates, or their rates, are from the constraints, relative to the largest of them.
+    """Return the distance of coordinates or velocities from the constraints.
 
-    All of them are taken in terms of their nominal sizes, and none counts as smaller than that.
+    It is relative to the largest of them, in terms of their nominal sizes. None counts as smaller than its nominal
+    size.
 
     Parameters
     ----------
     residual : ndarray, shape (g, ...)
+        Residual of each constraint.
     jacobian : ndarray, shape (g, n, ...)
+        J.
     moved : ndarray, shape (n, ...)
-        What the residual is one of: coordinates, velocities or accelerations.
+        The coordinates, velocities or accelerations to which the residual belongs.
     sizes : ndarray, shape (n,) or (n, ...)
-        Nominal ones of these.
+        Their nominal sizes.
 
     Returns
     -------
     ndarray, shape (...)
+        Dimensionless.
     """
     sizes = sizes if np.ndim(sizes) == moved.ndim else sizes[:, None]
     jacobian, moved = jacobian * sizes, moved / sizes

@@ -1,4 +1,4 @@
-"""What came of a simulation: samples of the motion, and a report on how well it was followed."""
+"""Result of a simulation: samples of the motion, and a report on its accuracy."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -13,7 +13,7 @@ from .accuracy_check import AccuracyViolation
 from .engines.choice import Choice
 from .engines.fallback import EngineSegment
 from .events import Ending
-from .hard_cases import HardCase
+from .hard_cases import Difficulty
 from .hybrid_motion import Switching
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ class Report:
         Condition number of G = J A^-1 J^T at the end, each constraint scaled to unit length.
     moved : (str, str) or None
         The initial value that differs most from the scene's guess, and by how much; None without a guess.
-    legs : tuple of EngineSegment
+    segments : tuple of EngineSegment
         Which engine followed the motion from when to when, and why.
     code : str
         How heyoka compiled the Taylor engine in the end (`Code`); empty where it did nothing.
@@ -53,11 +53,11 @@ class Report:
         Decimal digits that tell its numbers apart.
     correction : (str, str) or None
         The given initial value that was corrected most to fit the constraints, and by how much.
-    cases : tuple of HardCase
+    cases : tuple of Difficulty
         Kinds of hard case that the motion is.
     switchings : tuple of Switching
-        Instants at which the motion is not analytic, and how it passed them.
-    doubts : tuple of AccuracyViolation
+        Times at which the motion is not analytic, and how it passed them.
+    violations : tuple of AccuracyViolation
         What is out of proportion to the tolerance; a motion with any is no result.
     ending : Ending or None
         Whether an event ended the motion; None where the scene names none.
@@ -75,9 +75,9 @@ class Report:
         Of each output that servo-constraints prescribe: which of its rates the controls are in.
     sensitivities : mapping of str to float
         Derivatives at the end, ``d(t, m)`` among them where an event ends the motion: then the others are those of the
-        values at the event, not at a fixed instant.
+        values at the event, not at a fixed time.
     unresolved : float or None
-        The first instant from which an expression of the time changes too fast to be looked at ahead.
+        The first time from which an expression of the time changes too fast to be looked at ahead.
     """
 
     t: Any
@@ -88,7 +88,7 @@ class Report:
     energy_error: float
     condition: float
     steps: int
-    legs: tuple[EngineSegment, ...]
+    segments: tuple[EngineSegment, ...]
     code: str
     precision: str
     digits: int
@@ -96,9 +96,9 @@ class Report:
     compile_seconds: float
     run_seconds: float
     correction: tuple[str, str] | None
-    cases: tuple[HardCase, ...]
+    cases: tuple[Difficulty, ...]
     switchings: tuple[Switching, ...]
-    doubts: tuple[AccuracyViolation, ...]
+    violations: tuple[AccuracyViolation, ...]
     ending: Ending | None = None
     choice: Choice | None = None
     controls: Mapping[str, Any] = field(default_factory=dict)
@@ -112,16 +112,16 @@ class Report:
 
     @property
     def trusted(self) -> bool:
-        """Whether nothing is out of proportion to the tolerance."""
-        return not self.doubts
+        """True if no error is too large for the tolerance."""
+        return not self.violations
 
 
 @dataclass(frozen=True, repr=False)
 class Sampled:
     """Samples of a motion, all or some that follow one another."""
 
-    instants: NDArray[Any]  # shape (k,)
-    # coordinates, velocities, multipliers, constraint_forces, controls: shape (k,): at the instants; empty where the
+    times: NDArray[Any]  # shape (k,)
+    # coordinates, velocities, multipliers, constraint_forces, controls: shape (k,): at the times; empty where the
     # scene does not observe them
     coordinates: Samples
     velocities: Samples
@@ -133,21 +133,31 @@ class Sampled:
     residuals: Samples
     controls: Samples = field(default_factory=dict)
     outputs: Samples = field(default_factory=dict)  # by their own names
-    sensitivities: Samples = field(default_factory=dict)  # ``d(x, m)``: derivatives at the instants
+    sensitivities: Samples = field(default_factory=dict)  # ``d(x, m)``: derivatives at the times
 
     def columns(self) -> Iterator[tuple[str, NDArray[Any]]]:
-        """Yield the time, then every series of samples with its name.
+        """Yield every series of samples with its name, the time first.
 
         Residuals are named ``residual.position`` and so on.
+
+        Yields
+        ------
+        name : str
+        samples : ndarray, shape (k,)
         """
-        yield "t", self.instants
+        yield "t", self.times
         forces = self.multipliers, self.constraint_forces, self.controls
         for group in (self.coordinates, self.velocities, *forces, self.outputs, self.energy, self.sensitivities):
             yield from group.items()
         yield from self.residual_columns().items()
 
     def residual_columns(self) -> Samples:
-        """Residuals by the names of their columns."""
+        """Return the residuals by the names of their columns.
+
+        Returns
+        -------
+        dict of str to ndarray, shape (k,)
+        """
         return {f"residual.{name}": samples for name, samples in self.residuals.items()}
 
 
@@ -161,7 +171,9 @@ class Simulation(Sampled, Shown):
     drawing: "Drawing | None" = field(default=None, compare=False)  # how the system looks; None if it does not say
 
     def __getitem__(self, name: str) -> NDArray[Any]:
-        """Return samples of a quantity: ``t``, a coordinate, ``dot(x)``, ``lambda1``, ``residual.position``.
+        """Return the samples of a quantity.
+
+        Names are ``t``, a coordinate, ``dot(x)``, ``lambda1``, ``residual.position``.
 
         Raises
         ------
@@ -174,11 +186,21 @@ class Simulation(Sampled, Shown):
         return columns[name]
 
     def keys(self) -> tuple[str, ...]:
-        """Return names of the quantities that have samples."""
+        """Return names of the quantities that have samples.
+
+        Returns
+        -------
+        tuple of str
+        """
         return tuple(name for name, _ in self.columns())
 
     def to_pandas(self) -> "DataFrame":
-        """Return all samples as a pandas DataFrame, a row an instant.
+        """Return all samples as a pandas DataFrame.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A row for each time, a column for each other quantity.
 
         Raises
         ------
@@ -199,6 +221,10 @@ class Simulation(Sampled, Shown):
         curves : sequence of str or None
             Names of quantities as in `keys`; None for all but residuals and sensitivities.
 
+        Returns
+        -------
+        Picture
+
         Raises
         ------
         HolonomError
@@ -212,6 +238,10 @@ class Simulation(Sampled, Shown):
     def film(self) -> "MovingPicture":
         """Return the motion as a film, for a notebook or a file.
 
+        Returns
+        -------
+        MovingPicture
+
         Raises
         ------
         HolonomError
@@ -224,10 +254,20 @@ class Simulation(Sampled, Shown):
 
 
 def joined(parts: Sequence[Sampled]) -> Sampled:
-    """Return samples that follow one another as one."""
+    """Return samples that follow one another as one.
+
+    Parameters
+    ----------
+    parts : sequence of Sampled
+        At least one, in order, with the same quantities.
+
+    Returns
+    -------
+    Sampled
+    """
     groups = {
         name: {each: np.concatenate([getattr(part, name)[each] for part in parts]) for each in getattr(parts[0], name)}
         for name in vars(parts[0])
-        if name != "instants"
+        if name != "times"
     }
-    return Sampled(instants=np.concatenate([part.instants for part in parts]), **groups)
+    return Sampled(times=np.concatenate([part.times for part in parts]), **groups)

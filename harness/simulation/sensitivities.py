@@ -1,10 +1,10 @@
-"""Derivatives of a motion by parameters and initial values: the variational equations beside it.
+"""Derivatives of a motion by parameters and initial values: variational equations.
 
 With the state x = (q, dot q), dx/dt = F(t, x, p) and X = dx/dp,
 
     dX/dt = F_x X + F_p.
 
-Where a surface s(t, x, p) = 0 switches F, X jumps with the instant of the switching (Hiskens & Pai, Trajectory
+Where a surface s(t, x, p) = 0 switches F, X jumps with the time of the switching (Hiskens & Pai, Trajectory
 sensitivity analysis of hybrid systems, IEEE Trans. Circuits Syst. I 47 (2000) 204):
 
     X+ = X- + (F- - F+) dt/dp,    dt/dp = -(s_x X- + s_p)/(s_t + s_x F-).
@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..program.differentiation import derivative_name, differentiated
 from ..program.heyoka_function import heyoka_expressions, import_heyoka
 from ..program.motion_problem import MotionProblem, computing
@@ -26,7 +26,7 @@ from ..program.motion_program import Program
 from ..program.precision import read_precision
 from ..program.sign_pattern import SLIDING, switching_function
 from .constraints.factorization import factored_constraints
-from .engines.code import Code, better_code, pays
+from .engines.code import Code, better_code, is_worthwhile
 from .engines.engine import Step
 from .evaluation import Numbers
 from .initial_tangents import ConstraintVariation, initial_tangents
@@ -47,7 +47,7 @@ class _Piece(NamedTuple):
     start: float
     end: float
     mode: "_ModeVariation"
-    states: Any  # takes instants, shape (k,), to rows of states and scaled derivatives
+    states: Any  # takes times, shape (k,), to rows of states and scaled derivatives
 
 
 class _Zero(NamedTuple):
@@ -64,9 +64,9 @@ class _ModeVariation:
     def __init__(self, mode: Mode, directions: tuple[str, ...], tol: float | None) -> None:
         self.mode, self.problem, self._directions = mode, mode.problem, directions
         if self.problem.obstacle is not None:
-            raise HolonomError(Failure.NO_SENSITIVITY, detail=self.problem.obstacle)
+            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=self.problem.obstacle)
         if closed := [name for name in directions if name not in (*self.problem.parameters, *self.problem.state)]:
-            raise HolonomError(Failure.NO_SENSITIVITY, detail=f"the equations are made for one value of {closed[0]}")
+            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=f"the equations are made for one value of {closed[0]}")
         self.constraints = ConstraintVariation(self.problem, directions)
         self.inputs = Inputs(self.problem)
         self._tolerance = tolerance_of(self.problem, tol)
@@ -103,7 +103,10 @@ class _ModeVariation:
         return heyoka.taylor_adaptive(equations, [0.0] * len(equations), **self._tolerance, **self._code.options)
 
     def follow(self, start: float, state: Numbers, moves: Numbers, end: float, left: float) -> _Piece:
-        """Follow the derivatives through a part of the motion; `left` is the time that is left of the motion then."""
+        """Integrate the derivatives through a part of the motion.
+
+        `left` is the remaining time of the motion at the start of the part.
+        """
         integrator = self._integrator
         integrator.time = start
         integrator.state[:] = np.concatenate([state, moves.ravel()])
@@ -111,18 +114,18 @@ class _ModeVariation:
         integrator.pars[:] = self.inputs.open_values(start, "right")[:contained]
         *_, steps, between, _ = integrator.propagate_until(end, c_output=True)
         if integrator.time != end or not np.isfinite(integrator.state).all():
-            raise HolonomError(Failure.NO_SENSITIVITY, detail=f"they are no numbers beyond t = {start:.10g}")
+            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=f"they are no numbers beyond t = {start:.10g}")
         piece = _Piece(start, end, self, between)
-        self._compile_if_it_pays(steps * left / (end - start))
+        self._compile_if_worthwhile(steps * left / (end - start))
         return piece
 
     def reached(self, shape: tuple[int, int]) -> tuple[Numbers, Numbers]:
-        """Return the state and the derivatives at the end of the last part, put back onto the constraints."""
+        """Return the state and the derivatives at the end of the last part, projected."""
         state, moves = np.split(self._integrator.state.copy(), [len(self.problem.state)])
         return state, self.corrected(self._integrator.time, state, moves.reshape(shape))
 
     def corrected(self, t: float, state: Numbers, moves: Numbers) -> Numbers:
-        """Return the derivatives nearest in the mass metric that keep those of the constraints."""
+        """Return the nearest derivatives in the mass metric that satisfy the constraints."""
         n, moves = len(self.problem.coordinates), moves.copy()
         if not self.problem.multipliers:
             return moves
@@ -138,8 +141,10 @@ class _ModeVariation:
         solved = self.mode.engine.solutions(np.array([t]), state[:, None])
         return np.concatenate([state[len(self.problem.coordinates) :], solved.accelerations[:, 0]])
 
-    def derivatives(self, instants: Numbers, states: Numbers, moves: Numbers, *more: str) -> dict[str, Numbers]:
-        """Return the derivatives of state, multipliers and outputs by name, each of shape (p, k).
+    def derivatives(self, times: Numbers, states: Numbers, moves: Numbers, *more: str) -> dict[str, Numbers]:
+        """Return the derivatives of state, multipliers and outputs by name.
+
+        Each has the shape (p, k).
 
         Parameters
         ----------
@@ -150,40 +155,40 @@ class _ModeVariation:
         """
         problem, directions = self.problem, (*self._directions, *more)
         solved = (*problem.multipliers, *(f"ddot({q})" for q in problem.coordinates))
-        moves = np.concatenate([moves, Variation(problem, problem.motion, solved, directions)(instants, states, moves)])
+        moves = np.concatenate([moves, Variation(problem, problem.motion, solved, directions)(times, states, moves)])
         found = dict(zip((*problem.state, *problem.multipliers), moves, strict=False))
         if problem.outputs is None:
             return found
-        values, names = self.mode.engine.solutions(instants, states), tuple(problem.outputs.outputs)
+        values, names = self.mode.engine.solutions(times, states), tuple(problem.outputs.outputs)
         variation = Variation(problem, problem.outputs, names, directions, solved)
-        rows = variation(instants, states, moves, values.multipliers, values.accelerations)
+        rows = variation(times, states, moves, values.multipliers, values.accelerations)
         return found | dict(zip(names, rows, strict=True))
 
     def delays(self, zero: "_Zero", t: float, state: Numbers, moves: Numbers) -> Numbers:
-        """Return how the instant of a zero moves, shape (p,)."""
-        instants, states, along_it = self._along_motion(t, state, moves)
-        derivatives, multipliers = self.derivatives(instants, states, along_it, TIME), self.problem.multipliers
+        """Return how the time of a zero moves, shape (p,)."""
+        times, states, along_it = self._along_motion(t, state, moves)
+        derivatives, multipliers = self.derivatives(times, states, along_it, TIME), self.problem.multipliers
         along_it = np.concatenate([along_it, *(derivatives[name][None] for name in multipliers)])
         variation = Variation(zero.problem, zero.program, (zero.output,), (*self._directions, TIME), multipliers)
-        solved = self.mode.engine.solutions(instants, states).multipliers
-        *changes, rate = variation(instants, states, along_it, solved)[0, :, 0]
+        solved = self.mode.engine.solutions(times, states).multipliers
+        *changes, rate = variation(times, states, along_it, solved)[0, :, 0]
         if not rate:
-            raise HolonomError(Failure.NO_SENSITIVITY, detail=f"a zero is only touched at t = {t:.10g}")
+            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=f"a zero is only touched at t = {t:.10g}")
         return -np.array(changes) / rate
 
-    def at_moving_instant(self, t: float, state: Numbers, moves: Numbers, delays: Numbers) -> dict[str, Numbers]:
-        """Return `derivatives` at an instant that moves, each of shape (p,)."""
+    def at_moving_time(self, t: float, state: Numbers, moves: Numbers, delays: Numbers) -> dict[str, Numbers]:
+        """Return `derivatives` at a given time that moves, each of shape (p,)."""
         found = self.derivatives(*self._along_motion(t, state, moves), TIME)
         return {name: rows[:-1, 0] + rows[-1, 0] * delays for name, rows in found.items()}
 
     def _along_motion(self, t: float, state: Numbers, moves: Numbers) -> tuple[Numbers, Numbers, Numbers]:
-        """Return an instant, its state and the derivatives with the rates behind them, as `derivatives` takes them."""
+        """Return time, state and derivatives with their rates, for `derivatives`."""
         moves = np.concatenate([moves, self.rates(t, state)[:, None]], axis=1)
         return np.array([t]), state[:, None], moves[:, :, None]
 
-    def _compile_if_it_pays(self, steps: float) -> None:
+    def _compile_if_worthwhile(self, steps: float) -> None:
         better = better_code(self._code, read_precision("double"))
-        if better and pays(self._code, better, self._program.operations, steps, self._tolerance["tol"]):
+        if better and is_worthwhile(self._code, better, self._program.operations, steps, self._tolerance["tol"]):
             last, self._code = self._integrator.state.copy(), better
             self._integrator = self._built()
             self._integrator.state[:] = last
@@ -203,7 +208,7 @@ class Sensitivities:
     tol : float or None
         Tolerance of a step; None for the precision of the numbers.
     end : float
-        The last instant.
+        The last time.
 
     Raises
     ------
@@ -217,7 +222,9 @@ class Sensitivities:
         self._problem, self.directions, self._tol, self._end = problem, tuple(directions), tol, end
         if unknown := [name for name in directions if name not in (*problem.parameters, *problem.state)]:
             detail = f"{unknown[0]} is no parameter and none of {', '.join(problem.state)}"
-            raise HolonomError(Failure.NO_SENSITIVITY, detail=detail)
+            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=detail)
+        if problem.reacting:
+            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail="forces contain multipliers")
         self._sizes = np.array([float(size_of(problem, name)) for name in directions])
         self._modes: dict[Mode, _ModeVariation] = {}
         self._nominal = nominal_of(begun.problem)
@@ -228,7 +235,13 @@ class Sensitivities:
         self._pieces: list[_Piece] = []
 
     def take(self, step: Step) -> None:
-        """Follow a step of the motion."""
+        """Take a step of the motion; integrate the derivatives block by block.
+
+        Parameters
+        ----------
+        step : Step
+            A step with its mode, which begins at the end of the last one.
+        """
         if step.mode is not self._here.mode:
             self._advance()
             self._switch(step)
@@ -243,10 +256,22 @@ class Sensitivities:
             self._last = step.states(np.array([step.end]))[:, 0]
 
     def samples(self, stretch: SampleBlock) -> dict[str, Numbers]:
-        """Return the derivatives at samples by name, ``d(x, m)``, zeros for multipliers of constraints that ended."""
+        """Return the derivatives at samples by name, such as ``d(x, m)``.
+
+        Derivatives of multipliers of ended constraints are zero.
+
+        Parameters
+        ----------
+        stretch : SampleBlock
+            Consecutive samples of the motion.
+
+        Returns
+        -------
+        dict of str to ndarray, shape (k,)
+        """
         self._advance()
         found = [self._in_mode(self._of(mode), t, states) for mode, t, states in stretch.by_mode()]
-        self._pieces = [piece for piece in self._pieces if piece.end >= stretch.instants[-1]]
+        self._pieces = [piece for piece in self._pieces if piece.end >= stretch.times[-1]]
         none = [np.zeros((len(self.directions), len(t))) for _, t, _ in stretch.by_mode()]
         return self._named({
             name: np.concatenate([part.get(name, zero) for part, zero in zip(found, none, strict=True)], axis=1)
@@ -254,11 +279,21 @@ class Sensitivities:
         })  # fmt: skip
 
     def at_event(self, event: str) -> dict[str, float]:
-        """Return the derivatives at an event that ends the motion, and ``d(t, m)``, those of its instant."""
+        """Return the derivatives at a final event, and those of its time, ``d(t, m)``.
+
+        Parameters
+        ----------
+        event : str
+            Expression that has crossed zero, as Maxima prints it.
+
+        Returns
+        -------
+        dict of str to float
+        """
         here, place = self._here, self._problem.until.index(event) + 1
         zero = _Zero(here.problem, here.problem.events, f"event[{place}]")
         delays = here.delays(zero, self._time, self._state, self._moves)
-        return self._named({TIME: delays} | here.at_moving_instant(self._time, self._state, self._moves, delays))
+        return self._named({TIME: delays} | here.at_moving_time(self._time, self._state, self._moves, delays))
 
     def _named(self, found: Mapping[str, Numbers]) -> dict[str, Numbers]:
         """Return rows of derivatives, one for each direction and unscaled, by their names."""
@@ -268,16 +303,16 @@ class Sensitivities:
             for direction, row, size in zip(self.directions, rows, self._sizes, strict=True)
         }
 
-    def _in_mode(self, here: _ModeVariation, instants: Numbers, states: Numbers) -> dict[str, Numbers]:
-        moves = np.full((*self._moves.shape, len(instants)), np.nan)
+    def _in_mode(self, here: _ModeVariation, times: Numbers, states: Numbers) -> dict[str, Numbers]:
+        moves = np.full((*self._moves.shape, len(times)), np.nan)
         for piece in self._pieces:
-            inside = (piece.start <= instants) & (instants <= piece.end) & (piece.mode is here)
+            inside = (piece.start <= times) & (times <= piece.end) & (piece.mode is here)
             if inside.any():
-                rows = np.array(piece.states(instants[inside]))[:, len(states) :]
+                rows = np.array(piece.states(times[inside]))[:, len(states) :]
                 moves[:, :, inside] = rows.T.reshape(*self._moves.shape, -1)
         if np.isnan(moves).any():
-            raise HolonomError(Failure.NO_SENSITIVITY, detail=f"they are not known to t = {instants[-1]:.10g}")
-        return here.derivatives(instants, states, moves)
+            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=f"they are not known to t = {times[-1]:.10g}")
+        return here.derivatives(times, states, moves)
 
     def _of(self, mode: Mode) -> _ModeVariation:
         if mode not in self._modes:
@@ -285,7 +320,7 @@ class Sensitivities:
         return self._modes[mode]
 
     def _advance(self) -> None:
-        """Follow the derivatives as far as the motion has come, and put them back onto the constraints."""
+        """Integrate the derivatives to the time of the motion and project them."""
         if not self._steps:
             return
         self._pieces.append(
@@ -295,10 +330,10 @@ class Sensitivities:
         self._state, self._moves = self._here.reached(self._moves.shape)
 
     def _require_followed(self, state: Numbers) -> None:
-        """Refuse derivatives beside another motion than the one that is recorded."""
+        """Reject derivatives if their motion differs from the recorded one."""
         allowed = max(FOLLOWED, TOLERATED * (self._tol or 0.0))
         if self._state is not None and self._nominal.share(state - self._state, state) > allowed:
-            raise HolonomError(Failure.NO_SENSITIVITY, detail=f"steps become too coarse at t = {self._time:.10g}")
+            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=f"steps become too coarse at t = {self._time:.10g}")
 
     def _at_knot(self, step: Step) -> bool:
         """Return True if a table's next polynomial begins with a step."""
@@ -309,11 +344,11 @@ class Sensitivities:
     # ---- switching ----
 
     def _switch(self, step: Step) -> None:
-        """Jump with the instant of a switching."""
+        """Jump with the time of a switching."""
         before, after = self._here, self._of(step.mode)
         t, state = self._time, step.states(np.array([step.start]))[:, 0]
         if self._nominal.share(state - self._last, state) > CONTINUOUS:
-            raise HolonomError(Failure.NO_SENSITIVITY, detail=f"the velocities jump at t = {t:.10g}")
+            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=f"the velocities jump at t = {t:.10g}")
         surface = self._surface(before.mode, after.mode)
         if surface is not None:
             jump = before.rates(t, state) - after.rates(t, state)
@@ -321,9 +356,9 @@ class Sensitivities:
         self._moves, self._here = after.corrected(t, state, self._moves), after
 
     def _surface(self, before: Mode, after: Mode) -> _Zero | None:
-        """Return the zero that leads from one mode to the next.
+        """Return the zero between one mode and the next.
 
-        None where a motion leaves a surface that it was held on: it goes on as it is.
+        None if a motion leaves a surface on which it was sliding: the derivatives do not jump there.
         """
         ended = set(before.problem.multipliers) - set(after.problem.multipliers)
         if ended:
@@ -332,7 +367,7 @@ class Sensitivities:
             return _Zero(before.problem, before.problem.releases, f"event[{place}]")
         changed = [name for name, value in after.pattern.items() if before.pattern[name] != value]
         if len(changed) != 1:
-            raise HolonomError(Failure.NO_SENSITIVITY, detail=f"several signs change at t = {self._time:.10g}")
+            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=f"several signs change at t = {self._time:.10g}")
         if before.pattern[changed[0]] == SLIDING:
             return None
         whole, pattern = before.whole, before.pattern
@@ -345,5 +380,18 @@ class Sensitivities:
 
 
 def tolerance_of(problem: MotionProblem, tol: float | None) -> dict[str, float]:
-    """Return heyoka's tolerance of a step."""
+    """Return heyoka's tolerance of a step.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion, which gives the nominal sizes.
+    tol : float or None
+        Relative tolerance of a step; None for the rounding of doubles.
+
+    Returns
+    -------
+    dict of str to float
+        Option ``tol`` of the integrator.
+    """
     return {"tol": (float(np.finfo(float).eps) if tol is None else tol) * nominal_of(problem).absolute()}

@@ -1,4 +1,4 @@
-"""A simulation: engines follow the motion, a recording keeps what is wanted of it, a report says how well it went."""
+"""Simulation of a scene's motion by engines, with recorded samples and a report."""
 
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -9,20 +9,20 @@ from typing import Any
 
 import numpy as np
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..program.differentiation import derivative_name
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Program
 from ..program.precision import Precision, read_precision
 from ..program.sign_pattern import drawing_in_numbers, with_values_in
 from ..supervisor import doing
-from .accuracy_check import doubts, energy_missed, expected, may_hide
+from .accuracy_check import energy_missed, expected, may_hide, violations
 from .defect import DefectControl
 from .engines.engine import JUDGED_AFTER, Solutions, Step, require_reach
 from .engines.registry import engine_class
 from .evaluation import Numbers, as_floats, one_blas_thread
 from .events import Ending, first_event
-from .hard_cases import HardCase, Instant, hard_cases
+from .hard_cases import Difficulty, MotionState, hard_cases
 from .hybrid_motion import HybridMotion
 from .mode import Mode
 from .recording import Recording, SampleBlock, largest
@@ -38,9 +38,25 @@ TakeStep = Callable[[Step], None]
 
 
 def simulate(problem: MotionProblem, request: SimulationRequest, progress: Progress | None = None) -> Simulation:
-    """Follow a motion, and keep its samples; `progress` is told the fraction that is done, now and then.
+    """Integrate a motion and record its samples.
 
-    Raises as `follow`.
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    request : SimulationRequest
+        End, samples, numbers, engine and tolerance.
+    progress : callable or None
+        Takes the finished fraction, from 0 to 1, from time to time.
+
+    Returns
+    -------
+    Simulation
+
+    Raises
+    ------
+    HolonomError
+        As `follow`.
     """
     parts: list[Sampled] = []
     report = follow(problem, request, parts.append, progress)
@@ -56,23 +72,31 @@ def follow(
     progress: Progress | None = None,
     watch: TakeStep | None = None,
 ) -> Report:
-    """Follow a motion, and hand on its samples as they come, some thousands together.
+    """Integrate a motion and pass on its samples in blocks of some thousands.
 
     Parameters
     ----------
+    problem : MotionProblem
+        The motion.
+    request : SimulationRequest
+        End, samples, numbers, engine and tolerance.
     take : callable
         Takes a `Sampled`.
     progress : callable or None
-        Told the fraction that is done, now and then.
+        Takes the finished fraction, from 0 to 1, from time to time.
     watch : callable or None
         Takes each step.
+
+    Returns
+    -------
+    Report
 
     Raises
     ------
     HolonomError
         The request cannot be met: its precision, tolerance, engine or end; or the motion cannot be followed so far.
     """
-    with one_blas_thread(), np.errstate(all="ignore"):  # numbers that leave their range are doubted in the report
+    with one_blas_thread(), np.errstate(all="ignore"):  # numbers that leave their range are rejected in the report
         _require_steps(problem, request)
         end, ending = end_of(problem, request)
         with doing("compiling the motion"):
@@ -82,23 +106,39 @@ def follow(
 
 
 def _require_steps(problem: MotionProblem, request: SimulationRequest) -> None:
-    """Refuse a longest step that is none, or so short that nobody waits for the end."""
+    """Reject a longest step that is not positive, or too short to reach the end."""
     step = request.max_step
     if step is None:
         return
     if not 0 < step < inf:
-        raise HolonomError(Failure.NOT_A_STEP, detail=f"{step:g}")
-    span = float(last_instant(problem, request.until, read_precision("double"))) - float(problem.start["t"])
+        raise HolonomError(ErrorKind.NOT_A_STEP, detail=f"{step:g}")
+    span = float(last_time(problem, request.until, read_precision("double"))) - float(problem.start["t"])
     require_reach(JUDGED_AFTER, JUDGED_AFTER * step, span)
 
 
 def end_of(problem: MotionProblem, request: SimulationRequest) -> tuple[Any, Ending | None]:
-    """Return the last instant of a motion, and whether an event makes it so.
+    """Return the last time of a motion and the event that sets it.
 
-    Raises as `last_instant` and `first_event`.
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    request : SimulationRequest
+        Requested end and numbers.
+
+    Returns
+    -------
+    end : number
+    ending : Ending or None
+        None if the scene names no event.
+
+    Raises
+    ------
+    HolonomError
+        As `last_time` and `first_event`.
     """
     precision = read_precision(str(request.precision))
-    end = last_instant(problem, request.until, precision)
+    end = last_time(problem, request.until, precision)
     if not problem.until:
         return end, None
     with (
@@ -112,20 +152,45 @@ def end_of(problem: MotionProblem, request: SimulationRequest) -> tuple[Any, End
 
 
 def parametrized_problem(problem: MotionProblem, request: SimulationRequest) -> MotionProblem:
-    """Return the motion with its parameters open where the engines take them so, else with their values put in.
+    """Return the motion with open parameters if possible, else with values put in.
 
-    What follows a motion in double precision, as it is or projected, is compiled once for all values.
+    Engines of double precision take open parameters, with projection or without stabilization. They are compiled once
+    for all values.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        With open parameters.
+    request : SimulationRequest
+        Numbers, engine and stabilization.
+
+    Returns
+    -------
+    MotionProblem
     """
     open_ = (
         request.precision == "double"
         and (request.engine == EngineName.AUTO or engine_class(request.engine).open_parameters)
-        and request.drift in (Stabilization.PROJECTION, Stabilization.NONE)
+        and request.stabilization in (Stabilization.PROJECTION, Stabilization.NONE)
     )
     return problem if open_ else with_values_in(problem)
 
 
-def last_instant(problem: MotionProblem, until: Fraction | None, precision: Precision) -> Any:
-    """Return the instant at which a simulation ends: what is asked for, or the end of the scene's time span.
+def last_time(problem: MotionProblem, until: Fraction | None, precision: Precision) -> Any:
+    """Return the last time of a motion without events.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    until : Fraction or None
+        Requested last time, in the scene's unit; None for the end of the scene's time span.
+    precision : Precision
+        Numbers of the result.
+
+    Returns
+    -------
+    number
 
     Raises
     ------
@@ -133,17 +198,17 @@ def last_instant(problem: MotionProblem, until: Fraction | None, precision: Prec
         There is none, it is not after the start, or a table of the control law ends before it.
     """
     if until is None and problem.time_span is None:
-        raise HolonomError(Failure.NO_END, problem.scene)
+        raise HolonomError(ErrorKind.NO_END, problem.scene)
     end = precision.number(problem.time_span[1]) if until is None else precision.ratio(until)
     if not end > precision.number(problem.start["t"]):
-        raise HolonomError(Failure.NOT_AFTER_START, detail=f"{float(end):g} is not after {problem.start['t']}")
+        raise HolonomError(ErrorKind.NOT_AFTER_START, detail=f"{float(end):g} is not after {problem.start['t']}")
     if problem.law_end is not None and end > precision.number(problem.law_end):
-        raise HolonomError(Failure.LAW_ENDS, detail=f"{float(problem.law_end):.10g}")
+        raise HolonomError(ErrorKind.LAW_ENDS, detail=f"{float(problem.law_end):.10g}")
     return end
 
 
 class _Simulation:
-    """One simulation on its way: what the steps of `simulate` share."""
+    """A simulation in progress, with the shared data of the steps of `simulate`."""
 
     def __init__(
         self, problem: MotionProblem, request: SimulationRequest, take: TakeSamples, end: Any, ending: Ending | None
@@ -156,7 +221,7 @@ class _Simulation:
         self.first, self.begun = self.motion.state.copy(), self.motion.mode
         self.compile_seconds = time.perf_counter() - begun - self.motion.compile_seconds
         zero = self.precision.number("0")
-        self.recording = Recording(self.begun, self._wanted_instants(), zero, self._hand_on)
+        self.recording = Recording(self.begun, self._wanted_times(), zero, self._process)
         self.exchange = EnergyStatistics()
         self.reactions = np.zeros(len(problem.multipliers))  # the largest multipliers so far
         self.sensitivities = (
@@ -176,11 +241,11 @@ class _Simulation:
         self._follow(self._take(progress, watch))
         self.recording.end(self.end, self.motion.state)
         seconds = time.perf_counter() - begun - (self.motion.compile_seconds - compiled)
-        self.recording.hand_on()
+        self.recording.flush()
         return self._report(seconds)
 
-    def _hand_on(self, stretch: SampleBlock) -> None:
-        """Work out what is observed at samples, and what the report needs of them."""
+    def _process(self, stretch: SampleBlock) -> None:
+        """Compute observed quantities at samples, and the data of the report."""
         found = [mode.engine.solutions(t, states) for mode, t, states in stretch.by_mode()]
         parts = list(zip(stretch.by_mode(), found, strict=True))
         own = [mode.outputs(t, states, each) for (mode, t, states), each in parts]
@@ -194,7 +259,7 @@ class _Simulation:
         self.exchange.add(energies["energy"], energies["energy_error"])
         self.take(
             Sampled(
-                instants=stretch.instants,
+                times=stretch.times,
                 **self._motion(stretch.states, self.solutions),
                 energy=energies if "energy" in self.problem.observe else {},
                 residuals=self._residual_samples(stretch, self.solutions),
@@ -205,7 +270,7 @@ class _Simulation:
         )
 
     def _with_ended(self, solutions: Solutions, mode: Mode) -> Solutions:
-        """Solutions in a mode with zeros for the multipliers of constraints that have ended."""
+        """Return solutions in a mode, with zero multipliers for ended constraints."""
         known = dict(zip(mode.problem.multipliers, solutions.multipliers, strict=True))
         none = np.zeros_like(solutions.accelerations[0])
         rows = [known.get(name, none) for name in self.problem.multipliers]
@@ -217,8 +282,11 @@ class _Simulation:
         for step in self.motion.integrate(self.end):
             take(step)
 
-    def _wanted_instants(self) -> Iterator[Any] | None:
-        """Instants to keep; None for those of the steps. The last one is kept in any case."""
+    def _wanted_times(self) -> Iterator[Any] | None:
+        """Return the times to record, or None for the times of the steps.
+
+        The last time is recorded in any case.
+        """
         if self.samples is None:
             return None
         inner = range(self.samples - 1) if self.samples != FINAL_STATE_ALONE else ()
@@ -250,7 +318,10 @@ class _Simulation:
         return take
 
     def _energies(self, stretch: SampleBlock) -> Samples:
-        """Energies at the samples, and what they differ by from the energy at the start and the work done since."""
+        """Return the energies at the samples, and their errors.
+
+        An error is the difference from the initial energy and the work done since.
+        """
         energy = np.concatenate([mode.balance.energy(t, states) for mode, t, states in stretch.by_mode()])
         return {"energy": energy, "energy_error": energy - self.begun.energy_at(self.start, self.first) - stretch.works}
 
@@ -258,7 +329,7 @@ class _Simulation:
         return _named(self.problem.controls, [mode.controls(t, states) for mode, t, states in stretch.by_mode()])
 
     def _motion(self, states: Numbers, solutions: Solutions) -> Mapping[str, Samples]:
-        """Return samples of what the scene observes."""
+        """Return samples of the quantities that the scene observes."""
         observe, names = self.problem.observe, self.problem.coordinates
         followed = states if "trajectory" in observe else states[:0]
         reactions = solutions.multipliers if "multipliers" in observe else solutions.multipliers[:0]
@@ -271,7 +342,7 @@ class _Simulation:
         }
 
     def _sensitivity_samples(self, stretch: SampleBlock) -> Samples:
-        """Return derivatives of what the scene observes."""
+        """Return derivatives of the quantities that the scene observes."""
         if self.sensitivities is None:
             return {}
         found = self._observed_derivatives(self.sensitivities.samples(stretch))
@@ -296,17 +367,17 @@ class _Simulation:
     def _residual_samples(self, stretch: SampleBlock, solutions: Solutions) -> Samples:
         if "residuals" not in self.problem.observe:
             return {}
-        columns = zip(stretch.modes, stretch.instants, stretch.states.T, solutions.accelerations.T, strict=True)
+        columns = zip(stretch.modes, stretch.times, stretch.states.T, solutions.accelerations.T, strict=True)
         found = [
-            _residuals(Instant(mode.matrices, float(t), as_floats(state)), accelerations)
+            _residuals(MotionState(mode.matrices, float(t), as_floats(state)), accelerations)
             for mode, t, state, accelerations in columns
         ]
         return {name: np.array([each[name] for each in found]) for name in found[0]}
 
     def _report(self, seconds: float) -> Report:
         state, n, mode = self.motion.state.copy(), len(self.problem.coordinates), self.recording.mode
-        start = Instant(self.begun.matrices, float(self.start), as_floats(self.first))
-        end = Instant(mode.matrices, float(self.end), as_floats(state))
+        start = MotionState(self.begun.matrices, float(self.start), as_floats(self.first))
+        end = MotionState(mode.matrices, float(self.end), as_floats(state))
         observed = self.problem.reactions if "multipliers" in self.problem.observe else ()
         multipliers = self.solutions.multipliers[:, -1]
         left = _residuals(end, self.solutions.accelerations[:, -1])
@@ -319,7 +390,7 @@ class _Simulation:
             energy_error=self.exchange.last_error,
             condition=condition(end.here.under(mode.problem.independent)),
             steps=self.motion.steps,
-            legs=tuple(self.motion.legs),
+            segments=tuple(self.motion.segments),
             code=self.begun.engine.code,
             precision=self.precision.name,
             digits=self.precision.digits,
@@ -339,17 +410,23 @@ class _Simulation:
             relative_degrees=self.problem.relative_degrees,
             unresolved=self.motion.unresolved,
             sensitivities=self._derivatives_at_end(),
-            doubts=tuple(doubts(self._missed(left, start, end), self.begun.engine.tol, self.motion.steps)),
+            violations=tuple(violations(self._missed(left, start, end), self.begun.engine.tol, self.motion.steps)),
         )
 
-    def _undetermined(self, end: Instant, mode: Mode) -> tuple[str, ...]:
-        """Return outputs that are not unique at the end, where some constraints may have ended."""
+    def _undetermined(self, end: MotionState, mode: Mode) -> tuple[str, ...]:
+        """Return the outputs that are not unique at the end.
+
+        Some constraints may have ended by then.
+        """
         known = dict(zip(self.problem.multipliers, self.solutions.multipliers[:, -1], strict=True))
         multipliers = as_floats(np.array([known[name] for name in mode.problem.multipliers]))
         return undetermined_outputs(mode.problem, end, as_floats(self.solutions.accelerations[:, -1]), multipliers)
 
-    def _missed(self, left: Mapping[str, float], start: Instant, end: Instant) -> Mapping[str, float]:
-        """Return what is missed of each quantity that the tolerance speaks of, relative to its size."""
+    def _missed(self, left: Mapping[str, float], start: MotionState, end: MotionState) -> Mapping[str, float]:
+        """Return the errors of the quantities that the tolerance limits.
+
+        They are relative to the size of each quantity.
+        """
         within = {} if self.steps is None else {"acceleration": self.steps.missed}
         kept = {name: left[name] for name in ("position", "velocity")}
         if not np.isfinite(self.reactions).all():
@@ -359,14 +436,14 @@ class _Simulation:
         small = expected(self.begun.engine.tol, self.motion.steps) * self.motion.nominal.velocities
         return {**kept, "energy": float(energy_missed(*ends, self.exchange.error, exchanged, small)), **within}
 
-    def _cases(self, start: Instant, end: Instant) -> tuple[HardCase, ...]:
-        """Return those that the robust engine was called for, then those that the ends tell; each once."""
-        called_for = [leg.case for leg in self.motion.legs if leg.case is not None]
+    def _cases(self, start: MotionState, end: MotionState) -> tuple[Difficulty, ...]:
+        """Return the hard cases of the robust engine, then those of both ends, each once."""
+        called_for = [segment.case for segment in self.motion.segments if segment.case is not None]
         if self.problem.released:
             end = start  # other constraints may hold at the end
         found = hard_cases(self.problem.independent, start, end, self.reactions, self.motion.steps)
         answering = self.problem.reactions or not self.problem.servo  # servo-constraints have no reaction by themselves
-        found = (case for case in found if answering or case is not HardCase.FREE_CANCELLATION)
+        found = (case for case in found if answering or case is not Difficulty.FREE_CANCELLATION)
         return tuple(dict.fromkeys([*called_for, *found]))
 
 
@@ -375,25 +452,36 @@ def _named(program: Program | None, parts: Sequence[Numbers]) -> Samples:
     return dict(zip(() if program is None else program.outputs, np.concatenate(parts, axis=1), strict=True))
 
 
-def _residuals(at: Instant, accelerations: Numbers) -> Mapping[str, float]:
+def _residuals(at: MotionState, accelerations: Numbers) -> Mapping[str, float]:
     return residuals(at.here, at.state, as_floats(accelerations), at.matrices.nominal)
 
 
 def _side_by_side(parts: Sequence[Numbers]) -> Numbers:
-    """Return rows that all parts have: the robust engine adds constraint forces that the scene does not observe."""
+    """Return the rows that all parts have.
+
+    The robust engine adds constraint forces that the scene does not observe.
+    """
     shared = min(len(rows) for rows in parts)
     return np.concatenate([rows[:shared] for rows in parts], axis=1)
 
 
 class EnergyStatistics:
-    """What energy did on the way: the largest change and the largest error, stretch by stretch."""
+    """The largest change of the energy and its largest error, block by block."""
 
     def __init__(self) -> None:
         self.exchanged = self.error = self.last_error = 0.0
         self._first: Any = None
 
     def add(self, energy: Numbers, error: Numbers) -> None:
-        """Take in samples, each of shape (k,)."""
+        """Add samples.
+
+        Parameters
+        ----------
+        energy : ndarray, shape (k,)
+            Energy, in the scene's unit.
+        error : ndarray, shape (k,)
+            Energy gained beyond the work done.
+        """
         if self._first is None:
             self._first = energy[0]
         self.exchanged = largest(energy - self._first, self.exchanged)

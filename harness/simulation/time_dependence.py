@@ -1,15 +1,15 @@
-"""Where a motion depends on the time by itself: how fast, and how long it does so smoothly.
+"""Time dependence of a motion: its speed, and the time span in which it is smooth.
 
-An integrator chooses its steps by what it meets at their beginnings and stages. A pulse that is over before the next
-step begins does not exist for it. So the expressions of t alone in the equations of motion are looked at before: the
-time span is halved until a polynomial of degree 32 represents each of them on every part, to `RESOLVED` of its largest
-value, and none lies still in the first half of a part to move in the second. Where parts are much shorter than the time
-span, or differ from their neighbours, steps are to end at their boundaries: what changes as fast everywhere may be too
-faint for the steps to follow, and a pulse is not told from it. What takes more than 32768 parts is not resolved, which
-is said: a jump in it is not found.
+An integrator chooses its steps by values at their beginnings and stages. It misses a pulse that is over before the next
+step begins. So the expressions of t alone in the equations of motion are examined beforehand. The time span is halved
+until a polynomial of degree 32 represents each of them on every part, to `RESOLVED` of its largest value, and none is
+constant in the first half of a part and changes in the second. If parts are much shorter than the time span, or differ
+from their neighbours, steps are to end at their boundaries: an expression that changes as fast everywhere may be too
+faint for the steps, and a pulse cannot be distinguished from it. An expression that needs more than 32768 parts is not
+resolved, which is reported: a jump in it is not found.
 
-What is guaranteed: no feature of such an expression is passed over that lasts longer than 1/32768 of the time span and
-is larger than `RESOLVED` of the expression's largest value. Shorter ones show if they come near one of the samples.
+A feature of such an expression is not missed if it lasts longer than 1/32768 of the time span and is larger than
+`RESOLVED` of the expression's largest value. Shorter ones are found if they are near one of the samples.
 """
 
 from collections.abc import Iterator, Sequence, Set
@@ -22,7 +22,7 @@ from numpy.polynomial import chebyshev
 
 from ..program.motion_program import Call, Expression, Name, Program, names_in
 from ..program.table import Table
-from ..program.table_numbers import OfTime
+from ..program.table_numbers import TimeFunction
 from .matrices import Vector
 
 DEGREE = 32
@@ -49,28 +49,54 @@ TO_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(NODES, DEGREE))
 
 
 class TimeDependence(NamedTuple):
-    """How a motion depends on the time by itself."""
+    """The dependence of a motion on the time alone."""
 
-    stops: tuple[float, ...] = ()  # instants at which steps are to end, in order
-    # the first instant at which an expression of the time has no value, no bound, or jumps; None where there is none
+    stops: tuple[float, ...] = ()  # times at which steps are to end, in order
+    # the first time at which an expression of the time has no value, no bound, or jumps; None where there is none
     end: float | None = None
-    reason: str = ""  # a clause about that instant
-    unresolved: float | None = None  # the first instant from which an expression changes too fast to be looked at
+    reason: str = ""  # a clause about that time
+    unresolved: float | None = None  # the first time from which an expression changes too fast to be looked at
 
 
 def time_dependence(program: Program, start: float, end: float, tables: Sequence[Table] = ()) -> TimeDependence:
-    """Look at what a program computes from the time alone, its input ``t``, and from what tables are then."""
+    """Examine the expressions of time alone, ``t``, and of tables in a program.
+
+    Parameters
+    ----------
+    program : Program
+        Program with the equations of motion.
+    start : float
+        First time.
+    end : float
+        Last time.
+    tables : sequence of Table
+        Tables whose polynomials the program takes.
+
+    Returns
+    -------
+    TimeDependence
+    """
     expressions = time_expressions(program, tables)
     if not start < end or not expressions.outputs:
         return TimeDependence()
     knots = sorted({t for table in tables for t in map(float, table.knots) if start < t < end})
-    return _Scan(OfTime(expressions, tables), start, end, np.array(knots)).result()
+    return _Scan(TimeFunction(expressions, tables), start, end, np.array(knots)).result()
 
 
 def time_expressions(program: Program, tables: Sequence[Table] = ()) -> Program:
-    """Return what a program computes from the time alone, as far as anything else is computed from it.
+    """Return the expressions of time alone that other expressions of a program use.
 
-    Its inputs are ``t`` and those of the tables.
+    Parameters
+    ----------
+    program : Program
+        Program to search.
+    tables : sequence of Table
+        Tables whose polynomials the program takes.
+
+    Returns
+    -------
+    Program
+        Its inputs are ``t`` and those of the tables.
     """
     inputs = ("t", *(name for table in tables for name in table.inputs))
     known, kept, used = set(inputs), [], {}
@@ -94,7 +120,19 @@ def time_expressions(program: Program, tables: Sequence[Table] = ()) -> Program:
 
 
 def largest_parts(expression: Expression, known: Set[str]) -> Iterator[Expression]:
-    """Yield the largest parts of an expression that are of the time alone."""
+    """Yield the largest parts of an expression that are of the time alone.
+
+    Parameters
+    ----------
+    expression : Expression
+        Expression to search.
+    known : set of str
+        Names that depend on the time alone.
+
+    Yields
+    ------
+    Expression
+    """
     names = names_in(expression)
     if names and names <= known:
         yield expression
@@ -104,9 +142,12 @@ def largest_parts(expression: Expression, known: Set[str]) -> Iterator[Expressio
 
 
 class _Scan:
-    """Halves the time span until every part is resolved; it is cut at knots before, where steps end anyway."""
+    """A scan that halves the time span until every part is resolved.
 
-    def __init__(self, function: OfTime, start: float, end: float, knots: Vector) -> None:
+    It is first cut at knots, at which steps end anyway.
+    """
+
+    def __init__(self, function: TimeFunction, start: float, end: float, knots: Vector) -> None:
         self._function, self._start, self._last, self._knots = function, start, end, knots
         self._ending: tuple[float, str] | None = None
         self._unresolved: float | None = None
@@ -138,18 +179,21 @@ class _Scan:
         stops = tuple(float(t) for t in stops if end is None or t < end)
         return TimeDependence(stops, end and float(end), reason, self._unresolved)
 
-    def _rounding_of(self, instants: Vector, values: np.ndarray) -> Vector:
-        """Return what rounding makes of each expression, shape (expressions,).
+    def _rounding_of(self, times: Vector, values: np.ndarray) -> Vector:
+        """Return the rounding errors of each expression, shape (expressions,).
 
-        Its changes over the least steps of time.
+        They are its changes over the least steps of time.
         """
         with np.errstate(all="ignore"):
-            changes = np.abs(self._function(np.nextafter(instants, np.inf)) - values)
+            changes = np.abs(self._function(np.nextafter(times, np.inf)) - values)
         changes[~np.isfinite(changes)] = 0.0
         return np.quantile(changes, NEARLY_ALL, axis=1)
 
     def _cut(self) -> tuple[Vector, Vector]:
-        """Beginnings and lengths of what is halved; between knots, what so many fresh samples are enough for."""
+        """Return beginnings and lengths of the parts to be halved.
+
+        Between knots, they are as long as this many new samples allow.
+        """
         inner = self._knots[self._knots < self._last]
         edges = np.array([self._start, *inner, self._last])
         lengths = np.diff(edges)
@@ -185,7 +229,10 @@ class _Scan:
         return self._bases[owners] + places * lengths, lengths
 
     def _errors(self, owners: np.ndarray, places: np.ndarray, level: int) -> tuple[np.ndarray, np.ndarray]:
-        """Errors of the polynomials on parts, shape (expressions, parts); which are to be halved."""
+        """Return the errors of polynomials on parts, and the parts to be halved.
+
+        The errors have shape (expressions, parts).
+        """
         blocks = range(0, len(places), BLOCK)
         found = [self._errors_in(owners[at : at + BLOCK], places[at : at + BLOCK], level) for at in blocks]
         errors, open_ = zip(*found, strict=True)
@@ -221,7 +268,7 @@ class _Scan:
         return self._function(starts[:, None] + lengths[:, None] * cells)
 
     def _look_at(self, starts: Vector, error: np.ndarray) -> None:
-        """Where no polynomial comes near, tell a pole and a jump from rounding."""
+        """Distinguish poles and jumps from rounding in parts without a close polynomial."""
         for place in np.argsort(starts, kind="stable"):
             t, missed = starts[place], error[:, place]
             if (missed > BEYOND * self._usual).any():
@@ -235,7 +282,10 @@ class _Scan:
             return
 
     def _look_between(self, parts: list[tuple[float, float]]) -> None:
-        """Tell a jump at the boundary of two parts from a steep function, which changes less nearby."""
+        """Find jumps at the boundary of two parts.
+
+        A steep function changes less nearby.
+        """
         starts, lengths = np.array(parts).T
         beside = BESIDE * np.minimum(lengths[:-1], lengths[1:])
         seen = NEARER * beside > EPSILON * np.abs(starts[1:])
@@ -254,7 +304,7 @@ class _Scan:
             return np.abs(self._function(edges + beside) - self._function(edges - beside))
 
     def _last_value(self, before: float, cell: float) -> float:
-        """Return the last instant at which all is finite, from one at which it is to one at which it is not."""
+        """Return the last time with finite values, between a finite and a non-finite one."""
         after = self._start + (self._last - self._start) * cell
         while before < (middle := (before + after) / 2) < after:
             if np.isfinite(self._function(np.array([middle]))).all():

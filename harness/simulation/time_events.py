@@ -1,7 +1,7 @@
-"""Signs that the time alone decides: t - 3 is negative until t = 3 and positive from there on, whatever moves.
+"""Time events: zeros of switching functions of time alone, such as t - 3.
 
 The points of a table and the bounds of a piecewise law are such functions, of the form a + b t with rational numbers.
-Their zeros are known exactly before a motion begins, so that steps end on them and nothing has to be searched for.
+Their zeros are known exactly before a motion begins, so that steps end on them without a search.
 """
 
 from collections.abc import Mapping
@@ -11,7 +11,7 @@ from operator import add
 from typing import NamedTuple
 
 from ..program.arithmetic import Arithmetic, run_program
-from ..program.motion_problem import By, MotionProblem, computing
+from ..program.motion_problem import DependsOn, MotionProblem, computing
 from ..program.motion_program import Constant, Operation, Program, names_in
 from ..program.sign_pattern import in_numbers
 
@@ -35,10 +35,21 @@ class _Otherwise(ArithmeticError):
 
 
 def time_events(problem: MotionProblem) -> Mapping[str, TimeEvent]:
-    """When each sign changes that a function a + b t decides, by the sign's name."""
+    """Return the changes of signs that a function a + b t decides.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+
+    Returns
+    -------
+    dict of str to TimeEvent
+        By the sign's name.
+    """
     found = {}
     for index, sign in enumerate(problem.signs, start=1):
-        if sign.by is By.TIME:
+        if sign.by is DependsOn.TIME:
             function = _affine(in_numbers(problem, computing(problem.switching, {f"switch[{index}]"})))
             if function is not None and function.b:
                 found[sign.name] = TimeEvent(-function.a / function.b, 1 if function.b > 0 else -1)
@@ -46,7 +57,7 @@ def time_events(problem: MotionProblem) -> Mapping[str, TimeEvent]:
 
 
 def _affine(program: Program) -> Affine | None:
-    """Return the one output of a program as a function of t; None where it is no such function."""
+    """Return the one output of a program as an affine function of t, or None."""
     used = set().union(
         *(names_in(expression) for _, expression in program.assignments), *map(names_in, program.outputs.values())
     )

@@ -1,6 +1,7 @@
-"""Outputs that are not unique: those that hold multipliers of redundant constraints, reactions of joints among them.
+"""Outputs that are not unique, because of multipliers of redundant constraints.
 
-All multipliers lambda + mu with J^T mu = 0 give the same motion. An output is unique if no mu changes it.
+Reactions of joints are among them. All multipliers lambda + mu with J^T mu = 0 give the same motion. An output is
+unique if no mu changes it.
 """
 
 import numpy as np
@@ -8,7 +9,7 @@ import numpy as np
 from ..program.motion_problem import MotionProblem
 from ..program.precision import read_precision
 from .evaluation import as_floats, evaluation_once
-from .hard_cases import Instant
+from .hard_cases import MotionState
 from .inputs import Inputs
 from .matrices import Vector
 
@@ -18,7 +19,7 @@ ROUNDING = 1e-12  # of the largest sum of terms, likewise
 
 
 def undetermined_outputs(
-    problem: MotionProblem, at: Instant, accelerations: Vector, multipliers: Vector
+    problem: MotionProblem, at: MotionState, accelerations: Vector, multipliers: Vector
 ) -> tuple[str, ...]:
     """Return the names of the outputs that are not unique at a state.
 
@@ -26,9 +27,14 @@ def undetermined_outputs(
     ----------
     problem : MotionProblem
         Without signs.
-    at : Instant
+    at : MotionState
+        State of the motion, with its matrices.
     accelerations, multipliers : ndarray, shape (n,) and (g,)
-        There.
+        Accelerations and multipliers at the state.
+
+    Returns
+    -------
+    tuple of str
     """
     if problem.outputs is None or not problem.dependent or not len(multipliers) or not at.here.finite:
         return ()

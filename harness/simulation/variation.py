@@ -1,7 +1,7 @@
-"""Programs of a motion with their derivatives in directions: parameters, initial values, the time.
+"""Programs of a motion with derivatives by parameters, initial values and time.
 
-A state moves in a direction by X, shape (2n,): then a program's output changes by its gradient along X, and by its own
-derivative where the direction is an input of the program.
+A state moves in a direction by X, shape (2n,). Then a program's output changes by its gradient along X, and by its own
+derivative if the direction is an input of the program.
 """
 
 from collections.abc import Sequence
@@ -23,16 +23,42 @@ TIME = "t"
 
 
 def seeds_of(problem: MotionProblem, directions: Sequence[str], moving: Sequence[str]) -> Seeds:
-    """Return the seeds of `differentiated`: `moving` have derivatives as inputs, and a direction moves itself.
+    """Return the seeds of `differentiated`.
 
-    A parameter moves by `size_of`, the time by one.
+    Derivatives of `moving` are inputs. The derivative of a direction by itself is known: `size_of` for a parameter, one
+    for the time.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    directions : sequence of str
+        Parameters, names of the state, and ``t``.
+    moving : sequence of str
+        Names of the state and of what is solved.
+
+    Returns
+    -------
+    Seeds
     """
     own = {name: {name: size_of(problem, name)} for name in directions if name not in problem.state}
     return along(moving, directions) | own
 
 
 def size_of(problem: MotionProblem, name: str) -> Fraction:
-    """Return the power of ten by which a direction is scaled: near the value of a parameter, one of others."""
+    """Return the scale of a direction: a parameter's power of ten, or one.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion, with values of its parameters.
+    name : str
+        Direction.
+
+    Returns
+    -------
+    Fraction
+    """
     value = problem.values.get(name)
     return Fraction(10) ** floor(log10(abs(value))) if value else ONE
 
@@ -77,7 +103,7 @@ class Variation:
 
     def __call__(
         self,
-        instants: Numbers,
+        times: Numbers,
         states: Numbers,
         moves: Numbers,
         multipliers: Numbers | None = None,
@@ -87,7 +113,7 @@ class Variation:
 
         Parameters
         ----------
-        instants : ndarray, shape (k,)
+        times : ndarray, shape (k,)
         states : ndarray, shape (2n, k)
         moves : ndarray, shape (2n + solved, p, k)
             How the state and what is solved move in each direction.
@@ -98,7 +124,7 @@ class Variation:
         -------
         ndarray, shape (outputs, p, k)
         """
-        k = len(instants)
-        here = self._inputs(instants, states, multipliers, accelerations=accelerations)
+        k = len(times)
+        here = self._inputs(times, states, multipliers, accelerations=accelerations)
         inputs = np.concatenate([here, moves.reshape(-1, k)])
         return self._evaluate(np.ascontiguousarray(inputs)).reshape(*self._shape, k)

@@ -1,10 +1,10 @@
-"""Functions along a motion: where the first of them changes its sign within a step.
+"""First sign change of functions along a motion within a step.
 
-A step is looked at in parts, each a small part of the time span, and shorter where a function is not resolved: it is
-sampled at Chebyshev's points of a part and interpolated between, by a polynomial of degree 32, whose last coefficients
-tell. So nothing is passed over that lasts longer than 1/2048 of the time span; a step says only how smooth the state
-is, not what a function makes of it. Two zeros close together show by the polynomial's minimum between them. The instant
-is found by taking sections, to the last bit of its numbers.
+A step is examined in parts, each a small part of the time span, and shorter if a function is not resolved. A function
+is sampled at the Chebyshev points of a part and interpolated by a polynomial of degree 32, whose last coefficients show
+the resolution. So no feature is missed that lasts longer than 1/2048 of the time span; the length of a step depends
+only on the smoothness of the state, not of the functions. Two zeros close together are found by the polynomial's
+minimum between them. The time is found by taking sections, to the last bit of its numbers.
 """
 
 from abc import ABC, abstractmethod
@@ -35,7 +35,7 @@ LAST, RESOLVED = 4, 1e-8  # coefficients of a polynomial, and what they are of t
 
 
 class Crossing(NamedTuple):
-    """An instant at which a motion reaches the end of its pattern of signs."""
+    """A time at which a motion reaches the end of its pattern of signs."""
 
     t: Any
     name: str  # the sign that changes
@@ -43,7 +43,7 @@ class Crossing(NamedTuple):
 
 
 class SignedFunctions(ABC):
-    """Functions along a motion, each with the sign that it has until its first crossing."""
+    """Functions along a motion, each with its sign before the first crossing."""
 
     def __init__(self, precision: Precision, span: float) -> None:
         self._precision, self._span = precision, span
@@ -52,8 +52,15 @@ class SignedFunctions(ABC):
         self._sections = np.array([precision.ratio(Fraction(place, SECTIONS)) for place in range(1, SECTIONS)])
 
     @abstractmethod
-    def values(self, instants: Numbers, states: Numbers) -> Numbers:
-        """Return each function times its sign, negative behind its crossing, at instants (k,) and states (2n, k).
+    def values(self, times: Numbers, states: Numbers) -> Numbers:
+        """Return each function times its sign, negative after its crossing.
+
+        Parameters
+        ----------
+        times : ndarray, shape (k,)
+            Times of the states.
+        states : ndarray, shape (2n, k)
+            Coordinates, then velocities.
 
         Returns
         -------
@@ -65,8 +72,14 @@ class SignedFunctions(ABC):
 
         Parameters
         ----------
+        step : Step
+            A step of the mode.
         left : sequence of str
             Signs whose surfaces the motion has just left at the beginning of the step, where rounding decides.
+
+        Returns
+        -------
+        Crossing or None
         """
         if not self._rows:
             return None
@@ -116,13 +129,16 @@ class SignedFunctions(ABC):
         if after is None:
             return None
 
-        def inside(instants: Numbers) -> Vector:
-            return self.values(instants, step.states(instants))[row]
+        def inside(times: Numbers) -> Vector:
+            return self.values(times, step.states(times))[row]
 
         return Crossing(self._last_inside(inside, before, after), name, to)
 
     def _dip(self, step: Step, row: int, values: Numbers, end: float) -> tuple[Any, Any] | None:
-        """Between two samples, instants between which the function becomes negative to rise again."""
+        """Return times between two samples of which the second has a negative value.
+
+        The function becomes positive again before the later sample.
+        """
         inner = values[1:-1]
         if not np.isfinite(inner).all() or np.min(inner) > np.ptp(inner):
             return None
@@ -132,22 +148,22 @@ class SignedFunctions(ABC):
         around = PLACES[places[0] + np.array([-1, 0])] if places.size else _narrow_dip(coefficients, between, end)
         if around is None:
             return None
-        instants, found = self._samples(step, around)
+        times, found = self._samples(step, around)
         rounding = 10.0 ** (SURE - self._precision.sure_digits) * self._sizes[self._rows[row][0]]
-        return tuple(instants) if found[row, 0] >= 0 and found[row, 1] < -rounding else None
+        return tuple(times) if found[row, 0] >= 0 and found[row, 1] < -rounding else None
 
     def _samples(self, step: Step, places: Numbers) -> tuple[Numbers, Numbers]:
-        """Instants of a step, and the functions there, shape (surfaces, k)."""
+        """Return the times of a step, and the functions there, shape (surfaces, k)."""
         numbers = np.array([self._precision.number(repr(float(place))) for place in places])
-        instants = step.start + (step.end - step.start) * numbers
+        times = step.start + (step.end - step.start) * numbers
         if places[-1] == 1.0:
-            instants[-1] = step.end
-        return instants, self.values(instants, step.states(instants))
+            times[-1] = step.end
+        return times, self.values(times, step.states(times))
 
     def _last_inside(self, values: Callable[[Numbers], Vector], before: Any, after: Any) -> Any:
-        """Return the last instant before a function is negative, between one where it is not and one where it is.
+        """Return the last time before a function becomes negative, between two times.
 
-        A look at several instants takes as long as one at one.
+        An evaluation at several times takes as long as one at one time.
         """
         while True:
             between = before + (after - before) * self._sections
@@ -161,7 +177,10 @@ class SignedFunctions(ABC):
 
 
 def _is_resolved(values: Numbers) -> bool:
-    """Return True if polynomials through the samples, shape (functions, samples), are near the functions everywhere."""
+    """Return True if polynomials through the samples are near the functions.
+
+    Samples have shape (functions, samples).
+    """
     inner = values[:, 1:-1]
     if not np.isfinite(inner).all():
         return False
@@ -170,9 +189,9 @@ def _is_resolved(values: Numbers) -> bool:
 
 
 def _narrow_dip(coefficients: Vector, between: Vector, end: float) -> Vector | None:
-    """Return a place and a later one where a polynomial that no sample shows negative is so.
+    """Return a place and a later one at which a polynomial is negative.
 
-    The first minimum below zero.
+    It is the first minimum below zero. No sample of the polynomial is negative.
     """
     for low, place in minima(coefficients, between, above_zero=True):
         if chebyshev.chebval(place, coefficients) < 0 and (1 + place) / 2 < end:
@@ -181,9 +200,25 @@ def _narrow_dip(coefficients: Vector, between: Vector, end: float) -> Vector | N
 
 
 def minima(coefficients: Vector, sizes: Vector, above_zero: bool) -> Iterator[tuple[float, float]]:
-    """Places in [-1, 1] of the minima of a polynomial's sizes at `PLACES`, each after the place before it.
+    """Yield the minima of a polynomial's size in [-1, 1].
 
-    Newton's method for the slope sharpens them, where the size is the polynomial itself only while that bends upwards.
+    Newton's method for the slope refines a minimum.
+
+    Parameters
+    ----------
+    coefficients : ndarray, shape (degree + 1,)
+        Coefficients of Chebyshev polynomials.
+    sizes : ndarray, shape (FINE + 1,)
+        Sizes of the polynomial at `PLACES`.
+    above_zero : bool
+        True to refine a minimum only while the polynomial bends upwards.
+
+    Yields
+    ------
+    low : float
+        The place before the minimum.
+    place : float
+        The minimum.
     """
     slope = chebyshev.chebder(coefficients)
     bend = chebyshev.chebder(slope)

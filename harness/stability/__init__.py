@@ -1,1 +1,1 @@
-"""Motions near a motion: linearisation."""
+"""Linearised motions, equilibria and their stability."""

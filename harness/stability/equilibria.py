@@ -1,18 +1,18 @@
-"""States at rest for constant controls, and whether they are stable.
+"""Equilibria for constant controls, and their stability.
 
-At rest the equations of motion are  r(q, lambda) = 0, f(q) = 0.  Newton's method solves them from many random starts;
-whether more solutions exist stays open. Stability follows from two theorems:
+At rest the equations of motion are r(q, lambda) = 0, f(q) = 0. Newton's method solves them from many random starting
+points. More solutions may exist. Stability follows from two theorems:
 
-- Where all forces have a potential, q is stable if the second variation of V - T0 on the constraint manifold is
+- If all forces have a potential, q is stable if the second variation of V - T0 on the constraint manifold is
   positive definite: the energy has a strict minimum there (Lagrange and Dirichlet; Merkin, Introduction to the Theory
-  of Stability, chapter 3; gyroscopic forces change nothing about that).
+  of Stability, chapter 3; gyroscopic forces do not affect this).
 - It is asymptotically stable if all eigenvalues of the linearised motion have negative real parts, and unstable if one
-  has a positive one (Lyapunov; Merkin, chapter 4).
+  has a positive real part (Lyapunov; Merkin, chapter 4).
 
-Anything else is undecided.
+Otherwise the stability is undecided.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import scipy.linalg
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..language import translatable
 from ..program.motion_problem import MotionProblem, require_analytic
 from ..shown import Shown
@@ -81,7 +81,7 @@ class Equilibrium:
     linearization: Linearization
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Equilibria(Shown):
     """Equilibria that were found; there may be others.
 
@@ -122,7 +122,7 @@ class Equilibria(Shown):
         for each in self.found:
             if each.name == name:
                 return each
-        raise HolonomError(Failure.NO_SUCH_EQUILIBRIUM, detail=name)
+        raise HolonomError(ErrorKind.NO_SUCH_EQUILIBRIUM, detail=name)
 
     def __len__(self) -> int:
         return len(self.found)
@@ -131,7 +131,12 @@ class Equilibria(Shown):
         return iter(self.found)
 
     def document(self) -> dict[str, Any]:
-        """Return what ``holonom equilibria --json`` writes, but for format and version."""
+        """Return the content of ``holonom equilibria --json`` without format and version.
+
+        Returns
+        -------
+        dict
+        """
         return {
             "scene": self.scene,
             "controls": dict(self.controls),
@@ -154,9 +159,14 @@ class Equilibria(Shown):
 
 
 def find_equilibria(
-    problem: MotionProblem, equations: LinearEquations, controls: Mapping[str, float], starts: int, seed: int
+    problem: MotionProblem,
+    equations: LinearEquations,
+    controls: Mapping[str, float],
+    starts: int,
+    seed: int,
+    near: Iterable[Equilibrium] = (),
 ) -> Equilibria:
-    """Look for states at rest.
+    """Search for equilibria.
 
     Parameters
     ----------
@@ -165,11 +175,17 @@ def find_equilibria(
     equations : LinearEquations
         Of the same scene.
     controls : mapping of str to float
-        Constant values; those missing are of the law at the first instant.
+        Constant values; those missing are of the law at the first time.
     starts : int
         Random starts.
     seed : int
         Of their random numbers.
+    near : iterable of Equilibrium
+        Further starts.
+
+    Returns
+    -------
+    Equilibria
 
     Raises
     ------
@@ -178,11 +194,12 @@ def find_equilibria(
     """
     require_analytic(problem)
     if equations.changes_with_time:
-        raise HolonomError(Failure.NEVER_AT_REST)
+        raise HolonomError(ErrorKind.NEVER_AT_REST)
     values = _constant_controls(problem, equations, controls)
     search = _Search(problem, equations, list(values.values()))
     turns = search.turns(np.random.default_rng(seed))
-    found, *left_out = search.equilibria(starts, np.random.default_rng(seed), turns)
+    points = search.starts(starts, np.random.default_rng(seed), near)
+    found, *left_out = search.equilibria(points, turns)
     return Equilibria(
         problem.scene, values, starts, found, *left_out, tuple(equations.coordinates[place] for place in turns)
     )
@@ -193,7 +210,7 @@ def _constant_controls(
 ) -> Mapping[str, float]:
     for name in given:
         if name not in equations.controls:
-            raise HolonomError(Failure.NOT_A_CONTROL, detail=name)
+            raise HolonomError(ErrorKind.NOT_A_CONTROL, detail=name)
     if given.keys() >= set(equations.controls):
         return {name: float(given[name]) for name in equations.controls}
     law = equations.controls_at(float(problem.start["t"]))[: len(equations.controls)]
@@ -201,7 +218,7 @@ def _constant_controls(
 
 
 class _Search:
-    """Newton's method for r = 0, f = 0, in terms of nominal sizes."""
+    """Newton's method for r = 0, f = 0, in units of nominal sizes."""
 
     def __init__(self, problem: MotionProblem, equations: LinearEquations, controls: Sequence[float]) -> None:
         self._problem, self._equations, self._kept = problem, equations, list(problem.independent)
@@ -222,13 +239,19 @@ class _Search:
 
     @cached_property
     def _rank(self) -> int:
-        """Of the constraints' Jacobian: where redundant ones are not known, that at the start."""
+        """Return the rank of the constraints' Jacobian.
+
+        If the redundant constraints are not known, it is the rank at the start.
+        """
         if self._problem.obstacle is None:
             return len(self._kept)
         return Tangent(self._start["equation_by_a"], self._start["constraint_by_q"]).rank
 
     def turns(self, random: np.random.Generator) -> list[int]:
-        """Places of coordinates in which whole turns change nothing at random states."""
+        """Return indices of coordinates that whole turns leave equivalent.
+
+        The test is at random states.
+        """
         states = [self._first + self._sizes * random.normal(size=self._n) for _ in range(PROBES)]
         forces = random.normal(size=len(self._equations.multipliers))
 
@@ -239,17 +262,27 @@ class _Search:
         steps = TURN * np.eye(self._n)
         return [place for place, step in enumerate(steps) if all(same(q, q + step) for q in states)]
 
-    def equilibria(
-        self, starts: int, random: np.random.Generator, turns: Sequence[int]
-    ) -> tuple[tuple[Equilibrium, ...], int, int]:
-        """Return the equilibria that Newton's method finds, and how many are left out: of families, and singular ones.
+    def starts(self, count: int, random: np.random.Generator, near: Iterable[Equilibrium]) -> Matrix:
+        """Return starting points, shape (n, k).
+
+        They are the scene's own, random ones around it and around zero, and the given ones.
+        """
+        spreads = np.resize(SPREADS, count - 1) * self._sizes[:, None]
+        around = np.outer(self._first, np.arange(count - 1) % 2)
+        given = [list(each.coordinates.values()) for each in near]
+        return np.column_stack([self._first, around + spreads * random.normal(size=(self._n, count - 1)), *given])
+
+    def equilibria(self, starts: Matrix, turns: Sequence[int]) -> tuple[tuple[Equilibrium, ...], int, int]:
+        """Return the equilibria that Newton's method finds, and the number left out.
+
+        Those left out are further ones of families, and singular ones.
 
         Solutions that are not isolated, with the same multipliers and stiffnesses, count as one family.
         """
         known: list[_Solution] = []
         more = singular = 0
-        for q, multipliers in self._solved(self._starts(starts, random)):
-            q[turns] -= TURN * np.round(q[turns] / TURN)
+        for q, multipliers in self._solved(starts):
+            q[turns] -= TURN * np.ceil(q[turns] / TURN - 0.5 - SAME)  # the angle pi, not -pi
             if any(self._close(q, other.q, turns) for other in known):
                 continue
             stiffness = self._stiffness(q, multipliers)
@@ -293,14 +326,11 @@ class _Search:
             return None
         return tangent.basis.T @ here["equation_by_q"] @ tangent.basis
 
-    def _starts(self, count: int, random: np.random.Generator) -> Matrix:
-        """Return the scene's own start and random ones around it and around zero, shape (n, count)."""
-        spreads = np.resize(SPREADS, count - 1) * self._sizes[:, None]
-        around = np.outer(self._first, np.arange(count - 1) % 2)
-        return np.column_stack([self._first, around + spreads * random.normal(size=(self._n, count - 1))])
-
     def _solved(self, q: Matrix) -> Iterator[tuple[Vector, Vector]]:
-        """Solutions by Newton's method from k starts, shape (n, k), in their order."""
+        """Return solutions by Newton's method from k starting points, shape (n, k).
+
+        They have the order of the starting points.
+        """
         multipliers = np.zeros((len(self._equations.multipliers), q.shape[1]))
         left, solved = np.arange(q.shape[1]), np.zeros(q.shape[1], dtype=bool)
         with np.errstate(all="ignore"):
@@ -316,9 +346,9 @@ class _Search:
             yield self._zeroed(q[:, place]), multipliers[:, place]
 
     def _newton(self, q: Matrix, multipliers: Matrix) -> tuple[Matrix, Vector, Vector]:
-        """Return steps of k points, shape (n + g, k), their sizes, and what is out of balance.
+        """Return Newton steps of k points, shape (n + g, k), their sizes and residuals.
 
-        In terms of nominal sizes.
+        Sizes are in units of nominal sizes.
         """
         here, k = self._at(q, multipliers), q.shape[1]
         J, K = (np.moveaxis(here[name], -1, 0) for name in ("constraint_by_q", "equation_by_q"))
@@ -339,7 +369,7 @@ class _Search:
         return step.T, np.where(finite, size, np.nan), np.max(np.abs(out_of_balance), axis=1, initial=0.0)
 
     def _zeroed(self, q: Vector) -> Vector:
-        """Without what is rounding."""
+        """Set entries at the level of rounding errors to zero."""
         return np.where(np.abs(q) <= ROUNDING * self._sizes, 0.0, q)
 
     def _close(self, one: Vector, other: Vector, turns: Sequence[int]) -> bool:
@@ -372,7 +402,10 @@ class _Solution(NamedTuple):
         return bool(values.min(initial=np.inf) > LEAST_STIFFNESS * values.max(initial=0.0))
 
     def same_family(self, other: "_Solution") -> bool:
-        """Return True if neither is isolated, and multipliers and principal stiffnesses are the same."""
+        """Return True if neither is isolated and multipliers and stiffnesses agree.
+
+        The stiffnesses are the principal ones.
+        """
         alike = _same(self.multipliers, other.multipliers) and _same(self._principal, other._principal)
         return alike and not self.isolated and not other.isolated
 
@@ -382,7 +415,7 @@ def _same(one: Vector, other: Vector) -> bool:
 
 
 def _stability(found: _Solution, A: Matrix, forced: bool) -> Stability:
-    """Judge by the second variation, where there is one, and by the eigenvalues of A."""
+    """Decide the stability by the second variation, if any, and the eigenvalues of A."""
     if not forced:
         values = np.linalg.eigvalsh((found.stiffness + found.stiffness.T) / 2)
         if np.all(values > LEAST_STIFFNESS * np.max(np.abs(values), initial=0.0)):
@@ -394,7 +427,9 @@ def _stability(found: _Solution, A: Matrix, forced: bool) -> Stability:
 
 
 def _certain_real_parts(A: Matrix, error: float) -> tuple[Vector, np.ndarray]:
-    """Real parts of the eigenvalues, and of which the sign is certain under a relative error of A.
+    """Return real parts of the eigenvalues, and True for those with a certain sign.
+
+    The sign is certain if it holds under a relative error of A.
 
     An eigenvalue moves by its condition number 1/|y^H x| times the perturbation, to first order (Golub & Van Loan,
     section 7.2).

@@ -1,10 +1,10 @@
-"""The linearised equations of a scene, evaluated at a state: `maxima/stability/linearization.mac` derives them.
+"""Linearised equations of a scene, by `maxima/stability/linearization.mac`.
 
 With r_s the left side of Lagrange's equations less the right one, deviations satisfy
 
     A da + D dv + K dq + E du + ... - J^T dlambda = 0,        J dq + U du = 0,
 
-and the first and second rates of the latter.
+and the first and second time derivatives of the latter.
 """
 
 from collections.abc import Mapping, Sequence
@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..documents import ask
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..formats import Document, read
 from ..program.motion_program import Program, names_used
 from ..program.numpy_function import NumpyFunction
@@ -60,7 +60,7 @@ class LinearEquations:
 
     @cached_property
     def _places(self) -> list[tuple[str, tuple[int, ...]]]:
-        """Of each output, its array and its place there."""
+        """Array and index of each output."""
         parts = (INDEXED.fullmatch(name).groups() for name in self._evaluate.outputs)
         return [(array, tuple(int(place) - 1 for place in places if place)) for array, *places in parts]
 
@@ -70,11 +70,21 @@ class LinearEquations:
 
     @property
     def changes_with_time(self) -> bool:
-        """Whether the equations contain the time, controls apart."""
+        """True if the equations contain the time other than through the controls."""
         return "t" in names_used(self.program)
 
     def controls_at(self, t: float) -> Vector:
-        """u, dot u and ddot u under the law, shape (3r,).
+        """Return u, dot u and ddot u under the law.
+
+        Parameters
+        ----------
+        t : float
+            Time, in the scene's unit.
+
+        Returns
+        -------
+        ndarray, shape (3r,)
+            All u, then all dot u, then all ddot u; empty without controls.
 
         Raises
         ------
@@ -84,7 +94,7 @@ class LinearEquations:
         if not self.controls:
             return np.empty(0)
         if self.law is None:
-            raise HolonomError(Failure.NO_LAW)
+            raise HolonomError(ErrorKind.NO_LAW)
         return self._law([t])
 
     def at(self, point: "Point", kept: Sequence[int]) -> Mapping[str, Matrix]:
@@ -131,7 +141,18 @@ class Point(NamedTuple):
 
 
 def linear_equations(source: Source, request: Request) -> LinearEquations:
-    """Ask Maxima for the linearised equations of a scene.
+    """Derive the linearised equations of a scene by Maxima.
+
+    Parameters
+    ----------
+    source : Source
+        Scene file.
+    request : Request
+        Scene and numbers for its parameters.
+
+    Returns
+    -------
+    LinearEquations
 
     Raises
     ------

@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..program.motion_problem import MotionProblem, require_analytic
 from ..shown import Shown
 from ..simulation.constraints.directions import or_one
@@ -40,24 +40,26 @@ AT_REST = 1e-9  # velocities and accelerations, in terms of their nominal sizes,
 UNREACHED = 1e-9  # directions of the state, relative to the others, that count as unreachable
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Linearization(Shown):
-    """The linear system  x' = A x + B_u du + B_du du' + B_ddu du'',  y = C x + D_u du + ...,  x = (xi, eta).
+    """A linear system x' = A x + B_u du + B_du du' + B_ddu du''.
+
+    Its output is y = C x + D_u du + ..., and its state x = (xi, eta).
 
     Attributes
     ----------
     scene : str
     at : float or None
-        The instant; None for an equilibrium.
+        The time; None for an equilibrium.
     at_rest : bool
-        Whether velocities and accelerations vanish there. Of a motion that goes on, A is that of an instant, and its
-        eigenvalues say nothing about stability.
+        True if velocities and accelerations vanish there. Otherwise A belongs to one time of a motion, and its
+        eigenvalues do not decide about stability.
     coordinates : tuple of str
         Names of the n coordinates.
     leading : tuple of str
-        Of those, the m to which the tangent coordinates belong.
+        Names of the m coordinates to which the tangent coordinates belong.
     controls, outputs : tuple of str
-        Names of the r inputs and of what y holds: coordinates, velocities, multipliers, outputs of the scene.
+        Names of the r inputs and of the entries of y: coordinates, velocities, multipliers, outputs of the scene.
     mass : ndarray, shape (n, n)
         The mass matrix.
     basis : ndarray, shape (n, m)
@@ -98,12 +100,15 @@ class Linearization(Shown):
 
     @property
     def eigenvalues(self) -> Vector:
-        """Of A, shape (2m,), the slowest first, complex."""
+        """Eigenvalues of A, shape (2m,), complex, the slowest first."""
         return self._modes[0]
 
     @property
     def modes(self) -> Matrix:
-        """Coordinates of the eigenvectors, shape (n, 2m), complex; the largest entry of each is 1."""
+        """Coordinates of the eigenvectors, shape (n, 2m), complex.
+
+        The largest entry of each is 1.
+        """
         shapes = self.basis @ self._modes[1][: self.basis.shape[1]]
         largest = np.argmax(np.abs(shapes), axis=0) if shapes.size else []
         peaks = shapes[largest, np.arange(shapes.shape[1])]
@@ -111,12 +116,15 @@ class Linearization(Shown):
 
     @property
     def frequencies(self) -> Vector:
-        """|eigenvalue|/(2 pi), shape (2m,): periods by the unit of time, without damping."""
+        """Undamped frequencies ``|eigenvalue|/(2 pi)``, shape (2m,).
+
+        The unit is one period in the unit of time.
+        """
         return np.abs(self.eigenvalues) / (2 * np.pi)
 
     @property
     def damping(self) -> Vector:
-        """Damping ratios, -Re/|eigenvalue|, shape (2m,); zero where an eigenvalue is."""
+        """Damping ratios, ``-Re/|eigenvalue|``, shape (2m,); zero where an eigenvalue is."""
         sizes = np.abs(self.eigenvalues)
         return -self.eigenvalues.real / np.where(sizes > 0, sizes, 1.0) + 0.0
 
@@ -131,7 +139,16 @@ class Linearization(Shown):
         return _reachable(self.A, b_u + self.A @ (b_du + self.A @ b_ddu))
 
     def observable_rank(self, outputs: Sequence[str] | None = None) -> int:
-        """Kalman's rank of observability, at most 2m, by these outputs; by all of them where none are named.
+        """Kalman's rank of observability, at most 2m.
+
+        Parameters
+        ----------
+        outputs : sequence of str or None
+            Names of outputs; None for all.
+
+        Returns
+        -------
+        int
 
         Raises
         ------
@@ -150,6 +167,15 @@ class Linearization(Shown):
             and du/dt are states then, behind xi and eta.
         outputs : sequence of str or None
             None for all.
+
+        Returns
+        -------
+        A : ndarray, shape (s, s)
+            s = 2m, or 2m + 2r with the input ``ddot``.
+        B : ndarray, shape (s, r)
+        C : ndarray, shape (p, s)
+            A row for each of the p outputs.
+        D : ndarray, shape (p, r)
 
         Raises
         ------
@@ -171,7 +197,12 @@ class Linearization(Shown):
         return a, np.concatenate([b_ddu, none, one]), np.concatenate([self.C[rows], d_u, d_du], axis=1), d_ddu
 
     def document(self) -> dict[str, Any]:
-        """Return what ``holonom linearize --json`` writes, but for format and version."""
+        """Return the content of ``holonom linearize --json`` without format and version.
+
+        Returns
+        -------
+        dict
+        """
 
         def pairs(numbers: Matrix) -> list[Any]:
             return np.stack([numbers.real, numbers.imag], axis=-1).tolist()
@@ -199,7 +230,7 @@ class Linearization(Shown):
 
 
 def linearize(problem: MotionProblem, equations: LinearEquations, at: Fraction | None = None) -> Linearization:
-    """Linearise a motion at an instant.
+    """Linearise a motion at a given time.
 
     Parameters
     ----------
@@ -208,7 +239,11 @@ def linearize(problem: MotionProblem, equations: LinearEquations, at: Fraction |
     equations : LinearEquations
         Of the same scene.
     at : Fraction or None
-        The instant; None for the start.
+        The time; None for the start.
+
+    Returns
+    -------
+    Linearization
 
     Raises
     ------
@@ -227,11 +262,16 @@ def linearized(
 
     Parameters
     ----------
-    problem, equations
+    problem, equations : MotionProblem, LinearEquations
         As for `linearize`.
     point : Point
+        State with accelerations, multipliers and controls.
     at : float or None
-        The instant at which a motion is there; None for an equilibrium.
+        The time at which a motion is there; None for an equilibrium.
+
+    Returns
+    -------
+    Linearization
 
     Raises
     ------
@@ -242,7 +282,7 @@ def linearized(
     here = equations.at(point, kept)
     tangent = Tangent(here["equation_by_a"], here["constraint_by_q"])
     if tangent.rank < len(kept) and problem.obstacle is None:
-        raise HolonomError(Failure.NOT_LINEARIZED, instant=point.t)
+        raise HolonomError(ErrorKind.NOT_LINEARIZED, time=point.t)
     nominal, velocities = nominal_of(problem), point.state[len(names) :]
     moving = np.abs([velocities, point.accelerations]) > AT_REST * np.array([nominal.velocities, nominal.accelerations])
     return Linearization(
@@ -260,7 +300,20 @@ def linearized(
 
 
 def state_at(problem: MotionProblem, at: Fraction | None) -> tuple[float, Vector]:
-    """Return the instant, None for the start, and the state there.
+    """Return the time, None for the start, and the state there.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    at : Fraction or None
+        Time in the scene's unit; None for the start.
+
+    Returns
+    -------
+    t : float
+    state : ndarray, shape (2n,)
+        Coordinates, then velocities.
 
     Raises
     ------
@@ -272,14 +325,37 @@ def state_at(problem: MotionProblem, at: Fraction | None) -> tuple[float, Vector
         return start
     report = simulate(problem, SimulationRequest(until=at, samples=FINAL_STATE_ALONE)).report
     if report.ending is not None and report.t < at:
-        raise HolonomError(Failure.NOT_REACHED, instant=float(at), detail=f"it ends at t = {report.t:.10g}")
-    if report.doubts:
-        raise HolonomError(Failure.NOT_REACHED, instant=float(at), detail=report.doubts[0].reason)
+        raise HolonomError(ErrorKind.NOT_REACHED, time=float(at), detail=f"it ends at t = {report.t:.10g}")
+    if report.violations:
+        raise HolonomError(ErrorKind.NOT_REACHED, time=float(at), detail=report.violations[0].reason)
     return float(report.t), np.array([*report.coordinates.values(), *report.velocities.values()])
 
 
 def motion_at(problem: MotionProblem, equations: LinearEquations, t: float, state: Vector) -> Point:
-    """Return the state with accelerations and multipliers, zero for constraints that follow from others."""
+    """Return the state with accelerations and multipliers.
+
+    Multipliers of dependent constraints are zero.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    equations : LinearEquations
+        Of the same scene.
+    t : float
+        Time, in the scene's unit.
+    state : ndarray, shape (2n,)
+        Coordinates, then velocities.
+
+    Returns
+    -------
+    Point
+
+    Raises
+    ------
+    HolonomError
+        A control has no law; the mass matrix is singular along a free direction.
+    """
     n, kept, multipliers = len(equations.coordinates), list(problem.independent), np.zeros(len(equations.multipliers))
     at_rest = Point(t, state, np.zeros(n), multipliers, equations.controls_at(t))
     here = equations.at(at_rest, kept)
@@ -290,7 +366,7 @@ def motion_at(problem: MotionProblem, equations: LinearEquations, t: float, stat
 
 
 def _state_space(here: Mapping[str, Matrix], tangent: Tangent) -> tuple[Matrix, dict[str, Matrix], Matrix, dict]:
-    """Return A, B, C, D from deviations, whose columns belong to xi, eta, du, du' and du''."""
+    """Return A, B, C, D from deviations with columns for xi, eta, du, du' and du''."""
     mass, mass_rate, U = here["equation_by_a"], here["A_rate"], here["constraint_by_u"]
     N, n, m, r = tangent.basis, *tangent.basis.shape, U.shape[1]
 
@@ -316,13 +392,16 @@ def _state_space(here: Mapping[str, Matrix], tangent: Tangent) -> tuple[Matrix, 
 
 
 def _by_deviations(here: Mapping[str, Matrix], row: str, q: Matrix, v: Matrix, controls: Matrix) -> Matrix:
-    """Return the change of an expression by the deviations, but for those of accelerations and multipliers."""
+    """Return the change of an expression by the deviations.
+
+    Those of accelerations and multipliers are left out.
+    """
     by_controls = np.concatenate([here[f"{row}_by_{rate}"] for rate in RATES], axis=1)
     return here[f"{row}_by_q"] @ q + here[f"{row}_by_v"] @ v + by_controls @ controls
 
 
 def _reachable(A: Matrix, B: Matrix) -> int:
-    """Return the dimension of the span of B, A B, A^2 B, ..., rounding apart."""
+    """Return the dimension of the span of B, A B, A^2 B, ..., up to rounding."""
     balanced, (scale, _) = scipy.linalg.matrix_balance(A, permute=False, separate=True)
     A, B = balanced / or_one(np.linalg.norm(balanced)), B / scale[:, None]
     B = B / or_one(np.linalg.norm(B, axis=0))

@@ -1,4 +1,4 @@
-"""Which linearisation, and which equilibria, are asked for."""
+"""Requests for a linearisation and for equilibria."""
 
 from dataclasses import dataclass
 from fractions import Fraction
@@ -8,15 +8,15 @@ from ..options import option
 
 @dataclass(frozen=True)
 class LinearizationRequest:
-    """About which state."""
+    """A request for a linearisation about a state."""
 
-    at: Fraction | None = option(None, "The instant; without it, the start.", metavar="T")
+    at: Fraction | None = option(None, "The time; without it, the start.", metavar="T")
     equilibrium: str | None = option(None, "Instead, one of those that equilibria finds.", metavar="NAME")
 
 
 @dataclass(frozen=True)
 class EquilibriaRequest:
-    """How equilibria are looked for."""
+    """A request for equilibria."""
 
     starts: int = option(200, "Random starts of Newton's method.", metavar="N", least=1)
     seed: int = option(1, "Of their random numbers.", metavar="N", least=0)

@@ -1,4 +1,7 @@
-"""The tangent space of the constraint manifold at a state, with coordinates orthonormal in the mass metric."""
+"""The tangent space of the constraint manifold at a state.
+
+Its coordinates are orthonormal in the mass metric.
+"""
 
 from functools import cached_property
 
@@ -12,29 +15,29 @@ DEPENDENT = 1e-9  # singular values of the scaled constraints, relative to the l
 
 
 class Tangent:
-    """Solutions of J x = 0, x = N xi with N^T A N = 1, and of linear equations of motion.
+    """The solutions of J x = 0, and of linear equations of motion.
 
-    Of all such N the one is taken for which the m coordinates that are most independent, each in terms of the root of
-    its mass, are a symmetric positive definite matrix times xi: where these are masses on lines, N gives each of them
-    its own xi.
+    The former are x = N xi with N^T A N = 1. Of all such N, one is chosen for the m most independent coordinates,
+    each scaled by the root of its mass: as functions of xi they have a symmetric positive definite matrix. If these
+    are masses on lines, N gives each of them its own xi.
 
     Parameters
     ----------
     mass : ndarray, shape (n, n)
-        A, which may be singular where the constraints make up for it.
+        A, which may be singular if the constraints make the system regular.
     jacobian : ndarray, shape (g, n)
         J, whose rows may depend on one another.
 
     Attributes
     ----------
     rank : int
-        Of J.
+        Rank of J.
     least : float
-        Of the singular values that count, in terms of the largest: how far a singular configuration is.
+        Least of the counted singular values over the largest: the distance from a singular configuration.
     basis : ndarray, shape (n, m)
         N.
     leading : tuple of int
-        Places of the m coordinates.
+        Indices of the m coordinates.
 
     Raises
     ------
@@ -62,7 +65,9 @@ class Tangent:
         self.basis = free @ (left @ right).T
 
     def solve(self, force: Matrix, constrained: Matrix) -> tuple[Matrix, Matrix]:
-        """Return x and mu of A x - J^T mu = F, J x = b, mu the shortest where the constraints depend on one another.
+        """Return x and mu of A x - J^T mu = F, J x = b.
+
+        If the constraints depend on one another, mu is the shortest solution.
 
         Parameters
         ----------
@@ -82,7 +87,7 @@ class Tangent:
 
     @cached_property
     def _inverse(self) -> Matrix:
-        """Of J, by lengths in terms of the roots of the masses."""
+        """Return the inverse of J, with lengths in units of the roots of the masses."""
         roots = np.sqrt(or_one(np.abs(self._mass.diagonal())))
         lengths: Vector = or_one(np.linalg.norm(self._jacobian / roots, axis=1))
         return np.linalg.pinv(self._jacobian / roots / lengths[:, None], rcond=DEPENDENT) / roots[:, None] / lengths

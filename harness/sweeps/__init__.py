@@ -1,1 +1,4 @@
-"""Sweeps: one motion for many values of its parameters, lane by lane, chunk by chunk, to a Parquet dataset."""
+"""Parameter sweeps: one motion for many parameter values, as a Parquet dataset.
+
+Batch elements are independent. The rows are computed chunk by chunk.
+"""

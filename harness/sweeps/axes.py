@@ -1,4 +1,4 @@
-"""What a sweep varies: grids, lists and samples of parameters, and the rows that they make.
+"""Axes of a sweep: grids, lists and samples of parameters, and the rows they span.
 
 The rows are the product of all grids and lists, the last one named varying fastest, for each member of the sample in
 turn. Row i is a function of i and the seed alone: random numbers come in blocks of their own generators.
@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..documents import NAME
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..options import Number, within_reach
 
 BLOCK = 1024  # members of a sample that one generator draws
@@ -26,7 +26,10 @@ DRAWN = re.compile(rf"(\w+)\(\s*({NUMBER})\s*,\s*({NUMBER})\s*\)")
 
 
 class Distribution(StrEnum):
-    """What a sample is drawn from, and what its two numbers are: mean and deviation, or the least and the greatest."""
+    """The distribution of a sample and the meaning of its two numbers.
+
+    They are mean and standard deviation of a normal distribution, else the least and the greatest value.
+    """
 
     NORMAL = "normal"
     UNIFORM = "uniform"
@@ -44,7 +47,17 @@ class Grid:
     text: str  # how they were asked for
 
     def at(self, places: NDArray[np.intp]) -> NDArray[np.float64]:
-        """Return the numbers at some places, from zero."""
+        """Return the numbers at some places, from zero.
+
+        Parameters
+        ----------
+        places : ndarray of int, shape (k,)
+            Positions of the numbers, from zero.
+
+        Returns
+        -------
+        ndarray, shape (k,)
+        """
         inside = self.first + places * ((self.last - self.first) / max(1, self.count - 1))
         return np.where((places == self.count - 1) & (places > 0), self.last, inside)
 
@@ -63,7 +76,17 @@ class Listed:
         return len(self.numbers)
 
     def at(self, places: NDArray[np.intp]) -> NDArray[np.float64]:
-        """Return the numbers at some places, from zero."""
+        """Return the numbers at some places, from zero.
+
+        Parameters
+        ----------
+        places : ndarray of int, shape (k,)
+            Positions of the numbers, from zero.
+
+        Returns
+        -------
+        ndarray, shape (k,)
+        """
         return np.array(self.numbers)[places]
 
 
@@ -81,7 +104,19 @@ class Sample:
     text: str  # how they were asked for
 
     def draw(self, generator: np.random.Generator, count: int) -> NDArray[np.float64]:
-        """So many numbers."""
+        """Draw random numbers from the distribution.
+
+        Parameters
+        ----------
+        generator : Generator
+            Source of random numbers.
+        count : int
+            Number of random numbers.
+
+        Returns
+        -------
+        ndarray, shape (count,)
+        """
         match self.distribution:
             case Distribution.NORMAL:
                 return generator.normal(self.first, self.second, count)
@@ -93,7 +128,7 @@ class Sample:
 
 @dataclass(frozen=True)
 class Axes:
-    """What a sweep varies."""
+    """The axes of a sweep."""
 
     values: tuple[Values, ...]
     samples: tuple[Sample, ...]
@@ -111,7 +146,12 @@ class Axes:
         return self.size * math.prod(axis.count for axis in self.values)
 
     def numbers(self, first: int, last: int) -> NDArray[np.float64]:
-        """Return the parameters of the rows from the first up to the last, which is not among them.
+        """Return the parameters of the rows first, ..., last - 1.
+
+        Parameters
+        ----------
+        first, last : int
+            Row numbers, from zero; the last is excluded.
 
         Returns
         -------
@@ -132,7 +172,7 @@ class Axes:
 def read_axes(
     grids: Iterable[str], lists: Iterable[str], samples: Iterable[str], size: int | None, seed: int | None
 ) -> Axes:
-    """Read what a sweep varies, as it stands on a command line.
+    """Read the axes of a sweep from the options of a command line.
 
     Parameters
     ----------
@@ -145,6 +185,10 @@ def read_axes(
     size, seed : int or None
         As for `make_axes`.
 
+    Returns
+    -------
+    Axes
+
     Raises
     ------
     HolonomError
@@ -155,7 +199,7 @@ def read_axes(
 
 
 def make_axes(values: Sequence[Values], samples: Sequence[Sample], size: int | None, seed: int | None) -> Axes:
-    """Return what a sweep varies.
+    """Return the axes of a sweep.
 
     Parameters
     ----------
@@ -166,6 +210,10 @@ def make_axes(values: Sequence[Values], samples: Sequence[Sample], size: int | N
     seed : int or None
         Of the sample; None for zero.
 
+    Returns
+    -------
+    Axes
+
     Raises
     ------
     HolonomError
@@ -173,47 +221,106 @@ def make_axes(values: Sequence[Values], samples: Sequence[Sample], size: int | N
     """
     names = [axis.name for axis in chain(values, samples)]
     if not names:
-        raise HolonomError(Failure.NOTHING_VARIES)
+        raise HolonomError(ErrorKind.NOTHING_VARIES)
     if twice := next((name for name in names if names.count(name) > 1), None):
-        raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{twice} is varied twice")
+        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{twice} is varied twice")
     if bool(samples) != (size is not None):
         missing = "a sample needs its --size" if samples else "--size is that of a --sample, and there is none"
-        raise HolonomError(Failure.NOT_AN_AXIS, detail=missing)
+        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=missing)
     axes = Axes(tuple(values), tuple(samples), size or 1, seed or 0)
     if axes.rows > MOST_ROWS:
-        raise HolonomError(Failure.NOT_AN_AXIS, detail=f"these are {axes.rows} rows, and {MOST_ROWS} are the most")
+        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"these are {axes.rows} rows, and {MOST_ROWS} are the most")
     return axes
 
 
 def grid(name: str, first: Number, last: Number, count: int | str, text: str | None = None) -> Grid:
-    """Return equidistant numbers; raises as `read_axes`."""
+    """Return equidistant numbers.
+
+    Parameters
+    ----------
+    name : str
+        Name of the parameter.
+    first, last : Number
+        First and last number of the grid.
+    count : int or str
+        Number of values, at least 1.
+    text : str or None
+        Option of the command line, for error messages; None to compose it.
+
+    Returns
+    -------
+    Grid
+
+    Raises
+    ------
+    HolonomError
+        As `read_axes`.
+    """
     text = text or f"{name}={first}:{last}:{count}"
     if not str(count).isdecimal() or not 1 <= len(str(count)) <= 12 or int(count) < 1:
-        raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{text} has no number of values")
+        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{text} has no number of values")
     return Grid(_required_name(name, text), _number(first, text), _number(last, text), int(count), text)
 
 
 def listed(name: str, numbers: Sequence[Number], text: str | None = None) -> Listed:
-    """Return numbers one after the other; raises as `read_axes`."""
+    """Return numbers one after the other.
+
+    Parameters
+    ----------
+    name : str
+        Name of the parameter.
+    numbers : sequence of Number
+        Its values, in order.
+    text : str or None
+        Option of the command line, for error messages; None to compose it.
+
+    Returns
+    -------
+    Listed
+
+    Raises
+    ------
+    HolonomError
+        As `read_axes`.
+    """
     text = text or f"{name}={','.join(map(str, numbers))}"
     return Listed(_required_name(name, text), tuple(_number(number, text) for number in numbers or [""]), text)
 
 
 def sample(name: str, drawn: str, text: str | None = None) -> Sample:
-    """Return the sample that a distribution with its two numbers describes; raises as `read_axes`."""
+    """Return the sample of a distribution with its two numbers.
+
+    Parameters
+    ----------
+    name : str
+        Name of the parameter.
+    drawn : str
+        ``normal(MEAN,DEVIATION)``, ``uniform(LEAST,GREATEST)`` or ``loguniform(LEAST,GREATEST)``.
+    text : str or None
+        Option of the command line, for error messages; None to compose it.
+
+    Returns
+    -------
+    Sample
+
+    Raises
+    ------
+    HolonomError
+        As `read_axes`.
+    """
     text = text or f"{name}={drawn}"
     found = DRAWN.fullmatch(drawn.strip())
     if found is None or found[1] not in set(Distribution):
         raise HolonomError(
-            Failure.NOT_AN_AXIS, detail=f"{text} draws from none of {', '.join(Distribution)}(NUMBER,NUMBER)"
+            ErrorKind.NOT_AN_AXIS, detail=f"{text} draws from none of {', '.join(Distribution)}(NUMBER,NUMBER)"
         )
     kind, first, second = Distribution(found[1]), _number(found[2], text), _number(found[3], text)
     if kind is Distribution.NORMAL and not second > 0:
-        raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{text} has no positive deviation")
+        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{text} has no positive deviation")
     if kind is not Distribution.NORMAL and not first < second:
-        raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{text} has no least number below its greatest")
+        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{text} has no least number below its greatest")
     if kind is Distribution.LOGUNIFORM and not first > 0:
-        raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{text} has no logarithm")
+        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{text} has no logarithm")
     return Sample(_required_name(name, text), kind, first, second, text)
 
 
@@ -221,7 +328,7 @@ def _read_grid(text: str) -> Grid:
     name, rest = _named(text)
     parts = [part.strip() for part in rest.split(":")]
     if len(parts) != 3:
-        raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{text} has not 3 parts")
+        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{text} has not 3 parts")
     return grid(name, *parts, text)
 
 
@@ -237,15 +344,15 @@ def _named(text: str) -> tuple[str, str]:
 
 def _required_name(name: str, text: str) -> str:
     if not NAME.fullmatch(name.strip()):
-        raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{text} names no parameter")
+        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{text} names no parameter")
     return name.strip()
 
 
 def _number(given: Number, whole: str) -> float:
     text = str(given).strip()
     if not re.fullmatch(NUMBER, text) or not within_reach(text.lstrip("+-")):
-        raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{whole} holds what is no number, {text!r}")
+        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{whole} holds what is no number, {text!r}")
     try:
         return float(Fraction(text))
     except ZeroDivisionError:
-        raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{whole} divides by zero") from None
+        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{whole} divides by zero") from None

@@ -1,7 +1,8 @@
-"""The folder of a sweep: one Parquet file a chunk, each there whole or not at all, and a document that says of what.
+"""The folder of a sweep: one Parquet file for each chunk, and a document on them.
 
-A manifest has a line for each file: its first and last row, and its checksum. The same sweep asked for again computes
-what is missing, or is not as it was written; another one is refused.
+A file is written completely or not at all. A manifest has a line for each file: its first and last row, and its
+checksum. If the same sweep is run again, only files that are missing or altered are computed. Another sweep is
+rejected.
 """
 
 import fcntl
@@ -15,7 +16,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..files import DRAFTS, append_line, write_whole
 from ..formats import Publication, published, require
 
@@ -43,7 +44,18 @@ class Chunk:
         return f"part-{self.index:07d}.parquet"
 
     def entry(self, content: bytes) -> dict[str, Any]:
-        """Return what the manifest says of the file."""
+        """Return the manifest's entry of the file.
+
+        Parameters
+        ----------
+        content : bytes
+            Bytes of the Parquet file.
+
+        Returns
+        -------
+        dict of str to object
+            Name, first and last row (included), and SHA-256 checksum.
+        """
         checksum = hashlib.sha256(content).hexdigest()
         return {"part": self.name, "first": self.first, "last": self.last - 1, "sha256": checksum}
 
@@ -67,7 +79,16 @@ class SweepFolder:
 
     @contextmanager
     def held(self, resume: bool) -> Iterator[None]:
-        """Keep other commands out while the block runs. With `resume`, the sweep must have been begun before.
+        """Lock the folder while the block runs.
+
+        Parameters
+        ----------
+        resume : bool
+            If True, the folder must contain this sweep.
+
+        Yields
+        ------
+        None
 
         Raises
         ------
@@ -80,7 +101,7 @@ class SweepFolder:
             self.path.mkdir(parents=True, exist_ok=True)
             lock = os.open(self.path / LOCK, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
         except OSError as error:
-            raise HolonomError(Failure.UNWRITABLE, self.path, error.strerror or str(error)) from None
+            raise HolonomError(ErrorKind.UNWRITABLE, self.path, error.strerror or str(error)) from None
         try:
             _lock(lock, self.path)
             self._require_ours(resume)
@@ -93,7 +114,15 @@ class SweepFolder:
             os.close(lock)
 
     def missing(self) -> tuple[list[Chunk], list[Chunk]]:
-        """Chunks that are to be computed: those without a file, and those whose files are not as they were written."""
+        """Return the chunks without a file, and the chunks whose files were altered.
+
+        Returns
+        -------
+        absent : list of Chunk
+            Chunks without a file.
+        altered : list of Chunk
+            Chunks whose file differs from its entry in the manifest.
+        """
         listed = self._listed()
         absent, altered = [], []
         for chunk in chunks_of(self.document):
@@ -107,6 +136,12 @@ class SweepFolder:
     def write(self, chunk: Chunk, content: bytes) -> None:
         """Put a chunk in its place, whole, and into the manifest.
 
+        Parameters
+        ----------
+        chunk : Chunk
+        content : bytes
+            Bytes of its Parquet file.
+
         Raises
         ------
         HolonomError
@@ -119,7 +154,7 @@ class SweepFolder:
         append_line(self.path / MANIFEST, json.dumps(chunk.entry(content)))
 
     def _listed(self) -> dict[str, dict[str, Any]]:
-        """Return the last line of the manifest for each file; what cannot be read of it is as if it were not there."""
+        """Return the last entry of the manifest for each file; skip unreadable lines."""
         listed: dict[str, dict[str, Any]] = {}
         with suppress(FileNotFoundError):
             for line in (self.path / MANIFEST).read_bytes().splitlines():
@@ -131,18 +166,28 @@ class SweepFolder:
     def _require_ours(self, resume: bool) -> None:
         if not (self.path / DOCUMENT).exists():
             if self.path.exists() and (not self.path.is_dir() or set(os.listdir(self.path)) - {LOCK}):
-                raise HolonomError(Failure.FOREIGN_FOLDER, self.path)
+                raise HolonomError(ErrorKind.UNRELATED_FOLDER, self.path)
             if resume:
-                raise HolonomError(Failure.NOTHING_TO_RESUME, self.path)
+                raise HolonomError(ErrorKind.NOTHING_TO_RESUME, self.path)
             return
         there = read_document(self.path)
-        for name, ours in self.document.items():
-            if without_places(there.get(name)) != without_places(ours):
-                raise HolonomError(Failure.OTHER_SWEEP, self.path, f"its {name} is {_shown(there.get(name))}")
+        for name, value in self.document.items():
+            if without_places(there.get(name)) != without_places(value):
+                raise HolonomError(ErrorKind.OTHER_SWEEP, self.path, f"its {name} is {_shown(there.get(name))}")
 
 
 def read_document(folder: Path) -> dict[str, Any]:
     """Return the document of a sweep.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of a sweep.
+
+    Returns
+    -------
+    dict of str to object
+        Content of ``_sweep.json``; see the schema ``sweep``.
 
     Raises
     ------
@@ -152,19 +197,40 @@ def read_document(folder: Path) -> dict[str, Any]:
     try:
         document = json.loads((folder / DOCUMENT).read_text(encoding="utf-8"))
     except (OSError, ValueError):
-        raise HolonomError(Failure.FOREIGN_FOLDER, folder) from None
+        raise HolonomError(ErrorKind.UNRELATED_FOLDER, folder) from None
     require(Publication.SWEEP, document)
     return document
 
 
 def chunks_of(document: Mapping[str, Any]) -> list[Chunk]:
-    """Return the chunks that a sweep is made of."""
+    """Return the chunks that a sweep is made of.
+
+    Parameters
+    ----------
+    document : mapping of str to object
+        Document of the sweep; its ``rows`` and ``chunk`` are used.
+
+    Returns
+    -------
+    list of Chunk
+        Chunks in the order of their rows.
+    """
     rows, size = document["rows"], document["chunk"]
     return [Chunk(k, first, min(first + size, rows)) for k, first in enumerate(range(0, rows, size))]
 
 
 def part_of(table: "pyarrow.Table") -> bytes:
-    """Return a table as the bytes of a Parquet file."""
+    """Return a table as the bytes of a Parquet file.
+
+    Parameters
+    ----------
+    table : Table
+        Rows of a chunk.
+
+    Returns
+    -------
+    bytes
+    """
     import pyarrow.parquet
 
     buffer = BytesIO()
@@ -174,7 +240,17 @@ def part_of(table: "pyarrow.Table") -> bytes:
 
 
 def without_places(value: Any) -> Any:
-    """Return what is compared of an entry."""
+    """Return an entry of a document without the keys that are not compared.
+
+    Parameters
+    ----------
+    value : object
+        An entry; anything but a mapping is returned unchanged.
+
+    Returns
+    -------
+    object
+    """
     return {k: v for k, v in value.items() if k not in UNCOMPARED} if isinstance(value, Mapping) else value
 
 
@@ -182,7 +258,7 @@ def _lock(lock: int, path: Path) -> None:
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
-        raise HolonomError(Failure.FOLDER_TAKEN, path) from None
+        raise HolonomError(ErrorKind.FOLDER_TAKEN, path) from None
 
 
 def _shown(value: Any) -> str:

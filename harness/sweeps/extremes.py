@@ -1,11 +1,11 @@
-"""Largest values and zeros of what is followed along motions, from its polynomials step by step.
+"""Largest values and zeros of quantities along motions, by the steps' polynomials.
 
-A Taylor step ends well inside the circle of convergence of the state, so the polynomial of a step falls off like a
-geometric series, if what is made of the state does not change much faster: its coefficients bound it and its slope, few
-steps can hold the largest value, and a few samples tell the shape of it in one. Steps that can hold a zero are halved
-until the bounds tell. Polynomials are evaluated by functions that heyoka compiles, many at a time.
+A Taylor step ends well inside the circle of convergence of the state. So the polynomial of a step falls off like a
+geometric series if the quantity does not change much faster than the state. Its coefficients bound it and its slope,
+few steps can contain the largest value, and a few samples show its shape in one step. Steps that can contain a zero are
+halved until the bounds decide. Polynomials are evaluated by functions that heyoka compiles, many at a time.
 
-Every operation is done element by element: what comes out for a motion does not hang on the others beside it.
+Every operation is done element by element. The result for a motion does not depend on the other elements.
 """
 
 from collections.abc import Callable, Sequence
@@ -30,73 +30,109 @@ Floats = NDArray[np.float64]
 class Steps(NamedTuple):
     """A quantity along motions, step by step."""
 
-    coefficients: Floats  # shape (powers, steps, lanes): in powers of x
-    # middle, length: shape (steps, lanes): the time is middle + x length
+    coefficients: Floats  # shape (powers, steps, elements): in powers of x
+    # middle, length: shape (steps, elements): the time is middle + x length
     middle: Floats
     length: Floats
     least: float  # x runs from this, 0 or -1, to 1
 
     def negative(self) -> "Steps":
-        """Return the quantity with the opposite sign."""
+        """Return the quantity with the opposite sign.
+
+        Returns
+        -------
+        Steps
+        """
         return self._replace(coefficients=-self.coefficients)
 
     def resolved(self) -> NDArray[np.bool_]:
-        """Return where the last coefficients of polynomials are small, shape (lanes,)."""
+        """Return True for elements whose polynomials have small last coefficients.
+
+        Returns
+        -------
+        ndarray of bool, shape (elements,)
+        """
         sizes = np.abs(self.coefficients)
         return sizes[-LAST:].max(axis=(0, 1)) <= RESOLVED * sizes.max(axis=(0, 1))
 
-    def of(self, lanes: Any) -> "Steps":
-        """Return some of the lanes."""
-        return Steps(self.coefficients[:, :, lanes], self.middle[:, lanes], self.length[:, lanes], self.least)
+    def of(self, elements: Any) -> "Steps":
+        """Return some of the elements.
+
+        Parameters
+        ----------
+        elements : slice, int or ndarray
+            Index into the last axis.
+
+        Returns
+        -------
+        Steps
+        """
+        return Steps(self.coefficients[:, :, elements], self.middle[:, elements], self.length[:, elements], self.least)
 
 
 def largest(steps: Steps) -> Floats:
-    """Return the largest value on the way, for each lane.
+    """Return the largest value on the way, for each element.
+
+    Parameters
+    ----------
+    steps : Steps
+        The quantity along the motions.
 
     Returns
     -------
-    ndarray, shape (lanes,)
+    ndarray, shape (elements,)
     """
     return _largest(steps, np.positive)
 
 
 def largest_size(steps: Steps) -> Floats:
-    """Return the largest absolute value on the way, for each lane.
+    """Return the largest absolute value on the way, for each element.
+
+    Parameters
+    ----------
+    steps : Steps
+        The quantity along the motions.
 
     Returns
     -------
-    ndarray, shape (lanes,)
+    ndarray, shape (elements,)
     """
     return _largest(steps, np.abs)
 
 
 def first_zero(steps: Steps) -> Floats:
-    """Return the first instant at which the quantity changes its sign, for each lane; nan where it does not.
+    """Return the first time of a sign change for each element, nan without one.
 
-    Zeros that are close together count, but for rounding. What begins at zero, but for rounding, has no sign there.
+    Close zeros count if they are distinct beyond rounding. A quantity that begins at zero within rounding has no sign
+    there.
+
+    Parameters
+    ----------
+    steps : Steps
+        The quantity along the motions.
 
     Returns
     -------
-    ndarray, shape (lanes,)
+    ndarray, shape (elements,)
     """
     sizes = np.abs(steps.coefficients[0]) + _bounds(steps.coefficients)[0]
     rounding = ROUNDING * np.max(sizes, axis=0)
     parts = _without_turns(steps, rounding)
-    begun = np.searchsorted(parts.lane, np.arange(len(rounding)))  # the first part of each lane
-    small = np.repeat(rounding[parts.lane, None], 2, axis=1)
+    begun = np.searchsorted(parts.element, np.arange(len(rounding)))  # the first part of each element
+    small = np.repeat(rounding[parts.element, None], 2, axis=1)
     small[begun, 0] = np.maximum(small[begun, 0], ZERO * sizes[0])
     values = _values(parts.coefficients, (-1.0, 1.0)).T
     signs = np.where(np.abs(values) > small, np.sign(values), 0.0).ravel()
     latest = np.maximum.accumulate(np.where(signs != 0, np.arange(len(signs)), -1))
     before = np.concatenate([[-1], latest[:-1]])
-    crossed = np.flatnonzero((before >= 2 * begun[parts.lane].repeat(2)) & (signs * signs[before] < 0))
-    lanes, first = np.unique(parts.lane[crossed // 2], return_index=True)
+    crossed = np.flatnonzero((before >= 2 * begun[parts.element].repeat(2)) & (signs * signs[before] < 0))
+    elements, first = np.unique(parts.element[crossed // 2], return_index=True)
     crossing, inside = parts.of(crossed[first] // 2), signs[crossed[first] - 1] * (crossed[first] % 2) != 0
-    ends = np.repeat([[-1.0], [1.0]], len(lanes), axis=1)
+    ends = np.repeat([[-1.0], [1.0]], len(elements), axis=1)
     (root,) = root_of(len(steps.coefficients))(np.concatenate([crossing.coefficients, ends]))
-    found, at = np.full(len(rounding), np.nan), (crossing.step, lanes)
+    found, at = np.full(len(rounding), np.nan), (crossing.step, elements)
     place = crossing.middle + np.where(inside, root, -1.0) * crossing.half
-    found[lanes] = steps.middle[at] + place * steps.length[at]
+    found[elements] = steps.middle[at] + place * steps.length[at]
     return found
 
 
@@ -104,9 +140,9 @@ class _Parts(NamedTuple):
     """Parts of steps, each with a polynomial of its own in x from -1 to 1."""
 
     coefficients: Floats  # shape (powers, m)
-    # of which step and lane, and where in it, shape (m,)
+    # of which step and element, and where in it, shape (m,)
     step: NDArray[np.int64]
-    lane: NDArray[np.int64]
+    element: NDArray[np.int64]
     middle: Floats
     half: Floats
 
@@ -121,23 +157,26 @@ class _Parts(NamedTuple):
 
 
 def _without_turns(steps: Steps, rounding: Floats) -> _Parts:
-    """Return parts in which a quantity has one sign, is monotonic, or is rounding, lane by lane."""
+    """Return parts in which a quantity has one sign, is monotonic or is only rounding.
+
+    Each element has its own parts.
+    """
     powers, *shape = steps.coefficients.shape
-    step, lane = np.indices(shape).reshape(2, -1)
-    waiting = _Parts(steps.coefficients.reshape(powers, -1), step, lane, np.zeros(step.shape), np.ones(step.shape))
+    step, element = np.indices(shape).reshape(2, -1)
+    waiting = _Parts(steps.coefficients.reshape(powers, -1), step, element, np.zeros(step.shape), np.ones(step.shape))
     if steps.least == 0:
         waiting = waiting.half_of(1.0)
     found = []
     for _ in range(HALVINGS):
         reach, turns = _bounds(waiting.coefficients)
         size = np.abs(waiting.coefficients[0])
-        open_ = turns & (size <= reach) & (size + reach > rounding[waiting.lane])
+        open_ = turns & (size <= reach) & (size + reach > rounding[waiting.element])
         found.append(waiting.of(~open_))
         if not open_.any():
             break
         waiting = _joined([waiting.of(open_).half_of(side) for side in (-1.0, 1.0)])
     parts = _joined(found)
-    return parts.of(np.lexsort((parts.middle, parts.step, parts.lane)))
+    return parts.of(np.lexsort((parts.middle, parts.step, parts.element)))
 
 
 def _joined(parts: Sequence[_Parts]) -> _Parts:
@@ -147,20 +186,20 @@ def _joined(parts: Sequence[_Parts]) -> _Parts:
 def _largest(steps: Steps, size: Callable[[Floats], Floats]) -> Floats:
     """Return the largest size of a value.
 
-    At the ends of the steps, or inside of those that can hold one that is larger.
+    It is at the ends of the steps, or inside of steps that can contain a larger one.
     """
     polynomials, places = steps.coefficients, _places(steps.least)
     found = size(_values(polynomials, (steps.least, 1.0))).max(axis=(0, 1))
     reach, turns = _bounds(polynomials)
-    step, lane = np.nonzero(turns & (size(polynomials[0]) + reach >= found))
-    chosen = polynomials[:, step, lane]
+    step, element = np.nonzero(turns & (size(polynomials[0]) + reach >= found))
+    chosen = polynomials[:, step, element]
     values = _values(chosen, places)
     best = np.argmax(size(values), axis=0)
     at_best = np.take_along_axis(values, best[None], axis=0)[0]
     sign = np.where(size(at_best) == at_best, 1.0, -1.0)
     near = np.array(places)[[best, np.maximum(best - 1, 0), np.minimum(best + 1, SAMPLES - 1)]]
     (peak,) = peak_of(len(polynomials))(np.concatenate([chosen * sign, near]))
-    np.maximum.at(found, lane, peak)
+    np.maximum.at(found, element, peak)
     return found
 
 
@@ -170,13 +209,16 @@ def _places(least: float) -> tuple[float, ...]:
 
 
 def _values(polynomials: Floats, places: tuple[float, ...]) -> Floats:
-    """Return values of polynomials, shape (powers, ...), at some places: shape (places, ...)."""
+    """Return values of polynomials, shape (powers, ...), as shape (places, ...)."""
     powers, *shape = polynomials.shape
     return values_at(powers, places)(polynomials.reshape(powers, -1)).reshape(len(places), *shape)
 
 
 def _bounds(polynomials: Floats) -> tuple[Floats, NDArray[np.bool_]]:
-    """Return how far from its constant a polynomial can be for |x| <= 1, and whether its slope can vanish there."""
+    """Bound the distance of polynomials from their constants for |x| <= 1.
+
+    The second array is True if the slope can vanish there.
+    """
     powers, *shape = polynomials.shape
     reach, bend = sizes_of(powers)(polynomials.reshape(powers, -1)).reshape(2, *shape)
     sizes = np.abs(polynomials[:2])

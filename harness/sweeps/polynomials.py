@@ -1,7 +1,7 @@
-"""Functions of many polynomials at once, compiled by heyoka for each number of powers.
+"""Functions of many polynomials at once, compiled by heyoka for each degree.
 
-Each takes coefficients, the constants first, shape (powers, m), with rows of its own below them where it says so, and
-returns an array of shape (results, m). What comes out for a polynomial does not hang on the others.
+Each takes coefficients, the constants first, shape (powers, m). Some functions take further rows below them. Each
+returns an array of shape (results, m). The result for a polynomial does not depend on the others.
 """
 
 from collections.abc import Sequence
@@ -17,14 +17,38 @@ DIFFERENT = 8  # numbers of powers whose functions are kept
 
 @lru_cache(DIFFERENT)
 def values_at(powers: int, places: tuple[float, ...]) -> Evaluation:
-    """Compile the values at some places."""
+    """Compile the values at some places.
+
+    Parameters
+    ----------
+    powers : int
+        Number of coefficients of each polynomial.
+    places : tuple of float
+        Values of x.
+
+    Returns
+    -------
+    Evaluation
+        Function with one result for each place.
+    """
     polynomial = _coefficients(powers)
     return _compiled([_value(polynomial, _number(place)) for place in places], polynomial)
 
 
 @lru_cache(DIFFERENT)
 def sizes_of(powers: int) -> Evaluation:
-    """Compile bounds for |x| <= 1: how far values can be from the constant, and slopes from the linear coefficient."""
+    """Compile bounds of p(x) - p(0) and p'(x) - p'(0) for |x| <= 1.
+
+    Parameters
+    ----------
+    powers : int
+        Number of coefficients of each polynomial.
+
+    Returns
+    -------
+    Evaluation
+        Function with two results, the bounds of p and of p'.
+    """
     polynomial = _coefficients(powers)
     parts = [polynomial[1:], _slope(polynomial)[1:]]
     return _compiled([import_heyoka().sum([_number(0.0), *map(_size, part)]) for part in parts], polynomial)
@@ -32,7 +56,22 @@ def sizes_of(powers: int) -> Evaluation:
 
 @lru_cache(2 * DIFFERENT)
 def half_of(powers: int, side: float) -> Evaluation:
-    """Compile the coefficients of p((x + side)/2), those of the lower or the upper half of |x| <= 1: side -1 or 1."""
+    """Compile the coefficients of p((x + side)/2).
+
+    This is the lower half of |x| <= 1 for side -1, the upper half for side 1.
+
+    Parameters
+    ----------
+    powers : int
+        Number of coefficients of each polynomial.
+    side : float
+        -1.0 or 1.0.
+
+    Returns
+    -------
+    Evaluation
+        Function with `powers` results.
+    """
     polynomial = _coefficients(powers)
     halved = [_number(0.5**power) * coefficient for power, coefficient in enumerate(polynomial)]
     for done in range(powers - 1):
@@ -43,7 +82,20 @@ def half_of(powers: int, side: float) -> Evaluation:
 
 @lru_cache(DIFFERENT)
 def peak_of(powers: int) -> Evaluation:
-    """Compile the largest value that Newton's method sees from a place on, between two others: the last three rows."""
+    """Compile the largest value that Newton's method finds between two bounds.
+
+    The starting place and the bounds are the last three rows.
+
+    Parameters
+    ----------
+    powers : int
+        Number of coefficients of each polynomial.
+
+    Returns
+    -------
+    Evaluation
+        Function with one result.
+    """
     heyoka, polynomial = import_heyoka(), _coefficients(powers)
     here, low, high = given = heyoka.make_vars("x", "low", "high")
     best, slope = _value(polynomial, here), _slope(polynomial)
@@ -60,7 +112,17 @@ def peak_of(powers: int) -> Evaluation:
 def root_of(powers: int) -> Evaluation:
     """Compile the zero between two places of opposite signs, the last two rows.
 
-    By Newton's method, and by halving where that leaves the places between which the zero is.
+    The method is Newton's, with bisection if a step leaves the interval that contains the zero.
+
+    Parameters
+    ----------
+    powers : int
+        Number of coefficients of each polynomial.
+
+    Returns
+    -------
+    Evaluation
+        Function with one result, the place x.
     """
     heyoka, polynomial = import_heyoka(), _coefficients(powers)
     low, high = given = heyoka.make_vars("low", "high")

@@ -1,9 +1,9 @@
-"""Quantities of a motion in heyoka's terms: what is kept, as expressions of t, the state and the parameters."""
+"""Output quantities of a motion as heyoka expressions of time, state, parameters."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..program.heyoka_function import heyoka_expressions, import_heyoka, zero_multipliers
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Call, Expression, Name, Operation, Program, names_in
@@ -12,23 +12,58 @@ Known = Mapping[str, Any]
 
 
 def require_known(problem: MotionProblem, quantities: Sequence[Expression]) -> None:
-    """Refuse quantities that hold names which the motion does not have."""
+    """Reject quantities with names that the motion does not have.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    quantities : sequence of Expression
+        Outputs to compute.
+
+    Raises
+    ------
+    HolonomError
+        A quantity contains a name that the motion does not have.
+    """
     there = ("t", *problem.state, *solved_names(problem), *observed_names(problem), *problem.parameters, "energy")
     for quantity in quantities:
         if unknown := sorted(names_in(quantity) - set(there)):
             raise HolonomError(
-                Failure.NOT_KEPT, detail=f"the motion has no {unknown[0]}; it has {', '.join(there)}, for each row"
+                ErrorKind.NOT_KEPT, detail=f"the motion has no {unknown[0]}; it has {', '.join(there)}, for each row"
             )
 
 
 def observed_names(problem: MotionProblem) -> tuple[str, ...]:
-    """Return controls where the scene observes them, and outputs of its own."""
+    """Return controls where the scene observes them, and outputs of its own.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+
+    Returns
+    -------
+    tuple of str
+        Names of observed controls and of the scene's own outputs.
+    """
     programs = (problem.controls, problem.outputs)
     return tuple(name for program in programs if program is not None for name in program.outputs)
 
 
 def solved_names(problem: MotionProblem) -> tuple[str, ...]:
-    """Accelerations, multipliers and, where the scene observes them, constraint forces."""
+    """Return the accelerations, multipliers and, if observed, constraint forces.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+
+    Returns
+    -------
+    tuple of str
+        Names such as ``ddot(x)``, a multiplier, or ``Lambda[s]`` for the force on coordinate s.
+    """
     accelerations = tuple(f"ddot({name})" for name in problem.coordinates)
     observed = "constraint_forces" in problem.observe
     forces = tuple(f"Lambda[{s}]" for s in range(1, len(problem.coordinates) + 1)) if observed else ()
@@ -36,7 +71,20 @@ def solved_names(problem: MotionProblem) -> tuple[str, ...]:
 
 
 def along_motion(problem: MotionProblem, known: Known) -> dict[str, Any]:
-    """Everything that quantities can be made of, from t, the state and the parameters."""
+    """Return heyoka expressions of everything that quantities can be made of.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    known : mapping of str to heyoka expression
+        Expressions of t, the state and the parameters, by name.
+
+    Returns
+    -------
+    dict of str to object
+        Those of `known`, and accelerations, multipliers, energy, matrices, controls, outputs and events, by name.
+    """
     inputs = {**known, **zero_multipliers(problem.multipliers, 0.0)}
     solved = {**known, **heyoka_expressions(problem.motion, inputs)}
     others = (problem.energy, problem.matrices, problem.controls, problem.outputs, problem.events)
@@ -45,7 +93,20 @@ def along_motion(problem: MotionProblem, known: Known) -> dict[str, Any]:
 
 
 def expressions_of(quantities: Sequence[Expression], known: Known) -> list[Any]:
-    """Quantities as heyoka's expressions, of the expressions that they are made of."""
+    """Return quantities as heyoka expressions.
+
+    Parameters
+    ----------
+    quantities : sequence of Expression
+        Quantities in the names of `known`.
+    known : mapping of str to heyoka expression
+        Expressions by name, as `along_motion` returns them.
+
+    Returns
+    -------
+    list of heyoka expression
+        One for each quantity.
+    """
     named = {f"kept[{place}]": quantity for place, quantity in enumerate(quantities)}
     program = Program(
         scene=None,
@@ -62,7 +123,18 @@ def expressions_of(quantities: Sequence[Expression], known: Known) -> list[Any]:
 
 
 def constraint_forces(problem: MotionProblem) -> list[Expression]:
-    """J^T lambda, of each coordinate that a constraint touches."""
+    """Return J^T lambda for each coordinate that a constraint involves.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+
+    Returns
+    -------
+    list of Expression
+        Sums of ``J[beta,s]`` times multipliers.
+    """
     forces = []
     for s in range(1, len(problem.coordinates) + 1):
         terms = [
@@ -76,5 +148,16 @@ def constraint_forces(problem: MotionProblem) -> list[Expression]:
 
 
 def other_forces(problem: MotionProblem) -> list[Expression]:
-    """Return the components of h."""
+    """Return the components of h.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+
+    Returns
+    -------
+    list of Expression
+        ``h[1]``, ..., ``h[n]``.
+    """
     return [Name(f"h[{s}]") for s in range(1, len(problem.coordinates) + 1)]

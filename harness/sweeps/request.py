@@ -1,4 +1,4 @@
-"""What a sweep is asked for."""
+"""The request of a sweep."""
 
 from dataclasses import dataclass
 from fractions import Fraction
@@ -9,7 +9,7 @@ from ..simulation.request import Stabilization
 
 if TYPE_CHECKING:
     from .axes import Axes
-    from .kept import Kept
+    from .outputs import OutputQuantity
 
 TOLERANCE = 1e-12  # of a step
 CHUNK = 10_000
@@ -17,15 +17,16 @@ CHUNK = 10_000
 
 @dataclass(frozen=True)
 class SweepRequest:
-    """What a sweep is asked for."""
+    """The request of a sweep."""
 
     axes: "Axes"
-    kept: "tuple[Kept, ...]"
+    kept: "tuple[OutputQuantity, ...]"
     tol: float = option(TOLERANCE, "Tolerance of a step.")
-    until: Fraction | None = option(None, "The last instant, in place of the scene's.", metavar="T")
-    drift: Stabilization = option(
+    until: Fraction | None = option(None, "The last time, in place of the scene's.", metavar="T")
+    stabilization: Stabilization = option(
         Stabilization.PROJECTION,
-        "What keeps the constraints.",
+        "Constraint stabilization. --drift is the former name.",
+        alias="drift",
         choices=(Stabilization.PROJECTION, Stabilization.NONE),
     )
     chunk: int = option(CHUNK, "Rows of a file.", metavar="ROWS", least=1, most=10**7)

@@ -1,6 +1,6 @@
-"""The rows of a sweep: for each set of parameters what is kept of its motion, how it went, and what it misses.
+"""Rows of a sweep: the outputs of a motion, its status and constraint residual.
 
-A row that cannot be computed says so and why; no row is left out.
+A row that cannot be computed gives the reason. All rows are written.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..explanations import unresolved
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..program.differentiation import derivative_name
 from ..program.heyoka_function import import_heyoka
 from ..program.motion_problem import MotionProblem, computing, require_analytic
@@ -24,18 +24,18 @@ from ..simulation.accuracy_check import MARGIN, energy_missed, expected, may_hid
 from ..simulation.control_matrix import controls_may_fail
 from ..simulation.evaluation import in_full_vectors
 from ..simulation.initial_state import initial_states_of, started
-from ..simulation.matrices import LaneMatrices
+from ..simulation.matrices import BatchMatrices
 from ..simulation.nominal import nominal_at_each
 from ..simulation.request import SimulationRequest, Stabilization
 from ..simulation.residuals import constraint_residuals
-from ..simulation.simulate import last_instant
+from ..simulation.simulate import last_time
 from .axes import Axes
+from .batch_engine import BatchEngine, Look
 from .extremes import Steps, first_zero, largest, largest_size
-from .kept import ALONG, Kept, Kind
-from .lanes import LaneEngine, Look
+from .outputs import ALONG, Kind, OutputQuantity
 from .quantities import along_motion, constraint_forces, expressions_of, other_forces, require_known
 from .request import TOLERANCE
-from .series import lane_radii
+from .series import batch_radii
 from .single import SingleMotions
 from .time_watch import TimeWatch
 
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 KINKED = frozenset({Operation.ABS, Operation.SIGN, Operation.ARCTAN2})  # with kinks, or jumps
 GROUP = 10_000  # rows that are held in memory at a time, whatever the chunk
 
-OWN = ("row", str(Kind.RESIDUAL), "status", "remark")  # columns of every sweep
+OWN = ("row", str(Kind.RESIDUAL), "status", "note")  # columns of every sweep
 
 Floats = NDArray[np.float64]
 
@@ -66,15 +66,15 @@ class Plan:
 
     problem: MotionProblem  # its open parameters are those that vary
     axes: Axes
-    kept: tuple[Kept, ...]
+    kept: tuple[OutputQuantity, ...]
     tol: float = TOLERANCE  # tolerance of a step
-    until: Fraction | None = None  # the last instant; None for the end of the scene's time span
-    drift: Stabilization = Stabilization.PROJECTION  # ``PROJECTION`` or ``NONE``
-    lanes: int | None = None  # that are followed at once; None for as many as are followed fastest
+    until: Fraction | None = None  # the last time; None for the end of the scene's time span
+    stabilization: Stabilization = Stabilization.PROJECTION  # ``PROJECTION`` or ``NONE``
+    elements: int | None = None  # that are followed at once; None for as many as are followed fastest
 
 
 class RowMaker:
-    """Makes the rows of a plan; what is compiled for it is compiled once.
+    """A maker of the rows of a plan. It compiles the plan's programs once.
 
     Raises
     ------
@@ -93,8 +93,8 @@ class RowMaker:
         if problem.released or any(kept.kind is Kind.RADIUS for kept in plan.kept):
             require_analytic(problem)
         self._moves = any(kept.kind is not Kind.RADIUS for kept in plan.kept)
-        self._end = float(last_instant(problem, plan.until, read_precision("double"))) if self._moves else self._start
-        self._asked = sorted({self._end, *(self._instant(kept) for kept in plan.kept if kept.kind is Kind.AT)})
+        self._end = float(last_time(problem, plan.until, read_precision("double"))) if self._moves else self._start
+        self._asked = sorted({self._end, *(self._time(kept) for kept in plan.kept if kept.kind is Kind.AT)})
         self._points = [kept.quantity for kept in plan.kept if kept.kind is Kind.AT]
         self._looks = [kept for kept in plan.kept if kept.kind in ALONG]
         free = any(kept.kind is Kind.FREE for kept in plan.kept)
@@ -103,7 +103,7 @@ class RowMaker:
         self._hides = may_hide(problem.matrices, ("t", *problem.parameters))
         if taken := [name for name in (*plan.axes.names, *self.columns) if name in OWN]:
             raise HolonomError(
-                Failure.NOT_KEPT, detail=f"{taken[0]} is a column of every sweep; give another name to it"
+                ErrorKind.NOT_KEPT, detail=f"{taken[0]} is a column of every sweep; give another name to it"
             )
 
     @property
@@ -113,7 +113,18 @@ class RowMaker:
         return tuple(dict.fromkeys(name for group in names for name in group if name != Kind.RESIDUAL))
 
     def table(self, first: int, last: int) -> "pyarrow.Table":
-        """Return the rows from the first up to the last, which is not among them."""
+        """Return the rows first, ..., last - 1.
+
+        Parameters
+        ----------
+        first, last : int
+            Row numbers, from zero.
+
+        Returns
+        -------
+        Table
+            Columns of outputs, residual, status and note.
+        """
         import pyarrow as pa
 
         groups = [self._group(begin, min(begin + GROUP, last)) for begin in range(first, last, GROUP)]
@@ -133,7 +144,7 @@ class RowMaker:
             is_truth = any(kept.text == name and kept.kind is Kind.FREE for kept in self.plan.kept)
             arrays[name] = pa.array(column == 1 if is_truth else column, mask=missing)
         arrays["status"] = pa.array(list(map(str, Status))).take(pa.array(rows.statuses))
-        arrays["remark"] = pa.array(rows.remarks, pa.string())
+        arrays["note"] = pa.array(rows.notes, pa.string())
         return pa.table(arrays)
 
     # ---- rows ----
@@ -144,10 +155,10 @@ class RowMaker:
         there = np.flatnonzero(starts.found)
         if len(there) and any(kept.kind is Kind.RADIUS for kept in self.plan.kept):
             name = next(kept.text for kept in self.plan.kept if kept.kind is Kind.RADIUS)
-            rows.kept[name][there] = lane_radii(self._problem, starts.states[:, there], rows.values[:, there])
+            rows.kept[name][there] = batch_radii(self._problem, starts.states[:, there], rows.values[:, there])
         if not self._moves:
             states = starts.states[:, there]
-            at = self._lane_matrices(self._start, states, rows.values[:, there])
+            at = self._batch_matrices(self._start, states, rows.values[:, there])
             left = constraint_residuals(at, states, nominal_at_each(self._problem, at.mass, states, 0.0))
             rows.residual[there] = np.maximum(left["position"], left["velocity"])
             return
@@ -155,7 +166,7 @@ class RowMaker:
             self._by_itself(rows, row, starts.states[:, row])
 
     def _left_alone(self, rows: "_Rows", there: NDArray, states: Floats) -> NDArray:
-        """Follow in lanes what can be followed so; the other rows."""
+        """Integrate rows in batches if possible, and return the other rows."""
         if not self._batched or not len(there):
             return there
         alone, stops = self._watch.look(rows.values[:, there])
@@ -167,21 +178,21 @@ class RowMaker:
 
     @property
     def _batched(self) -> bool:
-        """Whether lanes can follow motions of the problem at all."""
+        """True if the batch engine can integrate motions of the problem."""
         problem = self._problem
         ends_smoothly = problem.events is None or not _has_kinks(problem.events)
-        alone = problem.signs or problem.tables or problem.obstacle is not None or controls_may_fail(problem)
+        alone = problem.switching or problem.tables or problem.obstacle is not None or controls_may_fail(problem)
         return ends_smoothly and not alone and not self._hides and not self._derivatives
 
     def _together(self, rows: "_Rows", there: NDArray, states: Floats, stops: Sequence[float]) -> NDArray:
-        """Follow motions in lanes; those that this does not do for."""
+        """Integrate motions in batches, and return the rows that need another method."""
         values = rows.values[:, there]
         ends, ended = self._ends(states, values)
-        instants = sorted({*self._asked, *(t for t in stops if t < self._end)})
-        stops = [np.minimum(instant, ends) for instant in instants] if self._problem.until else instants
+        times = sorted({*self._asked, *(t for t in stops if t < self._end)})
+        stops = [np.minimum(time, ends) for time in times] if self._problem.until else times
         found = self._engine.follow(states, values, stops)
         start, end = (self._start, states), (ends, found.states[-1])
-        at_start, at_end = ((self._lane_matrices(*at, values), at[1]) for at in (start, end))
+        at_start, at_end = ((self._batch_matrices(*at, values), at[1]) for at in (start, end))
         nominal = nominal_at_each(self._problem, at_start[0].mass, states, self._end - self._start)
         small = expected(self.plan.tol, found.steps) * nominal.velocities
         left = constraint_residuals(*at_end, nominal)
@@ -189,7 +200,7 @@ class RowMaker:
         residual = np.maximum(left["position"], left["velocity"])
         well = ended & found.arrived & trusted({**left, "energy": energy}, self.plan.tol, found.steps)
         done = there[well]
-        at = dict(zip(instants, found.states, strict=True))
+        at = dict(zip(times, found.states, strict=True))
         points = {stop: self._at(np.minimum(stop, ends), at[stop], values)[:, well] for stop in self._asked}
         rows.residual[done] = residual[well]
         self._keep(rows, done, ends[well], at[self._end][:, well], points)
@@ -214,14 +225,14 @@ class RowMaker:
         try:
             found = self._singles.follow(problem, self._asked)
         except HolonomError as error:
-            rows.mark(np.array([row]), Status.BROKEN_OFF, error.said)
+            rows.mark(np.array([row]), Status.BROKEN_OFF, error.reason)
             return
         here, report = np.array([row]), found.report
         rows.residual[row] = max(report.residuals["position"], report.residuals["velocity"])
         if report.unresolved is not None:
             rows.mark(here, Status.OK, unresolved(report.unresolved))
-        if report.doubts:
-            rows.mark(here, Status.DOUBTFUL, "; ".join(doubt.reason for doubt in report.doubts))
+        if report.violations:
+            rows.mark(here, Status.DOUBTFUL, "; ".join(violation.reason for violation in report.violations))
         points = {stop: found.points[place][:, None] for place, stop in enumerate(self._asked)}
         self._keep(rows, here, np.array([report.t]), found.state[:, None], points)
         self._keep_along(rows, here, self._seen(found.steps))
@@ -234,15 +245,15 @@ class RowMaker:
     def _keep(
         self, rows: "_Rows", there: NDArray, ends: Floats, states: Floats, points: Mapping[float, Floats]
     ) -> None:
-        """Keep numbers at the ends, shape (k,), and at instants that are not after them."""
+        """Keep numbers at the ends, shape (k,), and at times that are not after them."""
         place = 0
         for kept in self.plan.kept:
             if kept.kind is Kind.FINAL:
                 for name, numbers in zip(self._problem.state, states, strict=True):
                     rows.kept[name][there] = numbers
             elif kept.kind is Kind.AT:
-                reached = kept.instant is None or float(kept.instant) <= ends
-                rows.keep(kept.text, there, points[self._instant(kept)][place], there_is=reached)
+                reached = kept.time is None or float(kept.time) <= ends
+                rows.keep(kept.text, there, points[self._time(kept)][place], there_is=reached)
                 place += 1
 
     def _keep_along(self, rows: "_Rows", there: NDArray, seen: Floats) -> None:
@@ -253,7 +264,7 @@ class RowMaker:
             rows.kept[str(Kind.FREE)][there] = seen[-1]
 
     def _seen(self, steps: list[Steps]) -> Floats:
-        """Return the numbers made of quantities along motions, shape (numbers, lanes).
+        """Return the numbers made of quantities along motions, shape (numbers, elements).
 
         The last says whether they are free.
         """
@@ -280,7 +291,7 @@ class RowMaker:
             case _:
                 return _mean(along)
 
-    def _instant(self, kept: Kept) -> float:
+    def _time(self, kept: OutputQuantity) -> float:
         """When to look at a quantity.
 
         Raises
@@ -288,38 +299,36 @@ class RowMaker:
         HolonomError
             The motion does not reach there.
         """
-        instant = self._end if kept.instant is None else float(kept.instant)
-        if not self._start <= instant <= self._end:
+        time = self._end if kept.time is None else float(kept.time)
+        if not self._start <= time <= self._end:
             span = f"{self._start:.10g} to {self._end:.10g}"
-            raise HolonomError(
-                Failure.NOT_KEPT, detail=f"{kept.text} asks for an instant outside of the motion, {span}"
-            )
-        return instant
+            raise HolonomError(ErrorKind.NOT_KEPT, detail=f"{kept.text} asks for a time outside of the motion, {span}")
+        return time
 
-    def _at(self, instants: Floats, states: Floats, values: Floats) -> Floats:
-        """Return the quantities kept at instants, shape (quantities, k)."""
+    def _at(self, times: Floats, states: Floats, values: Floats) -> Floats:
+        """Return the quantities kept at times, shape (quantities, k)."""
         if not self._points:
             return np.empty((0, states.shape[1]))
-        return self._evaluate(np.concatenate([instants[None], states, values]))
+        return self._evaluate(np.concatenate([times[None], states, values]))
 
     # ---- compiled when first needed ----
 
     @cached_property
-    def _lane_matrices(self) -> LaneMatrices:
-        return LaneMatrices(self._problem)
+    def _batch_matrices(self) -> BatchMatrices:
+        return BatchMatrices(self._problem)
 
     @cached_property
-    def _engine(self) -> LaneEngine:
+    def _engine(self) -> BatchEngine:
         return self._looking_at(self._along, self._seen)
 
     @cached_property
-    def _ending_engine(self) -> LaneEngine:
+    def _ending_engine(self) -> BatchEngine:
         events = [Name(f"event[{place}]") for place, _ in enumerate(self._problem.until, start=1)]
         return self._looking_at(events, lambda steps: np.array([first_zero(along) for along in steps]))
 
-    def _looking_at(self, along: Sequence[Expression], look: Look) -> LaneEngine:
-        projects = self.plan.drift is Stabilization.PROJECTION
-        return LaneEngine(self._problem, self.plan.tol, projects, along, look, self.plan.lanes)
+    def _looking_at(self, along: Sequence[Expression], look: Look) -> BatchEngine:
+        projects = self.plan.stabilization is Stabilization.PROJECTION
+        return BatchEngine(self._problem, self.plan.tol, projects, along, look, self.plan.elements)
 
     @cached_property
     def _evaluate(self) -> "NDArray":
@@ -332,7 +341,7 @@ class RowMaker:
     def _singles(self) -> SingleMotions:
         directions = tuple(dict.fromkeys(kept.direction for kept in self._derivatives))
         request = SimulationRequest(
-            tol=self.plan.tol, drift=self.plan.drift, until=self.plan.until, sensitivities=directions
+            tol=self.plan.tol, stabilization=self.plan.stabilization, until=self.plan.until, sensitivities=directions
         )
         return SingleMotions(self._problem, request, self._along, self._points)
 
@@ -341,20 +350,24 @@ class RowMaker:
         return TimeWatch(self._problem, self._end)
 
 
-def _require_smooth(problem: MotionProblem, kept: Sequence[Kept]) -> None:
-    """Refuse to look along the motion at outputs of the scene that polynomials of steps do not follow."""
+def _require_smooth(problem: MotionProblem, kept: Sequence[OutputQuantity]) -> None:
+    """Reject outputs along the motion that polynomials of steps do not represent."""
     for each in kept:
         if each.kind not in ALONG or problem.outputs is None:
             continue
         for name in sorted(names_in(each.quantity) & set(problem.outputs.outputs)):
             if _has_kinks(computing(problem.outputs, {name})):
                 raise HolonomError(
-                    Failure.NOT_KEPT, detail=f"{each.text} holds {name}, which is kept at instants only: it has a kink"
+                    ErrorKind.NOT_KEPT,
+                    detail=f"{each.text} holds {name}, which is kept at times only: it has a kink",
                 )
 
 
-def _require_directions(problem: MotionProblem, derivatives: Sequence[Kept]) -> None:
-    """Refuse derivatives of other things than state, multipliers and outputs, and by what neither varies nor starts."""
+def _require_directions(problem: MotionProblem, derivatives: Sequence[OutputQuantity]) -> None:
+    """Reject derivatives of unknown quantities, and by unknown directions.
+
+    State, multipliers and outputs have derivatives. Parameters and state are directions.
+    """
     outputs = () if problem.outputs is None else problem.outputs.outputs
     for kept in derivatives:
         for name, known in (
@@ -363,21 +376,21 @@ def _require_directions(problem: MotionProblem, derivatives: Sequence[Kept]) -> 
         ):
             if name not in known:
                 raise HolonomError(
-                    Failure.NOT_KEPT, detail=f"{kept.text} holds {name}, which is none of {', '.join(known)}"
+                    ErrorKind.NOT_KEPT, detail=f"{kept.text} holds {name}, which is none of {', '.join(known)}"
                 )
 
 
 def _has_kinks(program: Program) -> bool:
-    """Return True if a program computes what polynomials of steps go beyond.
+    """Return True if a program is not analytic at a sign or at a branch cut.
 
-    They know one side of a sign, or of a cut.
+    Polynomials of steps represent one side of it.
     """
     expressions = [*(expression for _, expression in program.assignments), *program.outputs.values()]
     return any(call.operation in KINKED for expression in expressions for call in calls_in(expression))
 
 
 class _Rows:
-    """Rows as they are filled.
+    """Rows with their outputs, statuses and notes.
 
     Parameters
     ----------
@@ -388,17 +401,17 @@ class _Rows:
         self.values, k = values, values.shape[1]
         self.kept = {name: np.full(k, np.nan) for name in columns}
         self.residual = np.full(k, np.nan)
-        self.statuses, self.remarks = np.zeros(k, dtype=np.int8), np.full(k, None, dtype=object)
+        self.statuses, self.notes = np.zeros(k, dtype=np.int8), np.full(k, None, dtype=object)
 
     def keep(self, name: str, rows: NDArray, numbers: Floats, there_is: bool | NDArray[np.bool_]) -> None:
-        """Keep numbers of rows where there are any, and say of rows where there should be and are not."""
+        """Record finite values of an output; mark rows that lack one they should have."""
         finite = np.isfinite(numbers)
         self.kept[name][rows] = np.where(finite & there_is, numbers, np.nan)
         self.mark(rows[~finite & there_is], Status.UNDEFINED, f"{name} has no finite value")
 
-    def mark(self, rows: NDArray, status: Status, remark: str) -> None:
-        """Say of rows what became of them."""
-        self.statuses[rows], self.remarks[rows] = list(Status).index(status), remark
+    def mark(self, rows: NDArray, status: Status, note: str) -> None:
+        """Set the status and the note of rows."""
+        self.statuses[rows], self.notes[rows] = list(Status).index(status), note
 
 
 def _mean(along: Steps) -> Floats:

@@ -1,4 +1,4 @@
-"""A sweep from its request to its folder: derived once, computed chunk by chunk, read lazily."""
+"""Run a sweep: derive the equations, compute chunk by chunk, read the rows lazily."""
 
 import hashlib
 from collections.abc import Callable, Mapping
@@ -8,7 +8,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..processes import usable_cores
 from ..program.motion_problem import DOUBLE_DIGITS, MotionProblem, problem_document, read_problem
 from ..program.precision import read_precision
@@ -18,7 +18,7 @@ from ..simulation.engines.taylor import held
 from ..source import Source, source_of
 from .axes import Axes, Grid, Listed, Sample
 from .dataset import SweepFolder, chunks_of
-from .kept import Kind
+from .outputs import Kind
 from .request import SweepRequest
 from .rows import Plan, RowMaker
 from .workers import compute, require_address
@@ -69,7 +69,13 @@ class Sweep:
         return dict(sorted(counts.items()))
 
     def to_pandas(self) -> "DataFrame":
-        """Return all rows as a pandas DataFrame, by their numbers."""
+        """Return all rows as a pandas DataFrame, by their numbers.
+
+        Returns
+        -------
+        DataFrame
+            Indexed by the row number.
+        """
         return self.dataset.to_table().to_pandas().set_index("row")
 
     def plot(self, quantity: str | None = None) -> "Picture":
@@ -79,6 +85,10 @@ class Sweep:
         ----------
         quantity : str or None
             A column; None for the first that is kept.
+
+        Returns
+        -------
+        Picture
 
         Raises
         ------
@@ -99,7 +109,27 @@ def run_sweep(
     limits: Limits,
     progress: Progress | None = None,
 ) -> Sweep:
-    """Compute what is missing of a sweep in a folder; `progress` is told how many rows are there, now and then.
+    """Compute the missing chunks of a sweep in a folder.
+
+    Parameters
+    ----------
+    file : Source or Path
+        Scene file.
+    request : Request
+        Scene and its settings.
+    wanted : SweepRequest
+        Axes, outputs, tolerance, workers and size of chunks.
+    folder : Path
+        Folder to write to; it is created if missing.
+    limits : Limits
+        Limits of each run of Maxima.
+    progress : Progress or None
+        Called with the number of finished rows after each chunk.
+
+    Returns
+    -------
+    Sweep
+        The sweep with all its rows.
 
     Raises
     ------
@@ -112,7 +142,7 @@ def run_sweep(
     text = _derived(source, request, wanted.axes)
     problem = read_problem(text)
     _require_parameters(problem, wanted.axes)
-    plan = Plan(problem, wanted.axes, wanted.kept, wanted.tol, wanted.until, wanted.drift)
+    plan = Plan(problem, wanted.axes, wanted.kept, wanted.tol, wanted.until, wanted.stabilization)
     maker = RowMaker(plan)  # refuses what cannot be computed before there is a folder
     target = SweepFolder(folder, _document(source.file, request, wanted, text, maker))
     with target.held(wanted.resume):
@@ -135,12 +165,12 @@ def run_sweep(
 def _derived(source: Source, request: Request, axes: Axes) -> str:
     """Return the document of the motion with its parameters open.
 
-    Where it takes values to derive it, the middle ones.
+    If the derivation needs values, they are those of the middle row.
     """
     try:
         return problem_document(source, request, source.limits, DOUBLE_DIGITS, axes.names)
     except HolonomError as refused:
-        if refused.failure is not Failure.REFUSED:
+        if refused.kind is not ErrorKind.REFUSED:
             raise
         middle = axes.numbers(axes.rows // 2, axes.rows // 2 + 1)[:, 0]
         numbers = {name: str(Fraction(float(x))) for name, x in zip(axes.names, middle, strict=True)}
@@ -153,7 +183,7 @@ def _derived(source: Source, request: Request, axes: Axes) -> str:
 
 def _require_parameters(problem: MotionProblem, axes: Axes) -> None:
     if foreign := [name for name in axes.names if name not in problem.parameters]:
-        raise HolonomError(Failure.NOT_AN_AXIS, detail=f"{foreign[0]} is no parameter of {problem.scene}")
+        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{foreign[0]} is no parameter of {problem.scene}")
 
 
 def _document(file: Path, request: Request, wanted: SweepRequest, derived: str, maker: RowMaker) -> dict[str, Any]:
@@ -175,11 +205,11 @@ def _document(file: Path, request: Request, wanted: SweepRequest, derived: str, 
         "rows": axes.rows,
         "chunk": wanted.chunk,
         "keep": [kept.text for kept in wanted.kept],
-        "columns": ["row", *axes.names, *maker.columns, str(Kind.RESIDUAL), "status", "remark"],
+        "columns": ["row", *axes.names, *maker.columns, str(Kind.RESIDUAL), "status", "note"],
         "options": {
             "tol": wanted.tol,
             "until": None if wanted.until is None else str(wanted.until),
-            "drift": str(wanted.drift),
+            "stabilization": str(wanted.stabilization),
             "solve": str(request.solve),
         },
         "versions": {name: version(name) for name in PACKAGES},

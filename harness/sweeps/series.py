@@ -1,4 +1,7 @@
-"""Radius of convergence of the initial motions of a sweep, from their power series, expanded lane by lane."""
+"""Radii of convergence of the initial motions of a sweep, from their power series.
+
+The series are expanded in batches.
+"""
 
 from typing import Any
 
@@ -13,25 +16,31 @@ from ..series.singularities import COMPLEX
 from ..simulation.inputs import heyoka_inputs, named_inputs
 
 ORDER = 40
-LANES = 8
-PROBES = np.array([0.3, 0.7, 1.1, 2.3])  # complex instants, by size and direction, where a polynomial is tried
+ELEMENTS = 8
+PROBES = np.array([0.3, 0.7, 1.1, 2.3])  # complex times, by size and direction, where a polynomial is tried
 SATISFIED = 1e-9  # of an acceleration there: what is rounding
 
 Floats = NDArray[np.float64]
 
 
-def lane_radii(problem: MotionProblem, states: Floats, values: Floats) -> Floats:
-    """Radius of convergence of each motion about its start.
+def batch_radii(problem: MotionProblem, states: Floats, values: Floats) -> Floats:
+    """Return the radius of convergence of each motion about its initial time.
 
-    Shape (k,): infinite for an entire motion, nan where the orders do not tell.
+    It is infinite for an entire motion, nan if the orders do not determine it.
 
     Parameters
     ----------
     problem : MotionProblem
         With open parameters, without signs and obstacle.
     states : ndarray, shape (2n, k)
-        At the starts.
+        Initial coordinates and velocities.
     values : ndarray, shape (p, k)
+        Open parameters.
+
+    Returns
+    -------
+    ndarray, shape (k,)
+        In the scene's unit of time.
     """
     series = expanded(problem, states, values)
     finite, radii = np.isfinite(series).all(axis=(0, 1)), np.full(states.shape[1], np.nan)
@@ -42,42 +51,60 @@ def lane_radii(problem: MotionProblem, states: Floats, values: Floats) -> Floats
 
 
 def _solves(problem: MotionProblem, series: Floats, values: Floats) -> NDArray[np.bool_]:
-    """Return where polynomials, shape (n + g, orders, k), satisfy the equations at complex instants."""
+    """Return True for polynomials that satisfy the equations at complex times.
+
+    The polynomials have shape (n + g, orders, k).
+    """
     n, z = len(problem.coordinates), PROBES * np.exp(1j * PROBES)
     powers = z[:, None] ** np.arange(series.shape[1])
     rows = np.moveaxis(series[:n], 1, 2)
     paths = [np.einsum("ij,nkj->nik", _rates(powers, z, order), rows) for order in range(3)]
-    lanes = np.zeros((len(z), series.shape[2]), dtype=complex)
-    t, state = float(problem.start["t"]) + z[:, None] + lanes, [*paths[0], *paths[1]]
-    inputs = named_inputs(problem, t, state, lanes, [lanes + row for row in values])
+    elements = np.zeros((len(z), series.shape[2]), dtype=complex)
+    t, state = float(problem.start["t"]) + z[:, None] + elements, [*paths[0], *paths[1]]
+    inputs = named_inputs(problem, t, state, elements, [elements + row for row in values])
     with np.errstate(all="ignore"):
         found = run_program(problem.motion, inputs, COMPLEX)
-        accelerations = np.array([found[f"ddot({name})"] + lanes for name in problem.coordinates])
+        accelerations = np.array([found[f"ddot({name})"] + elements for name in problem.coordinates])
         missed = np.abs(accelerations - paths[2]) <= SATISFIED * (1 + np.abs(paths[2]))
     return missed.all(axis=(0, 1))
 
 
 def _rates(powers: NDArray[np.complex128], z: NDArray[np.complex128], order: int) -> NDArray[np.complex128]:
-    """Return what each coefficient contributes to a derivative of a polynomial at complex places."""
+    """Return the terms of a polynomial's derivative at complex places, by coefficient."""
     n = np.arange(powers.shape[1])
     falling = np.prod([n - k for k in range(order)], axis=0) if order else 1.0
     return powers * falling / z[:, None] ** order
 
 
 def expanded(problem: MotionProblem, states: Floats, values: Floats) -> Floats:
-    """Power series of the coordinates and multipliers, shape (n + g, orders, k)."""
+    """Return power series of the coordinates and multipliers about the initial time.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        With open parameters, without signs and obstacle.
+    states : ndarray, shape (2n, k)
+        Initial coordinates and velocities.
+    values : ndarray, shape (p, k)
+        Open parameters.
+
+    Returns
+    -------
+    ndarray, shape (n + g, ORDER + 1, k)
+        Coefficients of t - t0, the constants first.
+    """
     require_expandable(problem)
     integrator = problem.once("expansion", problem.motion, lambda: _expanding(problem))
     k, n, g = states.shape[1], len(problem.coordinates), len(problem.multipliers)
     found = np.empty((n + g, ORDER + 1, k))
-    for first in range(0, k, LANES):
-        here = np.minimum(np.arange(first, first + LANES), k - 1)
+    for first in range(0, k, ELEMENTS):
+        here = np.minimum(np.arange(first, first + ELEMENTS), k - 1)
         integrator.set_time(float(problem.start["t"]))
         integrator.state[: 2 * n] = states[:, here]
         integrator.state[2 * n :] = 0.0
         integrator.pars[:] = values[: len(integrator.pars), here]
         integrator.step(write_tc=True)
-        count = min(LANES, k - first)
+        count = min(ELEMENTS, k - first)
         found[:n, :, first : first + count] = integrator.tc[:n, : ORDER + 1, :count]
         rates = integrator.tc[2 * n :, 1:, :count] * np.arange(1, integrator.tc.shape[1])[:, None]
         found[n:, :, first : first + count] = rates[:, : ORDER + 1]
@@ -85,14 +112,14 @@ def expanded(problem: MotionProblem, states: Floats, values: Floats) -> Floats:
 
 
 def _expanding(problem: MotionProblem) -> Any:
-    """Heyoka's batch integrator, its state ending with the integrals of the multipliers."""
+    """Return a batch integrator of the state and the integrals of the multipliers."""
     heyoka = import_heyoka()
     given = heyoka_inputs(problem)
     solved = heyoka_expressions(problem.motion, given)
     integrals = [(heyoka.expression(f"integral of {name}"), solved[name]) for name in problem.multipliers]
     return heyoka.taylor_adaptive_batch(
         [*dynamics(problem.motion, given), *integrals],
-        np.zeros((len(problem.state) + len(integrals), LANES)),
+        np.zeros((len(problem.state) + len(integrals), ELEMENTS)),
         tol=float(np.exp(-2 * ORDER)),
         compact_mode=True,
     )

@@ -1,7 +1,7 @@
-"""One motion of a sweep, followed as `holonom simulate` follows it: where a lane of many does not do.
+"""Integration of one motion of a sweep as `holonom simulate` integrates it.
 
-Through singular configurations, switchings and redundant constraints, past narrow places, and to the sentence with
-which a motion ends that cannot be followed to the end.
+It is used if a batch element is not enough: for singular configurations, switchings, redundant constraints and
+localized features. A motion that cannot be integrated to its end keeps the message of its error.
 """
 
 from collections.abc import Callable, Sequence
@@ -32,12 +32,12 @@ Floats = NDArray[np.float64]
 
 
 class SingleMotions:
-    """Follows motions of a problem one by one.
+    """An integrator of single motions of a problem.
 
     Parameters
     ----------
     along, points : sequence of Expression
-        Quantities to look at along the motion, and at the instants asked for.
+        Quantities to look at along the motion, and at the times asked for.
     """
 
     def __init__(
@@ -61,7 +61,18 @@ class SingleMotions:
         self._quantities = in_full_vectors(heyoka.cfunc(quantities, vars=inputs, opt_level=0)) if quantities else None
 
     def follow(self, problem: MotionProblem, stops: Sequence[float]) -> "SingleMotion":
-        """Follow one motion.
+        """Integrate one motion.
+
+        Parameters
+        ----------
+        problem : MotionProblem
+            The motion, with a number for each parameter.
+        stops : sequence of float
+            Times at which to evaluate the points, in the scene's unit.
+
+        Returns
+        -------
+        SingleMotion
 
         Raises
         ------
@@ -72,28 +83,28 @@ class SingleMotions:
         report = follow(problem, self._request, lambda samples: None, watch=look.take)
         return look.motion(report)
 
-    def _values(self, problem: MotionProblem, mode: Mode, instants: Floats, states: Floats) -> Floats:
+    def _values(self, problem: MotionProblem, mode: Mode, times: Floats, states: Floats) -> Floats:
         """Return all quantities at states of a mode, shape (quantities, k)."""
         if self._quantities is None:
-            return np.empty((0, len(instants)))
-        solutions = mode.engine.solutions(instants, states)
+            return np.empty((0, len(times)))
+        solutions = mode.engine.solutions(times, states)
         solved = np.concatenate(solutions)[: self._solved]
-        observed = mode.controls(instants, states), mode.outputs(instants, states, solutions)
-        others = np.array([mode.balance.energy(instants, states), *np.concatenate(observed)])
-        at = mode.matrices(instants, states.T)
+        observed = mode.controls(times, states), mode.outputs(times, states, solutions)
+        others = np.array([mode.balance.energy(times, states), *np.concatenate(observed)])
+        at = mode.matrices(times, states.T)
         fields = np.hstack([at.force, at.jacobian.reshape(len(at.force), -1)]).T
-        parameters = np.repeat(np.array(problem.numbers)[:, None], len(instants), axis=1)
-        inputs = [instants[None], states, solved, others, fields, parameters.reshape(-1, len(instants))]
+        parameters = np.repeat(np.array(problem.numbers)[:, None], len(times), axis=1)
+        inputs = [times[None], states, solved, others, fields, parameters.reshape(-1, len(times))]
         return self._quantities(np.concatenate(inputs))
 
 
 class SingleMotion(NamedTuple):
-    """What came of one motion."""
+    """The result of one motion."""
 
     report: Report
     state: Floats  # shape (2n,): the last one
-    points: Floats  # shape (stops, quantities): at the instants asked for; after the end, as they are there
-    steps: list[Steps]  # each quantity along the motion, with one lane
+    points: Floats  # shape (stops, quantities): at the times asked for; after the end, as they are there
+    steps: list[Steps]  # each quantity along the motion, with one element
 
 
 class _Look:
@@ -115,7 +126,7 @@ class _Look:
         self._reached, self._mode = step.end, step.mode
 
     def motion(self, report: Report) -> SingleMotion:
-        """Return what came of it."""
+        """Return the result of the motion."""
         end, state = float(report.t), np.array([*report.coordinates.values(), *report.velocities.values()])
         last = self._values(self._mode, np.array([end]), state[:, None])[self._along :, 0]
         points = np.array([self._points[stop] if stop < end else last for stop in self._stops])
@@ -135,8 +146,8 @@ class _Look:
     def _in_parts(self, step: Step, count: int) -> list[tuple]:
         edges = np.linspace(float(step.start), float(step.end), count + 1)
         middles, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2
-        instants = (middles[:, None] + half[:, None] * NODES).ravel()
-        values = self._values(step.mode, instants, step.states(instants))[: self._along]
+        times = (middles[:, None] + half[:, None] * NODES).ravel()
+        values = self._values(step.mode, times, step.states(times))[: self._along]
         parts = values.reshape(self._along, count, len(NODES)) @ TO_POWERS.T
         return list(zip(middles, half, np.moveaxis(parts, 1, 0), strict=True))
 

@@ -1,9 +1,9 @@
-"""Which motions of a sweep need to be looked at one by one because of what they depend on in time.
+"""Motions of a sweep that need their own integration because of functions of time.
 
-`holonom.simulation.time_dependence` finds the instants at which steps are to end, and `holonom.simulation.constraints.
-singularity` those at which a controlled length may vanish. Both take one motion. Here they are asked once where the
-parameters that vary do not come into it, or else once for each set of those that do; polynomials of low degree in the
-time have no narrow features, so nobody is asked about them.
+`holonom.simulation.time_dependence` finds the times at which steps are to end, and `holonom.simulation.constraints.
+singularity` the times at which a controlled length may vanish. Both take one motion. They are evaluated once if they do
+not depend on the varying parameters, else once for each set of the parameters that they depend on. Polynomials of low
+degree in the time have no localized features, so they are not examined.
 """
 
 from collections.abc import Mapping
@@ -26,14 +26,14 @@ Floats = NDArray[np.float64]
 
 
 class TimeWatch:
-    """Tells motions that a lane may follow from those that it may not.
+    """A classifier of motions that batches can integrate.
 
     Parameters
     ----------
     problem : MotionProblem
         With open parameters.
     end : float
-        The last instant.
+        The last time.
     """
 
     def __init__(self, problem: MotionProblem, end: float) -> None:
@@ -49,13 +49,14 @@ class TimeWatch:
         Parameters
         ----------
         values : ndarray, shape (p, k)
+            Open parameters of k motions.
 
         Returns
         -------
         ndarray of bool, shape (k,)
             Which are to be followed one by one.
         tuple of float
-            Instants at which the others are to stop.
+            Times at which the others are to stop.
         """
         if not self._involved:
             alone, stops = self._of(values[:, 0])
@@ -66,7 +67,7 @@ class TimeWatch:
         return alone[which.ravel()], ()
 
     def _of(self, row: Floats) -> tuple[bool, tuple[float, ...]]:
-        """Return whether a motion is to be followed by itself, and where it is to stop otherwise."""
+        """Return True if a motion needs its own integration, and else its stops."""
         key = tuple(row[self._involved])
         if key not in self._known:
             numbers = {name: Fraction(float(x)) for name, x in zip(self._problem.parameters, row, strict=True)}
@@ -83,7 +84,10 @@ class TimeWatch:
 
 
 def _in_time(problem: MotionProblem) -> tuple[list[float], tuple[str, ...]]:
-    """Degrees in the time of what is a function of time and parameters alone, and the parameters in these."""
+    """Return the degrees in time of the functions of time, and their parameters.
+
+    Functions of time and parameters alone count.
+    """
     known: dict[str, tuple[float, frozenset[str]]] = {"t": (1, frozenset())}
     known |= {name: (0, frozenset({name})) for name in problem.parameters}
     degrees, involved = [0.0], set()

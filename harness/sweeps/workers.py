@@ -1,7 +1,7 @@
-"""Who computes the chunks of a sweep: this process, workers that it starts, or those of a running Dask scheduler.
+"""Workers that compute chunks: this process, own processes or a Dask scheduler's.
 
-Workers get the plan with each chunk, compile what it takes once, and send back the bytes of its file; the command that
-asked writes them. So nothing hangs on which worker computes what, or on how often one is lost.
+A worker gets the plan with each chunk, compiles the programs once and returns the bytes of the chunk's file. The
+command that started the sweep writes the files. So the result does not depend on the worker, or on lost workers.
 """
 
 import logging
@@ -14,7 +14,7 @@ from functools import lru_cache
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..simulation.evaluation import one_blas_thread
 from .dataset import Chunk, part_of
 from .rows import Plan, RowMaker
@@ -38,25 +38,45 @@ Take = Callable[[Chunk, bytes], None]
 
 
 def require_address(scheduler: str | None) -> None:
-    """Refuse what can be no address of a Dask scheduler."""
+    """Reject an invalid address of a Dask scheduler.
+
+    Parameters
+    ----------
+    scheduler : str or None
+        Such as ``tcp://host:8786``; None for no scheduler.
+
+    Raises
+    ------
+    HolonomError
+        It is not of this form, or its port is out of range.
+    """
     if scheduler is None:
         return
     found = ADDRESS.fullmatch(scheduler)
     if not found or int(found["port"]) not in PORTS:
-        raise HolonomError(Failure.NOT_A_SCHEDULER, detail=scheduler or "nothing")
+        raise HolonomError(ErrorKind.NOT_A_SCHEDULER, detail=scheduler or "nothing")
 
 
 def compute(plan: Plan, chunks: Sequence[Chunk], take: Take, workers: int, scheduler: str | None) -> None:
-    """Compute chunks, in any order. Raises as `RowMaker`; and where the workers are lost.
+    """Compute chunks in any order.
 
     Parameters
     ----------
+    plan : Plan
+        The sweep.
+    chunks : sequence of Chunk
+        Chunks to compute.
     take : callable
         Is given each chunk with the bytes of its file.
     workers : int
         Processes to start; with one, or for one chunk, this process does it.
     scheduler : str or None
         Address of a Dask scheduler that is to be used instead.
+
+    Raises
+    ------
+    HolonomError
+        As `RowMaker`, or the workers are lost.
     """
     if scheduler is None and min(workers, len(chunks)) <= 1:
         maker = RowMaker(plan)
@@ -69,12 +89,14 @@ def compute(plan: Plan, chunks: Sequence[Chunk], take: Take, workers: int, sched
 
 
 def make_parts(plan: bytes, chunks: Sequence[Chunk]) -> list[bytes]:
-    """Return what a worker does.
+    """Compute the files of chunks in a worker.
 
     Parameters
     ----------
     plan : bytes
         A plan, pickled.
+    chunks : sequence of Chunk
+        Chunks to compute.
 
     Returns
     -------
@@ -118,7 +140,7 @@ def _compute_by(client: "Client", plan: Plan, chunks: Sequence[Chunk], take: Tak
 
 
 def _tasks(chunks: Sequence[Chunk], workers: int) -> Iterator[Sequence[Chunk]]:
-    """Chunks to be computed together, fewer towards the end, so that all workers end at about the same time."""
+    """Return chunks in groups, smaller towards the end, so that workers end together."""
     first = 0
     while first < len(chunks):
         last = first + max(1, min(TOGETHER, (len(chunks) - first) // (2 * AHEAD * workers)))
@@ -132,7 +154,7 @@ def _submitted(client: "Client", plan: bytes, chunks: Sequence[Chunk]) -> Any:
 
 @contextmanager
 def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
-    """Provide a client of the scheduler, or of one that is started here with its workers, and ended."""
+    """Provide a client of the given scheduler, or of a temporary one with its workers."""
     import dask
     import distributed  # noqa: F401
 
@@ -162,11 +184,11 @@ def _connected(place: "LocalCluster | str") -> "Client":
     try:
         return Client(place, timeout=PATIENCE)
     except (TypeError, ValueError) as error:  # as of tls without certificates
-        raise HolonomError(Failure.NOT_A_SCHEDULER, detail=f"{place} ({_first_line(error)})") from None
+        raise HolonomError(ErrorKind.NOT_A_SCHEDULER, detail=f"{place} ({_first_line(error)})") from None
 
 
 def _cluster(workers: int) -> "LocalCluster":
-    """Return a scheduler with its workers. It is started anew where one of them ends while it starts."""
+    """Return a scheduler with its workers. Start it again if one ends during startup."""
     from distributed import LocalCluster
 
     for _ in range(STARTS):
@@ -182,7 +204,7 @@ def _cluster(workers: int) -> "LocalCluster":
             )
         except (RuntimeError, OSError, TimeoutError) as error:
             failed = error
-    raise HolonomError(Failure.WORKERS_LOST, detail=_first_line(failed))
+    raise HolonomError(ErrorKind.WORKERS_LOST, detail=_first_line(failed))
 
 
 @contextmanager
@@ -199,7 +221,7 @@ def _told_when_lost() -> Iterator[None]:
     except HolonomError:
         raise
     except (KilledWorker, CommClosedError, TaskCancelled, CancelledError, TimeoutError, OSError) as error:
-        raise HolonomError(Failure.WORKERS_LOST, detail=_first_line(error)) from None
+        raise HolonomError(ErrorKind.WORKERS_LOST, detail=_first_line(error)) from None
 
 
 def _first_line(error: BaseException) -> str:

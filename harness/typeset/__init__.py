@@ -1,5 +1,5 @@
-"""Mathematics as a reader of the paper expects it: LaTeX, and MathML made of it.
+"""Typeset mathematics as LaTeX, and as MathML made of it.
 
-Every formula goes one way: a tree in MathJSON's shape, boxes that know how wide they are, LaTeX. SymPy expressions are
-put into that shape first (`presentation`); what the paper prints comes in it from Maxima, its order kept.
+Every formula passes through the same steps: a tree in MathJSON's shape, boxes with widths, LaTeX. SymPy expressions
+are first brought into that shape (`presentation`). Equations of the paper come in it from Maxima, in their order.
 """

@@ -1,4 +1,7 @@
-"""A derivation as a LaTeX article that a plain TeX Live compiles: article, amsmath and geometry are all it loads."""
+"""Write a derivation as a LaTeX article that a plain TeX Live compiles.
+
+It loads article, amsmath and geometry only.
+"""
 
 import unicodedata
 from collections.abc import Iterable, Mapping, Sequence
@@ -34,6 +37,16 @@ def tex_document(record: Record) -> str:
     """Write a derivation as a LaTeX document.
 
     pdflatex and lualatex compile it; each equation stands under the paper's number and its name.
+
+    Parameters
+    ----------
+    record : Record
+        The derivation.
+
+    Returns
+    -------
+    str
+        Source text of the document, preamble included.
     """
     sections = [
         _description(record.system),
@@ -59,7 +72,19 @@ def tex_document(record: Record) -> str:
 
 
 def text(plain: str) -> str:
-    """Plain text for LaTeX's text mode; a character beyond Latin is a Greek letter or is written by its name."""
+    """Return plain text for LaTeX's text mode.
+
+    A character beyond Latin becomes a Greek letter or its name.
+
+    Parameters
+    ----------
+    plain : str
+        Plain text; characters that LaTeX reserves are allowed.
+
+    Returns
+    -------
+    str
+    """
     return "".join(map(_character, plain))
 
 
@@ -100,7 +125,7 @@ def _description(system: System) -> str:
 
 
 def _heading(what: str, effect: str) -> str:
-    """Return what the system has, and which effect gives it, if that has a name of its own."""
+    """Return a heading: the quantity of the system, and its effect if that has a name."""
     return what if _words(effect) == what.lower() else f"{what}, {_words(effect)}"
 
 
@@ -114,7 +139,7 @@ def _derivation(derivation: Derivation) -> str:
 
 
 def _scene(scene: Scene) -> str:
-    law = "Control law around the initial instant" if scene.law_around_start else "Control law"
+    law = "Control law around the initial time" if scene.law_around_start else "Control law"
     given = [(law, scene.control_law), ("Parameters", scene.parameter_values)]
     return _section(
         scene.title or scene.name,

@@ -1,4 +1,7 @@
-"""Equations of a derivation record: their relations below each other, the entries of an array as one matrix."""
+"""Typeset equations of a derivation record.
+
+Relations stand below each other; the entries of an array form one matrix.
+"""
 
 from collections.abc import Sequence
 from itertools import groupby
@@ -18,13 +21,36 @@ COLUMN_GAP = 2  # digits
 def latex_equation(equation: Equation, width: float = inf) -> tuple[str, ...]:
     """Typeset an equation.
 
-    LaTeX for math mode, with amsmath: a formula for each block of relations that belong together.
+    Parameters
+    ----------
+    equation : Equation
+        Equation of a derivation record.
+    width : float
+        Line width, in digits of the typeface.
+
+    Returns
+    -------
+    tuple of str
+        LaTeX for math mode, with amsmath: one formula for each block of relations.
     """
     return tuple(rows[0].replace("&", "", 1) if len(rows) == 1 else aligned(rows) for rows in blocks(equation, width))
 
 
 def blocks(equation: Equation, width: float = inf) -> list[list[str]]:
-    """Return the same as lines with the mark & of LaTeX's alignments."""
+    """Return the blocks of `latex_equation`, with the mark & of LaTeX's alignments.
+
+    Parameters
+    ----------
+    equation : Equation
+        Equation of a derivation record.
+    width : float
+        Line width, in digits of the typeface.
+
+    Returns
+    -------
+    list of list of str
+        Lines of each block, in LaTeX.
+    """
     runs = groupby(equation.relations, _array)
     return [
         _plain_rows(list(relations), width) if name is None else _array_rows(name, list(relations), width)
@@ -33,13 +59,16 @@ def blocks(equation: Equation, width: float = inf) -> list[list[str]]:
 
 
 def _array(relation: Relation) -> str | None:
-    """Name of the vector or matrix that the left side is an entry of."""
+    """Return the name of the vector or matrix that the left side is an entry of."""
     left = relation.left
     return left.base.label.name if isinstance(left, Indexed) and len(left.indices) < 3 else None
 
 
 def _plain_rows(relations: Sequence[Relation], width: float) -> list[str]:
-    """Relations aligned at their equals signs, or flush left if one of them has a long left side."""
+    """Return relations aligned at their equals signs, or flush left.
+
+    They are flush left if one of them has a long left side.
+    """
     sides = [(presented(relation.left), presented(relation.right)) for relation in relations]
     margins = [formula_box(left) for left, _ in sides]
     if any(is_long(margin, width) for margin in margins):
@@ -53,7 +82,7 @@ def _plain_rows(relations: Sequence[Relation], width: float) -> list[str]:
 
 
 def _array_rows(name: str, entries: Sequence[Relation], width: float) -> list[str]:
-    """Return the entries between brackets if they are easy to read there, else listed without zeros."""
+    """Return the entries in brackets if they are short, else listed without zeros."""
     whole = _has_all_indices(entries)
     if whole and _suits_brackets(entries) and (matrix := _matrix(entries)).width <= width:
         letter = "A^{-1}" if name == "A_inverse" else letter_box(name).latex
@@ -65,12 +94,12 @@ def _array_rows(name: str, entries: Sequence[Relation], width: float) -> list[st
 
 
 def _has_all_indices(entries: Sequence[Relation]) -> bool:
-    """Return True if none was left out for being zero."""
+    """Return True if no entry was left out for being zero."""
     return len(entries) == prod(max(places) for places in zip(*(entry.left.indices for entry in entries), strict=True))
 
 
 def _suits_brackets(entries: Sequence[Relation]) -> bool:
-    """Matrices do, and vectors of numbers."""
+    """Return True for matrices, and for vectors of numbers."""
     return len(entries) > 1 and (len(entries[0].left.indices) == 2 or all(entry.right.is_number for entry in entries))
 
 

@@ -1,7 +1,7 @@
-"""A formula as a box: on one line where there is room for it, else broken where a typesetter would break it.
+"""Typeset a formula as a box, on one line or broken over several.
 
-Sums are broken before a sign, products before a factor, everything else in what it holds; terms and factors keep the
-order of the tree. Trees are those of `holonom.mathjson`, and what the paper's equations need beyond them:
+Sums are broken before a sign, products before a factor, and everything else inside its arguments. Terms and factors
+keep the order of the tree. Trees are those of `holonom.mathjson`, with additions for the paper's equations:
 
     ["Equal", left, right], ["NotEqual", left, right], ["List", item, ...]
     ["Subscript", "f", "beta"], ["Subscript", "A_inverse", "l", "s"], ["Subscript", "christoffel", "k", "m", "s"]
@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from itertools import groupby
 from math import inf
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..functions import FUNCTIONS
 from ..mathjson import Tree
 from .boxes import (
@@ -68,7 +68,7 @@ PARTIAL, TOTAL, TIME = word(r"\partial", 1), word("d", 1), word("t", 1)
 
 @dataclass(frozen=True)
 class SignedTerm:
-    """A term of a sum: its sign, what stands behind the sign, and the colour of the sign if it has one."""
+    """A term of a sum: its sign, the content after the sign, and the sign's colour."""
 
     sign: str
     content: Tree
@@ -85,6 +85,10 @@ def formula_box(tree: Tree, room: float = inf) -> Box:
     room : float
         Width to keep to where the formula can be broken, in digits.
 
+    Returns
+    -------
+    Box
+
     Raises
     ------
     HolonomError
@@ -95,7 +99,21 @@ def formula_box(tree: Tree, room: float = inf) -> Box:
 
 
 def relation_box(left: Tree, right: Tree, room: float = inf) -> Box:
-    """Typeset left = right; too wide for one line, it is broken after the equals sign or, if left is long, before."""
+    """Typeset left = right, broken at the equals sign if it is too wide.
+
+    The break is after the equals sign, or before it if the left side is long.
+
+    Parameters
+    ----------
+    left, right : Tree
+        Both sides, in the trees described above.
+    room : float
+        Line width, in digits.
+
+    Returns
+    -------
+    Box
+    """
     start = formula_box(left)
     if is_long(start, room) or beside(start, EQUALS, formula_box(right)).width <= room:
         return stacked(relation_lines(left, right, room))
@@ -104,7 +122,20 @@ def relation_box(left: Tree, right: Tree, room: float = inf) -> Box:
 
 
 def relation_lines(left: Tree, right: Tree, room: float = inf) -> list[Box]:
-    """Return the lines of a relation, all but the first set in."""
+    """Return the lines of a relation, indented from the second on.
+
+    Parameters
+    ----------
+    left, right : Tree
+        Both sides.
+    room : float
+        Line width, in digits.
+
+    Returns
+    -------
+    list of Box
+        One box for each line.
+    """
     whole = beside(formula_box(left), EQUALS, formula_box(right))
     if whole.width <= room:
         return [whole]
@@ -114,19 +145,62 @@ def relation_lines(left: Tree, right: Tree, room: float = inf) -> list[Box]:
 
 
 def relation_rows(left: Tree, right: Tree, room: float = inf) -> list[str]:
-    """Return the lines of a relation with a short left side, aligned at the equals sign by LaTeX's &."""
+    """Return the lines of a relation, aligned at the equals sign by LaTeX's &.
+
+    Its left side is short.
+
+    Parameters
+    ----------
+    left, right : Tree
+        Both sides.
+    room : float
+        Line width, in digits.
+
+    Returns
+    -------
+    list of str
+        LaTeX of each line, with ``&`` at the place to align.
+    """
     start = formula_box(left)
     first, *others = sum_lines(right, room - start.width - EQUALS.width - INDENT.width)
     return [f"{start.latex} &= {first.latex}", *(f"& {row.latex}" for row in map(_indented, others))]
 
 
 def is_long(left: Box, room: float) -> bool:
-    """Return True if the left side of a relation leaves too little room for the right one beside it."""
+    """Return True if the left side leaves too little room for the right one.
+
+    Parameters
+    ----------
+    left : Box
+        Left side of a relation, on one line.
+    room : float
+        Line width, in digits.
+
+    Returns
+    -------
+    bool
+        True if the left side takes more than a third of the line.
+    """
     return left.width > room / 3
 
 
 def sum_lines(tree: Tree, room: float) -> list[Box]:
-    """Typeset a formula as lines to be put below each other: a sum as several if it is too wide for one."""
+    """Typeset a formula as lines below each other.
+
+    A sum has several lines if it is too wide for one.
+
+    Parameters
+    ----------
+    tree : Tree
+        The formula.
+    room : float
+        Line width, in digits.
+
+    Returns
+    -------
+    list of Box
+        One box for each line.
+    """
     rows: list[Box] = []
     for place, term in enumerate(signed_terms(tree)):
         rows = _followed_by(rows, _term_lines(term, place, room), room)
@@ -134,7 +208,18 @@ def sum_lines(tree: Tree, room: float) -> list[Box]:
 
 
 def signed_terms(tree: Tree) -> list[SignedTerm]:
-    """Return the terms of a sum with their signs; anything else is its own only term."""
+    """Return the terms of a sum with their signs; anything else is its own only term.
+
+    Parameters
+    ----------
+    tree : Tree
+        The formula.
+
+    Returns
+    -------
+    list of SignedTerm
+        Terms in the order of the tree.
+    """
     match tree:
         case ["Marked", colour, inner]:
             return [_marked_term(term, colour) for term in signed_terms(inner)]
@@ -161,13 +246,16 @@ def _summand(term: Tree) -> list[SignedTerm]:
 
 
 def _sign(term: SignedTerm, place: int) -> Box:
-    """Return the sign of a term, which is left out before a first term that is added."""
+    """Return the sign of a term; a leading plus sign is left out."""
     mark = SIGNS[term.sign] if place else PREFIX_MINUS if term.sign == "-" else NOTHING
     return coloured(mark, term.sign_colour) if term.sign_colour else mark
 
 
 def _term_lines(term: SignedTerm, place: int, room: float) -> list[Box]:
-    """Return a term, on several lines if it is a product to be broken or its brackets would be too high."""
+    """Return the lines of a term.
+
+    It has several if it is a product to be broken or its brackets would be too high.
+    """
     sign = _sign(term, place)
     first, *others = _factor_lines(term.content, room - sign.width)
     if others or first.height <= TALLEST:
@@ -182,7 +270,10 @@ def _term_lines(term: SignedTerm, place: int, room: float) -> list[Box]:
 
 
 def _around_brackets(term: Tree) -> tuple[Tree, Tree | None, list[Tree]]:
-    """Return what stands before, between and behind the brackets of the longest sum among the factors of a term."""
+    """Return the parts of a term before, between and behind its longest brackets.
+
+    The brackets are those of the longest sum among its factors.
+    """
     match term:
         case ["Divide", ["Multiply", *factors], denominator]:
             factors = [["Divide", 1, denominator], *factors]
@@ -200,7 +291,7 @@ def _around_brackets(term: Tree) -> tuple[Tree, Tree | None, list[Tree]]:
 
 
 def _set_in(rows: Sequence[Box]) -> list[Box]:
-    """Lines, all but the first set in."""
+    """Return lines, indented from the second on."""
     return [rows[0], *map(_indented, rows[1:])]
 
 
@@ -209,7 +300,7 @@ def _indented(row: Box) -> Box:
 
 
 def _filled(boxes: Sequence[Box], room: float) -> list[Box]:
-    """Return lines of boxes side by side, as many on each as there is room for."""
+    """Return lines of boxes side by side, each as full as the room allows."""
     rows: list[Box] = []
     for box in boxes:
         rows = _followed_by(rows, [box], room)
@@ -217,19 +308,22 @@ def _filled(boxes: Sequence[Box], room: float) -> list[Box]:
 
 
 def _followed_by(rows: list[Box], more: list[Box], room: float) -> list[Box]:
-    """Return lines and more lines, one of which goes onto the last line if it is alone and there is room."""
+    """Append lines to lines.
+
+    A single line joins the last one if there is room.
+    """
     if rows and len(more) == 1 and rows[-1].width + more[0].width <= room:
         return [*rows[:-1], beside(rows[-1], more[0])]
     return [*rows, *more]
 
 
 def _head(tree: Tree) -> str | None:
-    """Return what a tree is an application of, a mark upon it set aside."""
+    """Return the head of a tree, without its mark."""
     return tree[0] if isinstance(tree, list) else None
 
 
 def _content(tree: Tree) -> Tree:
-    """Return a tree without the mark upon it."""
+    """Return a tree without its mark."""
     return _content(tree[2]) if _head(tree) == "Marked" else tree
 
 
@@ -262,7 +356,7 @@ def _set(tree: Tree, room: float) -> Box:
 
 
 def _refusal(tree: Tree) -> HolonomError:
-    return HolonomError(Failure.NOT_AN_EXPRESSION, detail=str(tree))
+    return HolonomError(ErrorKind.NOT_AN_EXPRESSION, detail=str(tree))
 
 
 def _decimal(number: str) -> Box:
@@ -293,7 +387,10 @@ def _product(room: float, *factors: Tree) -> Box:
 
 
 def _product_lines(factors: Sequence[Tree], room: float) -> list[Box]:
-    """Return a product on one line, its widest factor broken if there is room enough for that one; else on several."""
+    """Return the lines of a product.
+
+    It stays on one line if breaking its widest factor leaves enough room; else it is broken before factors.
+    """
     boxes = [_factor(factor, inf) for factor in factors]
     widest = max(range(len(boxes)), key=lambda place: boxes[place].width)
     rest = sum(box.width for box in boxes) - boxes[widest].width
@@ -360,7 +457,7 @@ def _function(name: Box, arguments: Sequence[Tree], room: float) -> Box:
 
 
 def _of_an_order(letter: str, order: Tree, argument: Tree, room: float) -> Box:
-    """Return a function that carries its order as an index; its argument always stands in brackets."""
+    """Return a function that has its order as an index, with a bracketed argument."""
     name = below(word(letter, 1), formula_box(order))
     return beside(name, bracketed(formula_box(argument, room - name.width - 2)))
 
@@ -401,7 +498,7 @@ def _under_dots(dots: int, inner: Tree) -> Box:
 
 
 def _partial(_: float, quantity: Tree, *variables: Tree) -> Box:
-    """Equal variables next to each other are one variable with an exponent."""
+    """Return a partial derivative; equal adjacent variables become a power."""
     orders = [(formula_box(variable), len(list(same))) for variable, same in groupby(variables)]
     divisor = [part for variable, order in orders for part in (PARTIAL, _to_the(order, variable))]
     return over(beside(_to_the(len(variables), PARTIAL), _tight(quantity)), beside(*divisor))

@@ -1,4 +1,7 @@
-"""LaTeX of expressions, of relations, and of the equations that the paper prints, with marks on what differs."""
+"""Write expressions, relations and equations of the paper as LaTeX.
+
+Differences between two equations can be marked.
+"""
 
 from math import inf
 
@@ -23,6 +26,11 @@ def latex(expression: Expr, width: float = inf) -> str:
     width : float
         Width to keep to where the formula can be broken over lines, in digits of its typeface.
 
+    Returns
+    -------
+    str
+        LaTeX without delimiters of math mode.
+
     Raises
     ------
     HolonomError
@@ -32,19 +40,45 @@ def latex(expression: Expr, width: float = inf) -> str:
 
 
 def latex_relation(relation: Relation, width: float = inf) -> str:
-    """Typeset left = right, broken over the lines of an `aligned` environment if it is wider than `width`."""
+    """Typeset left = right, broken into an `aligned` environment if it is too wide.
+
+    Parameters
+    ----------
+    relation : Relation
+        Both sides are expressions in the symbols of a derivation record.
+    width : float
+        Line width, in digits of the typeface.
+
+    Returns
+    -------
+    str
+        LaTeX without delimiters of math mode.
+    """
     return relation_box(presented(relation.left), presented(relation.right), width).latex
 
 
 def latex_tree(tree: Tree, width: float = inf) -> str:
-    """Typeset an equation of the errata, terms and factors in its own order; `holonom.typeset.formula` lists trees."""
+    """Typeset an equation of the errata, terms and factors in its own order.
+
+    `holonom.typeset.formula` lists the kinds of trees.
+
+    Parameters
+    ----------
+    tree : Tree
+        Equation of the errata.
+    width : float
+        Line width, in digits of the typeface.
+
+    Returns
+    -------
+    str
+        LaTeX without delimiters of math mode.
+    """
     return formula_box(tree, width).latex
 
 
 def latex_marked(tree: Tree, other: Tree, colour: str = MISPRINT, width: float = inf) -> str:
-    """Typeset an equation of the errata, what is not in the other one in a colour.
-
-    LaTeX for math mode, with amsmath and xcolor.
+    """Typeset an equation of the errata, its differences from another in a colour.
 
     Parameters
     ----------
@@ -53,7 +87,12 @@ def latex_marked(tree: Tree, other: Tree, colour: str = MISPRINT, width: float =
     colour : str
         Name of the colour, which a document defines: MISPRINT or CORRECTION.
     width : float
-        As in `latex`.
+        Line width, in digits of the typeface.
+
+    Returns
+    -------
+    str
+        LaTeX for math mode, with amsmath and xcolor.
     """
     return formula_box(marked(tree, other, colour), width).latex
 
@@ -63,9 +102,23 @@ QUANTITIES = {"Subscript", "Dot", "Ddot", "Dddot", "Partial"}  # marked whole
 
 
 def marked(tree: Tree, other: Tree, colour: str) -> Tree:
-    """Mark the parts of a tree that are not in the other one.
+    """Mark the parts of a tree that are missing in the other one.
 
     Each part that differs is put into ["Marked", colour, part].
+
+    Parameters
+    ----------
+    tree : Tree
+        Equation to mark.
+    other : Tree
+        Equation to compare it with.
+    colour : str
+        Name of the colour, which the document defines.
+
+    Returns
+    -------
+    Tree
+        The tree with its marks.
     """
     if tree == other:
         return tree
@@ -83,7 +136,10 @@ def _same_form(tree: Tree, other: Tree) -> bool:
 
 
 def _partners(head: str, parts: list[Tree], others: list[Tree]) -> list[Tree | None] | None:
-    """For each part the one to compare it with, if there is one; None for all where a part is missing."""
+    """Return for each part the one to compare it with, or None.
+
+    Return None for all of them if the tree lacks parts of the other.
+    """
     if head not in IN_ANY_ORDER:
         return list(others)
     lone, spare = _without(parts, others), _without(others, parts)

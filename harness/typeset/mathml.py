@@ -1,7 +1,7 @@
-"""MathML that browsers show natively, made of LaTeX by latex2mathml.
+"""Convert LaTeX to MathML that browsers show natively, by latex2mathml.
 
-Chromium and Firefox read MathML Core, which knows less than what latex2mathml writes: columns are aligned and spaced
-by style, marks are classes, and a formula says in words what it shows.
+Chromium and Firefox read MathML Core, a subset of the output of latex2mathml: columns are aligned and spaced by
+style, marks are classes, and a formula has a text alternative.
 """
 
 from itertools import pairwise
@@ -21,27 +21,47 @@ ElementTree.register_namespace("", NAMESPACE)
 
 
 def mathml(latex: str, alt: str = "") -> str:
-    """Return formula on lines of its own, a <math display="block"> element; what is marked has the class of its colour.
+    """Return a displayed formula, a <math display="block"> element.
+
+    Marked parts have the class of their colour.
 
     Parameters
     ----------
     latex : str
         LaTeX for math mode, as `holonom.typeset.latex` makes it.
     alt : str
-        What to say where the formula cannot be shown; without it, the LaTeX on one line.
+        Text alternative; without it, the LaTeX on one line.
+
+    Returns
+    -------
+    str
+        The ``math`` element.
 
     Raises
     ------
     HolonomError
         latex2mathml is not installed.
     xml.etree.ElementTree.ParseError
-        latex2mathml made of it what is not well-formed.
+        The output of latex2mathml is not well-formed.
     """
     return _converted(latex, alt, "block")
 
 
 def inline_mathml(latex: str, alt: str = "") -> str:
-    """Return formula within a line of text; otherwise like `mathml`."""
+    """Return a formula within a line of text; otherwise like `mathml`.
+
+    Parameters
+    ----------
+    latex : str
+        LaTeX for math mode.
+    alt : str
+        Text alternative; without it, the LaTeX on one line.
+
+    Returns
+    -------
+    str
+        The ``math`` element.
+    """
     return _converted(latex, alt, "inline")
 
 

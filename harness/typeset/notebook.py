@@ -1,4 +1,4 @@
-"""Equations and symbols as a notebook shows them: MathML where it can be made, LaTeX everywhere."""
+"""Show equations and symbols in a notebook, as MathML and as LaTeX."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from html import escape
@@ -15,11 +15,14 @@ from .quantities import RATE, name_box
 WIDTH = 90  # digits of a formula's typeface that fit a notebook's cell
 
 
-class Letter(Symbol):
-    """A real quantity of a system that prints as its letter: dot(q1) with a dot and an index."""
+class TypesetSymbol(Symbol):
+    """A real quantity of a system, printed as its symbol.
 
-    def __new__(cls, name: str) -> "Letter":
-        """Return the one letter of that name."""
+    ``dot(q1)`` is printed with a dot and an index.
+    """
+
+    def __new__(cls, name: str) -> "TypesetSymbol":
+        """Return the symbol of that name; equal names share one object."""
         return Symbol.__new__(cls, name, real=True)
 
     def __getnewargs_ex__(self) -> tuple[tuple[str], dict[str, Any]]:
@@ -35,17 +38,48 @@ class Letter(Symbol):
 
 
 def in_letters(expression: Expr) -> Expr:
-    """Return an expression with `Letter` in the place of every symbol."""
-    return expression.xreplace({symbol: Letter(symbol.name) for symbol in expression.free_symbols})
+    """Return an expression with `TypesetSymbol` in the place of every symbol.
+
+    Parameters
+    ----------
+    expression : Expr
+        Expression in the symbols of a derivation record.
+
+    Returns
+    -------
+    Expr
+    """
+    return expression.xreplace({symbol: TypesetSymbol(symbol.name) for symbol in expression.free_symbols})
 
 
-def letters(names: Iterable[str]) -> Mapping[str, Letter]:
-    """Return each name with its letter."""
-    return {name: Letter(name) for name in names}
+def typeset_symbols(names: Iterable[str]) -> Mapping[str, TypesetSymbol]:
+    """Return each name with its letter.
+
+    Parameters
+    ----------
+    names : iterable of str
+        Names of quantities, such as ``dot(q1)``.
+
+    Returns
+    -------
+    mapping of str to TypesetSymbol
+    """
+    return {name: TypesetSymbol(name) for name in names}
 
 
 def equations_html(equations: Iterable[Equation]) -> str:
-    """Equations under their numbers and names, formulas in MathML."""
+    """Return equations under their numbers and names, formulas in MathML.
+
+    Parameters
+    ----------
+    equations : iterable of Equation
+        Equations of a derivation record.
+
+    Returns
+    -------
+    str
+        HTML.
+    """
     return "\n".join(_html_parts(equations))
 
 
@@ -56,6 +90,17 @@ def _html_parts(equations: Iterable[Equation]) -> Iterator[str]:
 
 
 def equations_latex(equations: Iterable[Equation]) -> str:
-    """Equations one below the other, as LaTeX for a notebook's Markdown."""
+    """Return equations below each other, as LaTeX for a notebook's Markdown.
+
+    Parameters
+    ----------
+    equations : iterable of Equation
+        Equations of a derivation record; those without relations are left out.
+
+    Returns
+    -------
+    str
+        Displayed formulas between ``$$``.
+    """
     formulas = (formula for equation in equations if equation.relations for formula in latex_equation(equation, inf))
     return "\n".join(f"$$\n{formula}\n$$" for formula in formulas)

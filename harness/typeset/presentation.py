@@ -1,6 +1,7 @@
-"""SymPy expressions as they are written on paper: differences and fractions instead of factors -1 and powers -1.
+"""Bring SymPy expressions into the written form, with differences and fractions.
 
-The result is a tree in MathJSON's shape, its terms and factors in the order in which they are to be read.
+They replace factors -1 and powers -1. The result is a tree in MathJSON's shape, its terms and factors in reading
+order.
 """
 
 from collections.abc import Sequence
@@ -8,7 +9,7 @@ from collections.abc import Sequence
 import sympy
 from sympy import Add, Expr, Float, Indexed, Integer, Mul, Number, Pow, Rational, S, Symbol
 
-from ..failures import Failure, HolonomError
+from ..failures import ErrorKind, HolonomError
 from ..mathjson import CONSTANT_NAMES, HEADS, Tree
 
 TIME = Symbol("t", real=True)
@@ -16,7 +17,19 @@ READING_ORDER = (Number, sympy.NumberSymbol, Symbol, Indexed, sympy.Function, Po
 
 
 def presented(expression: Expr) -> Tree:
-    """Tree of an expression in reading order. Heads are those of MathJSON, among them Negate, Divide, Sqrt and Exp.
+    """Return the tree of an expression in reading order.
+
+    Heads are those of MathJSON, among them Negate, Divide, Sqrt and Exp.
+
+    Parameters
+    ----------
+    expression : Expr
+        Expression in the symbols of a derivation record.
+
+    Returns
+    -------
+    Tree
+        Tree in MathJSON's shape.
 
     Raises
     ------
@@ -30,7 +43,7 @@ def presented(expression: Expr) -> Tree:
 
 
 def _power_of_time(term: Expr) -> tuple[bool, Expr]:
-    """Numbers come first, and power series go on as the time does."""
+    """Return the key that sorts the terms of a power series by powers of the time."""
     powers = (power for base, power in term.as_powers_dict().items() if (base - TIME).is_number and power.is_Number)
     return not term.is_Number, next(powers, S.Zero)
 
@@ -41,7 +54,7 @@ def _positive_first(terms: list[Expr]) -> list[Expr]:
 
 
 def _signed(expression: Expr) -> tuple[int, Tree]:
-    """Sign and what it stands before."""
+    """Return the sign of a term, and the term without it."""
     match expression:
         case Float():
             return (-1 if expression < 0 else 1), {"num": sympy.sstr(abs(expression), full_prec=False)}
@@ -54,7 +67,10 @@ def _signed(expression: Expr) -> tuple[int, Tree]:
 
 
 def _signed_quotient(numerator: Expr, denominator: Expr) -> tuple[int, Tree]:
-    """Return a sum in the numerator is written behind the fraction if there is something else to write there."""
+    """Return a quotient, with a sum of the numerator behind the fraction.
+
+    This applies only if there are other factors for the fraction.
+    """
     (up, factors), (down, divisors) = _factors(numerator), _factors(denominator)
     number = up / down
     sums = [factor for factor in factors if isinstance(factor, Add)]
@@ -67,7 +83,10 @@ def _signed_quotient(numerator: Expr, denominator: Expr) -> tuple[int, Tree]:
 
 
 def _factors(product: Expr) -> tuple[Rational, list[Expr]]:
-    """Rational coefficient and the other factors; what sums have in common goes into the coefficient."""
+    """Return the rational coefficient and the other factors.
+
+    Common factors of sums go into the coefficient.
+    """
     coefficient, rest = product.as_coeff_Mul(rational=True)
     parts = [_primitive(factor) for factor in rest.as_ordered_factors() if factor != 1]
     return coefficient * Mul(*(content for content, _ in parts)), sorted(
@@ -99,7 +118,7 @@ def _product(factors: Sequence[Expr]) -> Tree:
 
 
 def _reading_order(factor: Expr) -> tuple[int, int, bool]:
-    """Numbers, letters, letters under dots, the time, functions, sums."""
+    """Order numbers, symbols, symbols under dots, the time, functions, sums."""
     base = factor.base if isinstance(factor, Pow) else factor
     kind = next(place for place, kind in enumerate((*READING_ORDER, Expr)) if isinstance(base, kind))
     dots = base.name.partition("ot(")[0].count("d") if isinstance(base, Symbol) and "ot(" in base.name else 0
@@ -119,4 +138,4 @@ def _unsigned(expression: Expr) -> Tree:
         case _ if expression.func in HEADS:
             return [HEADS[expression.func], *map(presented, expression.args)]
         case _:
-            raise HolonomError(Failure.NOT_AN_EXPRESSION, detail=str(expression))
+            raise HolonomError(ErrorKind.NOT_AN_EXPRESSION, detail=str(expression))

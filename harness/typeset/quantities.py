@@ -1,4 +1,7 @@
-"""Names of quantities as letters with dots and indices: dot(q1)_0 is q with a dot and the indices 1 and 0."""
+"""Typeset names of quantities with dots and indices.
+
+``dot(q1)_0`` is q with a dot and the indices 1 and 0.
+"""
 
 import re
 import unicodedata
@@ -18,12 +21,40 @@ GREEK = {name.replace("lamda", "lambda") for name in greeks}
 
 @cache
 def name_box(name: str, dots: int = 0) -> Box:
-    """Return a quantity under as many dots as it is differentiated, with the indices in its name."""
+    """Return a quantity under its dots, with the indices in its name.
+
+    Parameters
+    ----------
+    name : str
+        Name in a derivation record, such as ``dot(q1)_0``.
+    dots : int
+        Number of dots besides those in the name.
+
+    Returns
+    -------
+    Box
+    """
     return indexed_box(name, [], dots)
 
 
 def indexed_box(name: str, indices: list[Box], dots: int = 0) -> Box:
-    """Return the same with further indices, which come before those in its name: q_0[s] has the indices s and 0."""
+    """Return a quantity with further indices before those in its name.
+
+    ``q_0[s]`` has the indices s and 0.
+
+    Parameters
+    ----------
+    name : str
+        Name in a derivation record.
+    indices : list of Box
+        Further indices.
+    dots : int
+        Number of dots besides those in the name.
+
+    Returns
+    -------
+    Box
+    """
     if name == "A_inverse":
         return above(letter_box("A"), beside(*indices))
     if name == "christoffel":
@@ -45,7 +76,17 @@ def _letter_and_number(stem: str) -> tuple[str, str]:
 
 
 def letter_box(letter: str) -> Box:
-    """Return a letter, Latin or Greek, or a word."""
+    """Return a letter, Latin or Greek, or a word.
+
+    Parameters
+    ----------
+    letter : str
+        A letter, the name of a Greek letter, or a word.
+
+    Returns
+    -------
+    Box
+    """
     letter = spelled_out(letter)
     if letter.lower() in GREEK or letter in OPEN:
         return word(OPEN.get(letter) or tex_greek_dictionary.get(letter, rf"\{letter}"), 1)
@@ -55,7 +96,18 @@ def letter_box(letter: str) -> Box:
 
 
 def spelled_out(letter: str) -> str:
-    """Return the name of a Greek letter that is written as itself."""
+    """Return the name of a Greek letter; any other text unchanged.
+
+    Parameters
+    ----------
+    letter : str
+        A letter or any text.
+
+    Returns
+    -------
+    str
+        Name in LaTeX's spelling, such as ``lambda``.
+    """
     match unicodedata.name(letter, "").split() if len(letter) == 1 else []:
         case ["GREEK", "SMALL", "LETTER", name]:
             return name.lower().replace("lamda", "lambda")

@@ -51,7 +51,7 @@
                     exponent))))))
 
 (defun decimal-parts (value digits)
-  "m and e, so that m has so many digits and value = m*10^(e+1-digits)."
+  "m and e, so that m has that many digits and value = m*10^(e+1-digits)."
   (let ((exponent (floor (* (1- (binary-magnitude value)) (log 2d0 10d0)))))
     (do () ((< value (expt 10 (1+ exponent)))) (incf exponent))
     (let ((mantissa (round (* value (expt 10 (- digits 1 exponent))))))

@@ -14,7 +14,7 @@
 (defvar *zero-share-of-constraints* (expt 10 -55))
 (defvar *zero-share-of-floats* 1d-12)
 (defvar *small-coordinate* (expt 10 -20))
-(defvar *pivot-ratio* 10000 "The largest entry of a row is at most so many times its pivot.")
+(defvar *pivot-ratio* 10000 "The largest entry of a row is at most this many times its pivot.")
 (defvar *floating* nil "Whether numbers are floating-point ones, for a start.")
 (defvar *most-corrections* 400)
 (defvar *impatience* 40 "Corrections after which each must be smaller than the one before.")
@@ -203,7 +203,7 @@
     (mlist-of (loop for i from 1 to (length (cdr rows)) unless (member i dependent) collect i))))
 
 (defun $null_vector (rows size)
-  "A list x of so many numbers, not all of them zero, with  rows . x = 0; false where there is none."
+  "A list x of n numbers, not all of them zero, with  rows . x = 0; false where there is none."
   (let* ((echelon (echelon-of (mapcar #'row-from-maxima (cdr rows))))
          (bound (make-array (+ size 2) :initial-element nil))
          (values (make-hash-table))
@@ -271,7 +271,7 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
 
 (defun float-of (number) (float number 1d0))
 
-;; In floating point a residual whose terms all vanish, as y where y = 0, may stay: whoever has a point that no
+;; In floating point a residual whose terms all vanish, as y where y = 0, may stay: a caller with a point that no
 ;; correction changes any more goes on from there with more digits.
 (defun newton-iteration (point &optional damped)
   (let ((last-size nil))
@@ -407,7 +407,7 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
 (defvar *kept-digits* 60)
 
 (defun $values_near (point constraints jacobian metric names digits)
-  "Values of the names in so many digits, near those of the point in the metric, that make the constraints
+  "Values of the names to a number of digits, near those of the point in the metric, that make the constraints
 vanish; false where Newton's method does not get there."
   (let* ((*kept-digits* digits)
          (*digits-at-point* (+ digits 20))

@@ -82,7 +82,7 @@
                       (and (char= (char (symbol-name operator) 0) #\$) (fboundp operator)))))
            (some #'calls-p (cdr e)))))
 
-;; A branch of weight zero is dropped by whoever puts the signs in.
+;; A branch of weight zero is dropped where the signs are put in.
 (defun conditional-with-signs (clauses)
   "Clauses are condition, value, condition, value, ... as Maxima keeps them."
   (let ((weight (condition-weight (first clauses))) (value (with-signs (second clauses))))

@@ -15,7 +15,7 @@
     (/ (mod mixed 1009) 1009)))
 
 (defun $trial_values_near (names centres parts reach positive negative)
-  "name = number, around its centre where it has one; else positive for so many of them, and of either sign for the
+  "name = number, around its centre where it has one; else positive for some of them, and of either sign for the
 others; all of this negative for the names in the last list."
   (let ((reach (rational-of reach)) (i 0))
     (mlist-of (mapcar #'(lambda (name centre part)

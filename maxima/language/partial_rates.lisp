@@ -29,7 +29,7 @@
 
 (defun scene-text-p ()
   "Whether no function of the library is being called: each call leaves its name on Maxima's stack."
-  (notany #'(lambda (entry) (and (symbolp entry) (or (private-twin-p entry) (public-name-p entry))))
+  (notany #'(lambda (entry) (and (symbolp entry) (or (private-symbol-p entry) (public-name-p entry))))
           *mlambda-call-stack*))
 
 (defun $partial_rates ()

@@ -74,10 +74,10 @@
 
 ;;; ---- the polynomials ---------------------------------------------------------------------------------
 
-(defun $spline_from (rows curvatures instant)
+(defun $spline_from (rows curvatures time)
   "[points, second rates] from the last point that is no later, if any is but the last, and of all after it."
-  (let ((rows (cdr rows)) (curvatures (cdr curvatures)) (instant (rational-of instant)))
-    (do () ((or (null (cddr rows)) (> (rational-of (second (second rows))) instant)))
+  (let ((rows (cdr rows)) (curvatures (cdr curvatures)) (time (rational-of time)))
+    (do () ((or (null (cddr rows)) (> (rational-of (second (second rows))) time)))
       (setq rows (cdr rows) curvatures (cdr curvatures)))
     (list '(mlist simp) (cons '(mlist simp) rows) (cons '(mlist simp) curvatures))))
 
@@ -96,7 +96,7 @@
                         (weighted-sum (/ (* 6 h)) next-bend (- (/ (* 6 h))) bend))))))
 
 (defun $json_pieces (rows curvatures digits)
-  "The same of all points but the last, t_k as a fraction, the others as decimals of so many digits."
+  "The same of all points but the last, t_k as a fraction, the others as decimals of n digits."
   (let ((bits (unit-bits rows)))
     (cons '($json_array)
           (mapcar #'(lambda (row next-row bend next-bend)

@@ -131,7 +131,7 @@
 ;;; ---- expressions, with their operations --------------------------------------------------------
 
 (defun combined (operator operations writings)
-  "The expression  operator(writings), itself so many operations; Maxima is to leave it as it is."
+  "The expression  operator(writings), itself some operations; Maxima is to leave it as it is."
   (make-writing :expression (cons (list operator 'simp) (mapcar #'writing-expression writings))
                 :operations (+ operations (sum-of-all (mapcar #'writing-operations writings)))))
 

@@ -68,8 +68,8 @@ def tables() -> list[str]:
         with TemporaryDirectory() as directory:
             scene = Path(directory, "scene.mac")
             scene.write_text(TABLE, encoding="utf-8")
-            instants = [4 * k / (points - 1) for k in range(points)]
-            rows = "".join(f"{t:.6f},{2 - 0.2 * sin(3 * t):.6f}\n" for t in instants[:-1]) + "4,2.1\n"
+            times = [4 * k / (points - 1) for k in range(points)]
+            rows = "".join(f"{t:.6f},{2 - 0.2 * sin(3 * t):.6f}\n" for t in times[:-1]) + "4,2.1\n"
             Path(directory, "points.csv").write_text(rows, encoding="utf-8")
             written = str(Path(directory, "written.json"))
             asked = (("program", "-o", written), ("derive",), ("simulate", "--final"))

@@ -214,7 +214,7 @@ def _program(method: str, links: int, assignments: Sequence[list]) -> Program:
     """A program whose last assignments, out0, out1, ..., are its outputs."""
     document = {
         "format": "holonom-program",
-        "version": 1,
+        "version": 2,
         "scene": None,
         "solve": "direct",
         "method": method,

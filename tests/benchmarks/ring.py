@@ -82,7 +82,7 @@ def casadi_program(bodies: int, inputs: tuple[str, ...], outputs: list[str]) -> 
     function = ca.Function("ring", [ca.vertcat(t, q, v)], [results])
     document = {
         "format": "holonom-program",
-        "version": 1,
+        "version": 2,
         "scene": None,
         "solve": "direct",
         "method": "CasADi",

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from peers import PEERS
 from timing import TooLong, many_points, time_limit
 
-from holonom.failures import Failure, HolonomError
+from holonom.failures import ErrorKind, HolonomError
 from holonom.program.c_function import CFunction, compile_c, load_c
 from holonom.program.heyoka_function import heyoka_function
 from holonom.program.motion_program import Program, count_operations
@@ -75,7 +75,7 @@ def measurements() -> Iterator[Row]:
                 with time_limit(SECONDS):
                     program = derive(links, SECONDS)
             except (TooLong, HolonomError) as reason:
-                if isinstance(reason, HolonomError) and reason.failure is not Failure.TOO_LONG:
+                if isinstance(reason, HolonomError) and reason.kind is not ErrorKind.TOO_LONG:
                     raise
                 del methods[method]
                 continue

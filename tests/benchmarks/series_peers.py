@@ -33,7 +33,7 @@ from holonom.series.request import SeriesRequest
 PAPER = Path(__file__).parents[2] / "examples" / "paper" / "paper.mac"
 START = ((3, 10), (1, 1), (2, 1), (1, 2), (-1, 3))  # u, q1, q2, dot(q1), dot(q2)
 DIGITS = 30
-STEPS = 20  # the shortest of so many counts
+STEPS = 20  # the shortest of several counts
 
 
 @dataclass(frozen=True)
@@ -105,10 +105,10 @@ def _compiled(order: int, build: Callable[[], Any], row: int) -> Expansion:
     start = time.perf_counter()
     integrator = build()
     compiled = time.perf_counter() - start
-    instant, state = integrator.time, integrator.state.copy()
+    time_point, state = integrator.time, integrator.state.copy()
     times = []
     for _ in range(STEPS):
-        integrator.time, integrator.state[:] = instant, state
+        integrator.time, integrator.state[:] = time_point, state
         start = time.perf_counter()
         integrator.step(write_tc=True)
         times.append(time.perf_counter() - start)

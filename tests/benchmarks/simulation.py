@@ -22,9 +22,9 @@ from simulation_motions import MOTIONS, Motion
 from simulation_peers import HEYOKA, PEERS, Prepared, Run, State
 from simulation_report import write_report
 
-from holonom.benchmark.work_precision.contest import times_in_turns, without_caches
 from holonom.benchmark.work_precision.measurement import numbers_of, relative_error
 from holonom.benchmark.work_precision.reference import Reference, find_reference
+from holonom.benchmark.work_precision.runner import times_in_turns, without_caches
 from holonom.failures import HolonomError
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request
@@ -73,14 +73,14 @@ def measure(directory: Path) -> None:
     for motion in MOTIONS:
         problem = motion_problem(motion.file, Request(motion.scene, settings=motion.settings), Limits(), DIGITS + 40)
         with without_caches():
-            settings, reasons = contest(motion, problem)
+            settings, reasons = compared(motion, problem)
         found = {name: row_of(motion, name, settings[name], reasons[name]) for name in settings}
         rows += found.values()
         bars += bars_of(motion, problem, found, ratios_of(settings, faster_engine(found)))
     write_report(rows, [*bars, *general_bars(MOTIONS[0])], directory)
 
 
-def contest(motion: Motion, problem: MotionProblem) -> tuple[dict[str, list[Setting]], dict[str, str]]:
+def compared(motion: Motion, problem: MotionProblem) -> tuple[dict[str, list[Setting]], dict[str, str]]:
     """The last two settings of each method, timed in turns; none, and the reason, where it does not get there."""
     reference = find_reference(problem, [motion.until], DIGITS)
     settings: dict[str, list[Setting]] = {}
@@ -90,15 +90,15 @@ def contest(motion: Motion, problem: MotionProblem) -> tuple[dict[str, list[Sett
         print(f"{motion.name}: {name} {reasons[name]}", file=sys.stderr)
     as_heyoka = TOLERANCES[TOLERANCES.index(settings[HEYOKA][0].tolerance) :]
     for engine, set_up, tolerances in ((TAYLOR, unrolled, as_heyoka), (RUNGE_KUTTA, RungeKuttaEngine, TOLERANCES)):
-        for name, drift in ((engine, Stabilization.PROJECTION), (unprojected(engine), Stabilization.NONE)):
-            prepare = partial(holonom, motion, problem, partial(set_up, drift=drift))
+        for name, stabilization in ((engine, Stabilization.PROJECTION), (unprojected(engine), Stabilization.NONE)):
+            prepare = partial(holonom, motion, problem, partial(set_up, stabilization=stabilization))
             settings[name], reasons[name] = tighten(prepare, motion, reference, tolerances)
     return with_turns(settings), reasons
 
 
-def unrolled(problem: MotionProblem, tolerance: float, drift: Stabilization) -> TaylorEngine:
+def unrolled(problem: MotionProblem, tolerance: float, stabilization: Stabilization) -> TaylorEngine:
     """The Taylor engine, its code unrolled, which is heyoka's own default."""
-    return TaylorEngine(problem, tolerance, drift=drift, compact=False)
+    return TaylorEngine(problem, tolerance, stabilization=stabilization, compact=False)
 
 
 def holonom(

@@ -156,7 +156,7 @@ def _ours_in_one_shot(motion: Motion) -> list[str]:
 
 
 def _maxima_part(motion: Motion) -> float:
-    """Seconds until the motion program is there, as the command has it made: confined, in two processes."""
+    """Seconds until the motion program is there, as the command has it made: sandboxed, in two processes."""
     request = Request(motion.scene, settings=motion.settings)
     asked = request, Limits(), DOUBLE_DIGITS, open_names(request, DOUBLE_DIGITS)
     return min(_seconds_of(lambda: problem_document(motion.file, *asked)) for _ in range(ONE_SHOT_REPEATS))

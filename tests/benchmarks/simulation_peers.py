@@ -20,7 +20,7 @@ from simulation_algebra import DESCRIPTIONS
 from simulation_motions import Motion
 
 from holonom.benchmark.work_precision.solvers import SOLVERS, CompiledRates, Solver
-from holonom.failures import Failure, HolonomError
+from holonom.failures import ErrorKind, HolonomError
 from holonom.program.motion_problem import MotionProblem
 
 HERE = Path(__file__).parent
@@ -51,7 +51,7 @@ def start_of(problem: MotionProblem) -> State:
 
 
 def span_of(motion: Motion, problem: MotionProblem) -> tuple[float, float]:
-    """First and last instant."""
+    """First and last time."""
     return float(problem.start["t"]), float(motion.until)
 
 
@@ -185,14 +185,14 @@ def _scipy_ode(motion: CompiledRates, span: tuple[float, float], start: State, t
     integrator.set_initial_value(start, span[0])
     state = integrator.integrate(span[1])
     if not integrator.successful():
-        raise HolonomError(Failure.METHOD_GAVE_UP, detail="scipy.integrate.ode gave up")
+        raise HolonomError(ErrorKind.METHOD_GAVE_UP, detail="scipy.integrate.ode gave up")
     return state
 
 
 def _scipy_odeint(motion: CompiledRates, span: tuple[float, float], start: State, tol: float) -> State:
     states, said = odeint(motion, start, span, tfirst=True, rtol=tol, atol=tol, mxstep=MOST_STEPS, full_output=True)
     if said["message"] != "Integration successful.":
-        raise HolonomError(Failure.METHOD_GAVE_UP, detail=f"scipy.integrate.odeint: {said['message']}")
+        raise HolonomError(ErrorKind.METHOD_GAVE_UP, detail=f"scipy.integrate.odeint: {said['message']}")
     return states[-1]
 
 

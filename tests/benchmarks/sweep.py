@@ -33,7 +33,7 @@ from holonom.simulation.initial_state import at_values
 from holonom.simulation.request import EngineName, SimulationRequest, Stabilization
 from holonom.simulation.simulate import parametrized_problem
 from holonom.sweeps.axes import read_axes
-from holonom.sweeps.kept import read_kept
+from holonom.sweeps.outputs import read_quantities
 from holonom.sweeps.request import CHUNK
 from holonom.sweeps.rows import Plan, RowMaker
 
@@ -90,11 +90,11 @@ def crane(open_parameters: tuple[str, ...]) -> MotionProblem:
     return motion_problem(CRANE, Request(), Limits(), open_parameters=open_parameters)
 
 
-def by_sweep(keep: str, drift: Stabilization) -> Callable[[], np.ndarray]:
+def by_sweep(keep: str, stabilization: Stabilization) -> Callable[[], np.ndarray]:
     """The same rows by the rows of a sweep."""
     axes = read_axes(GRID, [], [], None, None)
     problem = crane(axes.names)
-    maker = RowMaker(Plan(problem, axes, read_kept([keep]), TOLERANCE, drift=drift))
+    maker = RowMaker(Plan(problem, axes, read_quantities([keep]), TOLERANCE, stabilization=stabilization))
 
     def run() -> np.ndarray:
         table = maker.table(0, MOTIONS)
@@ -116,7 +116,7 @@ def seconds(*functions: Callable[[], object]) -> list[float]:
 
 
 def _deeper(function: Callable[[], object], depth: int) -> Callable[[], object]:
-    """The same function, called from so many frames of C."""
+    """The same function, called from several frames of C."""
     return function if depth == 0 else _deeper(lambda: list(starmap(function, [()])), depth - 1)
 
 
@@ -151,7 +151,7 @@ def rows_of_other_engines(base: float) -> Iterator[str]:
     """What motions take that are followed one by one, by the engine's steps alone, and in an ensemble of batches."""
     problem = at_values(crane(("m", "c")), {"m": Fraction(100), "c": Fraction(10)})
     for engine in (EngineName.TAYLOR, EngineName.RUNGE_KUTTA):
-        request = SimulationRequest(engine=engine, tol=TOLERANCE, drift=Stabilization.NONE)
+        request = SimulationRequest(engine=engine, tol=TOLERANCE, stabilization=Stabilization.NONE)
         taken = min(engine_seconds(problem, request) for _ in range(REPEATS))
         yield f"  one by one, {engine:32s} {taken / base:8.2f}"
     yield f"  heyoka's ensemble of batches                 {ensemble() / base:8.2f}"
@@ -182,7 +182,7 @@ def ensemble() -> float:
 def rows_of_radius() -> Iterator[str]:
     axes = read_axes(["u0=-2:2:2001"], [], [], None, None)
     problem = motion_problem(PAPER, Request("initial_motion_scene"), Limits(), open_parameters=axes.names)
-    maker = RowMaker(Plan(problem, axes, read_kept(["radius"])))
+    maker = RowMaker(Plan(problem, axes, read_quantities(["radius"])))
     maker.table(0, 8)
     taken = min(_processor(lambda: maker.table(0, 2001)) for _ in range(3))
     table = maker.table(0, 2001)
@@ -208,7 +208,7 @@ class Run(NamedTuple):
 
 
 def command(rows: float, workers: int) -> Run:
-    """The command from its start to its end, with at most so many rows."""
+    """The command from its start to its end, with at most some rows."""
     side = round(rows**0.5)
     grid = ["--grid", f"m=50:500:{side}", "--grid", f"c=0:40:{side}"]
     with tempfile.TemporaryDirectory() as folder:

@@ -23,7 +23,7 @@ class TooLong(Exception):
 
 @contextmanager
 def time_limit(seconds: float) -> Iterator[None]:
-    """Interrupt the work inside after so many seconds."""
+    """Interrupt the work inside after some seconds."""
 
     def interrupt(signum: int, frame: FrameType | None) -> None:
         raise TooLong

@@ -1,43 +1,45 @@
 """The companion of the paper and one of somebody's own systems, each made once for all tests."""
 
+from pathlib import Path
+
 import pytest
 from own_system import TEXTS, made
 from shorter import SHORTER
 
-from holonom.companion import book
-from holonom.companion.paper import REPOSITORY, book_of_the_paper
+from holonom.companion.directives import FILES
+from holonom.companion.paper import REPOSITORY, chapters_of_the_paper
 from holonom.companion.runs import perform
-from holonom.files import write_whole_directory
+from holonom.companion.shelf import Shelf
+from holonom.companion.site import build
 
 
 @pytest.fixture(scope="session")
 def results():
     """What the companion's runs gave, by run; some of them to a smaller extent."""
-    performed = {run: SHORTER.get(run, run) for run in book_of_the_paper().runs}
+    runs = {run for chapter in chapters_of_the_paper().values() for run in chapter.runs.values()}
+    performed = {run: SHORTER.get(run, run) for run in runs}
     found = perform(performed.values(), lambda: None)
     return {run: found[instead] for run, instead in performed.items()}
 
 
 @pytest.fixture(scope="session")
 def made_companion(results, tmp_path_factory):
-    """Directory of its pages, and what its chapters made them of, by slug."""
-    directory, kept, page_of = tmp_path_factory.mktemp("made") / "companion", {}, book._page
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(book, "_page", lambda chapter, found: kept.setdefault(chapter.slug, page_of(chapter, found)))
-        write_whole_directory(directory, book.pages(book_of_the_paper(), results))
-    return directory, kept
+    """Sphinx's application that made the companion, and what its chapters made the pages of, by the pages' names."""
+    directory = tmp_path_factory.mktemp("made") / "companion"
+    shelf = Shelf(chapters_of_the_paper(), "en", directory / FILES, None, dict(results))
+    return build((), directory, shelf, {}), shelf.pages
 
 
 @pytest.fixture(scope="session")
 def companion(made_companion):
     """Directory of the companion's pages."""
-    return made_companion[0]
+    return Path(made_companion[0].outdir)
 
 
 @pytest.fixture(scope="session")
 def chapter_pages(made_companion):
-    """What the companion's chapters make their pages of, by slug."""
-    return made_companion[1]
+    """What the companion's chapters make their pages of, by the last part of their names."""
+    return {name.rpartition("/")[2]: page for name, page in made_companion[1].items()}
 
 
 @pytest.fixture(scope="session")

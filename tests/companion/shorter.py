@@ -2,17 +2,24 @@
 
 from fractions import Fraction
 
+import pytest
+
 from holonom.benchmark.work_precision.study import Plan, Study, study
+from holonom.companion import convergence
 from holonom.companion.chapter import Run
 from holonom.companion.chapters import INITIAL_SCENE, PAPER
-from holonom.companion.convergence import RadiiFound, find_radii
-from holonom.companion.paper import REPOSITORY, chapter_of_the_paper
+from holonom.companion.convergence import RadiiFound
+from holonom.companion.paper import REPOSITORY, chapters_of_the_paper
 from holonom.program.request import Request
 from holonom.sandbox import Limits
 
+FEW_ORDERS = (30, 40)
+
 
 def few_radii() -> RadiiFound:
-    return find_radii((Fraction(-1), Fraction(0), Fraction(3, 10)))
+    with pytest.MonkeyPatch.context() as few:
+        few.setattr(convergence, "ORDERS_OF_RADII", FEW_ORDERS)
+        return convergence.find_radii((Fraction(-1), Fraction(0), Fraction(3, 10)))
 
 
 def coarse_study() -> Study:
@@ -25,6 +32,6 @@ def coarse_study() -> Study:
 
 
 SHORTER = {
-    chapter_of_the_paper("radius_of_convergence").runs["radius"]: Run(few_radii),
-    chapter_of_the_paper("work_precision").runs["study"]: Run(coarse_study),
+    chapters_of_the_paper()["radius-of-convergence"].runs["radius"]: Run(few_radii),
+    chapters_of_the_paper()["work-precision"].runs["study"]: Run(coarse_study),
 }

@@ -24,9 +24,9 @@ def test_the_plane_goes_back_with_the_precession_of_its_narrow_ellipse():
     """In space the bob starts with the speed Omega a and goes round an ellipse of half axes a and b = Omega a/w, which
     turns at the rate 3/8 a b w/l^2 in the sense in which it is gone round (Olsson, Am. J. Phys. 46 (1978) 1118).
     """
-    instant, angle = turned(TURNING)
-    precession = 3 / 8 * OMEGA * REACH**2 / LENGTH**2 * instant
-    assert angle == pytest.approx(-OMEGA * instant + precession, abs=0.01)
+    time, angle = turned(TURNING)
+    precession = 3 / 8 * OMEGA * REACH**2 / LENGTH**2 * time
+    assert angle == pytest.approx(-OMEGA * time + precession, abs=0.01)
 
 
 def test_without_the_turning_frame_it_stays():

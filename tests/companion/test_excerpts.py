@@ -4,7 +4,7 @@ import pytest
 
 from holonom.companion.excerpts import STEPS, excerpt, step
 from holonom.companion.paper import REPOSITORY
-from holonom.failures import Failure, HolonomError
+from holonom.failures import ErrorKind, HolonomError
 
 TEXT = """/* The head. */
 
@@ -36,7 +36,7 @@ def test_a_variable_is_defined_by_a_colon(root):
 def test_what_is_not_defined_is_missed_loudly(root):
     with pytest.raises(HolonomError) as caught:
         excerpt(root, "file.mac", "x")
-    assert caught.value.failure is Failure.DEFINITION_MISSING
+    assert caught.value.kind is ErrorKind.DEFINITION_MISSING
 
 
 @pytest.mark.parametrize("key", STEPS)

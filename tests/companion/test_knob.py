@@ -10,12 +10,23 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from holonom.companion.chapters.turn_the_knob import LAWS, runs
+from holonom.companion.directives import FILES
 from holonom.companion.paper import REPOSITORY
 from holonom.program.numpy_function import NumpyFunction
 
 NODE = shutil.which("node")
 pytestmark = pytest.mark.skipif(NODE is None, reason="no script was run: node is not installed")
-SETTINGS = {"u0": 0.7, "omega": 2.0, "c": 1.2, "q1": 1.0, "q2": -0.4, "dot(q1)": 0.5, "dot(q2)": 1.0}
+SETTINGS = {
+    "u0": 0.7,
+    "omega": 2.0,
+    "kappa": 0.8,
+    "k": 1.3,
+    "c": 1.2,
+    "q1": 1.0,
+    "q2": -0.4,
+    "dot(q1)": 0.5,
+    "dot(q2)": 1.0,
+}
 RUNS = runs(REPOSITORY)
 UNTIL, SAMPLES = 2.0, 21
 RUN = """
@@ -30,7 +41,7 @@ def followed(companion):
     def follow(law, **changed):
         given = json.dumps([{**SETTINGS, "law": law, **changed}, UNTIL, SAMPLES])
         done = subprocess.run(
-            [NODE, "-e", RUN, str(companion / "knob.js"), given], capture_output=True, text=True, check=True
+            [NODE, "-e", RUN, str(companion / FILES / "knob.js"), given], capture_output=True, text=True, check=True
         )
         return json.loads(done.stdout)
 
@@ -77,12 +88,20 @@ def test_the_circle_is_that_of_the_zeros_of_the_denominator(followed):
     u0, omega = SETTINGS["u0"], SETTINGS["omega"]
     assert followed("linear")["radius"] == pytest.approx((u0**2 + 0.5) ** 0.5, rel=1e-9)
     assert followed("swinging")["radius"] == pytest.approx(abs(cmath.acos(1j / (2**0.5 * u0))) / omega, rel=1e-9)
-    exponential = abs(cmath.log(1j / (2**0.5 * u0)))
+    exponential = abs(cmath.log(1j / (2**0.5 * u0))) / SETTINGS["kappa"]
     assert followed("exponential")["radius"] == pytest.approx(exponential, rel=1e-9)
 
 
-def test_under_the_paper_s_law_and_damping_the_plane_never_pushes_and_there_is_no_circle(followed):
-    found = followed("exponential", c=2.0)
+def test_a_slow_law_has_a_wide_circle(followed):
+    assert followed("exponential", kappa=0.1)["radius"] == pytest.approx(
+        8 * followed("exponential")["radius"], rel=1e-9
+    )
+    assert followed("exponential", kappa=0.0)["radius"] is None
+
+
+@pytest.mark.parametrize("kappa", [1.0, -1.0, 1.5])
+def test_every_motion_is_free_where_the_root_is_double(followed, kappa):
+    found = followed("exponential", kappa=kappa, k=kappa**2, c=2 * kappa)
     assert max(abs(each["lambda1"]) for each in found["seen"]) < 1e-12
     assert found["radius"] is None  # JSON has no infinity
 

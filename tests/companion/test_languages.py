@@ -6,17 +6,20 @@ from xml.etree.ElementTree import Element
 
 import pages
 import pytest
+from babel.messages.mofile import write_mo
+from catalog import faults, page_templates, read_catalog
 from click.testing import CliRunner
 from matplotlib.figure import Figure
 
 from holonom import language
 from holonom.benchmark.machine import this_machine
 from holonom.cli import holonom
-from holonom.companion import book, table
+from holonom.companion import directives, site
 from holonom.companion import pages as companion_pages
 from holonom.companion.chapters import gallery
-from holonom.companion.paper import REPOSITORY, book_of_the_paper
-from holonom.files import write_whole_directory
+from holonom.companion.directives import FILES
+from holonom.companion.paper import REPOSITORY, chapters_of_the_paper
+from holonom.companion.shelf import Shelf
 from holonom.language import speaking
 from holonom.simulation.request import Stabilization
 
@@ -28,34 +31,46 @@ CODE = {"code", "pre", "math", "script", "style", "select"}
 
 @pytest.fixture(scope="module")
 def twins(tmp_path_factory):
-    """Directory of a companion in English and Chinese."""
+    """Directory of a companion in Chinese and English; a build takes nothing of the one before."""
     directory = tmp_path_factory.mktemp("twins") / "pages"
     cabin = REPOSITORY / "examples" / "weightless_cabin.mac"
-    arguments = ["companion", str(cabin), "-o", str(directory), "--language", "en", "--language", "zh"]
+    arguments = ["companion", str(cabin), "-o", str(directory), "--language", "zh", "--language", "en"]
     assert CliRunner(mix_stderr=False).invoke(holonom, arguments, standalone_mode=False).return_value == 0
     return directory
 
 
 def test_every_page_has_its_twin_and_names_its_language(twins):
-    chinese = {page.relative_to(twins / "zh") for page in pages.pages(twins / "zh")}
-    assert {page.relative_to(twins) for page in pages.pages(twins)} == chinese | {"zh" / page for page in chinese}
-    for page in chinese:
-        assert pages.parsed(twins / page).get("lang") == "en"
-        assert pages.parsed(twins / "zh" / page).get("lang") == "zh"
+    english = {page.relative_to(twins / "en") for page in pages.pages(twins / "en")}
+    assert {page.relative_to(twins) for page in pages.pages(twins)} == english | {"en" / page for page in english}
+    for page in english:
+        assert pages.parsed(twins / page).get("lang") == "zh-CN"
+        assert pages.parsed(twins / "en" / page).get("lang") == "en"
+    assert "自由运动" in pages.words(twins / "free-motion.html")
+    assert "自由运动" not in pages.words(twins / "en" / "free-motion.html")
 
 
 def test_every_page_links_its_twin_in_both_directions(twins):
     assert pages.broken_references(twins) == []
-    for page in pages.pages(twins / "zh"):
-        twin = twins / page.relative_to(twins / "zh")
-        assert linked(page, "en") == [twin.resolve()] * 2
-        assert linked(twin, "zh") == [page.resolve()] * 2
+    for page in pages.pages(twins / "en"):
+        twin = twins / page.relative_to(twins / "en")
+        assert linked(page, "zh") == [twin.resolve()]
+        assert linked(twin, "en") == [page.resolve()]
 
 
 def linked(page, hreflang: str) -> list:
-    """The pages in another language that a page links to, in its head and for the reader."""
+    """The pages in another language that a page links to, for the reader."""
     elements = [each for each in pages.parsed(page).iter() if each.get("hreflang") == hreflang]
     return [(page.parent / each.get("href")).resolve() for each in elements]
+
+
+def test_the_pages_of_the_book_and_the_manual_are_translated():
+    for name in ("book", "manual"):
+        assert faults(read_catalog("zh", name)) == [], name
+
+
+def test_the_catalogs_have_the_messages_of_the_pages(tmp_path):
+    for name, template in page_templates(tmp_path).items():
+        assert {each.id for each in template if each.id} == {each.id for each in read_catalog("zh", name) if each.id}
 
 
 class Bracketing(NullTranslations):
@@ -68,6 +83,13 @@ class Bracketing(NullTranslations):
         return self.gettext(plural)
 
 
+def write_bracketed(file, catalog):
+    """Write a catalog of pages for Sphinx, whose messages are English in brackets."""
+    for message in catalog:
+        message.string = OPEN + message.id + CLOSE if message.id and isinstance(message.id, str) else message.string
+    write_mo(file, catalog)
+
+
 @pytest.fixture(scope="module")
 def bracketed(results, tmp_path_factory):
     """Directory of the companion of the paper in that language; no pictures are drawn."""
@@ -75,21 +97,22 @@ def bracketed(results, tmp_path_factory):
     known = language._catalog
     with pytest.MonkeyPatch.context() as changed:
         changed.setattr(language, "_catalog", lambda name: Bracketing() if name == "zh" else known(name))
+        changed.setattr(directives, "write_mo", write_bracketed)
         changed.setattr(gallery, "figures_of", lambda shown: {})
         changed.setattr(Figure, "savefig", lambda figure, file, **how: file.write("<svg/>"))
-        companion_pages._environment.cache_clear()  # in which the words of templates are kept, in proper Chinese
+        companion_pages.environment.cache_clear()  # in which the words of templates are kept, in proper Chinese
+        shelf = Shelf(chapters_of_the_paper(), "zh", directory / FILES, None, dict(results))
         with speaking("zh"):
-            write_whole_directory(directory, book.pages(book_of_the_paper(), results))
-        companion_pages._environment.cache_clear()
+            site.build((), directory, shelf, {})
+        companion_pages.environment.cache_clear()
     return directory
 
 
 def prose(element: Element) -> str:
-    """The text of an element without mathematics, code, what says that it is English, and the index of the terms."""
+    """The text of an element without mathematics, code and what says that it is English."""
     text = element.text or ""
     for each in element:
-        tag = each.tag.rpartition("}")[2] if isinstance(each.tag, str) else "script"
-        left_out = tag in CODE or each.get("lang") == "en" or each.get("class") == "terms-index"
+        left_out = each.tag in CODE or each.get("lang") == "en" or each.get("class") == "headerlink"
         text += " " + ("" if left_out else prose(each)) + " " + (each.tail or "")
     return text
 
@@ -105,17 +128,13 @@ def outside(text: str) -> str:
 
 def names() -> set[str]:
     """Words that are the same in every language: of authors, works, machines, effects and options."""
-    data = table("further_reading")
-    texts = [text for work in data["works"].values() for text in work.values()] + [
-        word[tongue] for word in data["words"] for tongue in ("english", "chinese")
-    ]
-    texts += [str(this_machine()), *Stabilization, "spring damping English DOI"]
+    works = (REPOSITORY / "harness" / "companion" / "book" / "works.bib").read_text(encoding="utf-8")
+    texts = [works, str(this_machine()), *Stabilization, "spring damping English DOI"]
     return {word for text in texts for word in WORD.findall(text)}
 
 
-def test_no_prose_of_the_paper_s_companion_stands_outside_of_the_catalog(bracketed):
+def test_no_prose_of_the_book_and_the_manual_stands_outside_of_the_catalogs(bracketed):
     found = {}
-    for page in pages.pages(bracketed):
-        if page.parent.name not in ("source", "reference") and page.stem != "reference":  # the reference is English
-            found[page.name] = sorted(set(WORD.findall(outside(prose(pages.parsed(page))))) - names())
+    for page in (*bracketed.glob("book/*.html"), *bracketed.glob("manual/*.html")):
+        found[page.name] = sorted(set(WORD.findall(outside(prose(pages.article(page))))) - names())
     assert {page: words for page, words in found.items() if words} == {}

@@ -6,6 +6,7 @@ import pages
 import pytest
 
 from holonom.companion.chapters.gallery import EXHIBITS
+from holonom.companion.directives import FILES
 from holonom.companion.paper import REPOSITORY
 
 
@@ -17,14 +18,14 @@ def test_every_example_is_in_the_gallery():
 
 @pytest.mark.parametrize("name", [exhibit["name"] for exhibit in EXHIBITS])
 def test_every_exhibit_moves_stands_still_and_has_its_curves(companion, name):
-    loaded = set(pages.references(companion / "gallery.html"))
-    assert {f"figures/{name}-{kind}.svg" for kind in ("moving", "still", "curves")} <= loaded
-    assert "<animate" in (companion / "figures" / f"{name}-moving.svg").read_text()
-    assert "<animate" not in (companion / "figures" / f"{name}-still.svg").read_text()
+    loaded = set(pages.references(companion / "manual" / "gallery.html"))
+    assert {f"../{FILES}/{name}-{kind}.svg" for kind in ("moving", "still", "curves")} <= loaded
+    assert "<animate" in (companion / FILES / f"{name}-moving.svg").read_text()
+    assert "<animate" not in (companion / FILES / f"{name}-still.svg").read_text()
 
 
 def test_a_support_that_is_shaken_is_seen_to_move(companion):
     """Only the rim, the circle that the bob would reach, stands still."""
-    film = ElementTree.parse(companion / "figures" / "spherical-pendulum-moving.svg")
+    film = ElementTree.parse(companion / FILES / "spherical-pendulum-moving.svg")
     (still,) = (group for group in film.iter() if group.get("class") == "fixed")
     assert len(still) == 1

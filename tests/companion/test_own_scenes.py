@@ -4,14 +4,14 @@ import pages
 from confinement import without_notice
 from own_system import SMOOTH, TEXTS, UNCONSTRAINED, made
 
-from holonom.files import write_files
+from holonom.companion.directives import FILES
 
 CHAPTERS = ("the-system", "equations-of-motion", "free-motion", "initial-motion", "motion")
 
 
 def test_every_file_has_its_chapters(own):
     prefixes = [*(name.replace(" ", "-") for name in TEXTS), "weightless-cabin", "chain"]
-    assert {page.name for page in own.glob("*.html")} == {
+    assert {page.name for page in pages.pages(own) if page.parent == own} == {
         "index.html",
         *(f"{place}-{prefix}-{slug}.html" for place, prefix in enumerate(prefixes, 1) for slug in CHAPTERS),
     }
@@ -58,12 +58,12 @@ def test_a_system_without_constraints_is_free(own):
 
 
 def pictures(own, prefix: str) -> set[str]:
-    return {file.name for file in (own / "figures").glob(f"{prefix}-*")}
+    return {file.name for file in (own / FILES).glob(f"{prefix}-*")}
 
 
 def test_a_scene_is_drawn_whatever_it_observes_and_one_without_end_says_why_not(own):
     assert pictures(own, "4-drawn") == {f"4-drawn-scene-1-{kind}.svg" for kind in ("moving", "still", "curves")}
-    assert "endless: the scene has no time span; give it one" in pages.words(own / "4-drawn-motion.html")
+    assert "endless: the scene has no time span. Add time_span" in pages.words(own / "4-drawn-motion.html")
 
 
 def test_a_system_that_does_not_say_how_it_looks_has_its_curves(own):
@@ -89,10 +89,13 @@ def test_a_directory_with_other_things_in_it_is_left_alone(tmp_path):
 
 
 def test_of_a_companion_what_was_written_is_replaced_and_the_rest_stays(tmp_path):
-    write_files(tmp_path / "pages", {"index.html": "an earlier edition", "stale.html": "from an earlier edition"})
+    assert made(tmp_path, {"own": UNCONSTRAINED, "other": UNCONSTRAINED})[0].return_value == 0
+    assert (tmp_path / "pages" / "2-other-the-system.html").exists()
     (tmp_path / "pages" / "own.mac").write_text("years of work")
-    outcome, directory = made(tmp_path, {"own": UNCONSTRAINED})
+    outcome, directory = made(tmp_path, {"own": UNCONSTRAINED.replace("Cart", "Sledge")})
     assert outcome.return_value == 0
-    assert not (directory / "stale.html").exists()
+    assert list(directory.glob("?-*.html")) == []
     assert (directory / "own.mac").read_text() == "years of work"
-    assert "The file has no scene" in pages.words(directory / "the-system.html")
+    shown = pages.words(directory / "the-system.html")
+    assert "Sledge" in shown
+    assert "The file has no scene" in shown

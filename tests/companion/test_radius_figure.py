@@ -1,21 +1,23 @@
 """The figure of the radius of convergence shows what the series say."""
 
-from fractions import Fraction
 from xml.etree import ElementTree
 
 import pytest
+from shorter import FEW_ORDERS
 
 from holonom.companion import convergence
+from holonom.companion.paper import chapters_of_the_paper
 
 SVG = "{http://www.w3.org/2000/svg}"
 
 
 @pytest.fixture(scope="module")
-def figure(tmp_path_factory):
+def figure(results, tmp_path_factory):
     path = tmp_path_factory.mktemp("figures") / "radius.svg"
+    found = results[chapters_of_the_paper()["radius-of-convergence"].runs["radius"]]
     with pytest.MonkeyPatch.context() as few:
-        few.setattr(convergence, "ORDERS_OF_RADII", (30, 40))
-        convergence.draw_radius(convergence.find_radii([Fraction(-1), Fraction(0), Fraction(3, 10)]), path)
+        few.setattr(convergence, "ORDERS_OF_RADII", FEW_ORDERS)
+        convergence.draw_radius(found, path)
     return ElementTree.parse(path)
 
 

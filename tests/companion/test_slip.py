@@ -5,7 +5,7 @@ import shutil
 import pytest
 
 from holonom import maxima
-from holonom.companion.paper import REPOSITORY, chapter_of_the_paper
+from holonom.companion.paper import REPOSITORY, chapters_of_the_paper
 
 RIGHT = '"2 d^2f/dq_s du_r dot(q_s) dot(u_r)" = 2*mixed_form(f,'
 WRONG = RIGHT.replace("= 2*", "= -2*")
@@ -22,9 +22,9 @@ def cards(results, tmp_path_factory):
     text = file.read_text()
     assert RIGHT in text
     file.write_text(text.replace(RIGHT, WRONG))
-    chapter = chapter_of_the_paper("equations_of_motion")
+    chapter = chapters_of_the_paper()["equations-of-motion"]
     found = {name: results[run] for name, run in chapter.runs.items()}
-    slipped = chapter_of_the_paper("equations_of_motion", root)
+    slipped = chapters_of_the_paper(root)["equations-of-motion"]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(maxima, "LIBRARY", root / "maxima")
         patch.setattr(maxima, "preloaded_image", lambda *_: None)  # an image for two runs would take longer than they

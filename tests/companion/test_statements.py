@@ -22,8 +22,8 @@ from holonom.companion.chapters import (
     universal_controls,
     worked_example,
 )
-from holonom.companion.paper import chapter_of_the_paper
-from holonom.free_motion import Free
+from holonom.companion.paper import chapters_of_the_paper
+from holonom.free_motion import FreeMotionVerdict
 from holonom.series.radius import ENTIRE
 
 T = Symbol("t", real=True)
@@ -61,7 +61,7 @@ STATEMENTS = [
     ),
     Statement(
         equations_of_motion,
-        "The length falls evenly; angular velocity and pull rise, the pull most of all.",
+        "The length decreases linearly. Angular velocity and pull rise, the pull most of all.",
         lambda found, content: all(np.diff(found["motion"].velocities["dot(phi)"]) > 0)
         and all(np.diff(multipliers(found["motion"])) > 0)
         and multipliers(found["motion"])[-1] / multipliers(found["motion"])[0]
@@ -69,28 +69,28 @@ STATEMENTS = [
     ),
     Statement(
         free_motion,
-        "leaves the plane nothing to do",
-        lambda found, content: found["free_law"].motion.verdict is Free.FREE
+        "the multiplier is zero, under",
+        lambda found, content: found["free_law"].motion.verdict is FreeMotionVerdict.FREE
         and multipliers(found["unpushed"]).max() < 1e-9,
     ),
     Statement(free_motion, "The three curves balance to", lambda found, content: content["balance"].error < 1e-8),
-    Statement(free_motion, "it has been driven by the particle", lambda found, content: content["spent"] < 0),
+    Statement(free_motion, "of work on the control", lambda found, content: content["spent"] < 0),
     Statement(
         initial_motion,
-        "near the initial instant each stays with the motion longer than the one before",
+        "Near the initial time each further order is closer to the motion.",
         lambda found, content: all(
             np.diff([abs(sums - beginning(found)[-1])[20] for sums in beginning(found)[:-1]]) < 0
         ),
     ),
-    Statement(worked_example, "It grows evenly", lambda found, content: content["free_height"].diff(T, 2).equals(0)),
+    Statement(free_motion, "It changes linearly", lambda found, content: content["free_height"].diff(T, 2).equals(0)),
     Statement(
-        worked_example,
-        "everything collapses to",
+        equations_of_motion,
+        "the equations become",
         lambda found, content: not {"q1", "q2"} & {str(each) for each in content["multiplier_in_sum"].free_symbols},
     ),
     Statement(
-        worked_example,
-        "an oscillator just damped to the point where it no longer swings",
+        free_motion,
+        "a critically damped oscillator",
         lambda found, content: simplify(
             content["free_sum"].diff(T, 2) + 2 * content["free_sum"].diff(T) + content["free_sum"]
         )
@@ -98,12 +98,12 @@ STATEMENTS = [
     ),
     Statement(
         worked_example,
-        "the motion followed by an integrator, which knows nothing of this page, begins with",
+        "A numerical integration that does not use this formula begins with",
         lambda found, content: abs(content["multiplier_at_start"] - content["multiplier_followed"]) < 1e-9,
     ),
     Statement(
         universal_controls,
-        "It is the only family.",
+        "is the only family of such laws",
         lambda found, content: found["paper free"].universal.verdict == "all"
         and len(found["paper free"].universal.laws) == 1,
     ),
@@ -114,33 +114,35 @@ STATEMENTS = [
         == {c: c == "2" for c in universal_controls.DAMPINGS},
     ),
     Statement(trajectory_control, "It is the distance of a thrown body from the origin.", falls_freely),
-    Statement(trajectory_control, "A bob on which nothing pulls goes straight on", goes_straight_on),
+    Statement(
+        trajectory_control, "A bob without tension moves in a straight line with constant velocity", goes_straight_on
+    ),
     Statement(
         prescribed_reactions,
-        "the multiplier is negative because the string pulls",
+        "The multiplier is negative because the string pulls",
         lambda found, content: all(
             found[f"{name} motion"].multipliers["lambda1"][-1] < 0 for name in prescribed_reactions.SCENES[1:]
         ),
     ),
     Statement(
         radius_of_convergence,
-        "Of the law of its first task it is true.",
+        "For the law of its first task this is true.",
         lambda found, content: found["free"].radius == ENTIRE,
     ),
     Statement(
         radius_of_convergence,
-        "Of the law of its second task it is false.",
+        "For the law of its second task it is false.",
         lambda found, content: [errors[-1] < errors[0] for errors in content["confronted"].values()] == [True, False],
     ),
     Statement(
         turn_the_knob,
-        "a plane that is turned and never pushes takes the paper's damping",
+        "the plane lies flat, and the reaction is zero with any forces",
         lambda found, content: [dict(law.controls) for law in found["other"].universal.laws] == [{"u": 0}]
         and found["other"].universal.verdict == "all",
     ),
     Statement(
         turn_the_knob,
-        "the plane never pushes, and turning the knob costs nothing",
+        "the reaction is zero, and the control needs no work",
         lambda found, content: found["free"].motion.states == "all states"
         and abs(content["spent"]["exponential"]) < 1e-9,
     ),
@@ -156,14 +158,15 @@ def contents(results, chapter_pages):
     """Results of the runs and content of the page, of each chapter that states something."""
     made = {}
     for module in {statement.chapter for statement in STATEMENTS}:
-        chapter = chapter_of_the_paper(module.__name__.rpartition(".")[2])
+        slug = module.__name__.rpartition(".")[2].replace("_", "-")
+        chapter = chapters_of_the_paper()[slug]
         found = {name: results[run] for name, run in chapter.runs.items()}
-        made[module] = (chapter.slug, found, chapter_pages[chapter.slug].content)
+        made[module] = (slug, found, chapter_pages[slug].content)
     return made
 
 
 @pytest.mark.parametrize("statement", STATEMENTS, ids=lambda each: each.sentence[:40])
 def test_a_sentence_is_on_its_page_and_its_run_shows_it(statement, companion, contents):
     slug, found, content = contents[statement.chapter]
-    assert statement.sentence in pages.words(companion / f"{slug}.html")
+    assert statement.sentence in pages.words(companion / "book" / f"{slug}.html")
     assert statement.shown(found, content)

@@ -1,15 +1,18 @@
 """The names in the table of notation are names: of Maxima functions, and of what a record holds."""
 
+import re
 from dataclasses import fields
 
 import pytest
 
-from holonom.companion import table
 from holonom.companion.excerpts import STEPS
 from holonom.companion.paper import REPOSITORY
 from holonom.record import Scene, System
 
-SYMBOLS = table("notation")["symbols"]
+PAGE = REPOSITORY / "harness" / "companion" / "book" / "notation.md"
+ROW = re.compile(r"^\* - (?!paper).*\n  - .*\n  -.*\n  -(.*)\n  -(.*)$", re.MULTILINE)
+ROWS = [[cell.strip(" `") for cell in row] for row in ROW.findall(PAGE.read_text(encoding="utf-8"))]
+SYMBOLS = [{"maxima": maxima, "python": python} for maxima, python in ROWS]
 RECORD = {
     name: {each.name for each in fields(kind)} | {*vars(kind)} for name, kind in (("system", System), ("scene", Scene))
 }

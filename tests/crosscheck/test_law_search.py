@@ -29,7 +29,7 @@ def held(force, constraints=(x,), controls=(u,)) -> MechanicalSystem:
 )
 def test_search_finds_the_value_of_a_law(system, span, law):
     found = find_free_law(system, {}, span, "seed")
-    assert abs(law(found.instant, found.controls["u"])) < 1e-4
+    assert abs(law(found.time, found.controls["u"])) < 1e-4
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from holonom.crosscheck.motion_start import nearer_start
 from holonom.crosscheck.motions import read_motions
 from holonom.crosscheck.questions import ask_for_check
 from holonom.crosscheck.report import Verdict
-from holonom.crosscheck.switches import law_instants
+from holonom.crosscheck.switches import law_times
 from holonom.program.motion_program import Call, Name, Operation
 from holonom.program.request import Solve
 from holonom.source import Source
@@ -54,7 +54,7 @@ def changes_of(problem):
         "another branch": {"start": start | {"y": start["y"].removeprefix("-"), "dot(y)": f"-{start['dot(y)']}"}},
         "off the constraint": {"start": start | {"y": "-1.7320508075688772935"}},
         "another given value": {"start": start | {"dot(x)": "0.5000000000000000000000000000001"}},
-        "another instant": {"start": start | {"t": "0.1"}},
+        "another time": {"start": start | {"t": "0.1"}},
         "another end": {"time_span": ("0", "3.0000001")},
         "no end": {"time_span": None},
         "fewer events": {"until": problem.until[:1]},
@@ -110,8 +110,8 @@ def test_a_series_from_another_start_or_with_other_constraint_forces_is_found(as
 def test_laws_are_compared_on_each_piece_and_beside_each_switch(asked):
     description, programs, _ = asked
     motion = DescribedMotion(description, description.scenes[0])
-    instants = sorted(law_instants(motion, programs.problems[Solve.DIRECT], (mp.mpf(0), mp.mpf(3))))
-    assert [round(float(each), 9) for each in instants] == pytest.approx([0.75, 1.499997, 1.500003, 2.25], abs=1e-5)
+    times = sorted(law_times(motion, programs.problems[Solve.DIRECT], (mp.mpf(0), mp.mpf(3))))
+    assert [round(float(each), 9) for each in times] == pytest.approx([0.75, 1.499997, 1.500003, 2.25], abs=1e-5)
 
 
 def test_only_a_nearer_start_is_told(asked):

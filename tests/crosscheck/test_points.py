@@ -19,7 +19,7 @@ def test_every_second_point_is_positive_and_the_others_are_of_both_signs():
     assert {True, False} == set().union(*signs[1::2])
 
 
-def test_each_attempt_is_another_point_and_nobody_foresees_the_seed():
+def test_each_attempt_is_another_point_with_an_unforeseen_seed():
     assert random_point(["x"], 0, "seed") != random_point(["x"], 2, "seed") != random_point(["x"], 4, "seed")
     assert fresh_seed() != fresh_seed()
 

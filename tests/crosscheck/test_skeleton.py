@@ -7,13 +7,13 @@ import pytest
 
 from holonom.crosscheck import check, lagranges_method
 from holonom.crosscheck.check import check_record
-from holonom.crosscheck.report import Judgement, Verdict
+from holonom.crosscheck.report import CheckResult, Verdict
 from holonom.crosscheck.time_limit import TimeLimit
 from holonom.description import Description
 from holonom.record import Equation, LeftOut, Record, Relation, derived_record
 from holonom.source import Source
 
-AGREES = Judgement(Verdict.AGREES, 50, 8)
+AGREES = CheckResult(Verdict.AGREES, 50, 8)
 
 
 @pytest.fixture
@@ -159,7 +159,7 @@ def test_what_a_time_limit_interrupts_is_undecided_and_not_what_was_before_it(
         def __init__(self, seconds: float) -> None:
             assert seconds == 60
 
-        def result(self, work: Callable[[], Judgement], otherwise: Judgement) -> Judgement:
+        def result(self, work: Callable[[], CheckResult], otherwise: CheckResult) -> CheckResult:
             works.append(work)
             return work() if len(works) <= 3 else otherwise
 
@@ -186,7 +186,7 @@ def test_each_equation_is_looked_at_in_points_of_its_own_and_of_this_check(
 ):
     seeds = []
 
-    def noted(comparisons: object, seed: str) -> Judgement:
+    def noted(comparisons: object, seed: str) -> CheckResult:
         seeds.append(seed)
         return AGREES
 

@@ -39,10 +39,10 @@ def test_rounding_of_large_terms_that_cancel_was_a_disagreement() -> None:
 def test_difference_beyond_double_precision_is_found() -> None:
     found = judge(compared(X + sp.Rational(1, 10**40), X), "seed")
     assert found.verdict is Verdict.DISAGREES
-    claim, known = re.fullmatch(
+    derived, known = re.fullmatch(
         r"something: the record gives (\S+), the independent evaluation (\S+) at x = .*", found.detail
     ).groups()
-    assert claim != known
+    assert derived != known
 
 
 def test_a_decimal_is_the_fraction_that_it_is() -> None:

@@ -24,8 +24,8 @@ def begun(output: nbformat.NotebookNode) -> str:
     return BEGINNING.match(output.get("data", {}).get("text/plain", ""))[0]
 
 
-def test_there_are_four():
-    assert [file.stem for file in NOTEBOOKS] == ["fit", "numbers_and_code", "own_system", "paper"]
+def test_there_are_five():
+    assert [file.stem for file in NOTEBOOKS] == ["fit", "jax", "numbers_and_code", "own_system", "paper"]
 
 
 @pytest.mark.parametrize(
@@ -33,7 +33,8 @@ def test_there_are_four():
     [pytest.param(each, marks=[] if each.stem == "paper" else [pytest.mark.long]) for each in NOTEBOOKS],
     ids=lambda file: file.stem,
 )
-def test_a_notebook_runs_and_shows_what_it_showed(file):
+def test_a_notebook_runs_and_shows_what_it_showed(file, monkeypatch):
+    monkeypatch.setenv("MOTIONS", "400")  # of the notebook about JAX
     kept = nbformat.read(file, as_version=4)
     ran = nbformat.read(file, as_version=4)
     NotebookClient(

@@ -26,7 +26,7 @@ turning : holonomic_scene(system, parameter_values = [m = 1], time_span = [0, 1]
 
 def followed(name: str, scene: str | None = None, samples: int = 3, **settings: float) -> Simulation:
     motion = holonom.load(EXAMPLES / f"{name}.mac", scene, **settings).simulate(samples=samples)
-    assert not motion.report.doubts
+    assert not motion.report.violations
     return motion
 
 

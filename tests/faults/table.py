@@ -88,7 +88,7 @@ def leaving(what: str, command: str) -> Callable[[Path], object]:
 
 FINISHED = "printf '%s\\nFINISHED\\n-\\n0\\n\\n\\n%s\\n' ${{mark#outcome-}} ${{mark#outcome-}} > $mark"
 OTHER_MAXIMA = {"PATH": "{here}/bin:" + os.environ["PATH"], "XDG_CACHE_HOME": "{here}/../cache"}
-ENVELOPE = '{"format": "holonom-free", "version": 1}'
+ENVELOPE = '{"format": "holonom-free", "version": 2}'
 NO_PROGRAMS = {"PATH": "{here}"}
 DERIVE = "derive scene.mac --json out.json"
 
@@ -106,10 +106,10 @@ OPTIONS = [
         for text in ("0", "1", "-5", "1e3", "99999999999999999999")
     ),
     *(
-        Fault(f"an end at {text}", f"simulate scene.mac --until {text}", "is no instant")
+        Fault(f"an end at {text}", f"simulate scene.mac --until {text}", "invalid time")
         for text in ("soon", "nan", "inf", "1/0", "1e400", "1e-400", "1e1000000000", "9" * 400)
     ),
-    Fault("a sum at 1e400", "series scene.mac --order 4 --at 1e400", "is no instant"),
+    Fault("a sum at 1e400", "series scene.mac --order 4 --at 1e400", "invalid time"),
     *(
         Fault(f"{text} samples", f"simulate scene.mac --samples {text}", "--samples")
         for text in ("0", "1", "-3", "1.5", "many")
@@ -117,7 +117,7 @@ OPTIONS = [
     *(Fault(f"an order of {text}", f"series scene.mac --order {text}", "--order") for text in ("1", "-1", "x")),
     Fault("no digits", "series scene.mac --order 4 --digits 0", "--digits"),
     Fault("an unknown engine", "simulate scene.mac --engine steam", "--engine"),
-    Fault("an unknown cure of drift", "simulate scene.mac --drift hope", "--drift"),
+    Fault("an unknown stabilization", "simulate scene.mac --stabilization hope", "--stabilization"),
     Fault("an unknown solve", "program scene.mac --solve luck", "--solve"),
     Fault("an unknown form", "program scene.mac --to cobol", "--to"),
     Fault("trusted and needs_sandbox in", "derive scene.mac --trust --sandbox", "exclude one another"),
@@ -152,9 +152,9 @@ OUTPUTS = [
     ),
     Fault(
         "the scene by a second name",
-        "derive scene.mac --json twin",
+        "derive scene.mac --json hardlink",
         "the scene itself",
-        prepare=lambda here: os.link(here / "scene.mac", here / "twin"),
+        prepare=lambda here: os.link(here / "scene.mac", here / "hardlink"),
     ),
     Fault("two outputs of one name", "derive scene.mac --json out --tex out", "another output"),
     Fault("two outputs of one name, spelt apart", "derive scene.mac --json out --tex ./out", "another output"),
@@ -166,7 +166,7 @@ OUTPUTS = [
     Fault("too long a name", f"derive scene.mac --json {'x' * 300}", "cannot be written"),
     *(
         Fault(
-            f"somebody else's {name}",
+            f"an unrelated {name}",
             f"{command} {name}",
             "there is a file of that name",
             prepare=holding(name, content),
@@ -175,7 +175,7 @@ OUTPUTS = [
             ("notes.json", "derive scene.mac --json", '{"name": "mine"}'),
             ("list.json", "check scene.mac --json", "[1, 2]"),
             ("other.mac", "derive scene.mac --json", PARTICLE),
-            ("other.json", "derive scene.mac --json", '{"format": "holonom-thesis", "version": 1}'),
+            ("other.json", "derive scene.mac --json", '{"format": "holonom-thesis", "version": 2}'),
             ("table.csv", "simulate scene.mac -o", "name,mark\nme,1\n"),
             ("motion.csv", "simulate scene.mac -o", "t,x,dot(x)\n0,1,2\n"),
             ("drawing.svg", "errata --svg", "<svg xmlns='http://www.w3.org/2000/svg'/>"),
@@ -187,7 +187,7 @@ OUTPUTS = [
     Fault(
         "samples that may be replaced", "simulate scene.mac --until 1 -o x.csv --force", "", 0, holding("x.csv", "t\n")
     ),
-    Fault("no such format", "simulate scene.mac --until 1 -o out.xls", "no such file can be written"),
+    Fault("no such format", "simulate scene.mac --until 1 -o out.xls", "unsupported file format"),
     Fault("a directory of others for the companion", "companion scene.mac -o .", "other things than a companion"),
 ]
 
@@ -206,7 +206,7 @@ SCENES = [
     Fault("UTF-16", "check wide.mac", "not UTF-8", prepare=holding("wide.mac", PARTICLE.encode("utf-16"))),
     Fault("a link to itself", "derive loop", "cannot be read", prepare=lambda here: (here / "loop").symlink_to("loop")),
     *(
-        Fault(f"{call} on the way", "derive asks.mac", "nobody is there to answer", prepare=holding("asks.mac", text))
+        Fault(f"{call} on the way", "derive asks.mac", "Maxima asks a question", prepare=holding("asks.mac", text))
         for call, text in (
             ("break()", "x : 1$ break()$"),
             ("break(x)", 'break("why", x)$'),
@@ -344,7 +344,7 @@ ENVIRONMENTS = [
         "no Maxima", "derive scene.mac --trust", "Maxima is not installed", MACHINE_AT_FAULT, environment=NO_PROGRAMS
     ),
     Fault(
-        "a Maxima that nobody may run",
+        "a Maxima that must not be executed",
         "derive scene.mac --trust",
         "is not installed",
         MACHINE_AT_FAULT,
@@ -378,7 +378,7 @@ ENVIRONMENTS = [
     *(
         Fault(name, "derive scene.mac", says, MACHINE_AT_FAULT, leaving(what, command), OTHER_MAXIMA)
         for name, what, command, says in (
-            ("a torn outcome", "outcome", "printf 'FINI' > {name}", "not whole: its outcome"),
+            ("a truncated outcome", "outcome", "printf 'FINI' > {name}", "not whole: its outcome"),
             ("an alien outcome", "outcome", "seq 100 > {name}", "not whole: its outcome"),
             ("an outcome in bytes", "outcome", "head -c 9999 /dev/urandom > {name}", "not whole: its outcome"),
             ("an outcome that is a directory", "outcome", "mkdir {name}", "does not run as Maxima"),
@@ -394,7 +394,7 @@ ENVIRONMENTS = [
             ("no document", "true", "describes no system", 2),
             ("a document that is a directory", "mkdir {name}", "describes no system", 2),
             ("a document that is a link", "ln -s /etc/passwd {name}", "describes no system", 2),
-            ("a torn document", "printf '{{\"format\"' > {name}", "not whole: its document", MACHINE_AT_FAULT),
+            ("a truncated document", "printf '{{\"format\"' > {name}", "not whole: its document", MACHINE_AT_FAULT),
             ("an alien document", "echo hello > {name}", "", 2),
             ("a document of another kind", "echo '{{}}' > {name}", "", 2),
         )
@@ -410,7 +410,7 @@ ENVIRONMENTS = [
     Fault("a full device", "derive scene.mac --json /dev/full", "No space left", MACHINE_AT_FAULT),
     Fault("no standard output", "derive scene.mac --json out.json", "", 0, shell='"$@" >&-', long=True),
     Fault("no standard error", DERIVE, "", 0, shell='"$@" 2>&-', long=True),
-    Fault("nobody who reads", "derive scene.mac", "", 141, shell='"$@" | true; exit ${PIPESTATUS[0]}'),
+    Fault("no reader", "derive scene.mac", "", 141, shell='"$@" | true; exit ${PIPESTATUS[0]}'),
     Fault("no home", DERIVE, "", 0, environment={"HOME": ""}, long=True),
     Fault("a home that is not there", DERIVE, "", 0, environment={"HOME": "/nowhere"}, long=True),
     Fault("letters of ASCII alone", "derive scene.mac", "", 0, environment={"PYTHONIOENCODING": "ascii"}, long=True),
@@ -492,7 +492,7 @@ WORK = [
     ),
     *(
         Fault(
-            f"an end that nobody waits for, by {engine}",
+            f"a very late end, by {engine}",
             f"simulate swing.mac --until 99999999999999999999 --engine {engine}",
             "steps to its end",
             prepare=holding("swing.mac", SWING),
@@ -503,7 +503,7 @@ WORK = [
     Fault("an end before the start", "simulate scene.mac --until -1", "not after the start", long=True),
     Fault("5000 digits", "series scene.mac --order 4 --precision 5000", "", 0, long=True),
     Fault("one digit", "simulate scene.mac --until 1 --precision 1 --final", "", 0, long=True),
-    Fault("a setting that nobody asks for", "derive scene.mac --set k=1", "k", long=True),
+    Fault("an unused setting", "derive scene.mac --set k=1", "k", long=True),
     Fault(
         "a law that ends within the time span",
         "simulate law.mac --until 1",

@@ -4,6 +4,7 @@ import os
 import re
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -19,7 +20,7 @@ def rows() -> list:
 
 
 @pytest.mark.parametrize("fault", rows())
-def test_a_fault_is_one_sentence(fault: Fault, tmp_path: Path):
+def test_a_fault_is_one_sentence(fault: Fault, tmp_path: Path, holonom_here, monkeypatch):
     here, temporary = tmp_path / "here", tmp_path / "temporary"
     here.mkdir()
     temporary.mkdir()
@@ -27,7 +28,12 @@ def test_a_fault_is_one_sentence(fault: Fault, tmp_path: Path):
     if fault.prepare:
         fault.prepare(here)
     before = contents(here)
-    done = run(fault, here, environment(fault, here, temporary))
+    if fault.environment or fault.shell:
+        done = run(fault, here, environment(fault, here, temporary))
+    else:
+        monkeypatch.chdir(here)
+        monkeypatch.setattr(tempfile, "tempdir", str(temporary))
+        done = holonom_here(*fault.command.split(" "))
     assert "Traceback" not in done.stderr
     assert done.returncode == fault.status, done.stderr
     assert fault.says in done.stderr

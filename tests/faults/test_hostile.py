@@ -1,4 +1,4 @@
-"""Scenes from strangers: what a hostile one tries, each in a run of its own, and that it has nothing of it.
+"""Untrusted scenes: what a hostile one tries, each in a run of its own, and that it has nothing of it.
 
 The scenes run in Maxima, where a file may call any program and any Lisp function.
 """
@@ -16,7 +16,7 @@ from particle import PARTICLE
 from shell import SHELL
 
 from holonom.documents import ask
-from holonom.failures import Failure, HolonomError
+from holonom.failures import ErrorKind, HolonomError
 from holonom.formats import Document
 from holonom.hidden import hidden_character
 from holonom.sandbox import UNCONFINED, Limits, Sandbox
@@ -113,7 +113,13 @@ def test_the_environment_is_not_shown(tmp_path, monkeypatch):
     assert "the secret" not in said
 
 
-REFUSALS = {Failure.TORN, Failure.REFUSED, Failure.NOTHING_WRITTEN, Failure.LISP_ERROR, Failure.ENDED_EARLY}
+REFUSALS = {
+    ErrorKind.OUTPUT_TRUNCATED,
+    ErrorKind.REFUSED,
+    ErrorKind.NOTHING_WRITTEN,
+    ErrorKind.LISP_ERROR,
+    ErrorKind.ENDED_EARLY,
+}
 FORGERIES = {
     "the writer of the record": 'write_record(file) := with_stdout(file, print("{\\"forged\\" : true}"))$',
     "the derivation": "derive(system) := error(sconcat(forged))$ multipliers_of([x]) := [0]$",
@@ -132,7 +138,7 @@ def test_what_derives_is_not_what_the_scene_has_touched(forgery, tmp_path, parti
         found = ask(Document.RECORD, scene(tmp_path, FORGERIES[forgery]))
     except HolonomError as refusal:
         found = None
-        refused = refusal.failure
+        refused = refusal.kind
     assert refused in REFUSALS if found is None else derivations(found) == derivations(particle_record)
 
 
@@ -153,7 +159,7 @@ def test_titles_hold_no_characters_that_hide_or_reverse_text(letter, tmp_path):
     file.write_text(PARTICLE.replace('"Particle', f'"{letter}Particle'), encoding="utf-8")
     with pytest.raises(HolonomError) as raised:
         ask(Document.RECORD, file)
-    assert (raised.value.failure, raised.value.detail) == (Failure.HIDDEN_CHARACTER, f"U+{ord(letter):04X}")
+    assert (raised.value.kind, raised.value.detail) == (ErrorKind.HIDDEN_CHARACTER, f"U+{ord(letter):04X}")
 
 
 def test_messages_show_the_characters_that_hide_or_reverse_text(tmp_path):
@@ -197,5 +203,5 @@ def test_missing_sandbox_is_reported_and_derivation_is_same(bubblewrap, tmp_path
         text=True,
         check=False,
     )
-    assert (done.returncode, done.stderr) == (0, f"holonom: {UNCONFINED}\n")
+    assert (done.returncode, done.stderr) == (0, f"holonom: warning: {UNCONFINED}\n")
     assert derivations(done.stdout) == derivations(particle_record)

@@ -4,13 +4,13 @@ import os
 import signal
 import subprocess
 import sys
-import time
-from collections.abc import Callable, Container, Iterable
+from collections.abc import Container, Iterable
 from pathlib import Path
 
 import psutil
 import pytest
 from shell import SHELL
+from waiting import soon
 
 ENDLESS = f'load("holonom.mac")$ {SHELL} in_a_shell("(sleep 1000 >/dev/null 2>&1 &); true")$ for i do 1$'
 VERBS = {
@@ -148,10 +148,3 @@ def names(processes: list[psutil.Process]) -> list[str]:
         except psutil.NoSuchProcess:
             continue
     return found
-
-
-def soon(condition: Callable[[], bool]) -> bool:
-    deadline = time.monotonic() + 100
-    while not condition() and time.monotonic() < deadline:
-        time.sleep(0.05)
-    return condition()

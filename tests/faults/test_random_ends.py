@@ -1,4 +1,4 @@
-"""Commands ended at random instants: nothing half-written, no process and no temporary file left, statuses right."""
+"""Commands ended at random times: nothing half-written, no process and no temporary file left, statuses right."""
 
 import csv
 import json
@@ -7,13 +7,12 @@ import random
 import signal
 import subprocess
 import sys
-import time
-from collections.abc import Callable
 from pathlib import Path
 
 import psutil
 import pytest
 from particle import PARTICLE
+from waiting import soon
 
 HOLONOM = [sys.executable, "-m", "holonom"]
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -33,7 +32,7 @@ DURATION = 3.0  # seconds within which a command is ended; one that is over by t
 
 @pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(1, 60))])
 @pytest.mark.parametrize("number", ENDS)
-def test_command_ended_at_a_random_instant_leaves_all_whole(number, seed, tmp_path):
+def test_command_ended_at_a_random_time_leaves_all_whole(number, seed, tmp_path):
     draw = random.Random(f"{number} {seed}")
     here, temporary = tmp_path / "here", tmp_path / "temporary"
     here.mkdir()
@@ -64,7 +63,7 @@ def ended_after(seconds: float, number: int, command: list[str], here: Path, env
     try:
         process.wait(seconds)
     except subprocess.TimeoutExpired:
-        if number == signal.SIGPIPE:  # nobody reads any more
+        if number == signal.SIGPIPE:  # the reader is gone
             process.stdout.close()
         else:
             process.send_signal(number)
@@ -140,10 +139,3 @@ def test_twenty_commands_at_once_without_an_image_agree(tmp_path):
     assert {process.returncode for process in started} == {0}
     assert len(printed) == 1
     assert len(list((tmp_path / "cache" / "holonom").glob("*.image"))) <= 1
-
-
-def soon(condition: Callable[[], bool]) -> bool:
-    deadline = time.monotonic() + 100
-    while not condition() and time.monotonic() < deadline:
-        time.sleep(0.05)
-    return condition()

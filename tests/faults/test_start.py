@@ -41,5 +41,5 @@ def test_an_interruption_of_the_imports_ends_without_a_word():
 def test_a_machine_without_processes_is_one_sentence():
     done = run(NO_PROCESSES)
     assert done.returncode == 3
-    assert done.stderr.startswith("holonom: this machine refuses: ")
+    assert done.stderr.startswith("holonom: error: the operating system reports: ")
     assert done.stderr.count("\n") == 1

@@ -19,6 +19,7 @@ from holonom.simulation.simulate import simulate
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SCENES = sorted(file for file in EXAMPLES.rglob("*.mac") if file.name not in ("by_hand.mac", "printed.mac"))
+SLOW = {"bricard_linkage", "stewart_platform"}
 SVG = "{http://www.w3.org/2000/svg}"
 PENDULUM = """load("holonom.mac")$
 system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [g],
@@ -62,7 +63,10 @@ def animated(svg: str) -> list[ElementTree.Element]:
     return list(ElementTree.fromstring(svg).iter(f"{SVG}animate"))
 
 
-@pytest.mark.parametrize("file", SCENES, ids=lambda file: file.stem)
+@pytest.mark.parametrize(
+    "file",
+    [pytest.param(file, id=file.stem, marks=[pytest.mark.long] if file.stem in SLOW else []) for file in SCENES],
+)
 def test_every_example_says_how_it_looks(file):
     problem, _ = numbers_at_start(file)
     assert problem.drawing.shapes
@@ -71,15 +75,15 @@ def test_every_example_says_how_it_looks(file):
 def test_the_string_drawn_is_as_long_as_the_control_says(film):
     string = film.numbers[film.shapes.index(Shape.SEGMENT)]
     lengths = np.linalg.norm(string[:, 2:] - string[:, :2], axis=1)
-    assert lengths == pytest.approx(1 + film.instants / 10, abs=1e-13)
+    assert lengths == pytest.approx(1 + film.times / 10, abs=1e-13)
 
 
 def test_links_of_the_chain_are_drawn_in_their_lengths():
     problem, motion = followed(EXAMPLES / "chain.mac", samples=61)
     film = film_of(motion, problem.drawing)
-    nodes = film.numbers[film.shapes.index(Shape.POLYLINE)].reshape(len(film.instants), -1, 2)
+    nodes = film.numbers[film.shapes.index(Shape.POLYLINE)].reshape(len(film.times), -1, 2)
     lengths = np.linalg.norm(np.diff(nodes, axis=1), axis=2)
-    assert lengths[:, 0] == pytest.approx(1 - film.instants / 10, abs=1e-12)
+    assert lengths[:, 0] == pytest.approx(1 - film.times / 10, abs=1e-12)
     assert lengths[:, 1:] == pytest.approx(1, abs=1e-12)
 
 
@@ -95,10 +99,10 @@ def test_loops_of_the_squeezing_mechanism_are_drawn_closed():
     assert np.linalg.norm(triangle[1] - triangle[0]) == pytest.approx(0.035)
 
 
-def test_an_animation_has_as_many_frames_as_instants(film):
+def test_an_animation_has_as_many_frames_as_times(film):
     found = animated(animation(film))
-    assert len(film.instants) == FRAMES + 1
-    assert {len(each.get("values").split(";")) for each in found} == {len(film.instants)}
+    assert len(film.times) == FRAMES + 1
+    assert {len(each.get("values").split(";")) for each in found} == {len(film.times)}
     assert {each.get("repeatCount") for each in found} == {"indefinite"}
 
 
@@ -127,9 +131,9 @@ def test_same_motion_same_bytes(film):
 def test_a_long_motion_is_filmed_from_its_beginning(pendulum):
     problem, motion = followed(pendulum(end="100"))
     film = film_of(motion, problem.drawing)
-    assert film.instants[0] == 0
-    assert film.instants[-1] < 20
-    assert np.diff(film.instants) == pytest.approx(film.instants[1], rel=1e-9)
+    assert film.times[0] == 0
+    assert film.times[-1] < 20
+    assert np.diff(film.times) == pytest.approx(film.times[1], rel=1e-9)
 
 
 @pytest.mark.parametrize(

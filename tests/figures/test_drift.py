@@ -1,4 +1,4 @@
-"""Drift of a pendulum at a coarse tolerance: every cure keeps nearer to the constraint than none, and all are drawn."""
+"""Drift of a pendulum at a coarse tolerance: each stabilization reduces it, and all are drawn."""
 
 from pathlib import Path
 from xml.etree import ElementTree
@@ -18,12 +18,14 @@ def motions():
     return drifting(PENDULUM, SWING)
 
 
-@pytest.mark.parametrize("cure", [Stabilization.PROJECTION, Stabilization.BAUMGARTE, Stabilization.GGL])
-def test_a_cure_keeps_nearer_to_the_constraint_than_none(motions, cure):
-    assert max(motions[cure].residuals["position"]) < max(motions[Stabilization.NONE].residuals["position"]) / 5
+@pytest.mark.parametrize("stabilization", [Stabilization.PROJECTION, Stabilization.BAUMGARTE, Stabilization.GGL])
+def test_a_stabilization_keeps_nearer_to_the_constraint_than_none(motions, stabilization):
+    assert (
+        max(motions[stabilization].residuals["position"]) < max(motions[Stabilization.NONE].residuals["position"]) / 5
+    )
 
 
-def test_every_cure_has_its_line_and_the_figure_is_the_same_each_time(motions):
+def test_every_stabilization_has_its_line_and_the_figure_is_the_same_each_time(motions):
     svg = draw_drift(motions)
     texts = {"".join(each.itertext()) for each in ElementTree.fromstring(svg).iter(f"{SVG}text")}
     assert set(Stabilization) <= texts

@@ -4,8 +4,9 @@ from xml.etree import ElementTree
 
 import matplotlib
 import pytest
+from refusing import failing
 
-from holonom.failures import HolonomError
+from holonom.failures import ErrorKind
 from holonom.figures.style import INK, PALETTE, figure_style, lettered, new_figure, write_figure
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -50,7 +51,7 @@ def test_settings_of_matplotlib_are_left_as_they_were(tmp_path):
 
 
 def test_what_cannot_be_written_is_refused(tmp_path):
-    with pytest.raises(HolonomError, match="cannot be written"):
+    with failing(ErrorKind.UNWRITABLE):
         drawn(tmp_path / "nowhere" / "figure.svg")
 
 

@@ -36,7 +36,7 @@ def document(
     """A program's document, as Maxima would write it."""
     return {
         "format": "holonom-program",
-        "version": 1,
+        "version": 2,
         "scene": None,
         "solve": "direct",
         "method": "bordered",

@@ -210,11 +210,11 @@ def test_names_that_c_does_not_know_stay_apart():
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
-        (["--to", "c"], "say where it goes: -o DIR"),
+        (["--to", "c"], "Say where it goes: -o DIR"),
         (["--to", "c", "--name", "a-b", "-o", "lib"], "a-b cannot name a function"),
         (["--to", "c", "--parameters", "m,k", "-o", "lib"], "'k' cannot stay open; .* the scene, which has m, g, l0"),
         (["--to", "c", "--parameters", "m;", "-o", "lib"], "m; cannot be the name of a parameter"),
-        (["--to", "python", "--name", "bob"], "leave --name and --parameters out"),
+        (["--to", "python", "--name", "bob"], "Leave --name and --parameters out"),
     ],
 )
 def test_what_cannot_be_written_is_one_sentence_and_nothing_is_written(tmp_path, monkeypatch, options, sentence):

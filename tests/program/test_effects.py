@@ -1,4 +1,4 @@
-"""Effects: a scene pays for those it calls for only, and says what it pays."""
+"""Effects: only those that a scene calls for cost operations, and the costs are listed."""
 
 import json
 import re
@@ -21,6 +21,7 @@ from holonom.crosscheck.premises import differences, premises_of
 from holonom.crosscheck.report import Verdict
 from holonom.crosscheck.system import described_system
 from holonom.failures import HolonomError
+from holonom.formats import VERSION
 from holonom.program.effects import Measure, Status, read_costs, scene_costs
 from holonom.program.forms import MotionProgram
 from holonom.program.motion_problem import motion_problem
@@ -148,7 +149,7 @@ def refusal_of(file, *options):
     result = CliRunner(mix_stderr=False).invoke(holonom, ["effects", str(file), *options], standalone_mode=False)
     assert result.return_value == 2
     said = without_notice(result.stderr)
-    assert said.startswith("holonom: ")
+    assert said.startswith("holonom: error: ")
     assert said.count("\n") == 1
     return said
 
@@ -307,7 +308,7 @@ def test_a_constant_control_has_no_rates(write_scene):
 @pytest.mark.parametrize(
     "change",
     [
-        {"version": 2},
+        {"version": VERSION + 1},
         {"terms": [{"equation": "3"}]},
         {"program": None},
         {"program": {}},
@@ -316,7 +317,7 @@ def test_a_constant_control_has_no_rates(write_scene):
 )
 def test_what_is_no_document_of_costs_is_refused_in_one_sentence(change):
     whole = document(PENDULUM.inputs, [], {"out": PENDULUM.inputs[0]})
-    good = {"format": "holonom-effects", "version": 1, "program": whole, "terms": [], "effects": []}
+    good = {"format": "holonom-effects", "version": VERSION, "program": whole, "terms": [], "effects": []}
     assert read_costs(json.dumps(good)).effects == ()
     with pytest.raises(HolonomError) as refusal:
         read_costs(json.dumps(good | change))

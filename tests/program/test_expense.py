@@ -9,7 +9,7 @@ import psutil
 import pytest
 
 from holonom import supervisor
-from holonom.failures import Failure, HolonomError
+from holonom.failures import ErrorKind, HolonomError
 from holonom.program import expense
 from holonom.program.expense import order_for, require_means
 from holonom.program.motion_problem import MotionProblem, motion_problem
@@ -51,7 +51,7 @@ def test_more_digits_than_memory_holds_are_refused(asked, pendulum, monkeypatch)
     monkeypatch.setattr(psutil, "virtual_memory", lambda: SimpleNamespace(available=2**18))
     with pytest.raises(HolonomError, match="about .* MiB of memory, and 0 are free") as refused:
         REQUESTS[asked](pendulum, read_precision(str(DIGITS)))
-    assert refused.value.failure is Failure.MEMORY_TOO_SMALL
+    assert refused.value.kind is ErrorKind.MEMORY_TOO_SMALL
 
 
 @pytest.mark.parametrize(("limit", "seconds"), [(inf, [supervisor.EXPECTED]), (1000.0, [])])

@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from programs import PENDULUM, assume_well_conditioned, chain, program, random_points, random_programs
 from reference import assert_within_bounds, reference
 
-from holonom.failures import Failure, HolonomError
+from holonom.failures import ErrorKind, HolonomError
 from holonom.program.targets import javascript
 
 RUN = "\nconsole.log(JSON.stringify(JSON.parse(require('fs').readFileSync(0)).map(motion.evaluate)));"
@@ -57,4 +57,4 @@ def test_names_and_titles_cannot_end_what_they_stand_in():
 def test_what_cannot_name_a_constant_is_refused():
     with pytest.raises(HolonomError) as caught:
         javascript.write(PENDULUM, "my motion")
-    assert caught.value.failure is Failure.NOT_AN_IDENTIFIER
+    assert caught.value.kind is ErrorKind.NOT_AN_IDENTIFIER

@@ -6,6 +6,7 @@ import pytest
 from programs import PENDULUM, chain, document, program
 
 from holonom.failures import HolonomError
+from holonom.formats import VERSION
 from holonom.program.motion_program import (
     Call,
     Constant,
@@ -67,7 +68,7 @@ def test_count_grows_with_the_chain_link_by_link():
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
-        ({"version": 2}, "version"),
+        ({"version": VERSION + 1}, "version"),
         ({"solve": "iterative"}, "solve"),
         ({"operations": -1}, "operations"),
         ({"inputs": ["a", "a"]}, "inputs"),

@@ -26,7 +26,7 @@ def test_a_module_more_is_a_language_more(tmp_path, monkeypatch, write_scene):
 
 
 def test_the_forms_are_json_and_the_modules():
-    assert FORMS == ("json", "c", "fmu", "javascript", "python")
+    assert FORMS == ("json", "c", "fmu", "javascript", "matlab", "python")
     assert all(
         hasattr(targets.target(name), "write") != hasattr(targets.target(name), "write_model") for name in FORMS[1:]
     )

@@ -15,7 +15,7 @@ ENTRIES = [entry for function in function_texts() for entry in function.entries]
 
 
 def explained(topic: str) -> str:
-    """What Maxima reads: so many characters from that byte on, in one line."""
+    """What Maxima reads: a number of characters from that byte on, in one line."""
     start, length = TOPICS[topic]
     return " ".join(FILES["holonom.info"].encode()[start:][:length].decode().split())
 

@@ -56,10 +56,10 @@ def estimates(rows, orders=ORDERS):
 
 
 def require_truth_inside(rows, true, orders=ORDERS):
-    """No order claims too much: none that the motion is entire, none a radius that excludes the true one."""
+    """No order shows too much: none that the motion is entire, none a radius that excludes the true one."""
     for order, radius in estimates(rows, orders).items():
         if radius.estimate is None:
-            assert radius.remark.startswith("unknown"), order
+            assert radius.note.startswith("unknown"), order
         else:
             assert abs(radius.estimate - true) <= radius.uncertainty, order
 
@@ -111,7 +111,7 @@ def test_an_entire_function_is_given_no_radius_at_any_order(row):
         coefficients = row()
     found = estimates([coefficients])
     assert all(radius.estimate is None for radius in found.values())
-    assert all("entire" in radius.remark for order, radius in found.items() if order >= 60)
+    assert all("entire" in radius.note for order, radius in found.items() if order >= 60)
 
 
 @pytest.mark.parametrize(
@@ -140,7 +140,7 @@ def test_radius_of_known_functions(coefficient, true):
 def test_where_there_is_no_radius_words_say_why(row, said):
     radius = estimate_radius([row])
     assert radius.estimate is None
-    assert said in radius.remark
+    assert said in radius.note
 
 
 def test_many_series_at_once_have_the_radii_of_each_to_the_last_bit():

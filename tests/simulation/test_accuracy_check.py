@@ -9,18 +9,18 @@ import pytest
 
 from holonom.program.motion_program import Call, Name, Operation, Program
 from holonom.program.request import Solve
-from holonom.simulation.accuracy_check import doubts, expected, may_hide, trusted
+from holonom.simulation.accuracy_check import expected, may_hide, trusted, violations
 
 KEPT = {"position": 1e-16, "velocity": 1e-15, "energy": 1e-13}
 
 
 def test_the_errors_of_a_motion_that_was_followed_are_in_proportion():
-    assert not list(doubts(KEPT, 1e-16, 500))
+    assert not list(violations(KEPT, 1e-16, 500))
 
 
 def test_a_position_residual_of_0_04_and_an_energy_error_of_13_were_passed_over():
-    found = list(doubts({**KEPT, "position": 0.04, "energy": 13.0 / 40.0}, 1e-16, 100))
-    assert [doubt.quantity for doubt in found] == ["position", "energy"]
+    found = list(violations({**KEPT, "position": 0.04, "energy": 13.0 / 40.0}, 1e-16, 100))
+    assert [violation.quantity for violation in found] == ["position", "energy"]
     assert found[1].missed == 13.0 / 40.0
 
 
@@ -28,13 +28,13 @@ def test_a_position_residual_of_0_04_and_an_energy_error_of_13_were_passed_over(
 def test_errors_may_grow_with_tolerance_and_steps_and_rounding_is_no_error(tol, steps):
     allowed = float(expected(tol, steps))
     assert allowed == pytest.approx(1e4 * max(tol, 1e-15) * max(1, steps))
-    for value, doubted in ((0.0, False), (allowed, False), (np.nextafter(allowed, 1), True), (math.inf, True)):
-        assert list(doubts({"energy": value}, tol, steps)) == [("energy", value, allowed)] * doubted
-        assert trusted({"energy": np.array([value])}, tol, np.array([steps])).tolist() == [not doubted]
+    for value, rejected in ((0.0, False), (allowed, False), (np.nextafter(allowed, 1), True), (math.inf, True)):
+        assert list(violations({"energy": value}, tol, steps)) == [("energy", value, allowed)] * rejected
+        assert trusted({"energy": np.array([value])}, tol, np.array([steps])).tolist() == [not rejected]
 
 
 def test_what_is_no_number_is_no_result():
-    assert [doubt.quantity for doubt in doubts({**KEPT, "energy": math.nan}, 1e-3, 10)] == ["energy"]
+    assert [violation.quantity for violation in violations({**KEPT, "energy": math.nan}, 1e-3, 10)] == ["energy"]
 
 
 WELL = """
@@ -62,13 +62,13 @@ def test_a_narrow_place_was_passed_over_in_silence(followed, place):
     done = followed(place)
     found = json.loads(done.stdout)
     assert (done.returncode, found["trusted"]) == (1, False)
-    assert "acceleration" in [doubt["quantity"] for doubt in found["doubts"]]
-    assert "this is no result: a force that acts within a step is missed by" in done.stderr
+    assert "acceleration" in [violation["quantity"] for violation in found["violations"]]
+    assert "relative error of a force that acts within a step is" in done.stderr
     assert "--max-step" in done.stderr
 
 
 @pytest.mark.parametrize("place", NARROW.values(), ids=NARROW)
-def test_a_narrow_place_that_the_steps_look_at_is_no_ground_for_doubt(followed, place):
+def test_a_narrow_place_that_the_steps_look_at_is_no_violation(followed, place):
     done = followed(place, "--max-step", "0.001")
     found = json.loads(done.stdout)
     assert (done.returncode, found["trusted"], done.stderr) == (0, True, "")
@@ -88,3 +88,17 @@ def test_exponentials_and_high_powers_of_the_state_alone_can_hide():
     assert not of(Call(Operation.NEGATE, (t,)), Call(Operation.EXP, (Name("w0"),)))
     assert not of(Call(Operation.SIN, (x,)))
     assert not of(Call(Operation.POWER, (x, Fraction(2))))
+
+
+ROUGH = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2, constraints = [y],
+  forces = [friction = [-dot(x)/sqrt(dot(x)^2 + dot(y)^2)/2, 0], pull = [-x, 0]])$
+s : holonomic_scene(system, initial_state = [x = 1, y = 0, dot(x) = 1, dot(y) = 0], time_span = [0, 3])$
+"""
+
+
+def test_a_velocity_over_its_size_is_rejected_with_what_to_write(tmp_path, holonom_here):
+    scene = tmp_path / "rough.mac"
+    scene.write_text(ROUGH)
+    answer = holonom_here("simulate", str(scene), "--engine", "taylor", "--final")
+    assert (answer.returncode, "write signum(v)" in answer.stderr) == (1, True)

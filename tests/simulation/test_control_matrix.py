@@ -1,4 +1,4 @@
-"""The instants at which the matrix of sought controls loses rank, of one column and two rows."""
+"""The times at which the matrix of sought controls loses rank, of one column and two rows."""
 
 import numpy as np
 import pytest
@@ -14,8 +14,8 @@ class OneControl(ControlMatrix):
         SignedFunctions.__init__(self, read_precision("double"), 3.0)
         self._shape, self._scale, self._of_time = (len(rows), 1), 1.0, rows
 
-    def _matrices(self, instants, states):
-        return np.stack([row(instants) for row in self._of_time], axis=1)[..., None] / self._scale
+    def _matrices(self, times, states):
+        return np.stack([row(times) for row in self._of_time], axis=1)[..., None] / self._scale
 
 
 @pytest.mark.parametrize(
@@ -27,5 +27,5 @@ class OneControl(ControlMatrix):
     ],
 )
 def test_rank_is_lost_when_all_rows_vanish_and_not_when_one_does(rows, lost):
-    found = OneControl(*rows).lost(Step(0.0, 3.0, lambda instants: np.zeros((2, len(instants)))))
+    found = OneControl(*rows).lost(Step(0.0, 3.0, lambda times: np.zeros((2, len(times)))))
     assert found == (None if lost is None else pytest.approx(lost, rel=1e-8))

@@ -16,8 +16,8 @@ from holonom.simulation.residuals import condition, residuals
 
 
 def balance_of(motion: RobustEngine, asked) -> EnergyBalance:
-    def multipliers(instants, states):
-        return np.array([motion.solution(t, state).multipliers for t, state in zip(instants, states.T, strict=True)]).T
+    def multipliers(times, states):
+        return np.array([motion.solution(t, state).multipliers for t, state in zip(times, states.T, strict=True)]).T
 
     return EnergyBalance(asked, multipliers)
 
@@ -29,7 +29,7 @@ def followed(asked, until: float):
     start = balance.energy(np.array([motion.time]), motion.state[:, None])[0]
     starts, ends, between = [], [], []
     for piece in motion.integrate(until):
-        inside = balance.instants_between([piece.start], [piece.end])
+        inside = balance.times_between([piece.start], [piece.end])
         starts, ends = [*starts, piece.start], [*ends, piece.end]
         between += [(inside, piece.states(inside))] if len(inside) else []
     work = sum(balance.works(np.array(starts), np.array(ends), between))

@@ -9,7 +9,7 @@ import holonom
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request, Solve
 from holonom.sandbox import Limits
-from holonom.simulation.hard_cases import HardCase
+from holonom.simulation.hard_cases import Difficulty
 from holonom.simulation.request import EngineName, SimulationRequest
 from holonom.simulation.simulate import simulate
 
@@ -48,14 +48,14 @@ def test_a_rigid_body_in_euler_parameters_follows_eulers_equations(write_scene):
         e = np.array([motion.coordinates[f"e{i}"][-1] for i in range(4)])
         rate = np.array([motion.velocities[f"dot(e{i})"][-1] for i in range(4)])
         np.testing.assert_allclose(angular_velocity(e, rate), eulers_equations(10.0), atol=3e-11)
-        assert [leg.engine for leg in motion.report.legs] == [EngineName.TAYLOR]
+        assert [segment.engine for segment in motion.report.segments] == [EngineName.TAYLOR]
 
 
 def test_the_robust_engine_holds_a_top_whose_last_parameters_are_zero_at_the_start():
     """The axis leans about x, e = (4/5, -3/5, 0, 0). Its energy was found missed, and the motion refused."""
     top = holonom.load("examples/heavy_top.mac")
     robust, taylor = (top.simulate(until=0.25, samples=2, engine=engine) for engine in ("robust", "taylor"))
-    assert not robust.report.doubts
+    assert not robust.report.violations
     for multiplier in ("lambda1", "lambda2", "lambda3", "lambda4"):
         assert robust[multiplier] == pytest.approx(taylor[multiplier], rel=1e-6)
 
@@ -145,7 +145,7 @@ system : holonomic_system(assembly(body))$
 spin : holonomic_scene(system, initial_state = [x = 0, y = 0, z = 0, dot(x) = 0, dot(y) = 0, dot(z) = 0,
     e1 = {e1}, e2 = 0, e3 = 0, dot(e1) = 1/2, dot(e2) = 1/3, dot(e3) = 1],
   initial_guess = [e0 = 1, dot(e0) = 0], time_span = [0, 1/10])$""").simulate(samples=2)
-    assert HardCase.MASS_RATIO not in motion.report.cases
+    assert Difficulty.MASS_RATIO not in motion.report.cases
 
 
 PLATFORM = """

@@ -1,14 +1,15 @@
-"""Motions that end at an event, against the instants that closed forms give."""
+"""Motions that end at an event, against the times that closed forms give."""
 
 import io
 
 import mpmath
 import pytest
+from refusing import failing
 from rich.console import Console
 
 import holonom
 from holonom.display.motion import show_simulation
-from holonom.failures import Failure, HolonomError
+from holonom.failures import ErrorKind, HolonomError
 from holonom.simulation.events import Ending
 from holonom.simulation.output import report_document
 
@@ -37,7 +38,7 @@ def test_a_body_thrown_upward_is_back_after_2_v_over_g(engine, c_compiler):
     motion = thrown("y, x = 100").simulate(samples=5, engine=engine)
     assert float(motion.report.t) == pytest.approx(FALL, rel=ENGINES[engine])
     assert motion.report.ending == Ending(("y", "x-100"), "y")
-    assert motion.instants == pytest.approx([FALL * k / 4 for k in range(5)], rel=ENGINES[engine])
+    assert motion.times == pytest.approx([FALL * k / 4 for k in range(5)], rel=ENGINES[engine])
     assert motion["y"][-1] == pytest.approx(0, abs=ENGINES[engine])
 
 
@@ -84,7 +85,7 @@ def test_what_turns_within_one_step_of_the_engine_was_passed_over_or_found_late(
 
 
 def test_a_change_of_sign_through_infinity_was_a_zero():
-    with pytest.raises(HolonomError, match=r"no real, finite value: tan\(t\+1\) at t = 0.5707963268"):
+    with failing(ErrorKind.NO_EVENT_VALUE, "tan(t+1) at t = 0.5707963268"):
         thrown("tan(t + 1)").simulate(samples=2)
 
 
@@ -102,15 +103,15 @@ def test_a_switched_motion_ends_in_a_later_part():
 @pytest.mark.parametrize(
     ("until", "failure", "refusal"),
     [
-        ("y - h", Failure.REFUSED, "unknown_name_in_until"),
-        ("g - 3", Failure.REFUSED, "constant_in_until"),
-        ("log(1/2 - t) + 9", Failure.NO_EVENT_VALUE, None),
+        ("y - h", ErrorKind.REFUSED, "unknown_name_in_until"),
+        ("g - 3", ErrorKind.REFUSED, "constant_in_until"),
+        ("log(1/2 - t) + 9", ErrorKind.NO_EVENT_VALUE, None),
     ],
 )
 def test_what_cannot_end_a_motion_is_refused(until, failure, refusal):
     with pytest.raises(HolonomError) as caught:
         thrown(until).simulate(samples=2)
-    assert (caught.value.failure, caught.value.refusal) == (failure, refusal)
+    assert (caught.value.kind, caught.value.refusal) == (failure, refusal)
 
 
 def test_the_table_says_what_ended_the_motion():

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import holonom
-from holonom.failures import Failure, HolonomError
+from holonom.failures import ErrorKind, HolonomError
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 ENGINES = {"taylor": 1e-13, "runge-kutta": 1e-10, "robust": 1e-8}
@@ -32,7 +32,7 @@ def test_bob_kept_level_swings_as_a_harmonic_oscillator(engine, c_compiler):
     motion = holonom.system(BOB.format(course="-2", speed=0)).simulate(samples=9, engine=engine)
     x = sp.cos(sp.sqrt(5) * T)
     u = sp.sqrt(x**2 + 4)
-    truth = values([x, u, sp.diff(u, T), sp.diff(u, T, 2), -5 + 0 * T, 10 * u], motion.instants)
+    truth = values([x, u, sp.diff(u, T), sp.diff(u, T, 2), -5 + 0 * T, 10 * u], motion.times)
     found = [motion[name] for name in ("x", "u", "dot(u)", "ddot(u)", "lambda1", "pull")]
     assert np.array(found) == pytest.approx(truth, rel=ENGINES[engine], abs=ENGINES[engine])
     assert motion.report.relative_degrees == (2,)
@@ -44,7 +44,7 @@ def test_rates_of_the_winch_keep_their_digits_with_any_load(mass):
     """The second rate is the difference of the drive and the reaction, which a unit mass made one of large numbers."""
     motion = holonom.system(BOB.format(course="-2", speed=0).replace("m = 2", f"m = {mass:.1e}")).simulate(samples=5)
     u = sp.sqrt(sp.cos(sp.sqrt(5) * T) ** 2 + 4)
-    truth = values([u, sp.diff(u, T, 2), -5 * mass / 2 + 0 * T], motion.instants)
+    truth = values([u, sp.diff(u, T, 2), -5 * mass / 2 + 0 * T], motion.times)
     assert np.array([motion[name] for name in ("u", "ddot(u)", "lambda1")]) == pytest.approx(
         truth, rel=1e-13, abs=1e-13
     )
@@ -53,14 +53,14 @@ def test_rates_of_the_winch_keep_their_digits_with_any_load(mass):
 def test_course_of_a_thrown_bob_makes_the_motion_free():
     scene = holonom.system(BOB.format(course="-2 - 5*t^2", speed=3))
     motion = scene.simulate(samples=5)
-    assert motion["x"] == pytest.approx(1 + 3 * motion.instants, rel=1e-14)
+    assert motion["x"] == pytest.approx(1 + 3 * motion.times, rel=1e-14)
     assert motion["lambda1"] == pytest.approx(0, abs=1e-14)
     found = scene.free().motion
     assert (found.verdict, found.order) == ("undecided", 40)  # all coefficients vanish, and nothing is proved
 
 
-def values(formulas, instants):
-    return np.array([np.broadcast_to(row, len(instants)) for row in sp.lambdify(T, formulas)(np.asarray(instants))])
+def values(formulas, times):
+    return np.array([np.broadcast_to(row, len(times)) for row in sp.lambdify(T, formulas)(np.asarray(times))])
 
 
 def test_winch_pays_out_what_the_heaving_crane_takes():
@@ -79,13 +79,13 @@ FEET = np.array([[0.96, 0.25], [-0.25, 0.96], [-0.7, 0.7], [-0.7, -0.7], [-0.25,
 JOINTS = np.array([[1 / 3, 1 / 3], [0.125, 0.48], [-0.48, 0.125], [-0.48, -0.125], [0.125, -0.48], [1 / 3, -1 / 3]])
 
 
-def platform(instants):
+def platform(times):
     """Lengths and pushes of the legs, shape (6, k) each, by inverse kinematics, and by Newton and Euler."""
     place = [sp.sin(T) / 5, (1 - sp.cos(T)) / 5, 1 + sp.sin(2 * T) / 10]
     turn = [sp.sin(T) / 10, (1 - sp.cos(T)) / 20, sp.sin(2 * T) / 10]
     course = [*place, sp.sqrt(1 - sum(e**2 for e in turn)), *turn]
     lengths, pushes = [], []
-    for q, v, a in zip(*(values([sp.diff(f, T, k) for f in course], instants).T for k in range(3)), strict=True):
+    for q, v, a in zip(*(values([sp.diff(f, T, k) for f in course], times).T for k in range(3)), strict=True):
         e0, e1, e2, e3 = q[3:]
         cross = np.array([[0, -e3, e2], [e3, 0, -e1], [-e2, e1, 0]])
         rotation = np.eye(3) + 2 * e0 * cross + 2 * cross @ cross
@@ -106,7 +106,7 @@ def platform(instants):
 
 def test_stewart_platform_has_the_lengths_and_pushes_of_its_legs():
     motion = holonom.load(EXAMPLES / "stewart_platform.mac").simulate(samples=7)
-    lengths, pushes = platform(motion.instants)
+    lengths, pushes = platform(motion.times)
     assert np.array([motion[f"u{i}"] for i in range(1, 7)]) == pytest.approx(lengths, rel=1e-13)
     assert np.array([motion[f"push{i}"] for i in range(1, 7)]) == pytest.approx(pushes, rel=1e-11)
     assert motion.report.trusted
@@ -131,7 +131,7 @@ def test_reaction_force_and_length_are_found_together():
     """A string of prescribed tension, a winch that leads a load, and a force that leads a mass on a spring."""
     scene = holonom.system(MIXED)
     motion = scene.simulate(samples=5)
-    t = motion.instants
+    t = motion.times
     assert motion["lambda1"] == pytest.approx(-20, rel=1e-14)
     assert motion["u1"] == pytest.approx(motion["r"], rel=1e-14)
     assert motion["lambda2"] == pytest.approx(20 / (2 * (motion["y"] - motion["w"])), rel=1e-12)
@@ -155,7 +155,7 @@ led : holonomic_scene(system, servo_constraints = [x = sin(t)], parameter_values
     x = sp.sin(T)
     h = x + 1 + (2 * sp.diff(x, T, 2) + 20) / 50
     push = sp.diff(h, T, 2) + 10 + 50 * (h - x - 1)
-    truth = values([h, sp.diff(h, T, 2), push], motion.instants)
+    truth = values([h, sp.diff(h, T, 2), push], motion.times)
     assert np.array([motion[name] for name in ("u", "ddot(u)", "lambda1")]) == pytest.approx(truth, rel=1e-12)
     assert motion.report.relative_degrees == (4,)
 
@@ -178,7 +178,7 @@ def test_motion_ends_at_a_dead_centre_with_its_time(course, end, engine):
     scene = holonom.system(SLIDE.format(position="sin(u)", course=course, start="", guess=GUESS))
     with pytest.raises(HolonomError) as ended:
         scene.simulate(samples=3, engine=engine)
-    assert ended.value.failure is Failure.NO_WAY_ON
+    assert ended.value.kind is ErrorKind.NO_WAY_ON
     assert float(ended.value.detail.split(",")[0]) == pytest.approx(end, abs=1e-6)
 
 
@@ -190,9 +190,9 @@ def test_friction_holds_the_load_that_is_kept_level(friction):
     )
     motion = holonom.system(text).simulate(samples=9)
     assert motion["lambda1"] == pytest.approx(-5, rel=1e-13)
-    sticks = motion.instants > 0.1
+    sticks = motion.times > 0.1
     if friction == 3:
-        assert motion.report.switchings[0].passage == "crossed"
+        assert motion.report.switchings[0].outcome == "crossed"
     else:
         assert motion["dot(x)"][sticks] == pytest.approx(0, abs=1e-13)
         assert motion["dot(u)"][sticks] == pytest.approx(0, abs=1e-13)
@@ -205,6 +205,14 @@ def test_start_at_a_dead_centre_is_refused():
     )
     with refused("servo_rank_at_start"):
         scene.simulate(samples=2)
+
+
+@pytest.mark.parametrize(("course", "x"), [("-1 - t^2", "0"), ("-3/5 - t", "4/5")])
+def test_start_at_a_double_root_of_the_control_is_refused(course, x):
+    """x^2 + y^2 = 1 + u^2: Newton's method finds u = 0 to half the digits."""
+    text = BOB.replace("- u^2", "- u^2 - 1").replace("x = 1", f"x = {x}").format(course=course, speed=0)
+    with refused("servo_rank_at_start"):
+        holonom.system(text).simulate(samples=2)
 
 
 REFUSED = {
@@ -346,7 +354,7 @@ def test_planted_motion_comes_back(seed):
         assert float(ended.value.detail.split(",")[0]) == pytest.approx(end, abs=1e-6)
         return
     motion = scene.simulate(samples=4)
-    truth = values([*paths, *seconds, *pushes], motion.instants)
+    truth = values([*paths, *seconds, *pushes], motion.times)
     found = [motion[name] for name in ("x", "y", "z", "u", "w", "ddot(u)", "ddot(w)", "lambda1", "lambda2")]
     assert np.array(found) == pytest.approx(truth, rel=1e-8, abs=1e-8)
     assert motion.report.trusted

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import holonom
-from holonom.failures import Failure, HolonomError
+from holonom.failures import ErrorKind, HolonomError
 
 PENDULUM = """
 system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [m, g],
@@ -34,7 +34,7 @@ def test_tension_of_a_pendulum_is_weight_and_centripetal_force(engine, c_compile
 
 def test_outputs_of_controls_have_the_rates_of_the_law():
     motion = pendulum("rates = [u, dot(u), ddot(u)]", law="1 + t^2/10").simulate(samples=5)
-    t = motion.instants
+    t = motion.times
     assert np.array([motion[f"rates[{k}]"] for k in (1, 2, 3)]) == pytest.approx(
         np.array([1 + t**2 / 10, t / 5, np.full(5, 0.2)])
     )
@@ -65,8 +65,8 @@ def test_a_motion_ends_at_the_zero_of_an_output():
 def test_an_output_without_a_value_is_refused_with_its_time():
     with pytest.raises(HolonomError) as refused:
         pendulum("root = sqrt(1/2 - t)").simulate(samples=5)
-    assert refused.value.failure is Failure.NO_WAY_ON
-    assert "1, where the output root has no value" in refused.value.said
+    assert refused.value.kind is ErrorKind.NO_WAY_ON
+    assert "1, where the output root has no value" in refused.value.reason
 
 
 @pytest.mark.parametrize(
@@ -117,7 +117,7 @@ led : holonomic_scene(system, servo_constraints = [x = sin(t)], initial_state = 
 
 def test_outputs_hold_controls_that_servo_constraints_find():
     motion = holonom.system(CART).simulate(samples=5)
-    assert motion["push"] == pytest.approx(-np.sin(motion.instants))  # of the driven half: its acceleration
+    assert motion["push"] == pytest.approx(-np.sin(motion.times))  # of the driven half: its acceleration
 
 
 SHAKEN = """
@@ -133,5 +133,5 @@ turn : holonomic_scene(system, effects = {effects}, control_law = [u = t^2], par
 @pytest.mark.parametrize(("effects", "shaking"), [("[shaking]", 1), ("[]", 0)])
 def test_outputs_have_the_switches_that_the_scene_chooses(effects, shaking):
     motion = holonom.system(SHAKEN.format(effects=effects)).simulate(samples=3)
-    assert motion["apart"] == pytest.approx(shaking * motion.instants**2)
-    assert motion["rate"] == pytest.approx(2 * shaking * motion.instants)
+    assert motion["apart"] == pytest.approx(shaking * motion.times**2)
+    assert motion["rate"] == pytest.approx(2 * shaking * motion.times)

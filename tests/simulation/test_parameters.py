@@ -147,7 +147,7 @@ def test_data_that_contradict_the_constraints_for_other_values_are_refused_with_
 
 
 def test_a_second_value_derives_and_compiles_nothing(hanging, monkeypatch):
-    monkeypatch.setattr(taylor, "pays", lambda *_: False)  # better code for long runs, by the clock
+    monkeypatch.setattr(taylor, "is_worthwhile", lambda *_: False)  # better code for long runs, by the clock
     scene = holonom.load(hanging)
     first = scene.simulate(samples=3, l0=1.5, m=2)
 

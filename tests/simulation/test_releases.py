@@ -13,7 +13,7 @@ from holonom.failures import HolonomError
 from holonom.program.motion_problem import problem_document, read_problem
 from holonom.program.request import Request, Solve
 from holonom.sandbox import Limits
-from holonom.simulation.hybrid_motion import Passage
+from holonom.simulation.hybrid_motion import EventOutcome
 from holonom.simulation.result import Simulation
 
 # Released from rest where the thread is horizontal: at the depth d the tension is 3 m g d/l.
@@ -64,7 +64,7 @@ run : holonomic_scene(system, time_span = [0, 2], released = [weld = theta - %pi
 
 
 def released(motion: Simulation) -> list[tuple[float, str]]:
-    assert {each.passage for each in motion.report.switchings} == {Passage.JOINT_RELEASED}
+    assert {each.outcome for each in motion.report.switchings} == {EventOutcome.JOINT_RELEASED}
     return [(each.t, each.function) for each in motion.report.switchings]
 
 

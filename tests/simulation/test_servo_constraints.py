@@ -10,7 +10,7 @@ import sympy as sp
 from refusing import refused
 
 import holonom
-from holonom.failures import Failure, HolonomError
+from holonom.failures import ErrorKind, HolonomError
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 ENGINES = {"taylor": 1e-12, "runge-kutta": 1e-10, "robust": 1e-8}
@@ -53,7 +53,7 @@ def inverse_dynamics():
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_two_link_arm_whose_tip_follows_a_circle_needs_the_torques_of_inverse_dynamics(engine, c_compiler):
     motion = holonom.system(ARM.format(across="1 + cos(t)/4")).simulate(samples=7, engine=engine)
-    truth = np.array(inverse_dynamics()(motion.instants))
+    truth = np.array(inverse_dynamics()(motion.times))
     found = np.array([motion[name] for name in ("a", "b", "tau1", "tau2")])
     assert found == pytest.approx(truth, rel=ENGINES[engine], abs=ENGINES[engine])
     assert motion.report.trusted
@@ -83,15 +83,15 @@ def flat_crane(across, below):
     return [trolley, phi, 2 * sp.diff(trolley, T, 2) - tension * sp.sin(phi), -tension]
 
 
-def values(formulas, instants):
-    return np.array([np.broadcast_to(row, len(instants)) for row in sp.lambdify(T, formulas)(instants)])
+def values(formulas, times):
+    return np.array([np.broadcast_to(row, len(times)) for row in sp.lambdify(T, formulas)(times)])
 
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_crane_whose_load_follows_a_line_is_flat(engine, c_compiler):
     """The rope points along the load's acceleration less gravity, which gives angle, tension and both forces."""
     motion = holonom.load(EXAMPLES / "overhead_crane.mac").simulate(samples=6, engine=engine)
-    truth = values(flat_crane((1 - sp.cos(T)) / 2, 2 - T / 5), motion.instants)
+    truth = values(flat_crane((1 - sp.cos(T)) / 2, 2 - T / 5), motion.times)
     found = np.array([motion[name] for name in ("x", "phi", "F", "W")])
     assert sorted(motion.report.relative_degrees) == [2, 4]
     assert found == pytest.approx(truth, rel=ENGINES[engine], abs=ENGINES[engine])
@@ -120,9 +120,9 @@ def test_a_crane_was_refused(course):
     outputs, phi, across, below = COURSES[course]
     motion = holonom.system(CRANE.format(course=outputs, phi=phi)).simulate(samples=5)
     found = np.array([motion[name] for name in ("x", "phi", "F", "W")])
-    assert found == pytest.approx(values(flat_crane(across, below), motion.instants), rel=1e-11, abs=1e-11)
+    assert found == pytest.approx(values(flat_crane(across, below), motion.times), rel=1e-11, abs=1e-11)
     assert motion.report.trusted
-    assert [leg.engine for leg in motion.report.legs] == ["taylor"]
+    assert [segment.engine for segment in motion.report.segments] == ["taylor"]
 
 
 def test_a_rope_that_would_have_to_push_ends_the_motion_in_one_sentence():
@@ -147,7 +147,7 @@ carried : holonomic_scene(system, servo_constraints = [hook[1] = 3*t^4/5, hook[2
   parameter_values = [M = 2, m = 1, g = 981/100], initial_state = [], initial_guess = [x = 0, y = 0, l = 2, a = 0,
   b = 0, dot(x) = 0, dot(y) = 0, dot(l) = 0, dot(a) = 0, dot(b) = 0], time_span = [0, 1])$""")
     motion = scene.simulate(samples=5)
-    trolley, _, force, pull = values(flat_crane(T**4, 2 - T / 5), motion.instants)
+    trolley, _, force, pull = values(flat_crane(T**4, 2 - T / 5), motion.times)
     assert sorted(motion.report.relative_degrees) == [2, 4, 4]
     for share, name, along in (0.6, "x", "Fx"), (0.8, "y", "Fy"):
         assert motion[name] == pytest.approx(share * trolley, rel=1e-11, abs=1e-11)
@@ -188,7 +188,7 @@ def test_a_quadrotor_in_the_plane_is_flat_in_whatever_order_its_outputs_are_name
     x, z = sp.sin(T), sp.cos(2 * T) / 2
     pull = sp.diff(x, T, 2), sp.diff(z, T, 2) + sp.Rational(981, 100)
     th = -sp.atan(pull[0] / pull[1])
-    truth = values([sp.sqrt(pull[0] ** 2 + pull[1] ** 2), sp.diff(th, T, 2) / 10], motion.instants)
+    truth = values([sp.sqrt(pull[0] ** 2 + pull[1] ** 2), sp.diff(th, T, 2) / 10], motion.times)
     assert np.array([motion["F"], motion["tau"]]) == pytest.approx(truth, rel=1e-11, abs=1e-11)
 
 
@@ -205,7 +205,7 @@ def test_a_pivot_that_vanishes_on_the_way_made_the_controls_no_numbers(engine, c
     """M = [[1 - t, -t], [t, 1 - t]] is regular throughout, and its first entry zero at t = 1."""
     text = TURNING.format(more="", sought="", energy="", course="", forces="u1*(1 - t) - u2*t, u1*t + u2*(1 - t)")
     motion = holonom.system(text).simulate(samples=5, engine=engine)
-    t = motion.instants
+    t = motion.times
     truth = [np.linalg.solve([[1 - at, -at], [at, 1 - at]], [-np.sin(at), -np.cos(at)]) for at in t]
     found = np.array([motion["u1"], motion["u2"]]).T
     assert found == pytest.approx(np.array(truth), rel=ENGINES[engine])
@@ -221,7 +221,7 @@ def test_rows_of_any_size_and_outputs_that_one_control_moves_alone():
         forces="u1*(1 - t) - u2*t + u3, 10^9*(u1*t + u2*(1 - t)), u3*(2 + t)",
     )
     motion = holonom.system(text).simulate(samples=5)
-    t = np.asarray(motion.instants)
+    t = np.asarray(motion.times)
     third = 6 * t / (2 + t)
     right = np.array([-np.sin(t) - third, -np.cos(t) / 1e9])
     truth = [np.linalg.solve([[1 - at, -at], [at, 1 - at]], both) for at, both in zip(t, right.T, strict=True)]
@@ -245,7 +245,7 @@ def masses(course, more="", forces="", entries="", law=""):
 
 def test_two_masses_and_a_spring_have_the_known_feedforward():
     motion = masses("y = sin(t)").simulate(samples=5)
-    y = np.sin(motion.instants)
+    y = np.sin(motion.times)
     assert motion["u"] == pytest.approx(2 * 3 / 5 * y - (2 + 3) * y, abs=1e-14)
     assert motion.report.relative_degrees == (4,)
 
@@ -257,7 +257,7 @@ system : holonomic_system(coordinates = [x, y], controls = [F], kinetic_energy =
   [drive = [F, F], friction = [3 - 2*signum(dot(x) - dot(y)), 2*signum(dot(x) - dot(y))]])$
 led : holonomic_scene(system, servo_constraints = [y = sin(t)], initial_state = [x = 0, dot(x) = 2], time_span = [0, 2],
   observe = [trajectory, controls])$""").simulate(samples=9)
-    t, held = motion.instants, motion.instants > 1
+    t, held = motion.times, motion.times > 1
     assert (motion["dot(x)"] - motion["dot(y)"])[held] == pytest.approx(0, abs=1e-14)
     assert motion["F"] == pytest.approx(-np.sin(t) - np.where(held, 3 / 2, 2), rel=1e-13)
 
@@ -272,7 +272,7 @@ led : holonomic_scene(system, servo_constraints = [x = sin(t - 1)], initial_stat
   time_span = [0, 2])$""")
     with pytest.raises(HolonomError) as refused:
         scene.simulate(samples=samples)
-    assert refused.value.failure is Failure.NO_WAY_ON
+    assert refused.value.kind is ErrorKind.NO_WAY_ON
     assert float(refused.value.detail.split(",")[0]) == pytest.approx(1, abs=1e-8)
 
 
@@ -300,7 +300,7 @@ turned : holonomic_scene(system, servo_constraints = [e1 = 0, e2 = 0, e3 = sin(t
 def test_a_satellite_at_rest_was_a_singular_configuration_that_it_starts_from(engine):
     """About its third axis by t^3/3, so that t3 = 2 J3 t. The outputs cannot make up for the singular A at e0 = 1."""
     motion = holonom.system(SATELLITE).simulate(samples=5, engine=engine)
-    t = np.asarray(motion.instants)
+    t = np.asarray(motion.times)
     assert motion["t3"] == pytest.approx(6 * t, abs=ENGINES[engine])
     assert motion["e0"] == pytest.approx(np.cos(t**3 / 6), abs=ENGINES[engine])
 
@@ -313,13 +313,13 @@ system : holonomic_system(coordinates = [x, y, z], controls = [F], potential_ene
 led : holonomic_scene(system, servo_constraints = [z = sin(2*t)], initial_state = [], time_span = [0, 1])$""").simulate(
         samples=5
     )
-    assert motion["F"] == pytest.approx(20 * np.sin(2 * motion.instants), abs=1e-13)
+    assert motion["F"] == pytest.approx(20 * np.sin(2 * motion.times), abs=1e-13)
 
 
 def test_a_course_by_if_was_refused_for_a_function_that_no_program_has():
     """At rest, then y = (t - 1)^5: four rates are continuous, and so are all controls but one kink."""
     motion = masses("y = if t < 1 then 0 else (t - 1)^5").simulate(samples=9)
-    s = np.maximum(np.asarray(motion.instants) - 1, 0)
+    s = np.maximum(np.asarray(motion.times) - 1, 0)
     assert motion["u"] == pytest.approx(6 / 5 * 120 * s + 5 * 20 * s**3, abs=1e-12)
     assert motion["x"] == pytest.approx(s**5 + 3 / 5 * 20 * s**3, abs=1e-13)
 
@@ -336,11 +336,11 @@ def test_a_reaction_stays_where_a_constraint_is_the_systems_own():
     """A pendulum on a shaken trolley: the trolley is where it should be, the rod pulls, and the drive does the work."""
     scene = holonom.system(ROD)
     motion = scene.simulate(samples=9)
-    assert motion["x"] == pytest.approx(np.sin(2 * motion.instants) / 5, abs=1e-13)
+    assert motion["x"] == pytest.approx(np.sin(2 * motion.times) / 5, abs=1e-13)
     assert list(motion.report.multipliers) == ["lambda1"]
     # of the trolley, 2 ddot(x) = F + lambda df/dx
     pull = motion["lambda1"] * -2 * (motion["p"] - motion["x"])
-    assert motion["F"] == pytest.approx(-2 * 4 * np.sin(2 * motion.instants) / 5 - pull, rel=1e-11, abs=1e-11)
+    assert motion["F"] == pytest.approx(-2 * 4 * np.sin(2 * motion.times) / 5 - pull, rel=1e-11, abs=1e-11)
     assert motion.report.trusted
 
 
@@ -450,7 +450,7 @@ driven : holonomic_scene(system, control_law = [w = {law}], servo_constraints = 
 def test_a_law_in_parts_beside_servo_constraints_was_an_error_of_lisp(law):
     """In closed form: u moves x and y alike, and the law moves z alone, whose reaction takes the impulse of a kink."""
     motion = holonom.system(WINCH.format(law=law, course="sin(t)")).simulate(samples=5)
-    t = np.array(motion.instants, dtype=float)
+    t = np.array(motion.times, dtype=float)
     assert motion["x"] == pytest.approx(np.sin(t), abs=1e-14)
     assert motion["y"] == pytest.approx(np.sin(t) - t, abs=1e-14)
     assert motion["z"][::2] == pytest.approx([5 / 4, 1, 5 / 4], abs=1e-14)
@@ -496,10 +496,10 @@ ZEROS = {
 
 
 def end_of(text, **options):
-    """The instant that a refused simulation names."""
+    """The time that a refused simulation names."""
     with pytest.raises(HolonomError) as refused:
         holonom.system(text).simulate(**options)
-    assert refused.value.failure is Failure.NO_WAY_ON
+    assert refused.value.kind is ErrorKind.NO_WAY_ON
     return float(refused.value.detail.split(",")[0])
 
 
@@ -559,7 +559,7 @@ def test_sweep_breaks_off_where_the_control_is_infinite(tmp_path):
 
 def test_servo_constraints_in_quadruple_precision_give_the_torques_of_inverse_dynamics():
     motion = holonom.system(ARM.format(across="1 + cos(t)/4")).simulate(samples=3, precision="quadruple")
-    truth = np.array(inverse_dynamics()(motion.instants.astype(float)))
+    truth = np.array(inverse_dynamics()(motion.times.astype(float)))
     found = [[float(number) for number in motion[name]] for name in ("a", "b", "tau1", "tau2")]
     assert np.array(found) == pytest.approx(truth, rel=1e-13, abs=1e-13)
     assert motion.report.trusted

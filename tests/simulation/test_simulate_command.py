@@ -89,10 +89,10 @@ def test_samples_and_figures_are_written(tmp_path, simulate):
     ("options", "sentence"),
     [
         (["--tol", "1e-30"], "double precision holds tolerances from 1e-16 to 1, not 1e-30"),
-        (["--until", "-1"], "the last instant is not after the start"),
+        (["--until", "-1"], "the last time is not after the start"),
         (["--precision", "single"], "single is no precision"),
-        (["-o", "motion.xls"], "no such file can be written; give a name that ends in one of .csv, .npz, .parquet"),
-        (["--plot", "motion.pdf"], "no such file can be written; give a name that ends in one of .svg, .png"),
+        (["-o", "motion.xls"], "Use .csv, .npz, .parquet."),
+        (["--plot", "motion.pdf"], "Use .svg, .png."),
         (["-o", "/dev/full/motion.csv"], "cannot be written"),
         (["--scene", "no_scene"], "no_scene"),
     ],
@@ -124,7 +124,7 @@ def test_a_start_of_limited_digits_was_corrected_without_a_word(write_scene, sim
 def test_a_scene_without_an_end_is_refused(particle_scene, simulate):
     done = simulate(particle_scene)
     assert done.returncode == 2
-    assert "the scene has no time span; give it one, or the last instant with --until" in done.stderr
+    assert "the scene has no time span. Add time_span, or pass the final time with --until" in done.stderr
     assert simulate(particle_scene, "--until", "1").returncode == 0
 
 

@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 
 import holonom
 from holonom.crosscheck.report import Verdict
-from holonom.failures import Failure, HolonomError
+from holonom.failures import ErrorKind, HolonomError
 from holonom.program.model import scene_model
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.numpy_function import NumpyFunction
@@ -170,13 +170,13 @@ def test_no_parameter_in_a_special_function_varies(write_scene: WRITE):
 def test_no_motion_goes_on_beyond_the_span_of_a_special_function(pushed_problem: MotionProblem):
     with pytest.raises(HolonomError) as caught:
         simulate(pushed_problem, SimulationRequest(until=11))
-    assert caught.value.failure is Failure.LAW_ENDS
+    assert caught.value.kind is ErrorKind.LAW_ENDS
 
 
 def test_no_derivatives_of_high_order_are_taken_of_the_polynomials(pushed_problem: MotionProblem):
     with pytest.raises(HolonomError) as caught:
         expand(pushed_problem, 30, read_precision("double"))
-    assert caught.value.failure is Failure.SPECIAL_EXPANDED
+    assert caught.value.kind is ErrorKind.SPECIAL_EXPANDED
 
 
 def test_no_exact_series_is_claimed(write_scene: WRITE):
@@ -184,7 +184,9 @@ def test_no_exact_series_is_claimed(write_scene: WRITE):
         compute_series(write_scene(pushed()), SeriesRequest(order=10, digits="exact"), Limits())
 
 
-def test_sympy_finds_no_disagreement(write_scene: WRITE):
-    report = holonom.load(write_scene(MIXED)).check()
+@pytest.mark.parametrize("order", ["2/3", pytest.param("2", marks=pytest.mark.long)])
+def test_sympy_finds_no_disagreement(write_scene: WRITE, order: str):
+    """mpmath takes Y of an integer order as a limit, which is slow."""
+    report = holonom.load(write_scene(MIXED.replace("bessel_y(2,", f"bessel_y({order},"))).check()
     assert report.disagreements == 0
     assert report.count(Verdict.UNDECIDED) == 0

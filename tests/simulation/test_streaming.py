@@ -9,7 +9,7 @@ import pytest
 from problems import problem
 from pyarrow import parquet
 
-from holonom.failures import Failure, HolonomError
+from holonom.failures import ErrorKind, HolonomError
 from holonom.program.motion_problem import MotionProblem
 from holonom.simulation import output, recording
 from holonom.simulation.output import require_disk, sample_file, write_samples
@@ -43,8 +43,8 @@ def followed(asked: MotionProblem, **wanted) -> list[Sampled]:
 @pytest.mark.parametrize("wanted", [{"samples": SAMPLES}, {"max_step": 0.05}], ids=["samples", "steps"])
 def test_stretches_are_the_motion_and_none_is_longer_than_it_may_be(lengthening, short_stretches, wanted):
     parts = followed(lengthening, **wanted)
-    together = np.concatenate([part.instants for part in parts])
-    assert max(len(part.instants) for part in parts) <= recording.BLOCK < len(together)
+    together = np.concatenate([part.times for part in parts])
+    assert max(len(part.times) for part in parts) <= recording.BLOCK < len(together)
     assert together[0] == 0
     assert together[-1] == 3
     assert (np.diff(together) > 0).all()
@@ -60,7 +60,7 @@ def test_the_report_does_not_depend_on_the_stretches(lengthening, monkeypatch):
     for (name, samples), (_, others) in zip(whole.columns(), parts.columns(), strict=True):
         assert others == pytest.approx(samples, abs=1e-13), name
     assert parts.report.energy_error == pytest.approx(whole.report.energy_error, abs=1e-13)
-    assert parts.report.doubts == whole.report.doubts == ()
+    assert parts.report.violations == whole.report.violations == ()
 
 
 @pytest.mark.parametrize("suffix", [".csv", ".parquet"])
@@ -86,7 +86,7 @@ def test_a_motion_that_breaks_off_leaves_no_file(lengthening, tmp_path, suffix):
 def broken_off(part: Sampled, file: Path) -> None:
     with sample_file(file, 17) as take:
         take(part)
-        raise HolonomError(Failure.NO_WAY_ON, detail="1")
+        raise HolonomError(ErrorKind.NO_WAY_ON, detail="1")
 
 
 def test_more_than_the_disk_holds_is_refused_before_the_motion(lengthening, tmp_path):

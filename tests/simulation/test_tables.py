@@ -6,15 +6,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from refusing import refused
+from refusing import failing, refused
 from scipy.integrate import cumulative_simpson, quad
 from scipy.interpolate import CubicSpline
 
 import holonom
-from holonom.failures import HolonomError
+from holonom.failures import ErrorKind
 from holonom.program.model import scene_model
 from holonom.program.request import Request
-from holonom.program.table_numbers import OfTime
+from holonom.program.table_numbers import TimeFunction
 from holonom.series.power_series import values_at
 from holonom.simulation.time_events import time_events
 
@@ -44,68 +44,68 @@ def points(rows=POINTS):
     return "[" + ", ".join(f"[{t}, {u}]" for t, u in rows) + "]"
 
 
-def truth(instants, ends="natural", rows=POINTS, start=0.0):
+def truth(times, ends="natural", rows=POINTS, start=0.0):
     """The motion from x = 1, dot(x) = -2 at the start."""
     spline = CubicSpline(*np.array(rows, dtype=float).T, bc_type=ENDS[ends])
     rate, place = spline.antiderivative(1), spline.antiderivative(2)
-    since = instants - start
-    return 1 - 2 * since + place(instants) - place(start) - rate(start) * since
+    since = times - start
+    return 1 - 2 * since + place(times) - place(start) - rate(start) * since
 
 
 @pytest.mark.parametrize("ends", ENDS)
 def test_the_motion_under_a_table_is_the_splines_second_antiderivative(driven, ends):
     motion = driven(f"table({points()}, {ends})").simulate(samples=9)
-    assert motion["x"] == pytest.approx(truth(motion.instants, ends), rel=1e-14, abs=1e-14)
+    assert motion["x"] == pytest.approx(truth(motion.times, ends), rel=1e-14, abs=1e-14)
 
 
 @pytest.mark.parametrize("engine", ["runge-kutta", "robust"])
 def test_every_engine_follows_it(driven, engine, c_compiler):
     motion = driven(f"table({points()})").simulate(samples=9, engine=engine)
-    assert motion["x"] == pytest.approx(truth(motion.instants), rel=ENGINES[engine], abs=ENGINES[engine])
+    assert motion["x"] == pytest.approx(truth(motion.times), rel=ENGINES[engine], abs=ENGINES[engine])
 
 
 def test_a_csv_file_beside_the_scene_gives_the_same_motion(driven):
     csv = "# measured\ntime, u\n\n" + "".join(f"{t:.1e},  {u}\r\n" for t, u in POINTS)
     motion = driven('table("drive.csv")', csv=csv).simulate(samples=5)
-    assert motion["x"] == pytest.approx(truth(motion.instants), rel=1e-14, abs=1e-14)
+    assert motion["x"] == pytest.approx(truth(motion.times), rel=1e-14, abs=1e-14)
 
 
 def test_a_byte_order_mark_was_taken_for_a_part_of_the_first_number(driven):
     csv = "\ufeff" + "\r\n".join(f"{t},{u}" for t, u in POINTS) + "\r\n\r\n"
     motion = driven('table("drive.csv")', csv=csv).simulate(samples=2)
-    assert motion["x"] == pytest.approx(truth(motion.instants), rel=1e-14)
+    assert motion["x"] == pytest.approx(truth(motion.times), rel=1e-14)
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
 def test_lines_end_as_they_like_and_numbers_may_stand_in_quotes(driven, end):
     csv = "\ufeff" + end.join(['"t","u"', *(f'"{t}","{u}"' for t, u in POINTS), "", ""])
     motion = driven('table("drive.csv")', csv=csv).simulate(samples=2)
-    assert motion["x"] == pytest.approx(truth(motion.instants), rel=1e-14)
+    assert motion["x"] == pytest.approx(truth(motion.times), rel=1e-14)
 
 
 @pytest.mark.parametrize("engine", ["taylor", "runge-kutta"])
 def test_a_thousand_points_give_the_splines_motion(driven, engine, c_compiler):
-    """So many intervals are integrated over, and so many numbers described, in more than one portion."""
+    """Enough intervals are integrated over, and numbers described, in more than one portion."""
     rows = [(k / 100, round(math.sin(k / 30) + math.cos(k) / 20, 6)) for k in range(1001)]
     csv = "".join(f"{t},{u}\n" for t, u in rows)
     law = 'table("drive.csv")*cos(t)^2 + table("drive.csv")*sin(t)^2'
     scene = driven(law, span="0, 10", csv=csv)
     motion = scene.simulate(samples=101, engine=engine)
-    assert motion["x"] == pytest.approx(truth(motion.instants, rows=rows), rel=1e-11, abs=1e-11)
+    assert motion["x"] == pytest.approx(truth(motion.times, rows=rows), rel=1e-11, abs=1e-11)
     assert len(motion.report.switchings) == 999
     assert abs(motion.report.energy_error) < 1e-11
 
 
 def test_steps_end_at_every_point_and_on_the_number_nearest_to_it(driven):
     motion = driven(f"table({points()})").simulate()
-    assert {1.0, 1.3, 3.5} <= set(motion.instants.tolist())
+    assert {1.0, 1.3, 3.5} <= set(motion.times.tolist())
     assert [switching.t for switching in motion.report.switchings] == [1.0, 1.3, 3.5]
 
 
 def test_a_motion_may_start_at_a_point(driven):
     """The spline is not analytic there; the motion goes on from it all the same."""
     motion = driven(f"table({points()})", span="1.3, 4").simulate(samples=5)
-    assert motion["x"] == pytest.approx(truth(motion.instants, start=1.3), rel=1e-14, abs=1e-14)
+    assert motion["x"] == pytest.approx(truth(motion.times, start=1.3), rel=1e-14, abs=1e-14)
 
 
 def test_the_check_takes_the_law_around_the_start(driven):
@@ -116,7 +116,7 @@ def test_the_check_takes_the_law_around_the_start(driven):
     assert found["18"] in ("proved", "agrees")
 
 
-def test_signs_of_the_time_alone_change_at_known_instants(driven):
+def test_signs_of_the_time_alone_change_at_known_times(driven):
     problem = driven("if 3*t < 7 then t else sin(t) + max(t^2 - 9, 0) - 2", span="0, 4")._problem("direct", 17)
     known = time_events(problem)
     assert [(sign.of, known[sign.name].to) for sign in problem.signs if sign.name in known] == [("3*t-7", 1)]
@@ -127,7 +127,7 @@ def test_many_points(driven):
     """One part of the motion for each interval, of a program as short as under one polynomial."""
     rows = [(k / 8, round(math.sin(k), 6)) for k in range(14)]
     motion = driven(f"table({points(rows)})", span="0, 13/8").simulate(samples=3)
-    assert motion["x"] == pytest.approx(truth(motion.instants, rows=rows), rel=1e-14, abs=1e-14)
+    assert motion["x"] == pytest.approx(truth(motion.times, rows=rows), rel=1e-14, abs=1e-14)
 
 
 @pytest.mark.parametrize(
@@ -179,13 +179,13 @@ def test_a_series_was_summed_up_where_the_law_is_another(driven):
     series = driven("if t < 1 then 0 else 6*(t - 1)^2").series(order=12)
     assert series.switch == "t-1"
     assert values_at(series, Fraction(0)).values["x"] == 1
-    with pytest.raises(HolonomError, match="where t-1 changes its sign the motion is another"):
+    with failing(ErrorKind.SERIES_SWITCHED, "t-1"):
         values_at(series, Fraction(3, 2))
     assert driven("t^2").series(order=4).switch is None
 
 
 def test_what_an_if_calls_in_its_branches_was_left_uncalled_and_refused(driven):
-    """A table, a function of the scene, a derivative, behind conditions that nobody decides beforehand."""
+    """A table, a function of the scene, a derivative, behind conditions that are not decided beforehand."""
     law = f"if t < 1 then table({points()}) elseif later(t) < 5 then diff(sin(t), t) else later(t)"
     scene = driven(f"block(define(later(s), s^2), {law})")
     motion = scene.simulate(samples=9)
@@ -201,12 +201,12 @@ def test_what_an_if_calls_in_its_branches_was_left_uncalled_and_refused(driven):
         inner = [(max(a, 0), min(b, t)) for a, b in ((0, 1), (1, math.sqrt(5)), (math.sqrt(5), 4)) if a < t]
         return 1 - 2 * t + sum(quad(lambda s: (t - s) * push(s), a, b, epsabs=1e-13)[0] for a, b in inner)
 
-    assert motion["x"] == pytest.approx([moved(t) for t in motion.instants], rel=1e-11)
+    assert motion["x"] == pytest.approx([moved(t) for t in motion.times], rel=1e-11)
 
 
 def test_no_motion_leads_beyond_the_last_point(driven):
     scene = driven(f"table({points()})")
-    with pytest.raises(HolonomError, match="the drives end at t = 4, with a table"):
+    with failing(ErrorKind.LAW_ENDS, "t = 4"):
         scene.simulate(until=5)
 
 
@@ -214,10 +214,10 @@ def test_no_motion_leads_beyond_the_last_point(driven):
 def test_a_library_takes_the_law_in_all_its_parts(driven, law):
     scene = driven(law)
     model = scene_model(scene.file, Request(), (), scene.limits)
-    instants = np.array([0.2, 1.1, 2.0, 3.75])
-    found = dict(zip(model.law.outputs, OfTime(model.law, model.tables)(instants), strict=True))
+    times = np.array([0.2, 1.1, 2.0, 3.75])
+    found = dict(zip(model.law.outputs, TimeFunction(model.law, model.tables)(times), strict=True))
     spline = CubicSpline(*np.array(POINTS, dtype=float).T, bc_type="natural")
-    truth = spline(instants) if law.startswith("table") else [0.04, 1.21, 5, 7.5]
+    truth = spline(times) if law.startswith("table") else [0.04, 1.21, 5, 7.5]
     assert found["u"] == pytest.approx(truth, rel=1e-14)
 
 
@@ -253,15 +253,15 @@ def test_two_tables_one_inside_of_abs_and_a_law_in_parts(driven):
     rows = [(0, 1), (1, -1), (2.5, -1), (4, 1)]
     law = f"table({points()}) + abs(table({points(rows)}, clamped)) + if t < 2 then 0 else t - 2"
     motion = driven(law).simulate(samples=5)
-    instants = np.linspace(0, 4, 20001)
+    times = np.linspace(0, 4, 20001)
     first, second = (
-        CubicSpline(*np.array(each, dtype=float).T, bc_type=ends)(instants)
+        CubicSpline(*np.array(each, dtype=float).T, bc_type=ends)(times)
         for each, ends in ((POINTS, "natural"), (rows, "clamped"))
     )
-    push = first + np.abs(second) + np.maximum(instants - 2, 0)
-    rate = cumulative_simpson(push, x=instants, initial=0)
-    place = cumulative_simpson(rate, x=instants, initial=0)
-    assert motion["x"] == pytest.approx((1 - 2 * instants + place)[::5000], abs=1e-7)
+    push = first + np.abs(second) + np.maximum(times - 2, 0)
+    rate = cumulative_simpson(push, x=times, initial=0)
+    place = cumulative_simpson(rate, x=times, initial=0)
+    assert motion["x"] == pytest.approx((1 - 2 * times + place)[::5000], abs=1e-7)
 
 
 def test_a_motion_under_a_table_in_quadruple_precision(driven):
@@ -271,8 +271,8 @@ def test_a_motion_under_a_table_in_quadruple_precision(driven):
 
 
 @pytest.mark.parametrize("engine", ["taylor", "runge-kutta"])
-@pytest.mark.parametrize("drift", ["baumgarte", "ggl", "projection", "none"])
-def test_pendulum_whose_length_a_table_gives_keeps_its_angular_momentum(drift, engine, c_compiler):
+@pytest.mark.parametrize("stabilization", ["baumgarte", "ggl", "projection", "none"])
+def test_pendulum_whose_length_a_table_gives_keeps_its_angular_momentum(stabilization, engine, c_compiler):
     """Without gravity r^2 phi' is constant, and r is SciPy's spline."""
     points = [(0, 1), (0.5, 1.1), (1, 1), (2, 1.2), (3, 1)]
     spline = CubicSpline(*np.array(points).T, bc_type="natural")
@@ -281,7 +281,9 @@ def test_pendulum_whose_length_a_table_gives_keeps_its_angular_momentum(drift, e
 system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
   constraints = [x^2 + y^2 - u^2])$
 swing : holonomic_scene(system, control_law = [u = table([{text}])], initial_state = [x = 0, dot(x) = 1],
-  initial_guess = [y = -1, dot(y) = 0], time_span = [0, 2])$""").simulate(samples=5, drift=drift, engine=engine)
+  initial_guess = [y = -1, dot(y) = 0], time_span = [0, 2])$""").simulate(
+        samples=5, stabilization=stabilization, engine=engine
+    )
     angle = quad(lambda t: 1 / spline(t) ** 2, 0, 2, epsabs=1e-12)[0]
     assert motion["x"][-1] == pytest.approx(spline(2) * math.sin(angle), abs=1e-7)
     assert motion["y"][-1] == pytest.approx(-spline(2) * math.cos(angle), abs=1e-7)

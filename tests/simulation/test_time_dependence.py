@@ -50,7 +50,7 @@ def test_steps_stop_around_a_pulse_however_narrow(width):
         (of(Operation.SIGN, of(Operation.SUBTRACT, T, Fraction(3, 10))), 0.3, "not smooth"),
     ],
 )
-def test_the_instant_is_found_at_which_an_expression_ends(expression, end, reason):
+def test_the_time_is_found_at_which_an_expression_ends(expression, end, reason):
     found = time_dependence(program(expression), 0.0, 1.0)
     assert found.end == pytest.approx(end, abs=1e-10)
     assert reason in found.reason

@@ -20,7 +20,7 @@ from holonom.failures import HolonomError
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request
 from holonom.sandbox import Limits
-from holonom.simulation.hard_cases import HardCase
+from holonom.simulation.hard_cases import Difficulty
 from holonom.simulation.nominal import nominal_of
 from holonom.simulation.request import EngineName, SimulationRequest
 from holonom.simulation.simulate import simulate
@@ -107,21 +107,21 @@ def seen(motion: MotionProblem, engine: EngineName, units: Units) -> Seen:
     try:
         found = simulate(motion, SimulationRequest(engine=engine, samples=11))
     except HolonomError as error:
-        return Seen((error.failure,), {})
+        return Seen((error.kind,), {})
     report, rate = found.report, float(units.length / units.time)
     samples = {
         "coordinates": np.array(list(found.coordinates.values())) / float(units.length),
         "velocities": np.array(list(found.velocities.values())) / rate,
         "multipliers": np.array(list(found.multipliers.values())) / float(units.energy),
-        "times": found.instants[None] / float(units.time),
+        "times": found.times[None] / float(units.time),
         "switchings": np.array([[float(each.t) for each in report.switchings]]) / float(units.time),
     }
-    cases = [case for case in report.cases if case is not HardCase.LONG_RUN]  # by steps, which heyoka takes by units
+    cases = [case for case in report.cases if case is not Difficulty.LONG_RUN]  # by steps, which heyoka takes by units
     told = (
-        [leg.engine for leg in report.legs],
-        [each.passage for each in report.switchings],
+        [segment.engine for segment in report.segments],
+        [each.outcome for each in report.switchings],
         report.ending and report.ending.crossed,
-        [doubt.quantity for doubt in report.doubts],
+        [violation.quantity for violation in report.violations],
         cases,
     )
     return Seen(told, samples)

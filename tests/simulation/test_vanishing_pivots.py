@@ -84,7 +84,7 @@ def test_right_hand_side_of_a_four_bar_has_values_in_every_position(constraints)
         assert np.max(np.abs(accelerations)) < 1e4
 
 
-def test_sweep_follows_a_four_bar_in_lanes():
+def test_sweep_follows_a_four_bar_in_batches():
     rows = holonom.sweep(
         holonom.system(FOUR_BAR.format(energy=LINKS, constraints=TURNED)), values={"g": [10, 10]}, keep=["q1"]
     ).to_pandas()

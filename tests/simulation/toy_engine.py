@@ -7,7 +7,7 @@ import numpy as np
 
 from holonom.simulation.engines.engine import Obstacle, Solutions, Step
 from holonom.simulation.evaluation import evaluation_once
-from holonom.simulation.hard_cases import HardCase
+from holonom.simulation.hard_cases import Difficulty
 from holonom.simulation.inputs import Inputs
 from holonom.simulation.matrices import start_of
 
@@ -19,7 +19,7 @@ class ToyEngine:
     """See `Engine`."""
 
     name, fixed_pivots, open_parameters = "toy", True, True
-    code, compile_seconds, amid_passage, tol = "", 0.0, False, 1e-8
+    code, compile_seconds, near_singularity, tol = "", 0.0, False, 1e-8
 
     def __init__(self, problem, precision):
         self.time, self.state = start_of(problem)
@@ -38,8 +38,8 @@ class ToyEngine:
     def expected_seconds(cls, steps, operations, tol, between):
         return 0.0
 
-    def restart(self, instant, state):
-        self.time, self.state = instant, state.copy()
+    def restart(self, time, state):
+        self.time, self.state = time, state.copy()
 
     def advance(self, until):
         deque(self.integrate(until), maxlen=0)
@@ -48,15 +48,15 @@ class ToyEngine:
         while self.time < until:
             if STOPS_AT <= self.time < GOES_ON_AT:
                 reason = "the toy stops here"
-                raise Obstacle(self.time, HardCase.SINGULAR_PASSAGE, reason, lambda t, state: t >= GOES_ON_AT)
+                raise Obstacle(self.time, Difficulty.SINGULAR_CONFIGURATION, reason, lambda t, state: t >= GOES_ON_AT)
             start, state, left = self.time, self.state, until - self.time
             self.time = until if left <= STEP else start + left / ceil(left / STEP)
             self.state = self._reached(start, state, self.time)
             self.steps += 1
             yield Step(start, self.time, lambda at, t=start, x=state: np.array([self._reached(t, x, s) for s in at]).T)
 
-    def solutions(self, instants, states):
-        return Solutions(*np.split(self._solve(self._inputs(instants, states)), [self._n, self._n + self._g]))
+    def solutions(self, times, states):
+        return Solutions(*np.split(self._solve(self._inputs(times, states)), [self._n, self._n + self._g]))
 
     def close(self):
         pass

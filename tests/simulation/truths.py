@@ -35,12 +35,12 @@ def four_bar(t: float) -> tuple[np.ndarray, np.ndarray]:
     return np.array([x, y, x + 1, y, *velocity, *velocity]), np.tile(acceleration, 2)
 
 
-def sarrus_angles(instants: np.ndarray) -> np.ndarray:
+def sarrus_angles(times: np.ndarray) -> np.ndarray:
     """Angles of Sarrus' legs: (1 + 6 cos(phi)^2) dot(phi)^2 + 8 g sin(phi) is constant, the masses and lengths one."""
 
     def rates(_: float, y: np.ndarray) -> list[float]:
         sin, cos = np.sin(y[0]), np.cos(y[0])
         return [y[1], (-8 * GRAVITY * cos + 12 * sin * cos * y[1] ** 2) / (2 + 12 * cos**2)]
 
-    span = (0.0, float(np.max(instants)))
-    return solve_ivp(rates, span, [np.arcsin(4 / 5), 0.0], "DOP853", instants, rtol=3e-14, atol=1e-15).y[0]
+    span = (0.0, float(np.max(times)))
+    return solve_ivp(rates, span, [np.arcsin(4 / 5), 0.0], "DOP853", times, rtol=3e-14, atol=1e-15).y[0]

@@ -7,7 +7,7 @@ import pytest
 from test_linearization import DOUBLE_PENDULUM
 
 import holonom
-from holonom.failures import Failure, HolonomError
+from holonom.failures import ErrorKind, HolonomError
 from holonom.formats import Publication, require
 from holonom.stability.equilibria import Stability
 
@@ -61,10 +61,10 @@ def test_an_equilibrium_is_linearised_by_its_name():
     name = next(each.name for each in scene.equilibria() if each.stability is Stability.STABLE)
     found = scene.linearize(equilibrium=name)
     assert sorted(found.eigenvalues.imag)[-1] == pytest.approx(np.sqrt(10 * (2 + np.sqrt(2))))
-    for wrong, failure in (({"equilibrium": "e99"}, Failure.NO_SUCH_EQUILIBRIUM), ({"at": 1}, Failure.TWO_STATES)):
+    for wrong, failure in (({"equilibrium": "e99"}, ErrorKind.NO_SUCH_EQUILIBRIUM), ({"at": 1}, ErrorKind.TWO_STATES)):
         with pytest.raises(HolonomError) as refused:
             scene.linearize(**{"equilibrium": name, **wrong})
-        assert refused.value.failure is failure
+        assert refused.value.kind is failure
 
 
 def test_controls_are_constant():
@@ -74,7 +74,7 @@ def test_controls_are_constant():
     assert sorted(each.coordinates["y"] for each in found) == pytest.approx([-3, 3])
     with pytest.raises(HolonomError) as refused:
         scene.equilibria(v=3)
-    assert refused.value.failure is Failure.NOT_A_CONTROL
+    assert refused.value.kind is ErrorKind.NOT_A_CONTROL
 
 
 @pytest.mark.parametrize(
@@ -148,7 +148,7 @@ def test_redundant_constraints():
 def test_equations_with_the_time_are_refused():
     with pytest.raises(HolonomError) as refused:
         of_particle("forces = [-x, sin(t) - y]").equilibria()
-    assert refused.value.failure is Failure.NEVER_AT_REST
+    assert refused.value.kind is ErrorKind.NEVER_AT_REST
 
 
 def test_the_command(holonom_here):

@@ -10,7 +10,7 @@ from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
 from holonom.sandbox import Limits
 from holonom.sweeps.axes import read_axes
-from holonom.sweeps.kept import read_kept
+from holonom.sweeps.outputs import read_quantities
 from holonom.sweeps.rows import Plan, RowMaker
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -29,6 +29,6 @@ def rows_of() -> Maker:
 
     def make(file: Path | str, keep: str, *grids: str, scene: str | None = None, **plan) -> RowMaker:
         axes = read_axes(grids, [], [], None, None)
-        return RowMaker(Plan(problem_of(EXAMPLES / file, scene, axes.names), axes, read_kept([keep]), **plan))
+        return RowMaker(Plan(problem_of(EXAMPLES / file, scene, axes.names), axes, read_quantities([keep]), **plan))
 
     return make

@@ -2,7 +2,7 @@
 
 import pytest
 
-from holonom.failures import Failure, HolonomError
+from holonom.failures import ErrorKind, HolonomError
 from holonom.sweeps.dataset import DOCUMENT, read_document
 
 
@@ -12,4 +12,4 @@ def test_a_folder_without_a_document_is_named(content, tmp_path):
         (tmp_path / DOCUMENT).write_bytes(content)
     with pytest.raises(HolonomError) as caught:
         read_document(tmp_path)
-    assert (caught.value.failure, caught.value.place) == (Failure.FOREIGN_FOLDER, str(tmp_path))
+    assert (caught.value.kind, caught.value.place) == (ErrorKind.UNRELATED_FOLDER, str(tmp_path))

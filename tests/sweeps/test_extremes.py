@@ -6,22 +6,22 @@ from numpy.polynomial import Polynomial
 
 from holonom.sweeps.extremes import Steps, first_zero, largest, largest_size
 
-LANES = 40
+ELEMENTS = 40
 
 
 @pytest.fixture(scope="module", params=[0.0, -1.0])
 def steps(request) -> Steps:
     """One function along four steps, its polynomials falling off as those of a Taylor step do."""
     random = np.random.default_rng(5)
-    taylor = random.normal(size=(12, LANES)) * 0.6 ** np.arange(12)[:, None]
+    taylor = random.normal(size=(12, ELEMENTS)) * 0.6 ** np.arange(12)[:, None]
     whole = [Polynomial(column, domain=[0, 4], window=[-1, 1]) for column in taylor.T]
-    coefficients = np.zeros((12, 4, LANES))
-    for lane, function in enumerate(whole):
+    coefficients = np.zeros((12, 4, ELEMENTS))
+    for element, function in enumerate(whole):
         for step in range(4):
             inner = Polynomial([step, 1.0]) if request.param == 0 else Polynomial([step + 0.5, 0.5])
-            coefficients[:, step, lane] = function.convert(domain=[-1, 1])(inner).coef
-    length = np.full((4, LANES), 1.0 if request.param == 0 else 0.5)
-    middle = np.arange(4)[:, None] + (0.0 if request.param == 0 else 0.5) + np.zeros((4, LANES))
+            coefficients[:, step, element] = function.convert(domain=[-1, 1])(inner).coef
+    length = np.full((4, ELEMENTS), 1.0 if request.param == 0 else 0.5)
+    middle = np.arange(4)[:, None] + (0.0 if request.param == 0 else 0.5) + np.zeros((4, ELEMENTS))
     return Steps(coefficients, middle, length, request.param)
 
 
@@ -44,10 +44,10 @@ def test_the_first_zero_is_where_fine_samples_first_change_their_sign(steps):
     times, values = dense(steps)
     found, crossed = first_zero(steps), np.diff(np.sign(values), axis=0) != 0
     assert (np.isnan(found) == ~crossed.any(axis=0)).all()
-    assert 5 < np.isnan(found).sum() < LANES - 5
-    for lane in np.flatnonzero(~np.isnan(found)):
-        place = crossed[:, lane].argmax()
-        assert times[place, lane] - 1e-9 <= found[lane] <= times[place + 1, lane] + 1e-9
+    assert 5 < np.isnan(found).sum() < ELEMENTS - 5
+    for element in np.flatnonzero(~np.isnan(found)):
+        place = crossed[:, element].argmax()
+        assert times[place, element] - 1e-9 <= found[element] <= times[place + 1, element] + 1e-9
 
 
 def test_a_zero_at_the_start_is_no_crossing_and_one_between_two_steps_is():
@@ -56,11 +56,11 @@ def test_a_zero_at_the_start_is_no_crossing_and_one_between_two_steps_is():
     assert first_zero(steps) == pytest.approx([2.0])
 
 
-def test_what_comes_out_for_a_lane_does_not_hang_on_the_others(steps):
+def test_what_comes_out_for_an_element_does_not_depend_on_the_others(steps):
     for function in (largest, largest_size, first_zero):
         whole = function(steps)
-        for lanes in (slice(3, 4), slice(10, 27)):
-            assert np.array_equal(function(steps.of(lanes)), whole[lanes], equal_nan=True)
+        for elements in (slice(3, 4), slice(10, 27)):
+            assert np.array_equal(function(steps.of(elements)), whole[elements], equal_nan=True)
 
 
 @pytest.mark.parametrize("least", [0.0, -1.0])

@@ -131,8 +131,8 @@ def test_the_oscillator_is_the_cosine(rows_of, scenes):
 def test_rows_are_the_same_to_the_last_bit_however_they_are_cut(rows_of):
     asked = ("crane.mac", "final,max(abs(lambda1)),zero(x-s),mean(y)", "m=50:500:7", "c=0:40:11")
     whole = rows_of(*asked).table(0, 77)
-    for lanes in (2, 8):
-        maker = rows_of(*asked, lanes=lanes)
+    for elements in (2, 8):
+        maker = rows_of(*asked, elements=elements)
         assert pa.concat_tables([maker.table(0, 5), maker.table(5, 40), maker.table(40, 77)]).equals(whole)
     assert rows_of(*asked[:1], "final", *asked[2:]).table(30, 31)["x"][0] == whole["x"][30]
 
@@ -151,7 +151,7 @@ def test_the_time_is_scanned_once_for_each_set_of_parameters_in_it(rows_of, scen
         scanned.clear()
 
 
-def test_a_narrow_pulse_in_the_time_span_takes_its_row_out_of_the_lanes(rows_of, scenes):
+def test_a_narrow_pulse_in_the_time_span_takes_its_row_out_of_the_batch(rows_of, scenes):
     problem = rows_of(scenes / "struck.mac", "x", "q=1:5:2").plan.problem
     assert time_watch.TimeWatch(problem, 3.0).look(np.array([[1.0, 5.0]]))[0].tolist() == [True, False]
 
@@ -188,7 +188,7 @@ def test_impossible_rows_are_marked_and_the_rest_is_right(rows_of, scenes):
         motion = scene.simulate(samples=2, l=found["l"][row])
         assert found["y"][row] == pytest.approx(motion["y"][-1], rel=1e-10)
     assert np.isnan(found["x"][found["status"] != "ok"]).all()
-    assert all(found["remark"][found["status"] != "ok"])
+    assert all(found["note"][found["status"] != "ok"])
 
 
 SHORT = ("0/0", "at(1/(x-x),1)", "zero(1/(k-k))")
@@ -200,7 +200,7 @@ NOWHERE_FINITE = [*SHORT, *(pytest.param(kept, marks=pytest.mark.long) for kept 
 def test_a_row_without_a_finite_value_says_so_and_keeps_none(rows_of, scenes, kept):
     found = columns(rows_of(scenes / "oscillator.mac", f"{kept},x", "k=1:4:3", "m=1:2:1").table(0, 3))
     assert (found["status"] == Status.UNDEFINED).all()
-    assert all(remark.startswith(kept) for remark in found["remark"])
+    assert all(note.startswith(kept) for note in found["note"])
     assert np.isnan(found[kept]).all()
     assert np.isfinite(found["x"]).all()
 
@@ -222,7 +222,7 @@ def test_a_motion_followed_by_itself_without_a_finite_value_says_so_too(rows_of,
 def test_a_length_that_vanishes_on_the_way_ends_its_row_and_no_other(rows_of, scenes):
     found = columns(rows_of(scenes / "hanging.mac", "final", "v=-1:1:3").table(0, 3))
     assert found["status"].tolist() == ["broken off", "ok", "ok"]
-    assert "the gradient of the constraint" in found["remark"][0] or "cannot be followed" in found["remark"][0]
+    assert "the gradient of the constraint" in found["note"][0] or "cannot be followed" in found["note"][0]
 
 
 def test_motions_that_switch_are_followed_one_by_one(rows_of, scenes):
@@ -269,7 +269,7 @@ def test_a_motion_followed_by_itself_ends_at_its_event_too(rows_of, scenes):
     assert np.isnan(found["at(x,1)"]).all()
 
 
-def test_a_push_that_ends_at_a_swept_instant_leaves_the_oscillation_of_two_steps(rows_of, scenes):
+def test_a_push_that_ends_at_a_swept_time_leaves_the_oscillation_of_two_steps(rows_of, scenes):
     found = columns(rows_of(scenes / "pushed.mac", "x,max(x)", "q=1/2:5/2:2", "k=4:9:2").table(0, 4))
     q, w = found["q"], np.sqrt(found["k"])
     assert found["x"] == pytest.approx((np.cos(w * (3 - q)) - np.cos(3 * w)) / found["k"], rel=1e-10)
@@ -309,7 +309,7 @@ def test_parameters_may_have_names_that_the_library_uses(rows_of, scenes):
 
 
 @pytest.mark.parametrize("item", ["at(x,4)", "at(x,-1)"])
-def test_an_instant_outside_of_the_motion_is_refused(rows_of, scenes, item):
+def test_an_time_outside_of_the_motion_is_refused(rows_of, scenes, item):
     with pytest.raises(HolonomError, match="outside of the motion, 0 to 3"):
         rows_of(scenes / "oscillator.mac", item, "k=4:25:22", "m=1:4:4")
 
@@ -328,8 +328,10 @@ def test_the_radius_is_the_distance_of_the_nearest_singularity(rows_of):
 
 def test_without_projection_the_constraints_drift(rows_of):
     kept, left = (
-        columns(rows_of("crane.mac", "final", "m=50:500:3", drift=drift, tol=1e-6).table(0, 3))["residual"]
-        for drift in (Stabilization.PROJECTION, Stabilization.NONE)
+        columns(rows_of("crane.mac", "final", "m=50:500:3", stabilization=stabilization, tol=1e-6).table(0, 3))[
+            "residual"
+        ]
+        for stabilization in (Stabilization.PROJECTION, Stabilization.NONE)
     )
     assert (kept < 1e-14).all()
     assert (left > 100 * kept).all()
@@ -359,7 +361,7 @@ fall : holonomic_scene(system, parameter_values = [m = 1], initial_state = [x = 
     assert (rows["radius"] == np.inf).all()
 
 
-def test_outputs_of_the_scene_are_kept_in_lanes_and_singly(rows_of, scenes):
+def test_outputs_of_the_scene_are_kept_in_batches_and_singly(rows_of, scenes):
     """The tension of a pendulum of length 1 is m v^2 - m g y; friction, followed singly, brakes with mu to the stop."""
     file = scenes / "observed.mac"
     file.write_text(HANGING.replace("[0, 2])", "[0, 2], observe = [trajectory, pull = -2*lambda1*u, side = abs(x)])"))
@@ -373,5 +375,5 @@ def test_outputs_of_the_scene_are_kept_in_lanes_and_singly(rows_of, scenes):
     braked = columns(rows_of(scenes / "braking.mac", "at(F,1/4),min(F)", "mu=1:2:2").table(0, 2))
     assert braked["at(F,1/4)"] == pytest.approx([-1, -2])
     assert braked["min(F)"] == pytest.approx([-1, -2])
-    with pytest.raises(HolonomError, match="side, which is kept at instants only"):
+    with pytest.raises(HolonomError, match="side, which is kept at times only"):
         rows_of(file, "max(side)", "m=1:3:3")

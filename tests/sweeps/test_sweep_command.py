@@ -20,7 +20,7 @@ from holonom.program.request import Request
 from holonom.sandbox import Limits
 from holonom.sweeps import run
 from holonom.sweeps.axes import read_axes
-from holonom.sweeps.kept import read_kept
+from holonom.sweeps.outputs import read_quantities
 from holonom.sweeps.request import SweepRequest
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -71,7 +71,7 @@ def test_the_same_command_computes_the_missing_parts_alone(swept):
     first, second = swept / "runs" / "part-0000000.parquet", swept / "runs" / "part-0000002.parquet"
     whole, stamp = rows(swept / "runs"), first.stat().st_mtime_ns
     second.write_bytes(second.read_bytes()[:100])
-    (swept / "runs" / ".holonom-0123456789abcdef.new").write_bytes(b"torn")
+    (swept / "runs" / ".holonom-0123456789abcdef.new").write_bytes(b"half")
     assert sweep(*ASKED, "-o", swept / "runs", "--resume").returncode == 0
     assert rows(swept / "runs").equals(whole)
     assert first.stat().st_mtime_ns == stamp
@@ -207,12 +207,12 @@ sys.exit(command())
 """
 
 
-def test_a_full_disk_is_one_sentence_and_no_torn_part(tmp_path):
+def test_a_full_disk_is_one_sentence_and_no_truncated_part(tmp_path):
     command = [sys.executable, "-c", FULL, str(CRANE), str(tmp_path / "runs")]
     refused = subprocess.run(command, capture_output=True, text=True, timeout=200)
     assert (refused.returncode, without_notice(refused.stderr).count("\n")) == (3, 1)
     assert "part-0000000.parquet: the output cannot be written" in refused.stderr
-    assert "free space" in refused.stderr
+    assert "Free space" in refused.stderr
     assert sorted(path.name for path in (tmp_path / "runs").iterdir()) == ["_sweep.json", "_sweep.lock"]
 
 
@@ -233,6 +233,6 @@ def test_a_sweep_started_a_worker_for_each_core_of_the_machine(monkeypatch, tmp_
     started = []
     monkeypatch.setattr(os, "sched_getaffinity", lambda process: {0, 3, 5}, raising=False)
     monkeypatch.setattr(run, "compute", lambda plan, chunks, take, workers, scheduler: started.append(workers))
-    wanted = SweepRequest(read_axes(["m=50:500:2"], [], [], None, None), read_kept(["x"]))
+    wanted = SweepRequest(read_axes(["m=50:500:2"], [], [], None, None), read_quantities(["x"]))
     run.run_sweep(CRANE, Request(None), wanted, tmp_path / "runs", Limits())
     assert started == [3]

@@ -1,4 +1,4 @@
-"""A row of a sweep gets the verdict that `simulate` gives on the same motion, whoever integrates it."""
+"""A row of a sweep gets the verdict that `simulate` gives on the same motion, with every integrator."""
 
 import re
 from fractions import Fraction

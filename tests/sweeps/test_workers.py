@@ -4,13 +4,12 @@ import json
 import signal
 import subprocess
 import sys
-import time
-from collections.abc import Callable
 from pathlib import Path
 
 import psutil
 import pyarrow.dataset
 import pytest
+from waiting import soon
 
 CRANE = Path(__file__).parents[2] / "examples" / "crane.mac"
 SWEEP = [sys.executable, "-m", "holonom", "sweep", str(CRANE), "--grid", "m=50:500:400", "--grid", "c=0:40:400"]
@@ -26,14 +25,6 @@ def rows(folder: Path):
 def begun(folder: Path, *options: str) -> subprocess.Popen:
     command = [*ASKED, "-o", str(folder), *options]
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-
-
-def until(condition: Callable[[], bool]) -> None:
-    for _ in range(6000):
-        if condition():
-            return
-        time.sleep(0.02)
-    raise AssertionError("it took too long")
 
 
 def parts(folder: Path) -> int:
@@ -60,7 +51,7 @@ def undisturbed(tmp_path_factory) -> Path:
 
 def test_a_killed_worker_is_replaced(undisturbed, tmp_path):
     process = begun(tmp_path / "runs", "--workers", "2")
-    until(lambda: parts(tmp_path / "runs") > 3)
+    assert soon(lambda: parts(tmp_path / "runs") > 3)
     workers_of(process)[-1].kill()
     assert (process.communicate(timeout=600)[1], process.returncode) == ("", 0)
     assert rows(tmp_path / "runs").equals(rows(undisturbed))
@@ -83,11 +74,11 @@ def test_a_worker_killed_while_it_starts_is_started_anew_some_times(killed, stat
 
 def test_a_killed_command_leaves_whole_parts_and_the_same_command_the_rest(undisturbed, tmp_path):
     process = begun(tmp_path / "runs", "--workers", "2")
-    until(lambda: parts(tmp_path / "runs") > 3)
+    assert soon(lambda: parts(tmp_path / "runs") > 3)
     started = workers_of(process)
     process.send_signal(signal.SIGKILL)
     process.communicate(timeout=60)
-    until(lambda: not any(worker.is_running() and worker.status() != psutil.STATUS_ZOMBIE for worker in started))
+    assert soon(lambda: not any(worker.is_running() and worker.status() != psutil.STATUS_ZOMBIE for worker in started))
     assert 3 < parts(tmp_path / "runs") < 100
     assert begun(tmp_path / "runs", "--workers", "1", "--resume").communicate(timeout=600)[1] == ""
     assert rows(tmp_path / "runs").equals(rows(undisturbed))
@@ -99,12 +90,12 @@ def test_a_running_scheduler_is_used_and_its_end_told(undisturbed, tmp_path):
     work = [sys.executable, "-m", "distributed.cli.dask_worker", "--scheduler-file", str(file), "--nthreads", "1"]
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": tmp_path}
     scheduler = subprocess.Popen([*dask, "--host", "127.0.0.1", "--port", "0"], **quiet)
-    until(file.exists)
+    assert soon(file.exists)
     worker = subprocess.Popen([*work, "--no-dashboard", "--death-timeout", "60"], **quiet)
     try:
         address = json.loads(file.read_text())["address"]
         process = begun(tmp_path / "runs", "--dask", address)
-        until(lambda: parts(tmp_path / "runs") > 3)
+        assert soon(lambda: parts(tmp_path / "runs") > 3)
         scheduler.kill()
         _, said = process.communicate(timeout=200)
         assert process.returncode == 3

@@ -1,1 +1,4 @@
-"""The register of hard cases: motions on which a plain method loses its digits, each measured against a truth."""
+"""Test set of hard cases: motions on which a naive method loses digits.
+
+Each method is compared with a reference solution.
+"""

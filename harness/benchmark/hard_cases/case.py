@@ -1,4 +1,4 @@
-"""A hard case: what makes it hard, the truth, and how many decimal digits of it each method keeps."""
+"""A hard case: its difficulty, its reference solution and each method's digits."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ import mpmath
 from mpmath import mp, mpf
 
 from ...language import translatable
-from ...simulation.hard_cases import HardCase
+from ...simulation.hard_cases import Difficulty
 
 MOST = 16.0  # digits of a double
 TRUTH_DIGITS = 40  # that a truth is computed with
@@ -18,14 +18,14 @@ certified = mp.workdps(TRUTH_DIGITS)
 
 
 class Extent(StrEnum):
-    """How far a case is followed: as far as a test may take, or as far as it is meant."""
+    """The time span of a case: short for a test, or full."""
 
     SHORT = "short"
     FULL = "full"
 
 
 class Outcome(StrEnum):
-    """What a method made of a case: ours hold or fail; one that is there for comparison may lose it."""
+    """The outcome of a method. A comparison method may lose digits, Holonom may not."""
 
     HOLDS = translatable("holds")
     FAILS = translatable("fails")
@@ -34,7 +34,7 @@ class Outcome(StrEnum):
 
 @dataclass(frozen=True)
 class Result:
-    """What one method keeps of the truth; no digits where the question is whether, not how much."""
+    """The correct digits of one method, or none if the result is only yes or no."""
 
     method: str
     quantity: str
@@ -64,17 +64,17 @@ Findings = Iterator[Result | Sweep]
 
 @dataclass(frozen=True)
 class Case:
-    """A hard case of the register: its truth in words, and what measures the methods against it."""
+    """A hard case of the test set: its reference solution and its measurement."""
 
     name: str
-    kind: HardCase
+    kind: Difficulty
     truth: str
     examine: Callable[[Extent], Findings]
 
 
 @dataclass(frozen=True)
 class CaseReport:
-    """A case with what was found."""
+    """A hard case with its results."""
 
     case: Case
     results: tuple[Result, ...]
@@ -82,36 +82,111 @@ class CaseReport:
 
     @property
     def fails(self) -> bool:
-        """Whether a method of ours does not hold what it should."""
+        """True if a method of Holonom fails a requirement."""
         return any(result.outcome is Outcome.FAILS for result in self.results)
 
 
 def examined(case: Case, extent: Extent) -> CaseReport:
-    """Return a case with what is found of it."""
+    """Measure a case and return its results.
+
+    Parameters
+    ----------
+    case : Case
+    extent : Extent
+        Time span of its motions.
+
+    Returns
+    -------
+    CaseReport
+        The case with its results.
+    """
     found = list(case.examine(extent))
     sweep = next((each for each in found if isinstance(each, Sweep)), None)
     return CaseReport(case, tuple(each for each in found if isinstance(each, Result)), sweep)
 
 
-def ours(method: str, quantity: str, digits: float, needed: float) -> Result:
-    """Return a method of Holonom's, which has to keep so many digits."""
+def holonom_result(method: str, quantity: str, digits: float, needed: float) -> Result:
+    """Return a method of Holonom's, which has to keep a number of digits.
+
+    Parameters
+    ----------
+    method : str
+        Name of the method.
+    quantity : str
+        Name of the quantity.
+    digits : float
+        Correct decimal digits, from 0 to 16.
+    needed : float
+        Digits that the method has to keep.
+
+    Returns
+    -------
+    Result
+        `Outcome.HOLDS` or `Outcome.FAILS`.
+    """
     return Result(method, quantity, digits, Outcome.HOLDS if digits >= needed else Outcome.FAILS)
 
 
-def theirs(method: str, quantity: str, digits: float, needed: float) -> Result:
-    """Return a method for comparison, which may keep fewer."""
+def reference_result(method: str, quantity: str, digits: float, needed: float) -> Result:
+    """Return a method for comparison, which may keep fewer.
+
+    Parameters
+    ----------
+    method : str
+        Name of the method.
+    quantity : str
+        Name of the quantity.
+    digits : float
+        Correct decimal digits, from 0 to 16.
+    needed : float
+        Digits that a method of Holonom has to keep.
+
+    Returns
+    -------
+    Result
+        `Outcome.HOLDS` or `Outcome.LOSES`.
+    """
     return Result(method, quantity, digits, Outcome.HOLDS if digits >= needed else Outcome.LOSES)
 
 
 def required(method: str, quantity: str, holds: bool) -> Result:
-    """Something that Holonom does or does not do."""
+    """Return the result of a requirement without digits.
+
+    Parameters
+    ----------
+    method : str
+        Name of the method.
+    quantity : str
+        The requirement.
+    holds : bool
+        True if Holonom meets it.
+
+    Returns
+    -------
+    Result
+        `Outcome.HOLDS` or `Outcome.FAILS`.
+    """
     return Result(method, quantity, None, Outcome.HOLDS if holds else Outcome.FAILS)
 
 
 def digits_kept(computed: Iterable[float], truth: Iterable[mpf], scale: float | mpf | None = None) -> float:
-    """Decimal digits that numbers keep of the truth, the worst of them counting: from 0, also for no number, to 16.
+    """Return the correct decimal digits of the worst number, from 0 to 16.
 
-    An error is relative to the scale; without it, to the largest of the true numbers.
+    An error is relative to the scale; without it, to the largest of the true numbers. Numbers that are not finite have
+    0 digits.
+
+    Parameters
+    ----------
+    computed : iterable of float
+        Computed numbers.
+    truth : iterable of mpf
+        True numbers, as many.
+    scale : float, mpf or None
+        Size to which errors are relative.
+
+    Returns
+    -------
+    float
     """
     pairs = [(mpf(float(value)), exact) for value, exact in zip(computed, truth, strict=True)]
     if not all(mpmath.isfinite(value) for value, _ in pairs):
@@ -120,7 +195,19 @@ def digits_kept(computed: Iterable[float], truth: Iterable[mpf], scale: float | 
 
 
 def digits_of_error(error: float | mpf, scale: float | mpf) -> float:
-    """Decimal digits that an error leaves of a number of that scale, from 0 to 16."""
+    """Return the decimal digits that an error leaves of a number, from 0 to 16.
+
+    Parameters
+    ----------
+    error : float or mpf
+        Absolute error, not negative.
+    scale : float or mpf
+        Size of the number.
+
+    Returns
+    -------
+    float
+    """
     if not mpmath.isfinite(error):
         return 0.0
     return float(min(MOST, max(0.0, -mpmath.log10(error / scale)))) if error else MOST

@@ -1,19 +1,19 @@
-"""Constraints that depend on each other, or nearly: a swing whose rods become parallel, and Sarrus' linkage.
+"""Constraints that are nearly or exactly dependent: a swing, and Sarrus' linkage.
 
-However near the hinges of the swing are, the bob moves on the circle that both rods leave to it, as a pendulum does.
+The rods of the swing become parallel. For any distance of its hinges the bob moves on a circle, as a pendulum does.
 
-Sarrus' linkage is a closed spatial mechanism with a constraint more than it needs. Its one freedom is the angle phi of
-the legs with the ground: T = m l^2 (1 + 6 cos(phi)^2) phi'^2, V = 8 m g l sin(phi), with m = l = 1.
+Sarrus' linkage is a closed spatial mechanism with one redundant constraint. Its one degree of freedom is the angle phi
+of the legs with the ground: T = m l^2 (1 + 6 cos(phi)^2) phi'^2, V = 8 m g l sin(phi), with m = l = 1.
 """
 
 import numpy as np
 from mpmath import asin, cos, findroot, mpf, quad, sin, sqrt
 
 from ...language import translatable
-from ...simulation.hard_cases import HardCase
+from ...simulation.hard_cases import Difficulty
 from ...simulation.matrices import MotionMatrices, Vector
-from .case import Extent, Findings, Sweep, certified, digits_kept, ours, required
-from .runs import places_kept, plain_motion, problem, simulated
+from .case import Extent, Findings, Sweep, certified, digits_kept, holonom_result, required
+from .runs import baseline_motion, places_kept, problem, simulated
 from .solves import SolveAt, every_solve, solves_kept
 
 ANGLES = tuple(10.0**-k for k in range(1, 12))  # between the rods, of length 1: the hinges are as far apart
@@ -25,7 +25,18 @@ PLACES, RATE = (0.3, 1.1, 2.9), 0.7  # on the circle, in radians, and per second
 
 
 def parallel_constraints(extent: Extent) -> Findings:
-    """Digits of the accelerations by each solve, against the pendulum's."""
+    """Yield digits of the accelerations by each solve, against the pendulum's.
+
+    Parameters
+    ----------
+    extent : Extent
+        Without effect; the case has no motion.
+
+    Yields
+    ------
+    Result or Sweep
+        A method's digits, or digits by the angle between the constraints.
+    """
     solves = every_solve("hard/swing.mac")
     digits = {name: tuple(_worst(solve, angle) for angle in ANGLES) for name, solve in solves.items()}
     judged = {name: row[ANGLES.index(JUDGED)] for name, row in digits.items()}
@@ -34,7 +45,7 @@ def parallel_constraints(extent: Extent) -> Findings:
 
 
 def _worst(solve: SolveAt, angle: float) -> float:
-    """Fewest digits that a solve keeps of the accelerations, over places on the circle."""
+    """Return the least correct digits of the accelerations over places on the circle."""
     digits = []
     for place in PLACES:
         outward = SIDEWAYS * np.cos(place) + SLANTING * np.sin(place)
@@ -52,22 +63,50 @@ with certified:
 
 
 def sarrus_linkage(extent: Extent) -> Findings:
-    """Digits of the motion, of the unique constraint forces, and of the multipliers that are zero where redundant."""
+    """Yield digits of the motion, of the unique constraint forces and of multipliers.
+
+    Multipliers of redundant constraints are zero.
+
+    Parameters
+    ----------
+    extent : Extent
+        Without effect; the motion is short.
+
+    Yields
+    ------
+    Result or Sweep
+        A method's digits.
+    """
     phi, needed = fallen(UNTIL), 12.0
     places, reactions = coordinates(phi), constraint_forces(phi)
-    motion, plain = simulated(problem(SARRUS), float(UNTIL)), plain_motion(problem(SARRUS), float(UNTIL))
+    motion, plain = simulated(problem(SARRUS), float(UNTIL)), baseline_motion(problem(SARRUS), float(UNTIL))
     multipliers = chosen_multipliers(motion.state, reactions)
     yield from places_kept(translatable("coordinates"), plain, motion, places, needed)
-    yield ours(
+    yield holonom_result(
         motion.engine, translatable("constraint forces"), digits_kept(motion.constraint_forces, reactions), needed
     )
-    yield ours(motion.engine, translatable("multipliers"), digits_kept(motion.multipliers, multipliers), needed)
-    yield required(motion.engine, translatable("redundancy reported"), HardCase.REDUNDANT in motion.cases)
+    yield holonom_result(
+        motion.engine, translatable("multipliers"), digits_kept(motion.multipliers, multipliers), needed
+    )
+    yield required(motion.engine, translatable("redundancy reported"), Difficulty.REDUNDANT in motion.cases)
 
 
 @certified
 def fallen(t: mpf) -> mpf:
-    """Angle of the legs, released at rest: energy's conservation gives the time as a quadrature over the angle."""
+    """Return the angle of the legs, released at rest.
+
+    By conservation of energy, the time is a quadrature over the angle.
+
+    Parameters
+    ----------
+    t : mpf
+        Time since the release, in seconds.
+
+    Returns
+    -------
+    mpf
+        The angle phi, in radians.
+    """
 
     def time_to(phi: mpf) -> mpf:
         return quad(lambda x: sqrt((1 + 6 * cos(x) ** 2) / (8 * GRAVITY * (sin(START) - sin(x)))), [phi, START])
@@ -77,14 +116,36 @@ def fallen(t: mpf) -> mpf:
 
 @certified
 def coordinates(phi: mpf) -> list[mpf]:
-    """Coordinates of the elbows and of the table's corners."""
+    """Return the coordinates of the elbows and of the table's corners.
+
+    Parameters
+    ----------
+    phi : mpf
+        Angle of the legs with the ground, in radians.
+
+    Returns
+    -------
+    list of mpf, shape (15,)
+        x, y and z of five points.
+    """
     c, s = cos(phi), sin(phi)
     return [-c, -1, s, 1, c, s, 0, -1, 2 * s, 1, 0, 2 * s, 0, 0, 2 * s]
 
 
 @certified
 def constraint_forces(phi: mpf) -> list[mpf]:
-    """Mass times acceleration without gravity, of every point."""
+    """Return mass times acceleration without gravity, of every point.
+
+    Parameters
+    ----------
+    phi : mpf
+        Angle of the legs with the ground, in radians.
+
+    Returns
+    -------
+    list of mpf, shape (15,)
+        Components of five forces.
+    """
     c, s = cos(phi), sin(phi)
     square = 8 * GRAVITY * (sin(START) - s) / (1 + 6 * c**2)
     second = (6 * c * s * square - 4 * GRAVITY * c) / (1 + 6 * c**2)
@@ -94,7 +155,19 @@ def constraint_forces(phi: mpf) -> list[mpf]:
 
 
 def chosen_multipliers(state: Vector, forces: list[mpf]) -> Vector:
-    """Of the multipliers that give the forces those that are zero for redundant constraints."""
+    """Return the multipliers of the forces that are zero for redundant constraints.
+
+    Parameters
+    ----------
+    state : Vector, shape (2n,)
+        Coordinates and velocities at the end of the motion.
+    forces : list of mpf, shape (n,)
+        Constraint forces.
+
+    Returns
+    -------
+    Vector, shape (g,)
+    """
     kept = list(problem(SARRUS).independent)
     jacobian = MotionMatrices(problem(SARRUS)).independent(float(UNTIL), state).jacobian
     multipliers = np.zeros(len(problem(SARRUS).multipliers))

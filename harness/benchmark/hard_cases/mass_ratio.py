@@ -1,7 +1,8 @@
-"""A heavy bob on a light chain, the masses as 1 to 10^12: the light one moves by the difference of two large reactions.
+"""A heavy bob on a light chain, with a mass ratio of 10^12.
 
-The truth is, of the accelerations, the equations of two masses on two rods, written down by hand and solved with many
-more digits; of the motion, that the heavy bob falls freely to within 1e-12 while the light mass bends out of its way.
+The light mass moves by the difference of two large reactions. The reference accelerations come from the equations of
+two masses on two rods, written by hand and solved with many more digits. In the reference motion the heavy bob falls
+freely to within 1e-12, and the light mass moves out of its way.
 """
 
 from itertools import product
@@ -12,7 +13,7 @@ from mpmath import mp, mpf, sqrt
 
 from ...language import translatable
 from ...simulation.matrices import Vector
-from .case import Extent, Findings, digits_kept, ours
+from .case import Extent, Findings, digits_kept, holonom_result
 from .runs import problem, simulated
 from .solves import SolveAt, every_solve, solves_kept
 
@@ -29,12 +30,25 @@ DIRECTIONS, BENDS, RATES = (
 
 
 def mass_ratio(extent: Extent) -> Findings:
-    """Digits of the accelerations by each solve, against sixty-digit ones, and of the places."""
+    """Yield digits of each solve's accelerations and of the positions.
+
+    The reference accelerations have sixty digits.
+
+    Parameters
+    ----------
+    extent : Extent
+        Without effect; the motion is short.
+
+    Yields
+    ------
+    Result or Sweep
+        A method's digits.
+    """
     digits = {name: _worst(solve) for name, solve in every_solve(FILE).items()}
     yield from solves_kept(translatable("accelerations"), digits, NEEDED)
     motion = simulated(problem(FILE), UNTIL)
     places = digits_kept(motion.coordinates, falling(mpf(UNTIL)))
-    yield ours(motion.engine, translatable("places at t = %(t)s", t=UNTIL), places, NEEDED_PLACES)
+    yield holonom_result(motion.engine, translatable("places at t = %(t)s", t=UNTIL), places, NEEDED_PLACES)
 
 
 def _worst(solve: SolveAt) -> float:
@@ -44,7 +58,20 @@ def _worst(solve: SolveAt) -> float:
 
 
 def falling(t: mpf) -> list[mpf]:
-    """Places of both masses, the heavy one in free fall from (1, -1), the light one at the bend of the rods."""
+    """Return the positions of both masses: the heavy one in free fall from (1, -1).
+
+    The light mass is at the bend of the rods.
+
+    Parameters
+    ----------
+    t : mpf
+        Time since the start, in seconds.
+
+    Returns
+    -------
+    list of mpf, shape (4,)
+        x1, y1 of the light mass, x2, y2 of the heavy one.
+    """
     drop = 1 + GRAVITY * t**2 / 2
     half = (1 + drop**2) / 4  # square of half of the way from the hinge to the bob
     bend = sqrt((1 - half) / (4 * half))
@@ -52,7 +79,20 @@ def falling(t: mpf) -> list[mpf]:
 
 
 def hanging(direction: float, bend: float) -> Vector:
-    """Places and velocities of both masses, the rods turning at their rates."""
+    """Return places and velocities of both masses, the rods turning at their rates.
+
+    Parameters
+    ----------
+    direction : float
+        Direction of the upper rod, in radians.
+    bend : float
+        Angle of the lower rod against the upper one, in radians.
+
+    Returns
+    -------
+    Vector, shape (8,)
+        x1, y1, x2, y2 and their rates.
+    """
     upper, lower = np.exp(1j * direction), np.exp(1j * (direction + bend))
     places = np.array([upper, upper + lower])
     velocities = 1j * np.array([RATES[0] * upper, RATES[0] * upper + RATES[1] * lower])
@@ -60,7 +100,17 @@ def hanging(direction: float, bend: float) -> Vector:
 
 
 def certified_accelerations(state: Vector) -> list[mpf]:
-    """Accelerations x1, y1, x2, y2 from the bordered equations of two masses on two rods."""
+    """Return accelerations x1, y1, x2, y2 from the bordered equations of two rods.
+
+    Parameters
+    ----------
+    state : Vector, shape (8,)
+        x1, y1, x2, y2 and their rates.
+
+    Returns
+    -------
+    list of mpf, shape (4,)
+    """
     with mp.workdps(DIGITS):
         x1, y1, x2, y2, vx1, vy1, vx2, vy2 = map(mpf, map(float, state))
         mass = mpmath.diag([LIGHT, LIGHT, HEAVY, HEAVY])

@@ -1,6 +1,6 @@
-"""Motions of the register's scenes: followed as a user would, and the plain way, for comparison.
+"""Motions of the hard cases: by Holonom and by a baseline method.
 
-The plain way solves the bordered system at every call and leaves an integrator to itself.
+The baseline solves the bordered system at every call and has no stabilization.
 """
 
 import warnings
@@ -18,20 +18,20 @@ from ...language import translatable
 from ...program.motion_problem import MotionProblem, motion_problem
 from ...program.request import Request, Solve
 from ...sandbox import Limits
-from ...simulation.hard_cases import HardCase
+from ...simulation.hard_cases import Difficulty
 from ...simulation.matrices import Matrix, MotionMatrices, Vector
 from ...simulation.request import FINAL_STATE_ALONE, SimulationRequest
 from ...simulation.simulate import simulate
-from .case import Result, digits_kept, ours, theirs
+from .case import Result, digits_kept, holonom_result, reference_result
 
 EXAMPLES = shared("examples")
-TOLERANCE = 1e-12  # of the plain way
+TOLERANCE = 1e-12  # of the baseline
 PLAIN = translatable("bordered system, DOP853")
 EVALUATIONS = 1_000_000  # after them it counts as stuck
 
 
 class Arrived(NamedTuple):
-    """Where a simulated motion ends, and what the engine says of it."""
+    """The final state of a simulated motion, and the report on it."""
 
     engine: str  # those that followed it, each once
     state: Vector  # shape (2n,): coordinates, then velocities
@@ -41,17 +41,45 @@ class Arrived(NamedTuple):
     multipliers: Vector  # shape (g,)
     residual: float  # of the constraints
     energy_error: float  # its size
-    cases: tuple[HardCase, ...]
+    cases: tuple[Difficulty, ...]
 
 
 @cache
 def problem(file: str, scene: str | None = None, solve: Solve = Solve.DIRECT) -> MotionProblem:
-    """Return the motion of a scene among the examples; without a name, of the last one in the file."""
+    """Return the motion of a scene of the examples, by default of the last scene.
+
+    Parameters
+    ----------
+    file : str
+        Path below the folder of examples.
+    scene : str or None
+        Name of the scene; None for the file's last one.
+    solve : Solve
+        Solve for the multipliers.
+
+    Returns
+    -------
+    MotionProblem
+        The motion, kept for later calls.
+    """
     return motion_problem(EXAMPLES / file, Request(scene, solve), Limits())
 
 
 def simulated(motion: MotionProblem, until: float, **asked: object) -> Arrived:
-    """Follow a motion with the default engine, and what else a `SimulationRequest` takes.
+    """Integrate a motion with the default engine and further fields of the request.
+
+    Parameters
+    ----------
+    motion : MotionProblem
+    until : float
+        Final time, in the scene's unit.
+    **asked : object
+        Further fields of `SimulationRequest`.
+
+    Returns
+    -------
+    Arrived
+        The final state.
 
     Raises
     ------
@@ -62,7 +90,7 @@ def simulated(motion: MotionProblem, until: float, **asked: object) -> Arrived:
     report = simulation.report
     coordinates, velocities = _numbers(report.coordinates), _numbers(report.velocities)
     return Arrived(
-        ", ".join(dict.fromkeys(leg.engine for leg in report.legs)),
+        ", ".join(dict.fromkeys(segment.engine for segment in report.segments)),
         np.concatenate([coordinates, velocities]),
         coordinates,
         _numbers({name: forces[-1] for name, forces in simulation.constraint_forces.items()}),
@@ -80,20 +108,50 @@ def _numbers(values: Mapping[str, float]) -> Vector:
 def places_kept(
     quantity: str, plain: Vector, motion: Arrived, truth: Sequence[mpf], needed: float, scale: float | None = None
 ) -> Iterator[Result]:
-    """Yield what the plain way and ours keep of the first coordinates."""
+    """Yield the digits of the first coordinates, by the baseline and by Holonom.
+
+    Parameters
+    ----------
+    quantity : str
+        Name of the quantity.
+    plain : Vector, shape (2n,)
+        Final state by the baseline.
+    motion : Arrived
+        Final state by Holonom.
+    truth : sequence of mpf
+        True values of the first coordinates.
+    needed : float
+        Digits that Holonom has to keep.
+    scale : float or None
+        Size to which errors are relative; None for the largest true value.
+
+    Yields
+    ------
+    Result
+        One method's digits.
+    """
     first = slice(len(truth))
-    yield theirs(PLAIN, quantity, digits_kept(plain[first], truth, scale), needed)
-    yield ours(motion.engine, quantity, digits_kept(motion.coordinates[first], truth, scale), needed)
+    yield reference_result(PLAIN, quantity, digits_kept(plain[first], truth, scale), needed)
+    yield holonom_result(motion.engine, quantity, digits_kept(motion.coordinates[first], truth, scale), needed)
 
 
 class Stuck(ArithmeticError):
     """The integrator asks for ever smaller steps."""
 
 
-def plain_motion(motion: MotionProblem, until: float) -> Vector:
-    """State to which SciPy's DOP853 carries the plain bordered system, without any cure of drift.
+def baseline_motion(motion: MotionProblem, until: float) -> Vector:
+    """Integrate the bordered system by SciPy's DOP853 without stabilization.
 
-    Nans where it does not arrive.
+    Parameters
+    ----------
+    motion : MotionProblem
+    until : float
+        Final time, in the scene's unit.
+
+    Returns
+    -------
+    Vector, shape (2n,)
+        The last state, nan if the integration fails.
     """
     matrices, n = MotionMatrices(motion), len(motion.coordinates)
     left = iter(range(EVALUATIONS))
@@ -114,7 +172,23 @@ def plain_motion(motion: MotionProblem, until: float) -> Vector:
 
 
 def bordered_accelerations(A: Matrix, h: Vector, J: Matrix, c: Vector) -> Vector:
-    """Accelerations from [A -J^T; J 0] (a, lambda) = (h, -c)."""
+    """Return the accelerations from [A -J^T; J 0] (a, lambda) = (h, -c).
+
+    Parameters
+    ----------
+    A : Matrix, shape (n, n)
+        Mass matrix.
+    h : Vector, shape (n,)
+        Forces.
+    J : Matrix, shape (g, n)
+        Jacobian of the constraints.
+    c : Vector, shape (g,)
+        Terms of the constraints' second rates without accelerations.
+
+    Returns
+    -------
+    Vector, shape (n,)
+    """
     n, size = len(A), len(A) + len(J)
     bordered = np.zeros((size, size))
     bordered[:n, :n], bordered[:n, n:], bordered[n:, :n] = A, -J.T, J

@@ -1,4 +1,4 @@
-"""Accelerations and multipliers at one state, by every solve on offer and by the textbook's formula.
+"""Accelerations and multipliers at a state, by each solve and a textbook formula.
 
 A a - J^T lambda = h,   J a = -c.
 """
@@ -15,7 +15,7 @@ from ...program.request import Solve
 from ...simulation.constraints.factorization import factored_constraints
 from ...simulation.inputs import Inputs
 from ...simulation.matrices import Matrices, MotionMatrices, Vector
-from .case import Result, ours, theirs
+from .case import Result, holonom_result, reference_result
 from .runs import problem
 
 TEXTBOOK, DIRECT = translatable("textbook formula"), translatable("direct")
@@ -35,9 +35,17 @@ SolveAt = Callable[[float, Vector], Solved]
 def every_solve(file: str, scene: str | None = None) -> Mapping[str, SolveAt]:
     """Return each way to solve the equations of motion of a scene among the examples.
 
-    Without a name, of the file's last one.
+    Parameters
+    ----------
+    file : str
+        Path below the folder of examples.
+    scene : str or None
+        Name of the scene; None for the file's last one.
 
-    Each takes the instant and the state of shape (2n,), coordinates and then velocities.
+    Returns
+    -------
+    mapping of str to SolveAt
+        By name, a function of the time and of the state, shape (2n,).
     """
     matrices = MotionMatrices(problem(file, scene))
     return {
@@ -51,13 +59,43 @@ def every_solve(file: str, scene: str | None = None) -> Mapping[str, SolveAt]:
 def solves_kept(
     quantity: str, digits: Mapping[str, float], needed: float, compared: tuple[str, ...] = (TEXTBOOK, DIRECT)
 ) -> Iterator[Result]:
-    """Yield what each solve keeps; those that are there for comparison may lose it."""
+    """Yield the digits of each solve. The solves in `compared` may lose digits.
+
+    Parameters
+    ----------
+    quantity : str
+        Name of the quantity.
+    digits : mapping of str to float
+        Correct digits of each solve, by its name.
+    needed : float
+        Digits that a solve has to keep.
+    compared : tuple of str
+        Names of the solves for comparison.
+
+    Yields
+    ------
+    Result
+        One solve's digits.
+    """
     for name, kept in digits.items():
-        yield (theirs if name in compared else ours)(name, quantity, kept, needed)
+        yield (reference_result if name in compared else holonom_result)(name, quantity, kept, needed)
 
 
 def textbook(matrices: Matrices) -> Solved:
-    """As it is printed: lambda = -G^-1 (c + J A^-1 h), a = A^-1 (h + J^T lambda), G = J A^-1 J^T."""
+    """Solve by the textbook formula.
+
+    It is lambda = -G^-1 (c + J A^-1 h), a = A^-1 (h + J^T lambda), G = J A^-1 J^T.
+
+    Parameters
+    ----------
+    matrices : Matrices
+        Matrices of the equations at a state.
+
+    Returns
+    -------
+    Solved
+        Solution; nan if a matrix is singular.
+    """
     J = matrices.jacobian
     try:
         inverse_mass = np.linalg.inv(matrices.mass)
@@ -69,14 +107,34 @@ def textbook(matrices: Matrices) -> Solved:
 
 
 def pivoted(matrices: Matrices) -> Solved:
-    """As the robust engine solves."""
+    """Solve by the factorization of the robust engine.
+
+    Parameters
+    ----------
+    matrices : Matrices
+        Matrices of the equations at a state.
+
+    Returns
+    -------
+    Solved
+    """
     factored = factored_constraints(matrices.mass, matrices.jacobian)
     sides = matrices.force, matrices.curvature
     return Solved(factored.accelerations(*sides), factored.multipliers(*sides))
 
 
 def programmed(motion: MotionProblem) -> SolveAt:
-    """As the motion program solves."""
+    """Return a function that solves by the motion program.
+
+    Parameters
+    ----------
+    motion : MotionProblem
+
+    Returns
+    -------
+    SolveAt
+        Function of the time and of the state, shape (2n,).
+    """
     evaluate, n = NumpyFunction(motion.motion), len(motion.coordinates)
     inputs, g = Inputs(motion), len(motion.multipliers)
 

@@ -10,10 +10,10 @@ a linear system, whose motion is a sum of two oscillations.
 from mpmath import cos, eigsy, matrix, mpf, sqrt
 
 from ...language import translatable
-from .case import Extent, Findings, certified, digits_of_error, ours
-from .runs import places_kept, plain_motion, problem, simulated
+from .case import Extent, Findings, certified, digits_of_error, holonom_result
+from .runs import baseline_motion, places_kept, problem, simulated
 
-INSTANTS = {Extent.SHORT: 1, Extent.FULL: 10}  # seconds; 195 oscillations of the stiff spring each
+TIMES = {Extent.SHORT: 1, Extent.FULL: 10}  # seconds; 195 oscillations of the stiff spring each
 
 with certified:
     SOFT, STIFF, LENGTH, SPEED, REST = mpf(1), mpf(10) ** 6, mpf(1), mpf(1) / 10, mpf(1)  # k, K, l0, v, r; m = 1
@@ -23,7 +23,19 @@ with certified:
 
 @certified
 def coordinates(t: mpf) -> list[mpf]:
-    """Coordinates x1, x2, x3 at an instant: with y = (sqrt(2) p, s) the masses are one, and the stiffness symmetric."""
+    """Return the coordinates x1, x2, x3.
+
+    With y = (sqrt(2) p, s) the masses are one, and the stiffness symmetric.
+
+    Parameters
+    ----------
+    t : mpf
+        Time since the start, in seconds.
+
+    Returns
+    -------
+    list of mpf, shape (3,)
+    """
     root = sqrt(mpf(2))
     stiffness = matrix([[(SOFT + STIFF) / 2, -STIFF / root], [-STIFF / root, STIFF]])
     squares, modes = eigsy(stiffness)
@@ -34,13 +46,24 @@ def coordinates(t: mpf) -> list[mpf]:
 
 
 def stiff_spring(extent: Extent) -> Findings:
-    """Digits of the coordinates and of the energy."""
-    rail, until, needed = problem("hard/stiff_spring.mac"), INSTANTS[extent], 10.0
-    motion, plain = simulated(rail, until), plain_motion(rail, until)
+    """Yield digits of the coordinates and of the energy.
+
+    Parameters
+    ----------
+    extent : Extent
+        Decides about the final time.
+
+    Yields
+    ------
+    Result or Sweep
+        A method's digits.
+    """
+    rail, until, needed = problem("hard/stiff_spring.mac"), TIMES[extent], 10.0
+    motion, plain = simulated(rail, until), baseline_motion(rail, until)
     yield from places_kept(
         translatable("coordinates at t = %(t)s", t=until), plain, motion, coordinates(mpf(until)), needed
     )
-    yield ours(motion.engine, translatable("energy"), digits_of_error(motion.energy_error, ENERGY), needed)
+    yield holonom_result(motion.engine, translatable("energy"), digits_of_error(motion.energy_error, ENERGY), needed)
 
 
 PUBLISHED = tuple(
@@ -53,7 +76,19 @@ PUBLISHED = tuple(
 
 
 def car_axis(extent: Extent) -> Findings:
-    """Digits of the published places of an axis on a bumpy road, one of whose two constraints is rheonomic.
+    """Yield digits of the published positions of an axis on a bumpy road.
+
+    One of its two constraints is rheonomic.
+
+    Parameters
+    ----------
+    extent : Extent
+        Without effect; the values are published for one time.
+
+    Yields
+    ------
+    Result or Sweep
+        A method's digits.
 
     References
     ----------
@@ -61,5 +96,5 @@ def car_axis(extent: Extent) -> Findings:
     deTestSet for R, which are right to about twelve decimals.
     """
     axis, until, needed = problem("car_axis.mac"), 3, 10.0
-    motion, plain = simulated(axis, until, tol=1e-14), plain_motion(axis, until)
+    motion, plain = simulated(axis, until, tol=1e-14), baseline_motion(axis, until)
     yield from places_kept(translatable("places at t = %(t)s", t=until), plain, motion, PUBLISHED, needed, scale=1)

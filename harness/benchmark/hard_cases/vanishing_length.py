@@ -1,40 +1,76 @@
-"""A pendulum drawn in to its hinge: where its length is zero the motion has to stop, with time, place and reason."""
+"""A pendulum drawn in to its hinge.
+
+If its length is zero, the motion has to stop with time, constraint and reason.
+"""
 
 from collections.abc import Iterator
 from math import nan
 
 from mpmath import mpf
 
-from ...failures import Failure, HolonomError
+from ...failures import ErrorKind, HolonomError
 from ...language import translatable
-from .case import Extent, Findings, Result, digits_kept, ours, required
+from .case import Extent, Findings, Result, digits_kept, holonom_result, required
 from .runs import problem, simulated
 
 FILE, SCENES, UNTIL = "hard/vanishing_length.mac", ("straight_scene", "whirling_scene"), 2
-VANISHES = mpf(1)  # the instant at which the length is zero
-NEEDED = 6.0  # digits of that instant
+VANISHES = mpf(1)  # the time at which the length is zero
+NEEDED = 6.0  # digits of that time
 ENGINE = "taylor"
 
 
 def vanishing_length(extent: Extent) -> Findings:
-    """Return whether the runs stop, and when, where and why they say that they do."""
+    """Yield the results for the stop of each motion: its time, constraint and reason.
+
+    Parameters
+    ----------
+    extent : Extent
+        Without effect; the motions are short.
+
+    Yields
+    ------
+    Result or Sweep
+        Digits of the time of the stop, or whether constraint and reason are named.
+    """
     for scene in SCENES:
         yield from results_of(scene)
 
 
 def results_of(scene: str) -> Iterator[Result]:
-    """Yield what the refusal to follow a scene holds."""
+    """Yield the results for the error that ends a scene's simulation.
+
+    Parameters
+    ----------
+    scene : str
+        Name of the scene.
+
+    Yields
+    ------
+    Result
+        Digits of the time of the stop, or whether constraint and reason are named.
+    """
     refused = refusal(scene)
     facts = refused.facts if refused else {}
-    digits = digits_kept([facts.get("instant", nan)], [VANISHES])
-    yield ours(ENGINE, translatable("instant of the stop, %(scene)s", scene=scene), digits, NEEDED)
+    digits = digits_kept([facts.get("time", nan)], [VANISHES])
+    yield holonom_result(ENGINE, translatable("time of the stop, %(scene)s", scene=scene), digits, NEEDED)
     yield required(ENGINE, translatable("constraint named"), facts.get("multiplier") == "lambda1")
-    given = refused is not None and refused.failure is Failure.NO_GRADIENT
+    given = refused is not None and refused.kind is ErrorKind.NO_GRADIENT
     yield required(ENGINE, translatable("reason given"), given)
 
 
 def refusal(scene: str) -> HolonomError | None:
-    """Return what a run stops with, if it does."""
+    """Return the error that ends a simulation, if there is one.
+
+    Parameters
+    ----------
+    scene : str
+        Name of the scene.
+
+    Returns
+    -------
+    HolonomError or None
+        None if the simulation reaches its end.
+    """
     try:
         simulated(problem(FILE, scene), UNTIL)
     except HolonomError as error:

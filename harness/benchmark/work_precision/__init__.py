@@ -1,1 +1,1 @@
-"""What accuracy costs in time: one motion by many methods, each measured against one reference."""
+"""Work-precision study: one motion by many methods, compared with one reference."""

@@ -1,4 +1,7 @@
-"""Plain advice from a table of measurements: the cheapest method for so many digits, and the price of one more."""
+"""Advice from measurements: the cheapest method for each number of digits.
+
+The growth of a method's time with every digit is its price.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +19,7 @@ FEWEST = 3  # points that a slope is drawn through
 
 @dataclass(frozen=True)
 class Advice:
-    """The cheapest way to so many digits; None where no method gets there."""
+    """The cheapest way to a number of digits; None where no method gets there."""
 
     digits: int
     cheapest: Measurement | None
@@ -24,7 +27,7 @@ class Advice:
 
 @dataclass(frozen=True)
 class Price:
-    """What one more digit costs."""
+    """The cost of one more digit."""
 
     method: str
     factor: float  # by which the time grows
@@ -34,7 +37,18 @@ class Price:
 
 
 def cheapest_methods(measurements: Sequence[Measurement]) -> Iterator[Advice]:
-    """Yield the shortest run to the end of the motion that keeps 3, 6, 9, 12, 15, 30 digits."""
+    """Yield the fastest run with 3, 6, 9, 12, 15, 30 correct digits at the end.
+
+    Parameters
+    ----------
+    measurements : sequence of Measurement
+        All measurements of a study; those of whole motions count.
+
+    Yields
+    ------
+    Advice
+        Advice for one number of digits.
+    """
     whole = [m for m in measurements if m.group in WHOLE_MOTION]
     for digits in ASKED_DIGITS:
         enough = [m for m in whole if m.error <= 10.0**-digits]
@@ -42,10 +56,20 @@ def cheapest_methods(measurements: Sequence[Measurement]) -> Iterator[Advice]:
 
 
 def prices(measurements: Sequence[Measurement]) -> Iterator[Price]:
-    """By how much each method's time grows with every digit: least squares through log(time) against digits.
+    """Yield the growth of each method's time with every digit.
 
-    Runs whose error no longer falls with the tolerance, at the rounding errors of their numbers, are left out.
-    Every method with enough settings has one.
+    It is a least-squares fit of log(time) against digits. Runs whose error no longer falls with the tolerance, because
+    of rounding, are left out. Every method with enough settings has a price.
+
+    Parameters
+    ----------
+    measurements : sequence of Measurement
+        All measurements of a study; those of whole motions count.
+
+    Yields
+    ------
+    Price
+        Price of one method.
     """
     for method in dict.fromkeys(m.method for m in measurements if m.group in WHOLE_MOTION):
         falling = _falling([m for m in measurements if m.method == method and m.group in WHOLE_MOTION])
@@ -55,7 +79,20 @@ def prices(measurements: Sequence[Measurement]) -> Iterator[Price]:
 
 
 def line_of(measurements: Sequence[Measurement]) -> tuple[list[float], float]:
-    """Digits kept, and the slope of log(time) against them."""
+    """Return the digits of measurements, and the slope of log(time) against them.
+
+    Parameters
+    ----------
+    measurements : sequence of Measurement
+        Measurements of one method; two or more.
+
+    Returns
+    -------
+    digits : list of float
+        Correct digits of each measurement.
+    slope : float
+        Rate of log(seconds) per digit.
+    """
     digits = [-math.log10(m.error) for m in measurements]
     slope, _ = np.polyfit(digits, [math.log(m.seconds) for m in measurements], 1)
     return digits, float(slope)

@@ -1,4 +1,7 @@
-"""Our engines at work for a measurement: every run starts anew, compiled once. Their problems have no obstacle."""
+"""Holonom's engines in measurements. Each run starts anew with compiled code.
+
+Their problems have no singular configurations on the way.
+"""
 
 from __future__ import annotations
 
@@ -32,50 +35,145 @@ HARDWARE = ("double", "extended")  # numbers for which the way of compiling matt
 def taylor_ladder(
     problem: MotionProblem, until: Fraction, precision: str, tolerances: Sequence[float]
 ) -> Iterator[Candidate]:
-    """Yield the Taylor engine in one precision, tolerance by tolerance."""
+    """Yield the Taylor engine in one precision, tolerance by tolerance.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    until : Fraction
+        Final time, in the scene's unit.
+    precision : str
+        Numbers to compute with, such as ``double`` or ``30``.
+    tolerances : sequence of float
+        Tolerances of a step, from coarse to fine.
+
+    Yields
+    ------
+    Candidate
+        One for each tolerance.
+    """
     for tol in tolerances:
         prepare = partial(prepare_taylor, problem, until, precision, tol, Stabilization.PROJECTION)
         yield Candidate(Group.TAYLOR, taylor_name(precision), f"tol {tol:g}", until, prepare)
 
 
 def taylor_name(precision: str) -> str:
-    """Name of the method, given its precision."""
+    """Return the name of the Taylor engine in a precision.
+
+    Parameters
+    ----------
+    precision : str
+        Such as ``double``, or a number of decimal digits.
+
+    Returns
+    -------
+    str
+    """
     if precision.isdecimal():
         return translatable("Taylor, %(digits)s digits", digits=precision)
     return translatable("Taylor, %(precision)s", precision=precision)
 
 
 def solve_name(solve: Solve) -> str:
-    """Name of the Taylor engine on the program of one solve."""
+    """Return the name of the Taylor engine on the program of one solve.
+
+    Parameters
+    ----------
+    solve : Solve
+        Solve for the multipliers.
+
+    Returns
+    -------
+    str
+    """
     return translatable("solve: %(solve)s", solve=solve)
 
 
 def stabilizations(problem: MotionProblem, until: Fraction, tol: float) -> Iterator[Candidate]:
-    """Yield the stabilizations at one tolerance, in double precision; arguments as of `taylor_ladder`."""
-    for drift in Stabilization:
-        prepare = partial(prepare_taylor, problem, until, "double", tol, drift)
-        yield Candidate(Group.DRIFT, translatable("drift: %(cure)s", cure=drift), f"tol {tol:g}", until, prepare)
+    """Yield the stabilizations at one tolerance in double precision.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    until : Fraction
+        Final time, in the scene's unit.
+    tol : float
+        Tolerance of a step.
+
+    Yields
+    ------
+    Candidate
+        One for each stabilization.
+    """
+    for stabilization in Stabilization:
+        prepare = partial(prepare_taylor, problem, until, "double", tol, stabilization)
+        yield Candidate(
+            Group.STABILIZATION,
+            translatable("stabilization: %(method)s", method=stabilization),
+            f"tol {tol:g}",
+            until,
+            prepare,
+        )
 
 
 def the_two_solves(problems: Sequence[MotionProblem], until: Fraction, tol: float) -> Iterator[Candidate]:
-    """Yield the same motion by each of its programs at one tolerance, in double precision."""
+    """Yield a motion by each of its programs, at one tolerance in double precision.
+
+    Parameters
+    ----------
+    problems : sequence of MotionProblem
+        The motion by each solve.
+    until : Fraction
+        Final time, in the scene's unit.
+    tol : float
+        Tolerance of a step.
+
+    Yields
+    ------
+    Candidate
+        One for each solve.
+    """
     for problem in problems:
         prepare = partial(prepare_taylor, problem, until, "double", tol, Stabilization.PROJECTION)
         yield Candidate(Group.SOLVE, solve_name(problem.motion.solve), f"tol {tol:g}", until, prepare)
 
 
 def prepare_taylor(
-    problem: MotionProblem, until: Fraction, precision: str, tol: float, drift: Stabilization
+    problem: MotionProblem, until: Fraction, precision: str, tol: float, stabilization: Stabilization
 ) -> Prepared:
-    """Compile the Taylor engine for one precision and tolerance."""
+    """Compile the Taylor engine for one precision and tolerance.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    until : Fraction
+        Final time, in the scene's unit.
+    precision : str
+        Numbers to compute with.
+    tol : float
+        Tolerance of a step.
+    stabilization : Stabilization
+        How the state is kept on the constraints.
+
+    Returns
+    -------
+    Prepared
+        The compiled engine, ready to run.
+    """
     numbers = read_precision(precision)
-    motion = TaylorEngine(problem, tol, numbers, drift, compact=_compact(problem, precision))
+    motion = TaylorEngine(problem, tol, numbers, stabilization, compact=_compact(problem, precision))
     run = Repeated(motion, numbers.ratio(until), lambda: motion.steps)
     return Prepared(run, partial(state_of, numbers), lambda: run.work * operations_of_a_step(problem, motion.tol))
 
 
 class Repeated:
-    """A motion followed to an instant, again and again from its start; `work` is the steps or evaluations it took."""
+    """A motion that is integrated to a time repeatedly from its initial state.
+
+    `work` is the number of steps or evaluations of the last run.
+    """
 
     def __init__(self, motion: Engine, last: Any, counted: Callable[[], int]) -> None:
         self._motion, self._last, self._counted = motion, last, counted
@@ -83,7 +181,7 @@ class Repeated:
         self.work = 0
 
     def __call__(self) -> Any:
-        """Follow the motion once; return the state at its end."""
+        """Integrate the motion once; return the state at its end."""
         before = self._counted()
         self._motion.restart(self._begin, self._start)
         self._motion.advance(self._last)
@@ -92,17 +190,40 @@ class Repeated:
 
 
 def operations_of_a_step(problem: MotionProblem, tol: float) -> int:
-    """Operations of the expansion that a step takes; stabilizations are not counted."""
+    """Return the operations of the expansion that a step takes, without stabilization.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    tol : float
+        Tolerance of the step, which determines the order.
+
+    Returns
+    -------
+    int
+    """
     return expansion_operations(acceleration_program(problem), order_for(-math.log10(tol)))
 
 
 def state_of(numbers: Precision, values: Any) -> State:
-    """Return a state in numbers of some precision, digit by digit."""
+    """Return a state in numbers of a precision, with all their digits.
+
+    Parameters
+    ----------
+    numbers : Precision
+    values : sequence of numbers of the precision
+        Coordinates and velocities.
+
+    Returns
+    -------
+    State
+    """
     return numbers_of(map(numbers.text, values))
 
 
 def _compact(problem: MotionProblem, precision: str) -> bool | None:
-    """Return whether compact code is compiled, once and for all; the engine's own choice beyond hardware numbers."""
+    """Return True if heyoka compiles compact code, None if the engine decides."""
     return problem.motion.operations > LARGEST_UNROLLED if precision in HARDWARE else None
 
 
@@ -110,7 +231,22 @@ RUNGE_KUTTA = translatable("Runge-Kutta engine")
 
 
 def runge_kutta_ladder(problem: MotionProblem, until: Fraction, tolerances: Sequence[float]) -> Iterator[Candidate]:
-    """Yield the Runge-Kutta engine, tolerance by tolerance."""
+    """Yield the Runge-Kutta engine, tolerance by tolerance.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    until : Fraction
+        Final time, in the scene's unit.
+    tolerances : sequence of float
+        Tolerances of a step, from coarse to fine.
+
+    Yields
+    ------
+    Candidate
+        One for each tolerance.
+    """
     for tol in tolerances:
         prepare = partial(_prepare_runge_kutta, problem, until, tol)
         yield Candidate(Group.RUNGE_KUTTA, RUNGE_KUTTA, f"tol {tol:g}", until, prepare)

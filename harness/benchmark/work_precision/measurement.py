@@ -1,4 +1,4 @@
-"""What is measured: a method at one setting, how it is prepared and run, and how far it ends from the true state."""
+"""A measurement: a method at one setting, its preparation, its run and its error."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
@@ -14,9 +14,20 @@ WORKING_DIGITS = 300  # more than any state has
 
 
 def relative_error(found: State, true: State) -> float:
-    """Larger of the relative errors of coordinates and of velocities, each in the maximum norm.
+    """Return the larger of the relative errors of coordinates and of velocities.
 
-    Where all true values of one kind are zero, their error is absolute.
+    Both are taken in the maximum norm. If all true values of one kind are zero, their error is absolute.
+
+    Parameters
+    ----------
+    found : sequence of mpf, shape (2n,)
+        Coordinates and velocities.
+    true : sequence of mpf, shape (2n,)
+        Their true values.
+
+    Returns
+    -------
+    float
     """
     middle = len(true) // 2
     with mpmath.workdps(WORKING_DIGITS):
@@ -28,13 +39,33 @@ def relative_error(found: State, true: State) -> float:
 
 
 def numbers_of(texts: Iterable[str]) -> State:
-    """Decimal digits as numbers, not a digit lost."""
+    """Return decimal digits as numbers, without rounding.
+
+    Parameters
+    ----------
+    texts : iterable of str
+        Numbers in decimal digits, at most `WORKING_DIGITS`.
+
+    Returns
+    -------
+    State
+    """
     with mpmath.workdps(WORKING_DIGITS):
         return [mpmath.mpf(text) for text in texts]
 
 
 def doubles(values: Iterable[float]) -> State:
-    """Return a state in double precision, digit by digit."""
+    """Return a state in double precision, digit by digit.
+
+    Parameters
+    ----------
+    values : iterable of float
+        Coordinates and velocities.
+
+    Returns
+    -------
+    State
+    """
     return numbers_of(map(repr, map(float, values)))
 
 
@@ -43,13 +74,13 @@ def _largest(values: State) -> mpmath.mpf:
 
 
 class Group(StrEnum):
-    """What a method is compared with."""
+    """The group in which a method is compared."""
 
     SERIES = "series"
     TAYLOR = "taylor"
     RUNGE_KUTTA = "runge-kutta"
     SOLVER = "solver"
-    DRIFT = "drift"
+    STABILIZATION = "stabilization"
     SOLVE = "solve"
 
 
@@ -73,18 +104,18 @@ class Candidate:
     # method, setting: for instance ``Taylor, double`` and ``tol 1e-12``
     method: str
     setting: str
-    instant: Fraction  # to which the motion is followed
+    time: Fraction  # to which the motion is followed
     prepare: Callable[[], Prepared]  # compiles what has to be compiled
 
 
 @dataclass(frozen=True)
 class Measurement:
-    """What a candidate achieved."""
+    """The error, time and work of a candidate."""
 
     group: Group
     method: str
     setting: str
-    instant: Fraction
+    time: Fraction
     error: float  # as `relative_error` defines it
     seconds: float  # of the shortest run
     preparation_seconds: float | None  # compiling and the like; None where nothing is prepared apart
@@ -93,7 +124,7 @@ class Measurement:
 
 @dataclass(frozen=True)
 class Omission:
-    """What was not measured, and why."""
+    """A candidate that was not measured, with the reason."""
 
     method: str
     setting: str

@@ -1,8 +1,8 @@
-"""Operations on coefficients that an expansion takes, order by order.
+"""Number of operations of an expansion, by the order of its coefficients.
 
-A sum takes one operation a coefficient. A product of two series takes 2n + 1 for its coefficient of order n, and so do
-a quotient, a power and each function of a series; a sine, say, takes its cosine along, twice as much. What is a number
-at every order takes none, and by a number a series is multiplied at one operation a coefficient.
+A sum takes one operation a coefficient. A product of two series takes 2n + 1 for its coefficient of order n. So do a
+quotient, a power and each function of a series; a sine takes twice as much, because it needs its cosine. A constant
+takes none, and multiplication of a series by a constant takes one operation a coefficient.
 
 References
 ----------
@@ -20,12 +20,34 @@ LINEAR = frozenset({Operation.ADD, Operation.SUBTRACT, Operation.NEGATE, Operati
 
 
 def acceleration_program(problem: MotionProblem) -> Program:
-    """Return the part of a motion program that computes the accelerations alone."""
+    """Return the part of a motion program that computes the accelerations alone.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+
+    Returns
+    -------
+    Program
+    """
     return computing(problem.motion, {f"ddot({name})" for name in problem.coordinates})
 
 
 def expansion_operations(program: Program, order: int) -> int:
-    """Operations of an expansion to an order."""
+    """Return the number of operations of an expansion to an order.
+
+    Parameters
+    ----------
+    program : Program
+        Program to expand.
+    order : int
+        Highest power of the time.
+
+    Returns
+    -------
+    int
+    """
     numbers: set[str] = set()
     linear = products = 0
     for name, expression in program.assignments:

@@ -1,4 +1,4 @@
-"""The motion that all methods are measured against: a run with many more digits, confirmed by a second one.
+"""The reference motion: a run with many more digits, confirmed by a second one.
 
 The two runs differ in the digits that they compute with and in the order of their expansions, which follows from the
 tolerance; neither projects.
@@ -30,7 +30,7 @@ SURER = 10  # times an error must exceed what the two runs differ by
 class Reference:
     """States of the motion, known to many digits."""
 
-    states: Mapping[Fraction, State]  # coordinates and velocities at each instant asked for
+    states: Mapping[Fraction, State]  # coordinates and velocities at each time asked for
     # digits, confirming_digits: of the two runs
     digits: int
     confirming_digits: int
@@ -40,42 +40,61 @@ class Reference:
     difference: float  # the largest relative difference of the two
 
     def can_tell(self, error: float) -> bool:
-        """Return True if an error is larger than what the reference may be wrong by."""
+        """Return True if an error is larger than the uncertainty of the reference.
+
+        Parameters
+        ----------
+        error : float
+            Relative error of a method.
+
+        Returns
+        -------
+        bool
+            True if it exceeds `SURER` times the difference of the two runs.
+        """
         return error > SURER * self.difference
 
 
-def find_reference(problem: MotionProblem, instants: Sequence[Fraction], digits: int) -> Reference:
-    """Follow a motion twice, with more digits than any method that is to be measured.
-
-    Raises as `holonom.simulation.engines.taylor.TaylorEngine`.
+def find_reference(problem: MotionProblem, times: Sequence[Fraction], digits: int) -> Reference:
+    """Integrate a motion twice, with more digits than any measured method.
 
     Parameters
     ----------
     problem : MotionProblem
         Its start has `MORE_DIGITS` more than `digits`, at least.
-    instants : sequence of Fraction
+    times : sequence of Fraction
         In their order.
     digits : int
         Of the most precise method.
+
+    Returns
+    -------
+    Reference
+        States by the more precise run, and the difference of both.
+
+    Raises
+    ------
+    HolonomError
+        As `holonom.simulation.engines.taylor.TaylorEngine`.
     """
     fine, coarse = digits + MORE_DIGITS, digits + CONFIRMING_DIGITS
-    states, confirming = (_states(problem, instants, d) for d in (fine, coarse))
+    states, confirming = (_states(problem, times, d) for d in (fine, coarse))
     return Reference(
         states=states,
         digits=fine,
         confirming_digits=coarse,
         order=order_for(fine),
         confirming_order=order_for(coarse),
-        difference=max(relative_error(confirming[instant], states[instant]) for instant in instants),
+        difference=max(relative_error(confirming[time], states[time]) for time in times),
     )
 
 
-def _states(problem: MotionProblem, instants: Sequence[Fraction], digits: int) -> dict[Fraction, State]:
+def _states(problem: MotionProblem, times: Sequence[Fraction], digits: int) -> dict[Fraction, State]:
     numbers, states = read_precision(str(digits)), {}
     motion = TaylorEngine(problem, _tolerance(digits), numbers, Stabilization.NONE)
-    for instant in instants:
-        motion.advance(numbers.ratio(instant))
-        states[instant] = state_of(numbers, motion.state)
+    for time in times:
+        motion.advance(numbers.ratio(time))
+        states[time] = state_of(numbers, motion.state)
     return states
 
 

@@ -1,4 +1,4 @@
-"""A single expansion about the start, added up at one instant inside its radius: what each further order costs.
+"""A series expansion at the initial time, summed at one time, order by order.
 
 Maxima times its own expansions, exact and to a number of digits, without the derivation of the program; the double
 precision ones are heyoka's.
@@ -39,14 +39,25 @@ ENTIRE = 1  # unit of time: where they are added up if no radius is known
 
 @dataclass(frozen=True)
 class Expansion:
-    """What is expanded, and where it is added up."""
+    """An expansion and the time at which it is summed."""
 
     problem: MotionProblem  # its motion program computes the accelerations alone
-    instant: Fraction
+    time: Fraction
 
 
 def expansion_of(problem: MotionProblem, until: Fraction) -> Expansion:
-    """Choose the instant: half the radius of convergence after the start, not beyond the end of the motion.
+    """Choose the time of the sum: half the radius of convergence, or an earlier end.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    until : Fraction
+        End of the motion, in the scene's unit.
+
+    Returns
+    -------
+    Expansion
 
     Raises
     ------
@@ -61,14 +72,27 @@ def expansion_of(problem: MotionProblem, until: Fraction) -> Expansion:
 
 
 def double_series(expansion: Expansion, orders: Sequence[int]) -> Iterator[Candidate]:
-    """Expansions in double precision."""
+    """Yield expansions in double precision.
+
+    Parameters
+    ----------
+    expansion : Expansion
+        Motion and time of the sum.
+    orders : sequence of int
+        Orders of the expansions.
+
+    Yields
+    ------
+    Candidate
+        One for each order.
+    """
     for order in orders:
         prepare = partial(_prepare_double, expansion, order)
         yield Candidate(
             Group.SERIES,
             translatable("series, double"),
             translatable("order %(order)s", order=order),
-            expansion.instant,
+            expansion.time,
             prepare,
         )
 
@@ -82,10 +106,31 @@ def maxima_series(
     digits: int | str,
     reference: Reference,
 ) -> Iterator[Measurement]:
-    """Maxima's expansions, timed by Maxima.
+    """Yield Maxima's expansions, timed by Maxima.
 
-    Operations are those of one expansion; rounded coefficients take at least two. Orders ascend; `digits` are
-    significant digits, or ``exact``.
+    Operations are those of one expansion; rounded coefficients take at least two.
+
+    Parameters
+    ----------
+    file : Source or Path
+        Scene file.
+    request : Request
+        Scene, solve and settings.
+    limits : Limits
+        Limits of the run of Maxima.
+    expansion : Expansion
+        Motion and time of the sum.
+    orders : sequence of int
+        Orders of the expansions, ascending.
+    digits : int or str
+        Significant digits of the coefficients, or ``exact``.
+    reference : Reference
+        States to which errors refer.
+
+    Yields
+    ------
+    Measurement
+        One for each order.
 
     Raises
     ------
@@ -102,8 +147,8 @@ def maxima_series(
             group=Group.SERIES,
             method=series_name(digits),
             setting=translatable("order %(order)s", order=entry["order"]),
-            instant=expansion.instant,
-            error=relative_error(found, reference.states[expansion.instant]),
+            time=expansion.time,
+            error=relative_error(found, reference.states[expansion.time]),
             seconds=float(entry["seconds"]),
             preparation_seconds=None,
             operations=expansion_operations(expansion.problem.motion, entry["order"]),
@@ -111,7 +156,17 @@ def maxima_series(
 
 
 def series_name(digits: int | str) -> str:
-    """Name of the method, given the digits of its coefficients."""
+    """Return the name of Maxima's series with given digits.
+
+    Parameters
+    ----------
+    digits : int or str
+        Significant digits of the coefficients, or ``exact``.
+
+    Returns
+    -------
+    str
+    """
     if digits == EXACT:
         return translatable("series, exact")
     return translatable("series, %(digits)s digits", digits=digits)
@@ -136,7 +191,7 @@ def _prepare_double(expansion: Expansion, order: int) -> Prepared:
 
 
 def _step(expansion: Expansion) -> mpmath.mpf:
-    return number(str(expansion.instant)) - number(expansion.problem.start["t"])
+    return number(str(expansion.time)) - number(expansion.problem.start["t"])
 
 
 def _added_up(rows: Sequence[Sequence[mpmath.mpf]], step: mpmath.mpf) -> State:

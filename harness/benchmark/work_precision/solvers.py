@@ -1,4 +1,4 @@
-"""Integrators that others have written, on a compiled motion: SciPy's, and SUNDIALS through scikit-sundae."""
+"""Integrators of SciPy and of SUNDIALS (scikit-sundae) on a compiled motion."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...extras import missing_package
-from ...failures import Failure, HolonomError
+from ...failures import ErrorKind, HolonomError
 from ...program.c_function import compile_c
 from .measurement import Candidate, Group, Prepared, doubles
 from .operations import acceleration_program
@@ -48,7 +48,17 @@ class CompiledRates:
         return rates
 
     def fill(self, t: float, state: NDArray[np.float64], rates: NDArray[np.float64]) -> None:
-        """Rates in an array that is given, as SUNDIALS asks for them."""
+        """Write the rates into an array, as SUNDIALS requires.
+
+        Parameters
+        ----------
+        t : float
+            Time, in the scene's unit.
+        state : ndarray, shape (2n,)
+            Coordinates and velocities.
+        rates : ndarray, shape (2n,)
+            Array to fill with velocities and accelerations.
+        """
         self.evaluations += 1
         self._given[0] = t
         self._state[:] = state
@@ -60,7 +70,19 @@ class CompiledRates:
 def compiled_rates(problem: MotionProblem) -> CompiledRates:
     """Return the motion program of a problem, compiled by the system's C compiler.
 
-    Raises as `holonom.program.c_function.compile_c`.
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+
+    Returns
+    -------
+    CompiledRates
+
+    Raises
+    ------
+    HolonomError
+        As `holonom.program.c_function.compile_c`.
     """
     program = acceleration_program(problem)
     return CompiledRates(compile_c(program).one, len(problem.coordinates), len(program.inputs))
@@ -73,16 +95,24 @@ Solver = Callable[[CompiledRates, tuple[float, float], Floats, float], Floats]
 
 
 def scipy_solver(method: str, motion: CompiledRates, span: tuple[float, float], start: Floats, tol: float) -> Floats:
-    """Return the state at the end, by one of the methods of `scipy.integrate.solve_ivp`.
+    """Return the final state by one of the methods of `scipy.integrate.solve_ivp`.
 
     Parameters
     ----------
     method : str
         ``DOP853``, ``LSODA`` or ``Radau``.
+    motion : CompiledRates
+        Rates of the state.
     span : (float, float)
-        First and last instant.
+        First and last time.
+    start : ndarray, shape (2n,)
+        Initial coordinates and velocities.
     tol : float
         Relative and absolute.
+
+    Returns
+    -------
+    ndarray, shape (2n,)
 
     Raises
     ------
@@ -93,12 +123,29 @@ def scipy_solver(method: str, motion: CompiledRates, span: tuple[float, float], 
 
     solution = solve_ivp(motion, span, start, method=method, rtol=tol, atol=tol)
     if not solution.success:
-        raise HolonomError(Failure.METHOD_GAVE_UP, detail=f"SciPy {method}: {solution.message}")
+        raise HolonomError(ErrorKind.METHOD_GAVE_UP, detail=f"SciPy {method}: {solution.message}")
     return solution.y[:, -1]
 
 
 def sundials_solver(method: str, motion: CompiledRates, span: tuple[float, float], start: Floats, tol: float) -> Floats:
-    """Return the state at the end, by CVODE of SUNDIALS, ``Adams`` or ``BDF``; arguments as for `scipy_solver`.
+    """Return the final state by CVODE of SUNDIALS.
+
+    Parameters
+    ----------
+    method : str
+        ``Adams`` or ``BDF``.
+    motion : CompiledRates
+        Rates of the state.
+    span : (float, float)
+        First and last time.
+    start : ndarray, shape (2n,)
+        Initial coordinates and velocities.
+    tol : float
+        Relative and absolute tolerance.
+
+    Returns
+    -------
+    ndarray, shape (2n,)
 
     Raises
     ------
@@ -112,7 +159,7 @@ def sundials_solver(method: str, motion: CompiledRates, span: tuple[float, float
     solver = CVODE(motion.fill, method=method, rtol=tol, atol=tol, max_num_steps=MOST_STEPS)
     solution = solver.solve(np.array(span), start)
     if not solution.success:
-        raise HolonomError(Failure.METHOD_GAVE_UP, detail=f"SUNDIALS CVODE {method}: {solution.message}")
+        raise HolonomError(ErrorKind.METHOD_GAVE_UP, detail=f"SUNDIALS CVODE {method}: {solution.message}")
     return solution.y[-1]
 
 
@@ -123,7 +170,22 @@ SOLVERS: Mapping[str, Solver] = {
 
 
 def solver_ladder(problem: MotionProblem, until: Fraction, tolerances: Sequence[float]) -> Iterator[Candidate]:
-    """Yield each solver on the compiled motion program, tolerance by tolerance."""
+    """Yield each solver on the compiled motion program, tolerance by tolerance.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    until : Fraction
+        Final time, in the scene's unit.
+    tolerances : sequence of float
+        Relative and absolute tolerances, from coarse to fine.
+
+    Yields
+    ------
+    Candidate
+        One for each solver and tolerance.
+    """
     for name, solver in SOLVERS.items():
         for tol in tolerances:
             prepare = partial(_prepare, problem, until, solver, tol)

@@ -1,4 +1,4 @@
-"""The whole study of one scene: what is measured, every method at every setting, one reference, one document."""
+"""A work-precision study of one scene: all methods and settings, one reference."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from ...failures import Failure, HolonomError
+from ...failures import ErrorKind, HolonomError
 from ...formats import Publication, published
 from ...language import translatable
 from ...program.motion_problem import MotionProblem, motion_problem, require_analytic
@@ -17,11 +17,10 @@ from ...program.request import Request, Solve
 from ...sandbox import Limits
 from ...simulation.engines.taylor import TaylorEngine
 from ...simulation.request import Stabilization
-from ...simulation.simulate import last_instant
+from ...simulation.simulate import last_time
 from ...source import Source, source_of
 from ..machine import Machine, this_machine
 from .advice import Advice, Price, cheapest_methods, prices
-from .contest import measure, without_caches
 from .engines import (
     operations_of_a_step,
     runge_kutta_ladder,
@@ -33,13 +32,14 @@ from .engines import (
 )
 from .measurement import Candidate, Measurement, Omission
 from .reference import MORE_DIGITS, Reference, find_reference
+from .runner import measure, without_caches
 from .series import EXACT, Expansion, double_series, expansion_of, maxima_series, series_name
 from .solvers import SOLVERS, solver_ladder
 
 
 @dataclass(frozen=True)
 class Plan:
-    """What is measured."""
+    """The methods and settings of a study."""
 
     until: Fraction | None = None  # end of the motion; None for that of the scene's time span
     # of the Taylor engine, by precision, least demanding first; precisions ascend
@@ -76,7 +76,7 @@ SECONDS_OF_MANY_DIGITS = 5e-8  # of an operation on numbers of 50 to 130 digits,
 
 @dataclass(frozen=True)
 class Study:
-    """What accuracy costs for one scene."""
+    """The results of a work-precision study of one scene."""
 
     scene: str
     title: str
@@ -92,10 +92,24 @@ class Study:
 def study(
     file: Source | Path, request: Request, limits: Limits, plan: Plan, advance: Callable[[], None] = lambda: None
 ) -> Study:
-    """Measure what accuracy costs in time and in operations.
+    """Measure time and operations against accuracy.
 
-    The solve that is asked for is that of all comparisons but one, of the two solves. `advance` is called `plan.steps`
-    times at most.
+    Parameters
+    ----------
+    file : Source or Path
+        Scene file.
+    request : Request
+        Scene, solve and settings; the solve is used in all comparisons but that of the two solves.
+    limits : Limits
+        Limits of each run of Maxima.
+    plan : Plan
+        Methods and settings.
+    advance : callable
+        Called without arguments at most `plan.steps` times, for the progress.
+
+    Returns
+    -------
+    Study
 
     Raises
     ------
@@ -107,8 +121,8 @@ def study(
     problem, until = problems[0], _end_of(problems[0], plan)
     plan, beyond = _within_reach(plan, problem, until)
     expansion, unexpanded = _expansion(problem, until)
-    instants = sorted({until, expansion.instant} if expansion else {until})
-    reference = find_reference(problem, instants, plan.most_digits)
+    times = sorted({until, expansion.time} if expansion else {until})
+    reference = find_reference(problem, times, plan.most_digits)
     series, unexpandable = _series(source, request, expansion, plan, reference)
     with without_caches():
         results = measure(_candidates(problems, until, expansion, plan), reference, advance)
@@ -128,11 +142,11 @@ def study(
 
 
 def _problems(source: Source, request: Request, plan: Plan) -> tuple[list[MotionProblem], list[Omission]]:
-    """Return the problem with the solve that is asked for, then with the other one where that solves it."""
+    """Return the problem with the requested solve, and with the other one if solvable."""
     digits = plan.most_digits + MORE_DIGITS
     problem = motion_problem(source, request, source.limits, digits)
     if problem.obstacle is not None:
-        raise HolonomError(Failure.NO_MOTION_PROGRAM, source.file, problem.obstacle)
+        raise HolonomError(ErrorKind.NO_MOTION_PROGRAM, source.file, problem.obstacle)
     require_analytic(problem)
     other = next(solve for solve in Solve if solve is not request.solve)
     by_other = motion_problem(source, replace(request, solve=other), source.limits, digits)
@@ -142,16 +156,19 @@ def _problems(source: Source, request: Request, plan: Plan) -> tuple[list[Motion
 
 
 def _end_of(problem: MotionProblem, plan: Plan) -> Fraction:
-    """Return the last instant, exactly; refused where a simulation refuses it."""
-    last_instant(problem, plan.until, read_precision("double"))
+    """Return the last time exactly.
+
+    Raises as `last_time`, or if an event may end the motion.
+    """
+    last_time(problem, plan.until, read_precision("double"))
     if problem.until and plan.until is None:
-        raise HolonomError(Failure.NO_COMMON_END, problem.scene)
+        raise HolonomError(ErrorKind.NO_COMMON_END, problem.scene)
     return Fraction(problem.time_span[1]) if plan.until is None else plan.until
 
 
 def _within_reach(plan: Plan, problem: MotionProblem, until: Fraction) -> tuple[Plan, list[Omission]]:
     """Return the plan without the precisions whose reference would take too long."""
-    rehearsal = TaylorEngine(problem, drift=Stabilization.NONE)
+    rehearsal = TaylorEngine(problem, stabilization=Stabilization.NONE)
     rehearsal.advance(float(until))
     tolerances, beyond = dict(plan.tolerances), []
     for precision in reversed(plan.tolerances):
@@ -217,7 +234,17 @@ def _candidates(
 
 
 def study_document(done: Study) -> dict[str, Any]:
-    """Return what `holonom accuracy --json` writes; `schemas/accuracy.json` describes it."""
+    """Return the document of `holonom accuracy --json`, by `schemas/accuracy.json`.
+
+    Parameters
+    ----------
+    done : Study
+
+    Returns
+    -------
+    dict of str to object
+        Content with format and version.
+    """
     reference = done.reference
     content = {
         "scene": done.scene,
@@ -231,7 +258,7 @@ def study_document(done: Study) -> dict[str, Any]:
             "confirming_order": reference.confirming_order,
             "difference": reference.difference,
         },
-        "measurements": [asdict(m) | {"instant": str(m.instant)} for m in done.measurements],
+        "measurements": [asdict(m) | {"time": str(m.time)} for m in done.measurements],
         "omissions": [asdict(omission) for omission in done.omissions],
         "advice": [_published_advice(advice) for advice in done.advice],
         "prices": [asdict(price) for price in done.prices],

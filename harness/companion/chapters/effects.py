@@ -24,33 +24,57 @@ SAMPLES = 1801
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs."""
+    """Return what the chapter needs.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+
+    Returns
+    -------
+    dict of str to Run
+        Runs by name.
+    """
     file = root / SPHERICAL_PENDULUM
     return {
         "pendulum": derived(file),
-        "sparing": Run(costs, (file, SPARING)),
-        "lavish": Run(costs, (file, LAVISH)),
+        "sparing": Run(_costs, (file, SPARING)),
+        "lavish": Run(_costs, (file, LAVISH)),
         "turning": simulation(file, TURNING, None, SAMPLES),
         "still": simulation(file, STILL, None, SAMPLES),
     }
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """Return the page that results make."""
+    """Return the page that results make.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+    results : mapping
+        Results of the runs by their names.
+
+    Returns
+    -------
+    Page
+        Content and files of the page.
+    """
     turning, still = results["turning"], results["still"]
     return Page(
         {
             "system": results["pendulum"].record.system,
             "sparing": results["sparing"],
             "lavish": results["lavish"],
-            "titles": titles(results["pendulum"].record),
-            "called": {name: called(results["pendulum"].record, name) for name in (SPARING, LAVISH)},
+            "titles": _titles(results["pendulum"].record),
+            "called": {name: _called(results["pendulum"].record, name) for name in (SPARING, LAVISH)},
             "machine": this_machine(()),
             "turning": turning,
             "still": still,
-            "turned": (instant := turning_point(turning))[1],
-            "expected": -float(rate_of_the_frame(results["pendulum"].record)) * instant[0],
-            "instant": instant[0],
+            "turned": (time := turning_point(turning))[1],
+            "expected": -float(_rate_of_the_frame(results["pendulum"].record)) * time[0],
+            "time": time[0],
             "system_lines": excerpt(root, SPHERICAL_PENDULUM, "system"),
             "scene_lines": excerpt(root, SPHERICAL_PENDULUM, SPARING),
         },
@@ -59,29 +83,40 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
     )
 
 
-def costs(file: Path, scene: str) -> MeasuredCosts:
+def _costs(file: Path, scene: str) -> MeasuredCosts:
     """Return what a scene pays for, as `holonom effects` says it."""
     return scene_costs(file, Request(scene), Limits())
 
 
-def titles(record: Record) -> dict[str, str]:
+def _titles(record: Record) -> dict[str, str]:
     """Title of each scene by its name."""
     return {scene.name: scene.title for scene in record.scenes}
 
 
-def called(record: Record, name: str) -> tuple[str, ...]:
+def _called(record: Record, name: str) -> tuple[str, ...]:
     """Return the effects that a scene calls for."""
     return next(scene.effects for scene in record.scenes if scene.name == name)
 
 
-def rate_of_the_frame(record: Record) -> Any:
+def _rate_of_the_frame(record: Record) -> Any:
     """Return the rate at which the frame of the Foucault pendulum turns."""
     return next(scene.parameter_values["Omega"] for scene in record.scenes if scene.name == TURNING)
 
 
 def turning_point(motion: Simulation) -> tuple[float, float]:
-    """Return the last turning instant on the side where the bob began, and its angle from the start."""
+    """Return the last turning time on the side where the bob began, and its angle from the start.
+
+    Parameters
+    ----------
+    motion : Simulation
+        Simulated motion.
+
+    Returns
+    -------
+    tuple of float
+        Time and angle in radians.
+    """
     x, y = motion.coordinates["x"], motion.coordinates["y"]
     away = np.hypot(x, y)
     turns = np.flatnonzero((away[1:-1] >= away[:-2]) & (away[1:-1] > away[2:]) & (x[1:-1] * x[0] > 0)) + 1
-    return float(motion.instants[turns[-1]]), float(np.arctan2(y[turns[-1]], x[turns[-1]]) - np.arctan2(y[0], x[0]))
+    return float(motion.times[turns[-1]]), float(np.arctan2(y[turns[-1]], x[turns[-1]]) - np.arctan2(y[0], x[0]))

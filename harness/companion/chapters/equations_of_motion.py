@@ -6,14 +6,16 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from sympy import Expr, Symbol, collect, expand
 
 from ...figures.curves import Panel, draw_curves
 from ...language import gettext
 from ...simulation.result import Simulation
 from ..cards import derivation_cards, files_of, missing, named_equations, printed_card
 from ..chapter import Page, Run
-from ..runs import derived, printed, simulation
+from ..runs import Derived, derived, printed, simulation
 from . import BEAD, BOB, BOB_SCENE, PAPER, PENDULUM
+from .worked_example import in_sum
 
 CONDITIONS = ("condition on the kinetic energy", "condition on the mass matrix", "condition on the constraints")
 SAMPLES = 201
@@ -21,7 +23,18 @@ NUMBERS = ("2", "3a", "3", "4", "5", "6", "7", "8", "9")
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs."""
+    """Return what the chapter needs.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+
+    Returns
+    -------
+    dict of str to Run
+        Runs by name.
+    """
     return {
         "paper": derived(root / PAPER),
         "bob": derived(root / BOB),
@@ -33,12 +46,27 @@ def runs(root: Path) -> dict[str, Run]:
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """Return the page that results make."""
+    """Return the page that results make.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+    results : mapping
+        Results of the runs by their names.
+
+    Returns
+    -------
+    Page
+        Content and files of the page.
+    """
     paper = results["paper"]
     cards = derivation_cards(NUMBERS, [results["bob"], paper], results["printed"], root)
     conditions = [printed_card(results["printed"], name) for name in CONDITIONS]
     return Page(
         {
+            "steps": named_equations(paper),
+            **_example_in_sum(paper),
             "cards": {card.anchor: card for card in (*cards, *conditions)},
             "missing": [*missing(results["bob"]), *missing(paper)],
             "momentum": float(momentum(results["motion"])[0]),
@@ -47,17 +75,38 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
             "bob_equations": named_equations(results["bob"]),
             "pendulum": named_equations(results["pendulum"]),
         },
-        figures={"bob": draw_curves(panels(results["motion"]), gettext("t (units of the scene)"))},
+        figures={"bob": draw_curves(_panels(results["motion"]), gettext("t (units of the scene)"))},
         sources=files_of(cards),
     )
 
 
+def _example_in_sum(paper: Derived) -> dict[str, Expr]:
+    """Return the multiplier of the example and the acceleration of S = q1 + q2, in S."""
+    equations = named_equations(paper)
+    first, second = (relation.right for relation in equations["driven_accelerations"].relations[:2])
+    return {
+        "multiplier_in_sum": in_sum(equations["multipliers"].relations[0].right),
+        "sum_acceleration": collect(in_sum(expand(first + second)), Symbol("lambda1", real=True)),
+    }
+
+
 def momentum(motion: Simulation) -> NDArray[np.float64]:
-    """Angular momentum of the bob, its mass being one."""
+    """Angular momentum of the bob, its mass being one.
+
+    Parameters
+    ----------
+    motion : Simulation
+        Simulated motion.
+
+    Returns
+    -------
+    ndarray
+        Angular momentum at each sample.
+    """
     return motion.coordinates["r"] ** 2 * motion.velocities["dot(phi)"]
 
 
-def panels(motion: Simulation) -> list[Panel]:
+def _panels(motion: Simulation) -> list[Panel]:
     """Return what changes as the string is drawn in, and what does not."""
     shown = {
         gettext("length r"): motion.coordinates["r"],
@@ -65,4 +114,4 @@ def panels(motion: Simulation) -> list[Panel]:
         gettext("pull of the string, -λ₁"): -motion.multipliers["lambda1"],
         gettext("angular momentum m r² φ̇"): momentum(motion),
     }
-    return [Panel(gettext("units of the scene"), {name: (motion.instants, values) for name, values in shown.items()})]
+    return [Panel(gettext("units of the scene"), {name: (motion.times, values) for name, values in shown.items()})]

@@ -5,14 +5,19 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+from sympy import Expr, Symbol, simplify
+
 from ...figures.curves import Panel, draw_curves
+from ...free_motion import FreeMotion
 from ...language import gettext
 from ...simulation.result import Simulation
 from ..cards import derivation_cards, files_of, named_equations, printed_card, scene_cards, scene_named
 from ..chapter import Page, Run
+from ..expressions import under
 from ..power import EnergyBalance, energy_balance
-from ..runs import derived, free, printed, simulation
+from ..runs import Derived, derived, free, printed, simulation
 from . import BOB, CABIN, FREE_SCENE, INITIAL_SCENE, PAPER, PENDULUM
+from .worked_example import in_sum
 
 UNTIL, SAMPLES = Fraction(3), 2001
 PARABOLIC_FLIGHT = "parabolic_flight_scene"
@@ -21,7 +26,18 @@ UNPUSHED = "Lagrange's equations on a free motion"
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs."""
+    """Return what the chapter needs.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+
+    Returns
+    -------
+    dict of str to Run
+        Runs by name.
+    """
     return {
         "paper": derived(root / PAPER),
         "bob": derived(root / BOB),
@@ -38,12 +54,26 @@ def runs(root: Path) -> dict[str, Run]:
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """Return the page that results make."""
+    """Return the page that results make.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+    results : mapping
+        Results of the runs by their names.
+
+    Returns
+    -------
+    Page
+        Content and files of the page.
+    """
     paper, cabin = results["paper"], results["cabin"]
     cards = derivation_cards(["10"], [paper, results["bob"]], results["printed"], root)
     scenes = scene_cards(["10"], [(paper, FREE_SCENE), (paper, INITIAL_SCENE)], (), root, "law")
     return Page(
         {
+            **_example(paper, results["other_law"]),
             "cards": cards,
             "scenes": scenes,
             "free_law": results["free_law"],
@@ -56,17 +86,28 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
                 balance := energy_balance(paper.record.system, scene_named(paper, INITIAL_SCENE), results["pushed"])
             ),
             "spent": float(balance.by_knob[-1]),
-            "pushed_until": float(results["pushed"].instants[-1]),
+            "pushed_until": float(results["pushed"].times[-1]),
             "pendulum": named_equations(results["pendulum"]),
         },
         figures={
-            "cost": draw_curves(panels(results["unpushed"], results["pushed"], balance), gettext("t (dimensionless)"))
+            "cost": draw_curves(_panels(results["unpushed"], results["pushed"], balance), gettext("t (dimensionless)"))
         },
         sources=files_of(cards),
     )
 
 
-def panels(unpushed: Simulation, pushed: Simulation, balance: EnergyBalance) -> list[Panel]:
+def _example(paper: Derived, found: FreeMotion) -> dict[str, Expr]:
+    """Return the multiplier of the example in S = q1 + q2, and S and q3 on a free motion under the first law."""
+    law = scene_named(paper, FREE_SCENE).control_law
+    sum_of_free = simplify(found.trajectory.motion["q1"] + found.trajectory.motion["q2"])
+    return {
+        "multiplier_in_sum": in_sum(named_equations(paper)["multipliers"].relations[0].right),
+        "free_sum": sum_of_free,
+        "free_height": simplify(under(law, Symbol("u", real=True)) * sum_of_free),
+    }
+
+
+def _panels(unpushed: Simulation, pushed: Simulation, balance: EnergyBalance) -> list[Panel]:
     """Return the multiplier under both laws, and where the energy goes under the second."""
     multipliers = {"u = u₀ exp(t)": unpushed, "u = u₀ + t": pushed}
     work = {
@@ -77,10 +118,10 @@ def panels(unpushed: Simulation, pushed: Simulation, balance: EnergyBalance) -> 
     return [
         Panel(
             gettext("multiplier λ₁\n(dimensionless)"),
-            {law: (motion.instants, motion.multipliers["lambda1"]) for law, motion in multipliers.items()},
+            {law: (motion.times, motion.multipliers["lambda1"]) for law, motion in multipliers.items()},
         ),
         Panel(
             gettext("u = u₀ + t: energy\n(dimensionless)"),
-            {name: (pushed.instants, each) for name, each in work.items()},
+            {name: (pushed.times, each) for name, each in work.items()},
         ),
     ]

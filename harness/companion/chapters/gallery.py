@@ -12,7 +12,18 @@ EXHIBITS = table("gallery")["exhibit"]
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs."""
+    """Return what the chapter needs.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+
+    Returns
+    -------
+    dict of str to Run
+        Runs by name.
+    """
     return {
         each["name"]: motion(
             root / each["file"], each.get("scene"), Fraction(each["until"]) if "until" in each else None
@@ -22,7 +33,20 @@ def runs(root: Path) -> dict[str, Run]:
 
 
 def page(root: Path, results: Mapping[str, Motion]) -> Page:
-    """Return the page that results make."""
+    """Return the page that results make.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+    results : mapping
+        Results of the runs by their names.
+
+    Returns
+    -------
+    Page
+        Content and files of the page.
+    """
     return Page(
         {"exhibits": [(exhibit, results[exhibit["name"]]) for exhibit in EXHIBITS]},
         figures=figures_of(results.items()),

@@ -1,4 +1,4 @@
-"""Initial motion: the state at the first instant, the accelerations there, and the series that begins with them."""
+"""Initial motion: the state at the first time, the accelerations there, and the series that begins with them."""
 
 from collections.abc import Mapping
 from fractions import Fraction
@@ -21,12 +21,23 @@ from ..runs import derived, printed, series
 from . import BOB, BOB_SCENE, INITIAL_SCENE, PAPER
 
 LOW_ORDER, HIGH_ORDER = 3, 40
-INSTANT, LAST = Fraction(1, 10), Fraction(1, 2)
+TIME, LAST = Fraction(1, 10), Fraction(1, 2)
 SHOWN = "q1"  # the coordinate that is drawn
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs."""
+    """Return what the chapter needs.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+
+    Returns
+    -------
+    dict of str to Run
+        Runs by name.
+    """
     return {
         "paper": derived(root / PAPER),
         "bob": derived(root / BOB),
@@ -36,7 +47,20 @@ def runs(root: Path) -> dict[str, Run]:
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """Return the page that results make."""
+    """Return the page that results make.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+    results : mapping
+        Results of the runs by their names.
+
+    Returns
+    -------
+    Page
+        Content and files of the page.
+    """
     paper, bob = results["paper"], results["bob"]
     eliminated = derivation_cards(["11"], [paper, bob], results["printed"], root)
     cards = scene_cards(["12", "19", "13", "18"], [(paper, INITIAL_SCENE), (bob, BOB_SCENE)], results["printed"], root)
@@ -48,40 +72,51 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
             "scene": scene_named(paper, INITIAL_SCENE),
             "fixed": named_equations(paper, INITIAL_SCENE)["determined_initial_values"],
             "bob_accelerations": bob_equations["initial_accelerations"],
-            "bob_numbers": values_in_numbers(bob_equations["initial_accelerations"], bob_scene),
-            "instant": INSTANT,
+            "bob_numbers": _values_in_numbers(bob_equations["initial_accelerations"], bob_scene),
+            "time": TIME,
             "orders": (LOW_ORDER, HIGH_ORDER),
-            "compared": compared(results["expanded"]),
+            "compared": _compared(results["expanded"]),
         },
-        figures={"first-instants": draw_curves([beginning(results["expanded"])], gettext("t (dimensionless)"))},
+        figures={"first-times": draw_curves([beginning(results["expanded"])], gettext("t (dimensionless)"))},
         sources=files_of([*eliminated, *cards]),
     )
 
 
-def values_in_numbers(equation: Equation, scene: Scene) -> dict[str, Expr]:
+def _values_in_numbers(equation: Equation, scene: Scene) -> dict[str, Expr]:
     """Return right sides of a scene's equation at its start and parameters, by their left sides."""
     values = {f"{name}_0": value for name, value in scene.initial_state.items()} | dict(scene.parameter_values)
     numbers = {Symbol(name, real=True): value for name, value in values.items()}
     return {str(each.left): each.right.subs(numbers) for each in equation.relations}
 
 
-def compared(expanded: MotionSeries) -> list[tuple[str, mpmath.mpf, mpmath.mpf]]:
-    """Name of each coordinate, its series at the instant cut off at the low order, and at the high order."""
+def _compared(expanded: MotionSeries) -> list[tuple[str, mpmath.mpf, mpmath.mpf]]:
+    """Name of each coordinate, its series at the time cut off at the low order, and at the high order."""
     with mpmath.workdps(expanded.digits):
-        step = mpmath.mpf(INSTANT.numerator) / INSTANT.denominator - number(expanded.t0)
+        step = mpmath.mpf(TIME.numerator) / TIME.denominator - number(expanded.t0)
         return [
-            (name, partial_sum(series[: LOW_ORDER + 1], step), partial_sum(series, step))
+            (name, _partial_sum(series[: LOW_ORDER + 1], step), _partial_sum(series, step))
             for name, series in expanded.coordinates.items()
         ]
 
 
-def partial_sum(coefficients: NumberTexts, step: mpmath.mpf) -> mpmath.mpf:
+def _partial_sum(coefficients: NumberTexts, step: mpmath.mpf) -> mpmath.mpf:
     """Return the sum of a power series as far as its coefficients go."""
     return mpmath.polyval(numbers(coefficients)[::-1], step)
 
 
 def beginning(expanded: MotionSeries) -> Panel:
-    """Return the first instants of a coordinate: the motion, and what the lowest orders make of it."""
+    """Return the first times of a coordinate: the motion, and what the lowest orders make of it.
+
+    Parameters
+    ----------
+    expanded : MotionSeries
+        Power series of the motion.
+
+    Returns
+    -------
+    Panel
+        Panel of the figure.
+    """
     with mpmath.workdps(expanded.digits):
         coefficients = [float(each) for each in numbers(expanded.coordinates[SHOWN])]
     times = np.linspace(0, float(LAST), 101)

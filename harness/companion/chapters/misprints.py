@@ -20,12 +20,36 @@ EXAMPLE, FIRST_OF_EXAMPLE = "worked-example", "14"
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs."""
+    """Return what the chapter needs.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+
+    Returns
+    -------
+    dict of str to Run
+        Runs by name.
+    """
     return {"printed": printed()}
 
 
 def page(root: Path, results: Mapping[str, tuple[PrintedEquation, ...]]) -> Page:
-    """Return the page that results make."""
+    """Return the page that results make.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+    results : mapping
+        Results of the runs by their names.
+
+    Returns
+    -------
+    Page
+        Content and files of the page.
+    """
     equations = results["printed"]
     return Page(
         {
@@ -38,12 +62,26 @@ def page(root: Path, results: Mapping[str, tuple[PrintedEquation, ...]]) -> Page
 
 
 def rows(equations: tuple[PrintedEquation, ...]) -> list[tuple[PrintedEquation, str]]:
-    """Return each printed equation with the link to its card."""
+    """Return each printed equation with the link to its card.
+
+    Parameters
+    ----------
+    equations : tuple of PrintedEquation
+        Equations of the paper.
+
+    Returns
+    -------
+    list of tuple
+        Equation and link.
+    """
     general = list(takewhile(_before_the_example, equations))
     example = equations[len(general) :]
     return [
-        *((each, f"{page}.html#{anchor('', each)}") for page, each in zip(_pages(general), general, strict=True)),
-        *((each, f"{EXAMPLE}.html#{place}") for each, place in zip(example, anchors(example), strict=True)),
+        *(
+            (each, f"../book/{page}.html#{anchor('', each)}")
+            for page, each in zip(_pages(general), general, strict=True)
+        ),
+        *((each, f"../book/{EXAMPLE}.html#{place}") for each, place in zip(example, anchors(example), strict=True)),
     ]
 
 

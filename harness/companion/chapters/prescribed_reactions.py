@@ -1,4 +1,4 @@
-"""Prescribed reactions: the constraints push as hard as they are told to, and the controls see to it."""
+"""Prescribed reactions: the controls that give the multipliers prescribed values."""
 
 from collections.abc import Mapping
 from fractions import Fraction
@@ -9,20 +9,28 @@ from ...figures.curves import Panel, draw_curves
 from ...language import gettext
 from ...simulation.result import Simulation
 from ..chapter import Page, Run
-from ..excerpts import excerpt
 from ..mathematics import description
 from ..runs import derived, free, series, simulation
-from . import LEVEL_LOAD, PRESCRIBED_TENSION
+from . import PRESCRIBED_TENSION
 
-SOURCE = "maxima/control/prescribed_reactions.mac"
-FUNCTIONS = ("released_system", "controls_under_reactions")
 SCENES = ("thrown_scene", "steady_scene", "growing_scene")
 ORDER = 40
 UNTIL, SAMPLES = Fraction(2), 201
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs."""
+    """Return what the chapter needs.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+
+    Returns
+    -------
+    dict of str to Run
+        Runs by name.
+    """
     file = root / PRESCRIBED_TENSION
     return (
         {"tension": derived(file)}
@@ -33,34 +41,44 @@ def runs(root: Path) -> dict[str, Run]:
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """Return the page that results make."""
+    """Return the page that results make.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+    results : mapping
+        Results of the runs by their names.
+
+    Returns
+    -------
+    Page
+        Content and files of the page.
+    """
     system = results["tension"].record.system
     return Page(
         {
             "system": system,
             "description": description(system),
-            "scene_lines": excerpt(root, PRESCRIBED_TENSION, SCENES[1]),
-            "level_lines": excerpt(root, LEVEL_LOAD, "swing_scene"),
             "answers": {name: results[f"{name} free"] for name in SCENES},
             "series": {name: results[f"{name} series"] for name in SCENES},
-            "excerpts": [excerpt(root, SOURCE, name) for name in FUNCTIONS],
         },
-        figures={"winch": draw_curves(panels(results), gettext("t (units of the scene)"))},
-        sources=(SOURCE, PRESCRIBED_TENSION, LEVEL_LOAD),
+        figures={"winch": draw_curves(_panels(results), gettext("t (units of the scene)"))},
+        sources=(PRESCRIBED_TENSION,),
     )
 
 
-def panels(results: Mapping[str, Simulation]) -> list[Panel]:
+def _panels(results: Mapping[str, Simulation]) -> list[Panel]:
     """Return what is prescribed, and what the winch does."""
     motions = {name: results[f"{name} motion"] for name in SCENES[1:]}
     labels = {name: gettext("steady") if name == SCENES[1] else gettext("growing") for name in motions}
     return [
         Panel(
             gettext("multiplier λ₁\n(units of the scene)"),
-            {labels[name]: (motion.instants, motion.multipliers["lambda1"]) for name, motion in motions.items()},
+            {labels[name]: (motion.times, motion.multipliers["lambda1"]) for name, motion in motions.items()},
         ),
         Panel(
             gettext("length u of the string\n(units of the scene)"),
-            {labels[name]: (motion.instants, motion.coordinates["u"]) for name, motion in motions.items()},
+            {labels[name]: (motion.times, motion.coordinates["u"]) for name, motion in motions.items()},
         ),
     ]

@@ -21,14 +21,25 @@ from ..runs import Derived, derived, drawn, series, simulation
 from . import FREE_SCENE, INITIAL_SCENE, PAPER, PENDULUM
 
 ORDER = 80
-ORDERS, INSTANTS = (5, 10, 20, 40, 80), (0.5, 1.0)  # within the radius and beyond it
+ORDERS, TIMES = (5, 10, 20, 40, 80), (0.5, 1.0)  # within the radius and beyond it
 COORDINATE = "q3"
 UNTIL, SAMPLES = Fraction(3, 2), 301
 SWING = "swing_scene"
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs."""
+    """Return what the chapter needs.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+
+    Returns
+    -------
+    dict of str to Run
+        Runs by name.
+    """
     return {
         "paper": derived(root / PAPER),
         "initial": series(root / PAPER, INITIAL_SCENE, ORDER),
@@ -40,10 +51,23 @@ def runs(root: Path) -> dict[str, Run]:
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """Return the page that results make."""
+    """Return the page that results make.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+    results : mapping
+        Results of the runs by their names.
+
+    Returns
+    -------
+    Page
+        Content and files of the page.
+    """
     paper = results["paper"]
     scene = scene_named(paper, INITIAL_SCENE)
-    exact = singular_instants(paper, INITIAL_SCENE)
+    exact = _singular_times(paper, INITIAL_SCENE)
     start = scene.time_span[0]
     return Page(
         {
@@ -54,51 +78,75 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
             "pendulum": results["pendulum"],
             "denominator": denominator(paper),
             "exact": exact,
-            "exact_radius": min(sympy.Abs(instant - start) for instant in exact),
+            "exact_radius": min(sympy.Abs(time - start) for time in exact),
             "coordinate": COORDINATE,
             "confronted": confronted(results["initial"], results["motion"]),
             "orders": ORDERS,
-            "instants": [float(instant) for instant in (results["motion"].instants[0], results["motion"].instants[-1])],
+            "times": [float(time) for time in (results["motion"].times[0], results["motion"].times[-1])],
         },
         figures={
-            "partial-sums": partial_sums(results["initial"], results["motion"]),
+            "partial-sums": _partial_sums(results["initial"], results["motion"]),
             "radius": drawn(partial(draw_radius, results["radius"])),
         },
     )
 
 
 def denominator(paper: Derived) -> Expr:
-    """Return what the accelerations (11) are divided by."""
+    """Return what the accelerations (11) are divided by.
+
+    Parameters
+    ----------
+    paper : Derived
+        Derivation of the paper's example.
+
+    Returns
+    -------
+    Expr
+        Common denominator.
+    """
     accelerations = named_equations(paper)["accelerations"].relations
     return sympy.fraction(sympy.together(accelerations[0].right))[1]
 
 
-def singular_instants(paper: Derived, name: str) -> list[Expr]:
-    """Complex instants at which the denominator of (11) vanishes in a scene, with its parameters put in."""
+def _singular_times(paper: Derived, name: str) -> list[Expr]:
+    """Complex times at which the denominator of (11) vanishes in a scene, with its parameters put in."""
     scene = scene_named(paper, name)
     values = {Symbol(parameter, real=True): value for parameter, value in scene.parameter_values.items()}
     law = {Symbol(control, real=True): value.subs(values) for control, value in scene.control_law.items()}
     return zeros(denominator(paper).subs(law))
 
 
-def partial_sums(expanded: MotionSeries, motion: Simulation) -> str:
+def _partial_sums(expanded: MotionSeries, motion: Simulation) -> str:
     """Return the figure of the partial sums of one coordinate, as SVG."""
     with mpmath.workdps(expanded.digits):
         coefficients = [float(each) for each in numbers(expanded.coordinates[COORDINATE])]
-        times = motion.instants - float(number(expanded.t0))
+        times = motion.times - float(number(expanded.t0))
     return draw_partial_sums(COORDINATE, coefficients, expanded.radius, times, motion.coordinates[COORDINATE])
 
 
 def confronted(expanded: MotionSeries, motion: Simulation) -> dict[float, list[float]]:
-    """Errors of the partial sums at an instant within the radius and at one beyond it, order by order."""
+    """Errors of the partial sums at a given time within the radius and at one beyond it, order by order.
+
+    Parameters
+    ----------
+    expanded : MotionSeries
+        Power series of the motion.
+    motion : Simulation
+        Simulated motion.
+
+    Returns
+    -------
+    dict of float to list of float
+        Errors by time.
+    """
     truth = motion.coordinates[COORDINATE]
     with mpmath.workdps(expanded.digits):
         coefficients = numbers(expanded.coordinates[COORDINATE])
         start = number(expanded.t0)
-        places = [min(range(len(truth)), key=lambda k: abs(motion.instants[k] - each)) for each in INSTANTS]
+        places = [min(range(len(truth)), key=lambda k: abs(motion.times[k] - each)) for each in TIMES]
         return {
-            float(motion.instants[k]): [
-                float(abs(mpmath.polyval(coefficients[order::-1], mpmath.mpf(motion.instants[k]) - start) - truth[k]))
+            float(motion.times[k]): [
+                float(abs(mpmath.polyval(coefficients[order::-1], mpmath.mpf(motion.times[k]) - start) - truth[k]))
                 for order in ORDERS
             ]
             for k in places

@@ -6,26 +6,48 @@ from typing import Any
 
 from ..cards import derivation_cards, files_of, scene_named
 from ..chapter import Page, Run
-from ..excerpts import excerpt
 from ..mathematics import description
 from ..runs import derived, printed
 from ..tilted_plane import draw_tilted_plane
-from . import CABIN, FREE_SCENE, LINKAGE, PAPER, PENDULUM
+from . import FREE_SCENE, LINKAGE, PAPER, PENDULUM
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs."""
+    """Return what the chapter needs.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+
+    Returns
+    -------
+    dict of str to Run
+        Runs by name.
+    """
     return {
         "paper": derived(root / PAPER),
         "pendulum": derived(root / PENDULUM),
         "linkage": derived(root / LINKAGE),
-        "cabin": derived(root / CABIN),
         "printed": printed(),
     }
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """Return the page that results make."""
+    """Return the page that results make.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+    results : mapping
+        Results of the runs by their names.
+
+    Returns
+    -------
+    Page
+        Content and files of the page.
+    """
     paper = results["paper"]
     cards = derivation_cards(["1"], [paper, results["pendulum"]], results["printed"], root)
     scene = scene_named(paper, FREE_SCENE)
@@ -36,14 +58,11 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
             "start": {"u": scene.parameter_values["u0"], **start},
             "system": paper.record.system,
             "description": description(paper.record.system),
-            "description_lines": excerpt(root, PAPER, "system"),
-            "scene_lines": excerpt(root, PAPER, FREE_SCENE),
+            "scene": scene,
             "cards": cards,
             "pendulum": results["pendulum"].record.system,
             "linkage": results["linkage"].record.system,
-            "cabin": results["cabin"].record.system,
-            "cabin_lines": excerpt(root, CABIN, "system"),
         },
         figures={"tilted-plane": draw_tilted_plane([float(value) for value in start.values()], tilt)},
-        sources=(PAPER, CABIN, *files_of(cards)),
+        sources=(PAPER, *files_of(cards)),
     )

@@ -10,12 +10,9 @@ from ...figures.curves import Panel, draw_curves
 from ...free_motion import FreeMotion
 from ...language import gettext
 from ..chapter import Page, Run
-from ..excerpts import excerpt
 from ..runs import derived, free
 from . import BEAD, BOB, CABIN, INITIAL_SCENE, PAPER, PENDULUM, SPHERICAL_PENDULUM
 
-SOURCE = "maxima/free_motion/trajectory.mac"
-FUNCTIONS = ("trajectory_control", "law_along", "solved_along", "freed_scene")
 FILES = {
     "paper": PAPER,
     "pendulum": PENDULUM,
@@ -29,26 +26,48 @@ SCENES = {"paper": INITIAL_SCENE}  # of other files, the last
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs."""
+    """Return what the chapter needs.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+
+    Returns
+    -------
+    dict of str to Run
+        Runs by name.
+    """
     return {name: derived(root / file) for name, file in FILES.items()} | {
         f"{name} free": free(root / file, SCENES.get(name)) for name, file in FILES.items()
     }
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """Return the page that results make."""
+    """Return the page that results make.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+    results : mapping
+        Results of the runs by their names.
+
+    Returns
+    -------
+    Page
+        Content and files of the page.
+    """
     return Page(
         {
             "answers": {name: results[f"{name} free"].trajectory for name in FILES},
             "titles": {name: results[name].record.system.title for name in FILES},
-            "excerpts": [excerpt(root, SOURCE, name) for name in FUNCTIONS],
         },
-        figures={"strings": draw_curves([lengths(results)], gettext("t (units of the scene)"))},
-        sources=(SOURCE,),
+        figures={"strings": draw_curves([_lengths(results)], gettext("t (units of the scene)"))},
     )
 
 
-def lengths(results: Mapping[str, FreeMotion]) -> Panel:
+def _lengths(results: Mapping[str, FreeMotion]) -> Panel:
     """Return the lengths of two strings that never pull."""
     shown = {gettext("pendulum: thrown, and falling"): "pendulum", gettext("bob on the table: straight on"): "bob"}
     curves = {

@@ -1,7 +1,7 @@
 """Turn the knob: a page on which the reader sets the law, and a script follows the motion.
 
 The script is made of motion programs of Maxima, written out as JavaScript: the motion, the constraints, the laws, the
-drawing, and for each law what the accelerations are divided by, at complex instants a + i b.
+drawing, and for each law what the accelerations are divided by, at complex times a + i b.
 """
 
 import json
@@ -15,7 +15,6 @@ from sympy import I, Symbol
 
 from ...figures.curves import Panel, draw_curves
 from ...figures.style import lettered_text
-from ...free_motion import Free, FreeMotion
 from ...language import gettext
 from ...mathjson import from_sympy
 from ...program.model import Model, scene_model
@@ -26,7 +25,7 @@ from ...program.targets import javascript
 from ...record import Scene
 from ...sandbox import Limits
 from .. import TEMPLATES
-from ..cards import scene_named
+from ..cards import named_equations, scene_named
 from ..chapter import Page, Run
 from ..power import energy_balance
 from ..runs import Derived, derived, free, simulation
@@ -34,18 +33,30 @@ from . import KNOB
 from .radius_of_convergence import denominator
 
 LAWS = {"linear": "linear_scene", "exponential": "exponential_scene", "swinging": "swinging_scene"}
-OPEN = ("u0", "omega", "c")
+OPEN = ("u0", "k", "c")
+OF_LAW = {"linear": (), "exponential": ("kappa",), "swinging": ("omega",)}  # parameters of one law alone
 UNTIL, SAMPLES = Fraction(4), 201
 UNDAMPED = (("c", "1"),)  # a damping other than the paper's
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs."""
+    """Return what the chapter needs.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+
+    Returns
+    -------
+    dict of str to Run
+        Runs by name.
+    """
     file = root / KNOB
     return {
         "knob": derived(file),
         "models": Run(models, (file,)),
-        "drawing": Run(drawing_of, (file, LAWS["linear"])),
+        "drawing": Run(_drawing_of, (file, LAWS["linear"])),
         "free": free(file, LAWS["exponential"]),
         "other": free(file, LAWS["exponential"], UNDAMPED),
         **{law: simulation(file, scene, UNTIL, SAMPLES) for law, scene in LAWS.items()},
@@ -53,21 +64,34 @@ def runs(root: Path) -> dict[str, Run]:
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """Return the page that results make."""
+    """Return the page that results make.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+    results : mapping
+        Results of the runs by their names.
+
+    Returns
+    -------
+    Page
+        Content and files of the page.
+    """
     found = results["knob"]
     motions = {law: results[law] for law in LAWS}
     balances = {
         law: energy_balance(found.record.system, scene_named(found, LAWS[law]), motion)
         for law, motion in motions.items()
     }
-    shown = {law: motion.instants for law, motion in motions.items()}
+    shown = {law: motion.times for law, motion in motions.items()}
     titles = {law: lettered_text(motion.title.rpartition(", ")[2]) for law, motion in motions.items()}
     multipliers = {titles[law]: (shown[law], motion.multipliers["lambda1"]) for law, motion in motions.items()}
     powers = {titles[law]: (shown[law], balance.power) for law, balance in balances.items()}
     return Page(
         {
             "scene": scene_named(found, LAWS["linear"]),
-            "values": results["models"]["swinging"].values,
+            "values": {name: value for model in results["models"].values() for name, value in model.values.items()},
             "until": UNTIL,
             "samples": SAMPLES,
             "spent": {law: float(balance.by_knob[-1]) for law, balance in balances.items()},
@@ -85,29 +109,50 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
             )
         },
         sources=(KNOB,),
-        files={"knob.js": script(found, results["models"], results["drawing"], results["free"])},
+        files={"knob.js": script(found, results["models"], results["drawing"])},
     )
 
 
 def models(file: Path) -> dict[str, Model]:
-    """Return the scenes as models whose parameters are open, by law."""
-    found = {}
-    for law, scene in LAWS.items():
-        given = [name for name in OPEN if name != "omega" or law == "swinging"]
-        found[law] = scene_model(file, Request(scene), given, Limits())
-    return found
+    """Return the scenes as models whose parameters are open, by law.
+
+    Parameters
+    ----------
+    file : Path
+        Scene file.
+
+    Returns
+    -------
+    dict of str to Model
+        Models by control law.
+    """
+    return {law: scene_model(file, Request(scene), [*OPEN, *OF_LAW[law]], Limits()) for law, scene in LAWS.items()}
 
 
-def drawing_of(file: Path, scene: str) -> tuple[tuple[str, ...], Program]:
+def _drawing_of(file: Path, scene: str) -> tuple[tuple[str, ...], Program]:
     """Return the shapes of the system's drawing, and the program of their numbers."""
     drawing = motion_problem(file, Request(scene), Limits()).drawing
     return tuple(map(str, drawing.shapes)), drawing.program
 
 
-def script(
-    found: Derived, models: Mapping[str, Model], drawing: tuple[tuple[str, ...], Program], free: FreeMotion
-) -> str:
-    """Return the script of the page."""
+def script(found: Derived, models: Mapping[str, Model], drawing: tuple[tuple[str, ...], Program]) -> str:
+    """Return the script of the page.
+
+    Parameters
+    ----------
+    found : Derived
+        Derivation of the example.
+    models : mapping of str to Model
+        Models by control law.
+    drawing : tuple
+        Kinds of the drawn parts, and their program.
+
+    Returns
+    -------
+    str
+        JavaScript.
+    """
+    _require_free_law(found)
     shapes, program = drawing
     model = models["linear"]
     data = {
@@ -115,14 +160,13 @@ def script(
         "until": float(UNTIL),
         "samples": SAMPLES,
         "shapes": shapes,
-        "free": free_setting(free, models["exponential"]),
     }
     parts = [
         javascript.write(model.motion, "motion"),
         javascript.write(model.constraints, "constraints"),
         javascript.write(program, "drawing"),
         *(javascript.write(each.law, f"law_{law}") for law, each in models.items()),
-        *(javascript.write(singular(found, scene), f"singular_{law}") for law, scene in LAWS.items()),
+        *(javascript.write(_singular(found, scene), f"singular_{law}") for law, scene in LAWS.items()),
         f"const LAWS = {{{', '.join(f'{law}: law_{law}' for law in LAWS)}}};",
         f"const SINGULAR = {{{', '.join(f'{law}: singular_{law}' for law in LAWS)}}};",
         f"const DATA = {json.dumps(data)};",
@@ -131,15 +175,17 @@ def script(
     return "\n".join(parts)
 
 
-def free_setting(free: FreeMotion, model: Model) -> dict[str, Any]:
-    """Return the law and the damping for which it is proved that every motion is free, and so without singularities."""
-    if free.motion.verdict is not Free.FREE or free.motion.states != "all states":
-        raise ValueError("the paper's law does not make every motion free")
-    return {"law": "exponential", "c": float(model.values["c"])}
+def _require_free_law(found: Derived) -> None:
+    """Require that the multiplier vanishes under u0 exp(kappa t) with kappa^2 = k, c = 2 kappa."""
+    multiplier = named_equations(found)["multipliers"].relations[0].right
+    kappa, k, c, u, rate, second = (Symbol(name, real=True) for name in ("kappa", "k", "c", "u", "dot(u)", "ddot(u)"))
+    free = {second: kappa**2 * u, rate: kappa * u, k: kappa**2, c: 2 * kappa}
+    if sympy.simplify(multiplier.subs(free)) != 0:
+        raise ValueError("the exponential law does not make every motion free")
 
 
-def singular(found: Derived, name: str) -> Program:
-    """Real and imaginary part, at the instant a + i b, of what the accelerations are divided by under a law."""
+def _singular(found: Derived, name: str) -> Program:
+    """Real and imaginary part, at the time a + i b, of what the accelerations are divided by under a law."""
     scene: Scene = scene_named(found, name)
     a, b, t = (Symbol(letter, real=True) for letter in ("a", "b", "t"))
     law = {Symbol(control, real=True): value.subs(t, a + I * b) for control, value in scene.control_law.items()}
@@ -149,10 +195,10 @@ def singular(found: Derived, name: str) -> Program:
     return Program.of_document(
         {
             "format": "holonom-program",
-            "version": 1,
+            "version": 2,
             "scene": name,
             "solve": "direct",
-            "method": "singular instants",
+            "method": "singular times",
             "redundant": [],
             "operations": sum(int(part.count_ops()) for part in parts.values()),
             "inputs": inputs,

@@ -10,12 +10,9 @@ from ...free_motion import FreeMotion
 from ...language import gettext
 from ...simulation.result import Simulation
 from ..chapter import Page, Run
-from ..excerpts import excerpt
 from ..runs import derived, free, simulation
 from . import BEAD, CABIN, INITIAL_SCENE, KNOB, PAPER, PENDULUM, SPHERICAL_PENDULUM
 
-SOURCE = "maxima/free_motion/universal.mac"
-FUNCTIONS = ("universal_controls", "laws_of_condition", "laws_under", "solved_conditions")
 OTHERS = {"cabin": CABIN, "pendulum": PENDULUM, "bead": BEAD, "spherical_pendulum": SPHERICAL_PENDULUM}
 
 EXPONENTIAL, DAMPINGS = "exponential_scene", ("0", "1", "2", "3")
@@ -24,7 +21,18 @@ SCENES = {"paper": INITIAL_SCENE}  # of other files, the last
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs."""
+    """Return what the chapter needs.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+
+    Returns
+    -------
+    dict of str to Run
+        Runs by name.
+    """
     files = {"paper": PAPER, **OTHERS}
     return (
         {name: derived(root / file) for name, file in files.items()}
@@ -34,22 +42,33 @@ def runs(root: Path) -> dict[str, Run]:
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """Return the page that results make."""
+    """Return the page that results make.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+    results : mapping
+        Results of the runs by their names.
+
+    Returns
+    -------
+    Page
+        Content and files of the page.
+    """
     answers: dict[str, FreeMotion] = {name: results[f"{name} free"] for name in ("paper", *OTHERS)}
     return Page(
         {
             "answers": answers,
             "titles": {name: results[name].record.system.title for name in answers},
             "others": tuple(OTHERS),
-            "excerpts": [excerpt(root, SOURCE, name) for name in FUNCTIONS],
         },
-        figures={"dampings": draw_curves([under_dampings(results)], gettext("t (dimensionless)"))},
-        sources=(SOURCE,),
+        figures={"dampings": draw_curves([_under_dampings(results)], gettext("t (dimensionless)"))},
     )
 
 
-def under_dampings(results: Mapping[str, Simulation]) -> Panel:
+def _under_dampings(results: Mapping[str, Simulation]) -> Panel:
     """Return the multiplier under the paper's law, for some dampings."""
     motions = {f"c = {c}": results[f"c = {c}"] for c in DAMPINGS}
-    curves = {name: (motion.instants, motion.multipliers["lambda1"]) for name, motion in motions.items()}
+    curves = {name: (motion.times, motion.multipliers["lambda1"]) for name, motion in motions.items()}
     return Panel(gettext("multiplier λ₁ (dimensionless)"), curves)

@@ -33,15 +33,39 @@ SWING, TOLERANCE, UNTIL, SAMPLES = "swing_scene", 1e-6, Fraction(100), 401
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs."""
+    """Return what the chapter needs.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+
+    Returns
+    -------
+    dict of str to Run
+        Runs by name.
+    """
     return {
-        "study": Run(short_study, (root / PAPER, INITIAL_SCENE)),
+        "study": Run(_short_study, (root / PAPER, INITIAL_SCENE)),
         "drift": Run(drifting, (root / PENDULUM, SWING)),
     }
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """Return the page that results make."""
+    """Return the page that results make.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+    results : mapping
+        Results of the runs by their names.
+
+    Returns
+    -------
+    Page
+        Content and files of the page.
+    """
     measured, motions = results["study"], results["drift"]
     return Page(
         {
@@ -66,15 +90,28 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
     )
 
 
-def short_study(file: Path, scene: str) -> Study:
+def _short_study(file: Path, scene: str) -> Study:
     """Return the study of `holonom accuracy`, with fewer settings."""
     return study(file, Request(scene), Limits(), Plan(**SHORT_PLAN))
 
 
 def drifting(file: Path, scene: str) -> dict[Stabilization, Simulation]:
-    """Return a motion at a coarse tolerance, under each cure of drift."""
+    """Return a motion at a coarse tolerance, under each cure of drift.
+
+    Parameters
+    ----------
+    file : Path
+        Scene file.
+    scene : str
+        Name of the scene.
+
+    Returns
+    -------
+    dict of Stabilization to Simulation
+        Motions by stabilization.
+    """
     problem = replace(motion_problem(file, Request(scene), Limits()), observe=("trajectory", "energy", "residuals"))
     return {
-        cure: simulate(problem, SimulationRequest(tol=TOLERANCE, drift=cure, until=UNTIL, samples=SAMPLES))
+        cure: simulate(problem, SimulationRequest(tol=TOLERANCE, stabilization=cure, until=UNTIL, samples=SAMPLES))
         for cure in Stabilization
     }

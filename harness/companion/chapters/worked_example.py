@@ -12,7 +12,6 @@ from sympy import Expr, Symbol
 
 from ...errata import PrintedEquation
 from ...figures.curves import Panel, draw_curves
-from ...free_motion import FreeMotion
 from ...language import gettext, translatable, translated
 from ...mathjson import from_sympy
 from ...record import Equation, Relation
@@ -67,7 +66,18 @@ SECTIONS = {
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs."""
+    """Return what the chapter needs.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+
+    Returns
+    -------
+    dict of str to Run
+        Runs by name.
+    """
     return {
         "paper": derived(root / PAPER),
         "printed": printed(),
@@ -77,19 +87,30 @@ def runs(root: Path) -> dict[str, Run]:
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """Return the page that results make."""
+    """Return the page that results make.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+    results : mapping
+        Results of the runs by their names.
+
+    Returns
+    -------
+    Page
+        Content and files of the page.
+    """
     paper = results["paper"]
     example = list(dropwhile(lambda each: each.number != FIRST_NUMBER, results["printed"]))
     cards = _cards(example, paper, results["free"].universal.laws, root)
     derived_multiplier = named_equations(paper)["multipliers"].relations[0].right
     printed_multiplier = right_side(next(each for each in example if each.name == "multiplier").printed_tree)
     laws = {name: scene_named(paper, name).control_law for name in (FREE_SCENE, INITIAL_SCENE)}
-    pencil = worked(paper, results["free"], results["pushed"])
     return Page(
         {
-            **pencil,
+            **multiplier_at_start(paper, results["pushed"]),
             "scene": scene_named(paper, INITIAL_SCENE),
-            "steps": named_equations(paper),
             "sections": _sections(cards),
             "equations": len(example),
             "misprints": [each for each in example if not each.agrees],
@@ -104,7 +125,7 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
         },
         figures={
             "misprint": draw_curves(
-                [printed_and_derived(paper, printed_multiplier, results["pushed"])], gettext("t (dimensionless)")
+                [_printed_and_derived(paper, printed_multiplier, results["pushed"])], gettext("t (dimensionless)")
             )
         },
         sources=files_of(cards),
@@ -112,7 +133,18 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
 
 
 def in_sum(expression: Expr) -> Expr:
-    """Return an expression of the example in S = q1 + q2, where it depends on q1 and q2 by their sum alone."""
+    """Return an expression of the example in S = q1 + q2, where it depends on q1 and q2 by their sum alone.
+
+    Parameters
+    ----------
+    expression : Expr
+        SymPy expression.
+
+    Returns
+    -------
+    Expr
+        Expression in S.
+    """
     replaced = {
         Symbol(name("q2"), real=True): Symbol(name("S"), real=True) - Symbol(name("q1"), real=True) for name in RATES
     }
@@ -122,37 +154,40 @@ def in_sum(expression: Expr) -> Expr:
     ) / sympy.factor(sympy.denom(found))
 
 
-def worked(paper: Derived, found: FreeMotion, pushed: Simulation) -> dict[str, Any]:
-    """Return what the derivation with a pencil shows beyond the equations of the record."""
-    equations = named_equations(paper)
-    laws = {name: scene_named(paper, name) for name in (FREE_SCENE, INITIAL_SCENE)}
-    multiplier = in_sum(equations["multipliers"].relations[0].right)
-    first, second = (relation.right for relation in equations["driven_accelerations"].relations[:2])
-    sum_of_free = sympy.simplify(found.trajectory.motion["q1"] + found.trajectory.motion["q2"])
-    start = laws[INITIAL_SCENE].initial_state
-    begun = {f"{name}_0": value for name, value in start.items()} | dict(laws[INITIAL_SCENE].parameter_values)
+def multiplier_at_start(paper: Derived, pushed: Simulation) -> dict[str, Any]:
+    """Return the multiplier at the start of the second task, by its formula in S and as integrated.
+
+    Parameters
+    ----------
+    paper : Derived
+        Derivation of the paper's example.
+    pushed : Simulation
+        Motion of the second task.
+
+    Returns
+    -------
+    dict
+        Formula and values by name.
+    """
+    scene = scene_named(paper, INITIAL_SCENE)
+    multiplier = in_sum(named_equations(paper)["multipliers"].relations[0].right)
+    start = scene.initial_state
+    begun = {f"{name}_0": value for name, value in start.items()} | dict(scene.parameter_values)
     numbers = {Symbol(name, real=True): value for name, value in begun.items()} | {Symbol("t", real=True): 0}
     at_start = {Symbol(each("S"), real=True): start[each("q1")] + start[each("q2")] for each in RATES[:2]}
     return {
-        "multiplier_in_sum": multiplier,
-        "sum_acceleration": sympy.collect(in_sum(sympy.expand(first + second)), Symbol("lambda1", real=True)),
-        "multiplier_under_exponential": under(laws[FREE_SCENE].control_law, multiplier),
-        "free_sum": sum_of_free,
-        "free_height": sympy.simplify(under(laws[FREE_SCENE].control_law, Symbol("u", real=True)) * sum_of_free),
         "start_of_sum": {str(symbol): value for symbol, value in at_start.items()},
-        "values": laws[INITIAL_SCENE].parameter_values,
-        "multiplier_at_start": under(laws[INITIAL_SCENE].control_law, multiplier).subs(at_start).subs(numbers),
+        "values": scene.parameter_values,
+        "multiplier_at_start": under(scene.control_law, multiplier).subs(at_start).subs(numbers),
         "multiplier_followed": float(pushed.multipliers["lambda1"][0]),
     }
 
 
-def printed_and_derived(paper: Derived, printed: Expr, pushed: Simulation) -> Panel:
+def _printed_and_derived(paper: Derived, printed: Expr, pushed: Simulation) -> Panel:
     """Return the multiplier along the second task's motion, as derived and by the formula in print."""
     values = values_along(printed, scene_named(paper, INITIAL_SCENE), pushed)
     shown = {gettext("as derived"): pushed.multipliers["lambda1"], gettext("by the formula in print"): values}
-    return Panel(
-        gettext("multiplier λ₁ (dimensionless)"), {name: (pushed.instants, each) for name, each in shown.items()}
-    )
+    return Panel(gettext("multiplier λ₁ (dimensionless)"), {name: (pushed.times, each) for name, each in shown.items()})
 
 
 def _cards(example: list[PrintedEquation], paper: Derived, laws: tuple, root: Path) -> list[Card]:

@@ -18,15 +18,39 @@ FITTING, CONTRADICTING = "y = -cos(%pi/13)", "y = -1"
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs."""
+    """Return what the chapter needs.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+
+    Returns
+    -------
+    dict of str to Run
+        Runs by name.
+    """
     return {
         "pendulum": derived(root / PENDULUM),
-        "refusal": Run(refusal_of_the_change, (root / PENDULUM, FITTING, CONTRADICTING)),
+        "refusal": Run(_refusal_of_the_change, (root / PENDULUM, FITTING, CONTRADICTING)),
     }
 
 
 def page(root: Path, results: Mapping[str, Any]) -> Page:
-    """Return the page that results make."""
+    """Return the page that results make.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+    results : mapping
+        Results of the runs by their names.
+
+    Returns
+    -------
+    Page
+        Content and files of the page.
+    """
     return Page(
         {
             "record": results["pendulum"].record,
@@ -41,7 +65,7 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
     )
 
 
-def refusal_of_the_change(file: Path, given: str, changed: str) -> str:
+def _refusal_of_the_change(file: Path, given: str, changed: str) -> str:
     """Return what Holonom says to a scene file in which one entry is changed."""
     text = file.read_text(encoding="utf-8").replace(given, changed)
     with private_directory() as directory:

@@ -26,11 +26,11 @@ const knob = (() => {
     return [end, Math.max(...errors.map((error, i) => Math.abs(error)/(TOLERANCE*(1 + Math.abs(end[i])))))];
   }
 
-  /* The states at the instants, the first of which is that of y. */
-  function states(rate, instants, y) {
+  /* The states at the times, the first of which is that of y. */
+  function states(rate, times, y) {
     const found = [y];
-    let t = instants[0], h = 0.01;
-    for (const until of instants.slice(1)) {
+    let t = times[0], h = 0.01;
+    for (const until of times.slice(1)) {
       while (t < until) {
         const taken = Math.min(h, until - t);
         const [end, error] = step(rate, t, y, taken);
@@ -52,7 +52,7 @@ const knob = (() => {
     return Object.fromEntries(program.outputs.map((name, k) => [name, results[k]]));
   }
 
-  /* The motion under settings { law, u0, omega, c, q1, q2, dot(q1), dot(q2) }: q3 and its rate follow from the constraint. */
+  /* The motion under settings { law, u0, omega, kappa, k, c, q1, q2, dot(q1), dot(q2) }: q3 and its rate follow from the constraint. */
   function follow(settings, until = DATA.until, samples = DATA.samples) {
     const law = LAWS[settings.law], places = DATA.coordinates, rates = places.map(name => `dot(${name})`);
     const known = (t, y) => {
@@ -69,22 +69,26 @@ const knob = (() => {
       const kept = run(constraints, known(0, start));
       start[place] -= kept[residual]/kept[`J[1,${last}]`];
     }
-    const instants = Array.from({length: samples}, (_, k) => until*k/(samples - 1));
-    const seen = states(rate, instants, start).map((y, k) => {
-      const values = known(instants[k], y), kept = run(constraints, values), lambda = run(motion, values).lambda1;
+    const times = Array.from({length: samples}, (_, k) => until*k/(samples - 1));
+    const seen = states(rate, times, start).map((y, k) => {
+      const values = known(times[k], y), kept = run(constraints, values), lambda = run(motion, values).lambda1;
       const power = lambda*sum(rates.map((name, i) => (kept[`J[1,${i + 1}]`] ?? 0)*values[name]));
       return {...values, lambda1: lambda, power};
     });
-    return {instants, seen};
+    return {times, seen};
   }
 
-  /* The singular instants nearest to t = 0: zeros, by Newton's method, of what the accelerations are divided by. */
+  /* The singular times nearest to t = 0: zeros, by Newton's method, of what the accelerations are divided by. */
   function singularities(settings) {
-    if (settings.law === DATA.free.law && settings.c === DATA.free.c) return [];
+    const {law, kappa, k, c} = settings, equal = (one, other) => Math.abs(one - other) < 1e-9;
+    if (law === "exponential" && equal(k, kappa*kappa) && equal(c, 2*kappa)) return [];  // every motion is free
+    const zero = (one, other) => equal(settings[one], -settings[other]);
+    if (zero("q1", "q2") && zero("dot(q1)", "dot(q2)")) return [];  // q1 + q2 stays zero, and so does the multiplier
+    const scale = law === "exponential" ? 1/Math.abs(kappa) : 1;  // of times; with kappa = 0 nothing is found, rightly
     const at = (a, b) => run(SINGULAR[settings.law], {...settings, a, b});
     const found = [];
     for (let a = -4; a <= 4; a += 0.5) for (let b = 0.1; b <= 4.2; b += 0.5) {
-      let [x, y, size] = [a, b, Infinity];
+      let [x, y, size] = [scale*a, scale*b, Infinity];
       for (let turn = 0; turn < 40 && size > 1e-13; turn++) {
         const value = at(x, y), right = at(x + 1e-6, y), left = at(x - 1e-6, y);
         const [re, im] = [(right.re - left.re)/2e-6, (right.im - left.im)/2e-6], square = re*re + im*im;
@@ -108,8 +112,8 @@ if (typeof module === "object") module.exports = knob;
 /* ---- the page ---------------------------------------------------------------------------------------------- */
 
 if (typeof document === "object") document.addEventListener("DOMContentLoaded", () => {
-  const form = document.getElementById("knob"), instant = form.elements.instant;
-  const WIDTH = 360, HEIGHT = 190, LEFT = 46, BELOW = 24, TOP = 8;
+  const form = document.getElementById("knob"), time = form.elements.time;
+  const WIDTH = 360, HEIGHT = 200, LEFT = 46, BELOW = 36, TOP = 20;
   const COLOURS = ["#0072b2", "#d55e00", "#009e73"], DASHES = ["none", "7 4", "2 4"];
 
   const element = (name, attributes, text) => {
@@ -122,27 +126,35 @@ if (typeof document === "object") document.addEventListener("DOMContentLoaded", 
     fill: "none", "stroke-width": 1.8, ...attributes});
   const rounded = x => String(Number(x.toPrecision(3)));
 
-  /* Axes that hold the points; what turns a point into a place. */
-  function frame(svg, [left, right], [low, high], square) {
+  /* What turns a point within the limits into a place of a picture of that size; of the plane where its scales are one. */
+  function scaled(svg, [left, right], [low, high], one, [width, height] = [WIDTH, HEIGHT]) {
     svg.replaceChildren();
-    svg.setAttribute("viewBox", `0 0 ${WIDTH} ${HEIGHT}`);
-    if (high - low < 1e-9) [low, high] = [low - 1, high + 1];
-    let [wide, tall] = [(WIDTH - LEFT - 10)/(right - left), (HEIGHT - TOP - BELOW)/(high - low)];
-    if (square) wide = tall = Math.min(wide, tall);
-    const place = ([x, y]) => [LEFT + wide*(x - left), HEIGHT - BELOW - tall*(y - low)];
-    for (const x of [left, (left + right)/2, right]) {
-      svg.append(element("text", {x: place([x, low])[0], y: HEIGHT - 7, "text-anchor": "middle"}, rounded(x)));
-    }
-    for (const y of [low, (low + high)/2, high]) {
-      svg.append(line([place([left, y]), place([right, y])], {stroke: "currentColor", opacity: 0.2}));
-      svg.append(element("text", {x: LEFT - 5, y: place([left, y])[1] + 4, "text-anchor": "end"}, rounded(y)));
-    }
-    return place;
+    svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    let [wide, tall] = [(width - LEFT - 10)/(right - left), (height - TOP - BELOW)/(high - low)];
+    if (one) wide = tall = Math.min(wide, tall);
+    return ([x, y]) => [LEFT + wide*(x - left), height - BELOW - tall*(y - low)];
   }
 
-  function curves(svg, {instants, seen}, names, now) {
-    const values = seen.flatMap(each => names.map(name => each[name])), t = instants[instants.length - 1];
-    const place = frame(svg, [0, t], [Math.min(0, ...values), Math.max(0, ...values)]);
+  /* Axes with titles, and a line at each of the heights. */
+  function axes(svg, place, xs, ys, [across, upward]) {
+    const [left, right] = [xs[0], xs[xs.length - 1]], low = Math.min(...ys);
+    for (const x of xs) {
+      svg.append(element("text", {x: place([x, low])[0], y: place([x, low])[1] + 16, "text-anchor": "middle"}, rounded(x)));
+    }
+    for (const y of ys) {
+      svg.append(line([place([left, y]), place([right, y])], {stroke: "currentColor", opacity: y === 0 ? 0.6 : 0.2}));
+      svg.append(element("text", {x: LEFT - 5, y: place([left, y])[1] + 4, "text-anchor": "end"}, rounded(y)));
+    }
+    svg.append(element("text", {x: place([(left + right)/2, low])[0], y: place([left, low])[1] + 31, "text-anchor": "middle",
+      class: "axis"}, across), element("text", {x: 2, y: 12, class: "axis"}, upward));
+  }
+
+  function curves(svg, {times, seen}, names, now) {
+    const values = seen.flatMap(each => names.map(name => each[name])), t = times[times.length - 1];
+    let [low, high] = [Math.min(0, ...values), Math.max(0, ...values)];
+    if (high - low < 1e-9) [low, high] = [-1, 1];
+    const place = scaled(svg, [0, t], [low, high]);
+    axes(svg, place, [0, t/2, t], [low, low*high < 0 ? 0 : (low + high)/2, high], [svg.dataset.across, svg.dataset.upward]);
     names.forEach((name, k) => svg.append(line(seen.map(each => place([each.t, each[name]])),
       {stroke: COLOURS[k], "stroke-dasharray": DASHES[k], "data-curve": name})));
     svg.append(line([[place([now, 0])[0], TOP], [place([now, 0])[0], HEIGHT - BELOW]], {stroke: "currentColor", opacity: 0.5}));
@@ -150,12 +162,12 @@ if (typeof document === "object") document.addEventListener("DOMContentLoaded", 
 
   function plane(svg, found) {
     const reach = Math.min(3, ...found.map(([x, y]) => Math.hypot(x, y)));
-    const place = frame(svg, [-3.4, 3.4], [-3.2, 3.2], true), [x, y] = place([0, 0]);
+    const place = scaled(svg, [-3, 3], [-3, 3], true), [x, y] = place([0, 0]);
+    axes(svg, place, [-3, 0, 3], [-3, 0, 3], [svg.dataset.across, svg.dataset.upward]);
     const [edge] = place([reach, 0]);
     svg.append(element("circle", {cx: x, cy: y, r: edge - x, fill: found.length ? COLOURS[0] : "none", "fill-opacity": 0.15,
       stroke: found.length ? COLOURS[0] : "none"}));
-    svg.append(line([place([-3.4, 0]), place([3.4, 0])], {stroke: "currentColor", opacity: 0.5}));
-    for (const [re, im] of found) for (const sign of [1, -1]) {
+    for (const [re, im] of found.filter(each => Math.hypot(...each) < 3)) for (const sign of [1, -1]) {
       const [p, q] = place([re, sign*im]);
       svg.append(line([[p - 4, q - 4], [p + 4, q + 4]], {stroke: COLOURS[1]}), line([[p - 4, q + 4], [p + 4, q - 4]], {stroke: COLOURS[1]}));
     }
@@ -170,9 +182,9 @@ if (typeof document === "object") document.addEventListener("DOMContentLoaded", 
     const pairs = numbers => numbers.flatMap((x, k) => k % 2 ? [] : [[x, numbers[k + 1]]]);
     const all = seen.map(shapes), points = all.flat().flatMap(pairs);
     const extent = k => [Math.min(...points.map(p => p[k])), Math.max(...points.map(p => p[k]))];
-    const place = frame(svg, extent(0), extent(1), true);
+    const place = scaled(svg, extent(0), extent(1), true, [2*WIDTH, 1.7*HEIGHT]);
     const last = DATA.shapes.length - 1;
-    svg.replaceChildren(line(all.map(each => place(each[last])), {stroke: COLOURS[1], opacity: 0.5}));
+    svg.append(line(all.map(each => place(each[last])), {stroke: COLOURS[1], opacity: 0.5}));
     DATA.shapes.forEach((shape, i) => {
       const places = pairs(all[now][i]).map(place);
       svg.append(shape === "point" ? element("circle", {cx: places[0][0], cy: places[0][1], r: 5, fill: COLOURS[1]})
@@ -184,7 +196,7 @@ if (typeof document === "object") document.addEventListener("DOMContentLoaded", 
   let followed;
 
   function show() {
-    const now = Number(instant.value), seen = followed.seen[now];
+    const now = Number(time.value), seen = followed.seen[now];
     for (const output of form.querySelectorAll("output")) {
       const shown = {...settings(), ...seen, radius: followed.radius}[output.name];
       output.value = shown === Infinity ? "∞" : Math.abs(shown) < 1e-9 ? "0" : rounded(shown);
@@ -193,25 +205,48 @@ if (typeof document === "object") document.addEventListener("DOMContentLoaded", 
     picture(document.getElementById("picture"), followed, now);
   }
 
+  /* What a listener is told when a change has ended. */
+  function tell() {
+    const status = form.querySelector("[role=status]");
+    status.textContent = status.dataset.text.replace(/\{(\w+)\}/g, (_, name) => form.elements[name].value);
+  }
+
   function turn() {
     const given = settings(), singular = knob.singularities(given);
     followed = {...knob.follow(given), radius: knob.radius(given)};
-    instant.max = followed.seen.length - 1;
+    for (const label of form.querySelectorAll("label[data-law]")) label.hidden = label.dataset.law !== given.law;
+    time.max = followed.seen.length - 1;
     plane(document.getElementById("plane"), singular);
     show();
   }
 
-  form.addEventListener("input", event => event.target === instant ? show() : turn());
-  form.elements.play.addEventListener("click", () => {
-    const forward = () => {
-      if (Number(instant.value) >= Number(instant.max)) return;
-      instant.value = Number(instant.value) + 1;
-      show();
-      requestAnimationFrame(forward);
-    };
-    instant.value = 0;
+  const play = form.elements.play;
+  let playing = false;
+
+  function forward() {
+    if (!playing) return;
+    time.value = Number(time.value) + 1;
+    show();
+    if (Number(time.value) >= Number(time.max)) stop();
+    else requestAnimationFrame(forward);
+  }
+
+  function stop() {
+    playing = false;
+    play.textContent = play.dataset.play;
+    tell();
+  }
+
+  function start() {
+    playing = true;
+    play.textContent = play.dataset.pause;
+    if (Number(time.value) >= Number(time.max)) time.value = 0;
     forward();
-  });
+  }
+
+  form.addEventListener("input", event => event.target === time ? show() : turn());
+  form.addEventListener("change", tell);
+  play.addEventListener("click", () => playing ? stop() : start());
   form.hidden = false;
   turn();
 });

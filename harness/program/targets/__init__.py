@@ -1,7 +1,8 @@
-"""The languages that a motion program is written in: each module here is one, by its name.
+"""Languages of a motion program: each module here is one, by its name.
 
-A module has a function ``write(program)`` that returns a text; or, where the scene's start, law and constraints go
-along, ``write_model(model, name)`` that returns the texts of files by their names, or the bytes of one file.
+A module has a function ``write(program)`` that returns a text, or ``write_model(model, name)`` that includes the
+scene's initial state, law and constraints and returns a text, the texts of files by their names, or the bytes of one
+file. ``python_jax`` is Python for JAX, chosen by the option --module.
 """
 
 from importlib import import_module
@@ -9,9 +10,21 @@ from pathlib import Path
 from types import ModuleType
 
 JSON = "json"  # the program's own document
-FORMS = (JSON, *sorted(file.stem for file in Path(__file__).parent.glob("[!_]*.py")))
+_NAMES = sorted(file.stem for file in Path(__file__).parent.glob("[!_]*.py"))
+FORMS = (JSON, *(name for name in _NAMES if "_" not in name))
+MODULES = tuple(name.removeprefix("python_") for name in _NAMES if "_" in name)
 
 
 def target(name: str) -> ModuleType:
-    """Return the module of a language."""
+    """Return the module of a language.
+
+    Parameters
+    ----------
+    name : str
+        Name of a module in this folder.
+
+    Returns
+    -------
+    ModuleType
+    """
     return import_module(f".{name}", __name__)

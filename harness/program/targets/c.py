@@ -1,7 +1,7 @@
-"""A scene's model as a library in C11: a source, a header, a CMakeLists.txt and a driver of ten lines.
+"""A scene's model as a C11 library: source, header, CMakeLists.txt and a driver.
 
-Every public name begins with the library's, so that several of them link into one program. Vectors are arrays whose
-indices the header enumerates; ``u`` holds the controls, then their rates, then their second rates.
+Every public name begins with the library's name, so several libraries link into one program. Vectors are arrays whose
+indices the header enumerates. The array ``u`` contains the controls, then their rates, then their second rates.
 """
 
 import re
@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from textwrap import fill, indent
 
-from ..c_source import HELPERS, MANY, ONE, comment_text, lanes_support, statements, title_of
+from ..c_source import HELPERS, MANY, ONE, batch_support, comment_text, statements, title_of
 from ..identifiers import identifiers, require_identifier
 from ..model import Model
 from ..motion_problem import computing
@@ -23,7 +23,16 @@ ENTRY = re.compile(r"J\[(\d+),(\d+)\]")  # of the constraints' Jacobian, counted
 def write_model(model: Model, name: str) -> dict[str, str]:
     """Write a model as a library in C11.
 
-    The text of each file by its name: NAME.h, NAME.c, NAME_driver.c, CMakeLists.txt.
+    Parameters
+    ----------
+    model : Model
+    name : str
+        Name of the library, with which public names begin.
+
+    Returns
+    -------
+    dict of str to str
+        Text of each file by its name: NAME.h, NAME.c, NAME_driver.c, CMakeLists.txt.
 
     Raises
     ------
@@ -49,7 +58,17 @@ def write_model(model: Model, name: str) -> dict[str, str]:
 
 
 def explanation(model: Model) -> str:
-    """Return what is an input and what is not, in a paragraph."""
+    """Return a paragraph on the inputs of a model.
+
+    Parameters
+    ----------
+    model : Model
+
+    Returns
+    -------
+    str
+        Text for the header.
+    """
     inputs = [
         f"the controls {', '.join(model.controls)}, each with its rate and second rate" if model.controls else "",
         f"the parameters {', '.join(model.parameters)}" if model.parameters else "",
@@ -59,7 +78,18 @@ def explanation(model: Model) -> str:
 
 
 def comment_text_of(paragraph: str) -> str:
-    """Return a paragraph as lines of a comment."""
+    """Return a paragraph as lines of a comment.
+
+    Parameters
+    ----------
+    paragraph : str
+        Any text.
+
+    Returns
+    -------
+    str
+        Lines of at most 112 characters.
+    """
     return fill(comment_text(paragraph), 112, initial_indent="   ", subsequent_indent="   ")
 
 
@@ -103,7 +133,7 @@ def _source(model: Model, written: Mapping[str, str]) -> str:
         law=_law(model),
         operations=model.motion.operations,
         motion=one(model.motion, _results(model, "{array}[{index}]"), "t q v u p a lambda"),
-        lanes=lanes_support(many),
+        lanes=batch_support(many),
         many=indent(many, " " * 8),
         n=len(model.coordinates),
         m=len(model.controls),
@@ -123,17 +153,17 @@ def _function(program: Program, results: Iterable[str], parameters: str, inputs:
 
 
 def _body(lines: Iterable[str], parameters: str) -> str:
-    """Statements, after those that make compilers accept a parameter without use."""
+    """Return statements, preceded by casts to void of unused parameters."""
     text = "\n".join(lines)
     unused = [name for name in parameters.split() if not re.search(rf"\b{name}\b", text)]
     return indent("\n".join([*(f"(void)({name});" for name in unused), text]), " " * 4).rstrip()
 
 
-def _places(model: Model, item: str, instant: str) -> list[str]:
+def _places(model: Model, item: str, time: str) -> list[str]:
     """Return where the inputs of the model's programs stand, in their order."""
     lengths = {"q": len(model.coordinates), "v": len(model.coordinates), "u": 3 * len(model.controls)}
     lengths["p"] = len(model.parameters)
-    return [instant, *(item.format(array=array, index=i) for array, length in lengths.items() for i in range(length))]
+    return [time, *(item.format(array=array, index=i) for array, length in lengths.items() for i in range(length))]
 
 
 def _results(model: Model, item: str) -> list[str]:
@@ -150,7 +180,18 @@ def _names(model: Model, name: str) -> Iterator[str]:
 
 
 def c_string(text: str) -> str:
-    """Return a string literal of C that holds the text as UTF-8."""
+    """Return a string literal of C that holds the text as UTF-8.
+
+    Parameters
+    ----------
+    text : str
+        Any text.
+
+    Returns
+    -------
+    str
+        The literal with its quotes.
+    """
     plain = "".join(
         chr(byte) if 32 <= byte < 127 and byte not in b'"\\?' else f"\\{byte:03o}" for byte in text.encode()
     )
@@ -167,7 +208,7 @@ def _start(model: Model) -> Iterator[str]:
 
 
 def _tables(model: Model) -> Iterator[str]:
-    """Yield the tables of the law as data, with the search for the polynomial that counts."""
+    """Yield the tables of the law as data, and the search for a time's polynomial."""
     for number, table in enumerate(model.tables):
         rows = ",\n".join(f"    {{{', '.join(map(repr, row))}}}" for row in table.rows)
         yield f"static const double table{number}[][{len(table.inputs)}] = {{\n{rows}}};\n\n"
@@ -184,13 +225,7 @@ def _law(model: Model) -> str:
         size = f"sizeof table{number}/sizeof *table{number}"
         found.append(f"const double *const piece{number} = piece_at(t, table{number}, {size});")
         inputs += [f"piece{number}[{place}]" for place in range(len(table.inputs))]
-    histories = ("{}", "dot({})", "ddot({})")
-    indices = {
-        history.format(name): f"u[{k * len(model.controls) + index}]"
-        for index, name in enumerate(model.controls)
-        for k, history in enumerate(histories)
-    }
-    results = [f"{indices[name]} = {{value}};" for name in model.law.outputs]
+    results = [f"u[{model.histories.index(name)}] = {{value}};" for name in model.law.outputs]
     return _body([*found, *statements(model.law, ONE, inputs, results)], "t p u")
 
 
@@ -205,7 +240,10 @@ def _residual(model: Model, function: Callable[..., str]) -> str:
 
 
 def _found(program: Program | None, function: Callable[..., str], array: str) -> str:
-    """Body of a function that computes all outputs of a program, if there is one, into an array."""
+    """Return a function's body that computes a program's outputs into an array.
+
+    It is empty if there is no program.
+    """
     parameters = f"t q v u p {array}"
     if program is None:
         return _body((), parameters)

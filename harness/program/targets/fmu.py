@@ -1,7 +1,7 @@
-"""A scene's model as an FMI 3.0 unit for model exchange: the library in C, compiled, beside its sources.
+"""A scene's model as an FMI 3.0 unit for model exchange, with its C sources.
 
-Controls, with their rates and second rates, are inputs, which start at the control law's values; open parameters can be
-tuned; coordinates and velocities are states; they, accelerations, multipliers and what the scene names are outputs.
+Controls with their rates and second rates are inputs, which start at the values of the control law. Open parameters are
+tunable. Coordinates and velocities are states. They, accelerations, multipliers and the scene's outputs are outputs.
 """
 
 import hashlib
@@ -11,7 +11,7 @@ import zipfile
 from collections.abc import Iterator
 from xml.etree import ElementTree
 
-from ...failures import Failure, HolonomError
+from ...failures import ErrorKind, HolonomError
 from ...hidden import visible
 from ...temporary import private_directory
 from ..c_function import compile_shared
@@ -30,7 +30,16 @@ EPOCH = (1980, 1, 1, 0, 0, 0)  # of every file in the archive: the same unit is 
 def write_model(model: Model, name: str) -> bytes:
     """Write a model as an FMI 3.0 unit.
 
-    A ZIP archive with modelDescription.xml, the binary for this machine, and the sources.
+    Parameters
+    ----------
+    model : Model
+    name : str
+        Name of the model, an identifier of C.
+
+    Returns
+    -------
+    bytes
+        A ZIP archive with modelDescription.xml, the binary for this machine, and the sources.
 
     Raises
     ------
@@ -55,13 +64,34 @@ def write_model(model: Model, name: str) -> bytes:
 
 
 def platform_folder() -> tuple[str, str]:
-    """Folder of a unit that holds the binary for the machine at hand, such as x86_64-linux, and the binary's suffix."""
+    """Return the folder of the binary for this machine, and the binary's suffix.
+
+    Returns
+    -------
+    folder : str
+        Such as ``x86_64-linux``.
+    suffix : str
+        Such as ``.so``.
+    """
     system, machine = platform.system().lower(), platform.machine().lower()
     return f"{MACHINES.get(machine, machine)}-{system}", SUFFIXES.get(system, ".so")
 
 
 def model_description(model: Model, name: str, token: str) -> ElementTree.Element:
-    """modelDescription.xml; the value references are those of fmi3.c."""
+    """Return modelDescription.xml; its value references are those of fmi3.c.
+
+    Parameters
+    ----------
+    model : Model
+    name : str
+        Identifier of the model.
+    token : str
+        Instantiation token, which the binary contains too.
+
+    Returns
+    -------
+    Element
+    """
     root = ElementTree.Element(
         "fmiModelDescription",
         fmiVersion="3.0",
@@ -93,7 +123,17 @@ def model_description(model: Model, name: str, token: str) -> ElementTree.Elemen
 
 
 def build_description(name: str) -> ElementTree.Element:
-    """sources/buildDescription.xml: what to compile where the binary is missing."""
+    """Return sources/buildDescription.xml, to compile a unit without a binary.
+
+    Parameters
+    ----------
+    name : str
+        Identifier of the model.
+
+    Returns
+    -------
+    Element
+    """
     root = ElementTree.Element("fmiBuildDescription", fmiVersion="3.0")
     configuration = ElementTree.SubElement(root, "BuildConfiguration", modelIdentifier=name)
     files = ElementTree.SubElement(configuration, "SourceFileSet", language="C11")
@@ -108,7 +148,7 @@ def _variables(model: Model) -> Iterator[dict[str, str]]:
     yield {"name": "time", "causality": "independent", "variability": "continuous"}
     for state in (*model.coordinates, *velocities):
         yield {"name": state, "causality": "output", "initial": "exact", "start": model.start[state]}
-    for history, value in zip(_histories(model), _inputs_at_start(model), strict=True):
+    for history, value in zip(model.histories, _inputs_at_start(model), strict=True):
         yield {"name": history, "causality": "input", "start": value}
     for name in model.parameters:
         start = model.values[name]
@@ -118,10 +158,6 @@ def _variables(model: Model) -> Iterator[dict[str, str]]:
         yield derivative if s < n else derivative | {"name": f"ddot({model.coordinates[s - n]})", "causality": "output"}
     for name in (*model.multipliers, *model.found, *model.observed):
         yield {"name": name, "causality": "output", "initial": "calculated"}
-
-
-def _histories(model: Model) -> list[str]:
-    return [history.format(name) for history in ("{}", "dot({})", "ddot({})") for name in model.controls]
 
 
 def _inputs_at_start(model: Model) -> list[str]:
@@ -134,15 +170,15 @@ def _inputs_at_start(model: Model) -> list[str]:
         numbers = [float(model.start["t"]), *(float(model.values[name]) for name in model.parameters)]
         numbers += [float(c) for pieces in pieces_of_tables(model.tables) for c in pieces.at(numbers[0])]
         values = dict(zip(model.law.outputs, NumpyFunction(model.law)(numbers), strict=True))
-    return [repr(float(values.get(history, 0))) for history in _histories(model)]
+    return [repr(float(values.get(history, 0))) for history in model.histories]
 
 
 def _require_start(model: Model) -> None:
     for name in model.parameters:
         if name not in model.values:
-            raise HolonomError(Failure.INPUT_MISSING, detail=name)
+            raise HolonomError(ErrorKind.INPUT_MISSING, detail=name)
     if model.start is None:
-        raise HolonomError(Failure.INPUT_MISSING, detail="a parameter that the initial state depends on")
+        raise HolonomError(ErrorKind.INPUT_MISSING, detail="a parameter that the initial state depends on")
 
 
 def _compiled(sources: dict[str, str], name: str) -> bytes:

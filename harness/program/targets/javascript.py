@@ -1,4 +1,4 @@
-"""A motion program as JavaScript, for a page or for Node: the formulas are those of C, whose functions Math has too."""
+"""A motion program as JavaScript, for a page or for Node, with the formulas of C."""
 
 import json
 from collections.abc import Iterable
@@ -8,15 +8,24 @@ from ..identifiers import require_identifier
 from ..motion_program import Operation, Program
 from ..templates import filled
 
-SCRIPT = Target("const", ONE.arithmetic)
+SCRIPT = Target("const {name} = {formula};", ONE.arithmetic)
 NAMES_IN_MATH = {Operation.ABS: "abs: fabs"}  # where C and Math differ
 MISSING_IN_MATH = {Operation.ERF}
 
 
 def write(program: Program, name: str = "motion") -> str:
-    """Write a program as JavaScript.
+    """Write a program as JavaScript, for a page or for Node.
 
-    A classic script, which Node can require too: a constant of that name with `inputs`, `outputs` and ``evaluate``.
+    Parameters
+    ----------
+    program : Program
+    name : str
+        Name of the constant.
+
+    Returns
+    -------
+    str
+        A classic script that defines a constant with ``inputs``, ``outputs`` and ``evaluate``.
 
     Raises
     ------
@@ -43,5 +52,5 @@ def write(program: Program, name: str = "motion") -> str:
 
 
 def _listed(names: Iterable[str]) -> str:
-    """Return the names as an array of strings, in which nothing can end a script element."""
+    """Return the names as an array of strings that cannot end a script element."""
     return json.dumps(list(names)).replace("</", "<\\/")

@@ -1,7 +1,7 @@
-"""A motion program as Python source that asks for nothing but the numbers it is given.
+"""A motion program as Python source for floats, symbols and many digits.
 
-One text serves floats (math), symbols (sympy) and many digits (mpmath): the module whose functions it calls is an
-argument, and rational numbers are written as fractions, which all three read exactly.
+The module with the functions (math, sympy, mpmath) is an argument. Rational numbers are written as fractions, which all
+three read exactly.
 """
 
 from collections.abc import Iterator
@@ -22,7 +22,17 @@ FUNCTIONS = {operation: f"functions.{name}" for operation, name in ELEMENTARY.it
 
 
 def write(program: Program) -> str:
-    """Write a program as a Python module that needs the standard library alone, with its function ``motion``."""
+    """Write a program as a Python module with the function ``motion``.
+
+    Parameters
+    ----------
+    program : Program
+
+    Returns
+    -------
+    str
+        Source text; it needs only the standard library.
+    """
     variables = {known: infix.atom(f"v{index}") for index, known in enumerate(_names(program))}
     return filled(
         "motion.py.txt",

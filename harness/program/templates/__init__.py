@@ -11,12 +11,35 @@ class _Text(Template):
 
 
 def template(name: str) -> str:
-    """Return a file of this folder."""
+    """Return a file of this folder.
+
+    Parameters
+    ----------
+    name : str
+        Name of the file.
+
+    Returns
+    -------
+    str
+        Its text.
+    """
     return files(__name__).joinpath(name).read_text(encoding="utf-8")
 
 
 def filled(file: str, /, **values: object) -> str:
-    """Return a file of this folder, its places filled.
+    """Return a file of this folder with its places filled.
+
+    Parameters
+    ----------
+    file : str
+        Name of the file.
+    **values : object
+        Value of each place.
+
+    Returns
+    -------
+    str
+        The text.
 
     Raises
     ------

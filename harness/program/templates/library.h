@@ -22,7 +22,7 @@ extern const char *const @{name}_found_controls[];
 extern const char *const @{name}_parameters[];
 extern const char *const @{name}_outputs[];
 
-/* The scene's start: instant, coordinates, velocities; NAN where they depend on a parameter without value. */
+/* The scene's start: time, coordinates, velocities; NAN where they depend on a parameter without value. */
 void @{name}_start(double *t, double *q, double *v);
 
 /* The scene's values of the parameters; NAN for those to which it gives none. */

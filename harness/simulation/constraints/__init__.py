@@ -1,1 +1,1 @@
-"""The constraints in numbers: factored, projected onto, built into the equations, watched."""
+"""Numerical constraints: factorization, projection, stabilization and monitoring."""

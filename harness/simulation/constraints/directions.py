@@ -1,4 +1,4 @@
-"""The constraints' directions in the mass metric: how many are independent, and how nearly one follows from others.
+"""Directions of constraints in the mass metric: their rank and near dependence.
 
 With A = L L^T and every row of J scaled to length one, W = L^-1 J^T D holds the constraints' directions as columns.
 Its singular values tell how independent they are (Golub & Van Loan, Matrix Computations, section 5.3).
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...failures import Failure, HolonomError
+from ...failures import ErrorKind, HolonomError
 from ..matrices import Matrix, Vector
 
 EPSILON = float(np.finfo(float).eps)
@@ -32,15 +32,41 @@ class WeightedConstraints:
     stiffening: Matrix | None  # shape (n, g): rho J^T where A is not positive definite
 
     def singular_values(self) -> Vector:
-        """Singular values of W, the largest first."""
+        """Return the singular values of W.
+
+        Returns
+        -------
+        ndarray, shape (min(n, g),)
+            The largest first.
+        """
         return np.linalg.svd(self.directions, compute_uv=False) if self.directions.size else np.empty(0)
 
     def per_root_mass(self, force: Vector) -> Vector:
-        """L^-1 h."""
+        """Return L^-1 h.
+
+        Parameters
+        ----------
+        force : ndarray, shape (n,)
+            h.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+        """
         return self.inverse @ force
 
     def unweighted(self, z: Vector) -> Vector:
-        """L^-T z."""
+        """Return L^-T z.
+
+        Parameters
+        ----------
+        z : ndarray, shape (n,)
+            Vector in the weighted space, such as L^T a.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+        """
         return self.inverse.T @ z
 
 
@@ -53,6 +79,10 @@ def weighted_constraints(mass: Matrix, jacobian: Matrix) -> WeightedConstraints:
         A, symmetric; positive definite together with the constraints.
     jacobian : ndarray, shape (g, n)
         J; its rows may be dependent, and of any scale.
+
+    Returns
+    -------
+    WeightedConstraints
 
     Raises
     ------
@@ -69,14 +99,27 @@ def weighted_constraints(mass: Matrix, jacobian: Matrix) -> WeightedConstraints:
     if factors is None:
         masses = np.linalg.eigvalsh(mass)
         indefinite = masses[0] < -NEGATIVE * np.max(np.abs(masses))
-        raise HolonomError(Failure.MASS_INDEFINITE if indefinite else Failure.MASS_SINGULAR)
+        raise HolonomError(ErrorKind.MASS_INDEFINITE if indefinite else ErrorKind.MASS_SINGULAR)
     directions = factors[1] @ rows.T
     lengths = or_one(np.sqrt(np.einsum("sb,sb->b", directions, directions)))
     return WeightedConstraints(*factors, 1 / (peaks * lengths), directions / lengths, stiffening)
 
 
 def dependent_constraints(weighted: WeightedConstraints, rank: int) -> tuple[int, ...]:
-    """Return which of the constraints, of that rank, a vanishing combination of directions involves, in order."""
+    """Return the constraints in vanishing combinations of directions, in order.
+
+    Parameters
+    ----------
+    weighted : WeightedConstraints
+        All g constraints.
+    rank : int
+        Number of independent constraints.
+
+    Returns
+    -------
+    tuple of int
+        Indices, counted from 0.
+    """
     combinations = np.linalg.svd(weighted.directions)[2][rank:]
     involved = np.max(np.abs(combinations), axis=0, initial=0.0) > INVOLVED
     return tuple(int(beta) for beta in np.flatnonzero(involved))
@@ -91,14 +134,19 @@ def rank_of(singular_values: Vector, negligible: float = DEPENDENT) -> int:
         Of W, the largest first.
     negligible : float
         Singular values that do not count, relative to the largest.
+
+    Returns
+    -------
+    int
     """
     return int(np.count_nonzero(singular_values > negligible * singular_values.max(initial=0.0)))
 
 
 def _cholesky(metric: Matrix) -> tuple[Matrix, Matrix] | None:
-    """L, lower triangular, and its inverse; None where the metric, its diagonal scaled to one, is singular.
+    """Return L, lower triangular, and its inverse; None if the metric is singular.
 
-    What elimination leaves of the last entry alone does not tell: rounding there grows as the pivots before it shrink.
+    The diagonal of the metric is scaled to one. The last pivot alone does not decide, because the pivots before it can
+    first amplify rounding errors.
     """
     lengths = np.sqrt(or_one(metric.diagonal()))
     scaled = metric / np.outer(lengths, lengths)
@@ -112,5 +160,16 @@ def _cholesky(metric: Matrix) -> tuple[Matrix, Matrix] | None:
 
 
 def or_one(lengths: Vector) -> Vector:
-    """Lengths to divide by, one where there is none."""
+    """Return lengths to divide by, with one in place of zero.
+
+    Parameters
+    ----------
+    lengths : ndarray
+        Not negative, of any shape.
+
+    Returns
+    -------
+    ndarray
+        Of the same shape.
+    """
     return np.where(lengths > 0, lengths, 1.0)

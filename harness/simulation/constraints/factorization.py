@@ -1,24 +1,24 @@
-"""The equations of motion at a state, A a - J^T lambda = h and J a = -c, factored with pivots.
+"""Factorization of A a - J^T lambda = h and J a = -c at a state, with pivots.
 
-Bad scales of masses and constraints, and constraints that follow from others, do them no harm. G = J A^-1 J^T is never
-formed: near a singular configuration the accelerations keep about half of the digits that it would lose.
+Bad scales of masses and constraints, and dependent constraints, are allowed. G = J A^-1 J^T is never formed: near a
+singular configuration the accelerations keep about half of the digits that it would lose.
 
-Where all constraints count as independent, the equations are one sparse system. With S the inverse roots of the masses
-on A's diagonal, D what brings the rows of J S to length one, and a small alpha,
+If all constraints count as independent, the equations are one sparse system. With S the inverse roots of the masses on
+A's diagonal, D the scale that brings the rows of J S to length one, and a small alpha,
 
     | alpha S A S  (D J S)^T |   |     S^-1 a         |     | alpha S h |
     | D J S            0     |   | -alpha D^-1 lambda |  =  |   - D c   |
 
 is symmetric, and its condition number grows no faster than that of D J S while alpha is small beside the latter's
 singular values (Arioli, Duff & de Rijk, On the augmented system approach to sparse least-squares problems, 1989).
-SuperLU factors it with partial pivoting: what that costs grows like the fill, linearly along a chain of bodies. A step
-or two of refinement make the error that of a rounding in each entry that is not zero (Skeel, Iterative refinement
-implies numerical stability for Gaussian elimination, 1980).
+SuperLU factors it with partial pivoting. Its cost grows like the fill, linearly along a chain of bodies. A step or two
+of refinement reduce the error to a rounding in each nonzero entry (Skeel, Iterative refinement implies numerical
+stability for Gaussian elimination, 1980).
 
-Where some follow from others, a singular value decomposition of the constraints' directions W drops what vanishes
-(Golub & Van Loan, Matrix Computations, sections 5.3 and 6.1): an orthonormal basis Q of what they span splits every
-acceleration L^T a in two, along Q what the constraints ask, across Q what the forces give. It costs O(n^3) operations
-for n coordinates.
+If some are dependent, a singular value decomposition of the constraints' directions W drops the vanishing ones (Golub &
+Van Loan, Matrix Computations, sections 5.3 and 6.1). An orthonormal basis Q of their span splits every acceleration L^T
+a in two: along Q it is determined by the constraints, across Q by the forces. It costs O(n^3) operations for n
+coordinates.
 """
 
 from abc import ABC, abstractmethod
@@ -38,35 +38,92 @@ ROUNDING = 4 * EPSILON  # relative change of the accelerations that is none
 
 
 class FactoredConstraints(ABC):
-    """The equations of motion at a state, factored, or at several states: then all arrays have an axis before.
+    """The factored equations of motion at a state, or at several states.
 
-    Methods take and return forces and accelerations of shape (n,); residuals, curvatures c and multipliers are of
-    shape (g,).
+    For several states, all arrays have a leading axis. Methods take and return forces and accelerations of shape (n,);
+    residuals, curvatures c and multipliers are of shape (g,).
     """
 
     @abstractmethod
     def length(self, change: Vector) -> Vector:
-        """Length of a change of coordinates or velocities, each weighted with its mass."""
+        """Return the length of a change, each component weighted with its mass.
+
+        Parameters
+        ----------
+        change : ndarray, shape (n,)
+            Of coordinates or velocities.
+
+        Returns
+        -------
+        float
+        """
 
     @abstractmethod
     def distances(self, residual: Vector) -> Vector:
-        """Return how far away each constraint is in the mass metric, to first order."""
+        """Return the distance from each constraint in the mass metric, to first order.
+
+        Parameters
+        ----------
+        residual : ndarray, shape (g,)
+            f or df/dt.
+
+        Returns
+        -------
+        ndarray, shape (g,)
+        """
 
     @abstractmethod
     def accelerations(self, force: Vector, curvature: Vector) -> Vector:
-        """Accelerations of A a - J^T lambda = h, J a = -c."""
+        """Return a of A a - J^T lambda = h, J a = -c.
+
+        Parameters
+        ----------
+        force : ndarray, shape (n,)
+            h.
+        curvature : ndarray, shape (g,)
+            c.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+        """
 
     @abstractmethod
     def correction(self, residual: Vector) -> Vector:
-        """Return the change d, least in the mass metric, with J d = -residual, as far as one solve gives it."""
+        """Return the least change d in the mass metric with J d = -residual, by one solve.
+
+        Parameters
+        ----------
+        residual : ndarray, shape (g,)
+            f or df/dt.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+        """
 
     @abstractmethod
     def multipliers(self, force: Vector, curvature: Vector) -> Vector:
-        """Multipliers of A a - J^T lambda = h, J a = -c: of all that give the constraint forces, the least."""
+        """Return the least multipliers of A a - J^T lambda = h, J a = -c.
+
+        Parameters
+        ----------
+        force : ndarray, shape (n,)
+            h.
+        curvature : ndarray, shape (g,)
+            c.
+
+        Returns
+        -------
+        ndarray, shape (g,)
+        """
 
 
 class IndependentConstraints(FactoredConstraints):
-    """By the sparse system; that of several states is one, without coupling. Arguments as `factored_constraints`."""
+    """Independent constraints, factored as a sparse system.
+
+    The systems of several states are one uncoupled system. Arguments as `factored_constraints`.
+    """
 
     def __init__(self, mass: Matrix, jacobian: Matrix) -> None:
         self._mass, self._jacobian = mass, jacobian
@@ -84,27 +141,81 @@ class IndependentConstraints(FactoredConstraints):
         )
 
     def length(self, change: Vector) -> Vector:
-        """By the masses on A's diagonal."""
+        """Return the length of a change by the masses on A's diagonal.
+
+        Parameters
+        ----------
+        change : ndarray, shape (n,)
+            Of coordinates or velocities.
+
+        Returns
+        -------
+        float
+        """
         return np.linalg.norm(self._roots * change, axis=-1)
 
     def distances(self, residual: Vector) -> Vector:
-        """By the same masses."""
+        """Return the distances by the masses on A's diagonal.
+
+        Parameters
+        ----------
+        residual : ndarray, shape (g,)
+            f or df/dt.
+
+        Returns
+        -------
+        ndarray, shape (g,)
+        """
         return np.abs(self._scale * residual)
 
     def accelerations(self, force: Vector, curvature: Vector) -> Vector:
-        """Refined until what changes is rounding."""
+        """Return the accelerations, refined until changes are rounding errors.
+
+        Parameters
+        ----------
+        force : ndarray, shape (n,)
+            h.
+        curvature : ndarray, shape (g,)
+            c.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+        """
         return self._refined(force, curvature)[0]
 
     def correction(self, residual: Vector) -> Vector:
-        """Without refinement."""
+        """Return the least change by one solve, without refinement.
+
+        Parameters
+        ----------
+        residual : ndarray, shape (g,)
+            f or df/dt.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+        """
         return self._solved(np.zeros_like(self._roots), residual)[0]
 
     def multipliers(self, force: Vector, curvature: Vector) -> Vector:
-        """They are unique."""
+        """Return the multipliers, which are unique.
+
+        Parameters
+        ----------
+        force : ndarray, shape (n,)
+            h.
+        curvature : ndarray, shape (g,)
+            c.
+
+        Returns
+        -------
+        ndarray, shape (g,)
+        """
         return self._refined(force, curvature)[1]
 
     def _factored(self, mass: Matrix, roots: Matrix, directions: Matrix) -> Any:
-        """Return what SuperLU makes of the system of k states; None where it is singular."""
+        """Return SuperLU's factors of the system of k states; None if it is singular."""
         (k, g, n), size = directions.shape, sum(directions.shape[1:])
         s, r = np.nonzero((mass != 0).any(axis=0))
         beta, q = np.nonzero((directions != 0).any(axis=0))
@@ -128,7 +239,7 @@ class IndependentConstraints(FactoredConstraints):
             return None
 
     def _refined(self, force: Vector, curvature: Vector) -> tuple[Vector, Vector]:
-        """Accelerations and multipliers, with what the equations miss solved for until that is rounding."""
+        """Return accelerations and multipliers, refined until changes are rounding errors."""
         accelerations, multipliers = self._solved(force, curvature)
         last = np.inf
         for _ in range(REFINEMENTS):
@@ -152,7 +263,10 @@ class IndependentConstraints(FactoredConstraints):
 
 
 class DependentConstraints(FactoredConstraints):
-    """By singular values, of which so many count; arguments as for `factored_constraints`, but for one state."""
+    """Dependent constraints, factored by singular values up to the given rank.
+
+    Arguments as for `factored_constraints`, but for one state.
+    """
 
     def __init__(self, mass: Matrix, jacobian: Matrix, rank: int) -> None:
         self._weighted = weighted_constraints(mass, jacobian)
@@ -161,31 +275,85 @@ class DependentConstraints(FactoredConstraints):
         self._inverse = v[:rank] / values[:rank, None]  # shape (r, g): transposed pseudo-inverse of C, W = Q C
 
     def length(self, change: Vector) -> Vector:
-        """In the mass metric."""
+        """Return the length of a change in the mass metric.
+
+        Parameters
+        ----------
+        change : ndarray, shape (n,)
+            Of coordinates or velocities.
+
+        Returns
+        -------
+        float
+        """
         return np.linalg.norm(self._weighted.factor.T @ change)
 
     def distances(self, residual: Vector) -> Vector:
-        """In the mass metric."""
+        """Return the distances in the mass metric.
+
+        Parameters
+        ----------
+        residual : ndarray, shape (g,)
+            f or df/dt.
+
+        Returns
+        -------
+        ndarray, shape (g,)
+        """
         return np.abs(self._weighted.scale * residual)
 
     def accelerations(self, force: Vector, curvature: Vector) -> Vector:
-        """Return those across Q by the forces, those along Q by the constraints."""
+        """Return those across Q by the forces, those along Q by the constraints.
+
+        Parameters
+        ----------
+        force : ndarray, shape (n,)
+            h.
+        curvature : ndarray, shape (g,)
+            c.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+        """
         free = self._complement.T @ self._weighted_force(force, curvature)
         return self._weighted.unweighted(self._basis @ self._along(curvature) + self._complement @ free)
 
     def correction(self, residual: Vector) -> Vector:
-        """Along Q alone."""
+        """Return the least change, which is along Q.
+
+        Parameters
+        ----------
+        residual : ndarray, shape (g,)
+            f or df/dt.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+        """
         return self._weighted.unweighted(self._basis @ self._along(residual))
 
     def multipliers(self, force: Vector, curvature: Vector) -> Vector:
-        """Less what of them makes no force: the null space of J^T."""
+        """Return the multipliers without their part in the null space of J^T.
+
+        Parameters
+        ----------
+        force : ndarray, shape (n,)
+            h.
+        curvature : ndarray, shape (g,)
+            c.
+
+        Returns
+        -------
+        ndarray, shape (g,)
+        """
         along = self._along(curvature) - self._basis.T @ self._weighted_force(force, curvature)
         found = self._weighted.scale * (along @ self._inverse)
         acting = np.linalg.qr((self._inverse / self._weighted.scale).T)[0]
         return acting @ (acting.T @ found)
 
     def _weighted_force(self, force: Vector, curvature: Vector) -> Vector:
-        """L^-1 h, where A is singular after the change of h that goes with the change of A."""
+        """Return L^-1 h. If A is singular, h is changed together with A."""
         if self._weighted.stiffening is not None:
             force = force - self._weighted.stiffening @ curvature
         return self._weighted.per_root_mass(force)
@@ -220,6 +388,10 @@ def factored_constraints(mass: Matrix, jacobian: Matrix, rank: int | None = None
         J; its rows may be dependent, and of any scale.
     rank : int or None
         How many of the constraints count as independent; None to count them, at one state.
+
+    Returns
+    -------
+    FactoredConstraints
 
     Raises
     ------

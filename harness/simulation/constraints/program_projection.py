@@ -1,7 +1,7 @@
-"""The projection program at work: the nearest state that keeps the constraints, and how far away it is.
+"""Projection onto the constraints by the projection program, and its distance.
 
-One step of Newton's method for the position, then one for the velocity at the new position, in one function: what is
-left of the residuals is of second order in them. It is compiled when it is first needed.
+One step of Newton's method for the position and one for the velocity at the new position form one function. The
+remaining residuals are of second order. The function is compiled when it is first needed.
 """
 
 from functools import cached_property, partial
@@ -29,26 +29,29 @@ class ProgramProjection:
 
     @cached_property
     def nearest(self) -> Evaluation:
-        """From t, the state and what is open to the nearest state."""
+        """Return the function from t, the state and open inputs to the nearest state."""
         build = partial(nearest_state, self._problem, self._precision, opt_level=0)
         return self._problem.once(("projection", self._precision.name), self._problem.projection, build)
 
-    def project(self, instant: Any, state: Numbers) -> float:
+    def project(self, time: Any, state: Numbers) -> float:
         """Move a state, in place, to the nearest one that keeps the constraints.
 
         Parameters
         ----------
+        time : number
+            Time of the state.
         state : ndarray, shape (2n,)
+            Coordinates, then velocities; changed in place.
 
         Returns
         -------
         float
-            How far, by `distance`.
+            The way that the state has moved, by `distance`.
         """
-        self._inputs[0] = instant
+        self._inputs[0] = time
         self._inputs[self._moving] = state
         if not self._lasting:
-            self._inputs[self._open] = self._values(instant)
+            self._inputs[self._open] = self._values(time)
         found = self.nearest(self._inputs)
         changed = distance(state, found, self._sizes)
         state[:] = found
@@ -56,12 +59,21 @@ class ProgramProjection:
 
 
 def distance(before: Numbers, after: Numbers, sizes: Vector) -> Vector:
-    """Length of a change of a state, or of k of them, relative to (s^2 + x^2)^(1/2) of each number x of nominal size s.
+    """Return the length of a change of one state or of k states.
+
+    It is relative to (s^2 + x^2)^(1/2) of each number x of nominal size s.
 
     Parameters
     ----------
     before, after : ndarray, shape (2n,) or (2n, k)
+        Coordinates, then velocities.
     sizes : ndarray, shape (2n,)
+        Nominal sizes.
+
+    Returns
+    -------
+    float or ndarray, shape (k,)
+        Dimensionless.
     """
     change, numbers = as_floats(after - before), as_floats(before)
     return np.linalg.norm(change.T / np.hypot(sizes, numbers.T), axis=-1)
@@ -69,6 +81,15 @@ def distance(before: Numbers, after: Numbers, sizes: Vector) -> Vector:
 
 def nearest_state(problem: MotionProblem, precision: Precision, **options: Any) -> Any:
     """Compile the projection of a state.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        A motion with a projection program.
+    precision : Precision
+        Numbers of the function.
+    **options : object
+        Further options of ``heyoka.cfunc``.
 
     Returns
     -------

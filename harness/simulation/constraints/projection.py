@@ -1,13 +1,14 @@
-"""The nearest state, in the mass metric, that keeps the constraints (Garcia de Jalon & Bayo, section 5.3).
+"""Projection onto the constraints in the mass metric.
 
-Positions by Newton's method: the least d with J d = -f, until d is rounding; then velocities, in one linear step:
-the least e with J e = -df/dt. Dependent constraints do no harm: so many of them count as the rank says.
+The nearest state is found as in Garcia de Jalon & Bayo, section 5.3. Positions by Newton's method: the least d with J d
+= -f, until d is rounding; then velocities, in one linear step: the least e with J e = -df/dt. Constraints may be
+dependent, since the rank is used.
 """
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...failures import Failure, HolonomError
+from ...failures import ErrorKind, HolonomError
 from ..matrices import MotionMatrices, Vector
 from .directions import EPSILON
 from .factorization import FactoredConstraints, factored_constraints
@@ -29,22 +30,30 @@ class InconsistentConstraints(HolonomError):
     """
 
     def __init__(self, t: float, residual: float) -> None:
-        super().__init__(Failure.INCONSISTENT, detail=f"{t:.10g}; what remains is {residual:.2g}")
+        super().__init__(ErrorKind.INCONSISTENT, detail=f"{t:.10g}; what remains is {residual:.2g}")
         self.residual = residual
 
 
 def settle(
     matrices: MotionMatrices, t: float | Vector, state: Vector, rank: int | None = None
 ) -> tuple[Vector, FactoredConstraints]:
-    """Nearest state that keeps the constraints, and the constraints as factored there.
+    """Return the nearest state that keeps the constraints, and their factors there.
 
     Parameters
     ----------
+    matrices : MotionMatrices
+        Matrices and residuals of the motion.
     t : float or ndarray, shape (k,)
+        Time of each state.
     state : ndarray, shape (2n,) or (k, 2n)
         Coordinates, then velocities. Several states are settled at once if the rank is given.
     rank : int or None
-        How many of the constraints are independent; None to find out at each position.
+        Number of independent constraints; None to determine it at each position.
+
+    Returns
+    -------
+    state : ndarray, shape (2n,) or (k, 2n)
+    factored : FactoredConstraints
 
     Raises
     ------
@@ -58,7 +67,7 @@ def settle(
         at = matrices(t, state)
         if not np.all(at.finite):
             first = _where_not(at.finite, t)[0]
-            raise HolonomError(Failure.NO_WAY_ON, detail=f"{first:.10g}, where numbers overflow")
+            raise HolonomError(ErrorKind.NO_WAY_ON, detail=f"{first:.10g}, where numbers overflow")
         factored = factored_constraints(at.mass, at.jacobian, rank)
         change = factored.correction(at.residual)
         size, extent = factored.length(change), _extent(factored, state[..., :n], nominal.coordinates)
@@ -75,7 +84,10 @@ def settle(
 
 
 def _extent(factored: FactoredConstraints, numbers: Vector, sizes: Vector) -> Vector:
-    """Length, in the mass metric, of coordinates or velocities, each of its nominal size at least."""
+    """Return the length of coordinates or velocities in the mass metric.
+
+    Each counts with at least its nominal size.
+    """
     return factored.length(np.maximum(np.abs(numbers), sizes))
 
 

@@ -1,13 +1,13 @@
-"""Where constraints fail: they become dependent, in a singular configuration, or one of them loses its gradient.
+"""Failure of constraints: singular configurations and vanishing gradients.
 
-In the mass metric and scaled to length one, the constraints' directions have singular values. Of those that redundant
-constraints leave, the least vanishes in a singular configuration, in proportion to the way that is left. A constraint
-whose gradient itself runs to zero, a length that shrinks to nothing, does not show in it; that shows beside the
-gradient at the start.
+In the mass metric and scaled to length one, the directions of the constraints have singular values. Without those of
+redundant constraints, the least one vanishes in a singular configuration, in proportion to the distance. A constraint
+whose gradient itself vanishes, such as a length that shrinks to zero, is not detected by it; its gradient is compared
+with the one at the start.
 
-A motion that meets such an instant exactly, a bob drawn straight up into its hinge, is as smooth there as anywhere
-else: no step shrinks, and only the reaction is infinite. So these instants are found beforehand: a control changes its
-sign, and there is a point q with df/dq = 0 that keeps the constraint f then. Newton's method finds it from the start.
+A motion that meets such a time exactly, a bob drawn straight up into its hinge, is as smooth there as anywhere else: no
+step shrinks, and only the reaction is infinite. So these times are found beforehand: a control changes its sign, and
+there is a point q with df/dq = 0 that satisfies the constraint f then. Newton's method finds it from the start.
 """
 
 from collections.abc import Iterator
@@ -15,13 +15,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...failures import Failure, HolonomError
+from ...failures import ErrorKind, HolonomError
 from ...program.motion_problem import MotionProblem, computing
 from ...program.motion_program import Name
 from ...program.sign_pattern import in_numbers
-from ...program.table_numbers import OfTime
+from ...program.table_numbers import TimeFunction
 from ..evaluation import Numbers, as_floats
-from ..hard_cases import Instant
+from ..hard_cases import MotionState
 from ..matrices import Matrices, MotionMatrices, Vector, start_of
 from .directions import DEPENDENT, WeightedConstraints, rank_of, weighted_constraints
 from .projection import InconsistentConstraints, settle
@@ -35,21 +35,25 @@ SMALL = 0.5  # least singular value above which none is near, however fast it fa
 POINTS = 2049  # of a time span at which the controls are looked at
 HALVINGS = 60  # of an interval between two of them: down to rounding
 ITERATIONS = 5
-SHORTLY = 1e-6  # of the way to such an instant
+SHORTLY = 1e-6  # of the way to such a time
 VANISHED = 1e-3  # of its size at the start: what is left of a gradient that runs to zero
 DIFFERENCE = 1e-6  # of the nominal sizes of coordinates
 NEGLIGIBLE = 1e-6  # of a gradient, or of a residual beside what the gradient makes of the way to the point
 
 
 def probed(matrices: MotionMatrices, t: float, state: Vector) -> tuple[int, float]:
-    """Return how many constraints are independent along the motion, and how near a singular configuration is.
+    """Return the rank of the constraints and the distance to a singular configuration.
 
-    Constraints that are dependent at a state may be so everywhere, or in a singular configuration; the next state
-    tells. A small way on, what was lost to a singular configuration has grown like the way, and what rounding and the
-    way's curvature make of redundant constraints like its square.
+    Constraints that are dependent at a state may be dependent everywhere, or only in a singular configuration; the next
+    state decides. A small distance further, the singular value of a singular configuration has grown like the distance,
+    and the one of redundant constraints, due to rounding and curvature, like its square.
 
     Parameters
     ----------
+    matrices : MotionMatrices
+        Matrices of the motion.
+    t : float
+        Time of the state.
     state : ndarray, shape (2n,)
         It keeps the constraints.
 
@@ -79,23 +83,67 @@ def probed(matrices: MotionMatrices, t: float, state: Vector) -> tuple[int, floa
 
 
 def extrapolated_zero(before: float, last: float, now: float, least: float) -> float:
-    """Instant at which a singular value vanishes that goes on as between two instants; infinite where it grows."""
+    """Return the time of the zero of a singular value, extrapolated from two times.
+
+    Parameters
+    ----------
+    before : float
+        The earlier time.
+    last : float
+        Singular value at the earlier time.
+    now : float
+        The later time.
+    least : float
+        Singular value at the later time.
+
+    Returns
+    -------
+    float
+        Infinite if the value grows.
+    """
     return now + least * (now - before) / (last - least) if last > least else np.inf
 
 
 def least_of(singular_values: Vector, rank: int) -> float:
-    """Return the least singular value that counts; without constraints, one."""
+    """Return the least singular value that counts; without constraints, one.
+
+    Parameters
+    ----------
+    singular_values : ndarray
+        The largest first.
+    rank : int
+        How many of them count.
+
+    Returns
+    -------
+    float
+    """
     return float(singular_values[rank - 1]) if rank else 1.0
 
 
 def singular_values_at(matrices: MotionMatrices, t: float, state: Vector) -> Vector:
-    """Singular values of the scaled constraints at a state, the largest first."""
+    """Return the singular values of the scaled constraints at a state.
+
+    Parameters
+    ----------
+    matrices : MotionMatrices
+        Matrices of the motion.
+    t : float
+        Time of the state.
+    state : ndarray, shape (2n,)
+        Coordinates, then velocities.
+
+    Returns
+    -------
+    ndarray
+        The largest first.
+    """
     return _scaled(matrices(t, state), t).singular_values()
 
 
 def _scaled(at: Matrices, t: float) -> WeightedConstraints:
     if not at.finite:
-        raise HolonomError(Failure.NO_WAY_ON, detail=f"{t:.10g}, where numbers overflow")
+        raise HolonomError(ErrorKind.NO_WAY_ON, detail=f"{t:.10g}, where numbers overflow")
     return weighted_constraints(at.mass, at.jacobian)
 
 
@@ -110,27 +158,68 @@ class Watch:
         self._least = 1.0
 
     def begin(self, t: float, state: Numbers) -> None:
-        """Look at the state from which the watch goes on."""
-        self._least = self.least(t, state)
-
-    def singular_ahead(self, t: float, state: Numbers) -> bool:
-        """Return True if the next steps, if they are like the last one, reach a singular configuration.
+        """Record the state from which the watch goes on.
 
         Parameters
         ----------
         t : float
-            After the step.
+            Time of the state.
         state : ndarray, shape (2n,)
+            Coordinates, then velocities.
+        """
+        self._least = self.least(t, state)
+
+    def singular_ahead(self, t: float, state: Numbers) -> bool:
+        """Return True if the next steps will reach a singular configuration.
+
+        They are taken to be like the last one.
+
+        Parameters
+        ----------
+        t : float
+            Time after the step.
+        state : ndarray, shape (2n,)
+            State after the step.
+
+        Returns
+        -------
+        bool
         """
         last, self._least = self._least, self.least(t, state)
         return self._least < SMALL and self._least < REACH * (last - self._least)
 
     def least(self, t: float, state: Numbers) -> float:
-        """Least singular value of the constraints' directions; one where there is none."""
+        """Return the least singular value of the constraints' directions.
+
+        Parameters
+        ----------
+        t : float
+            Time of the state.
+        state : ndarray, shape (2n,)
+            Coordinates, then velocities.
+
+        Returns
+        -------
+        float
+            One without constraints.
+        """
         return float(self._constraints(t, state).singular_values().min(initial=1.0))
 
     def vanished(self, t: float, state: Numbers) -> str | None:
-        """Return the multiplier whose constraint has lost its gradient, if there is one."""
+        """Return the multiplier whose constraint has lost its gradient, if there is one.
+
+        Parameters
+        ----------
+        t : float
+            Time of the state.
+        state : ndarray, shape (2n,)
+            Coordinates, then velocities.
+
+        Returns
+        -------
+        str or None
+            Name of the multiplier.
+        """
         left = self._scale / self._constraints(t, state).scale
         return self._names[left.argmin()] if left.min(initial=1.0) < VANISHED else None
 
@@ -138,16 +227,47 @@ class Watch:
         return _scaled(self._matrices.independent(float(t), as_floats(state)), float(t))
 
 
-def vanishing_instants(problem: MotionProblem, matrices: MotionMatrices, end: float) -> list[float]:
-    """Instants before the end of a motion at which the gradient of a constraint may vanish, in order."""
+def vanishing_times(problem: MotionProblem, matrices: MotionMatrices, end: float) -> list[float]:
+    """Return the times at which the gradient of a constraint may vanish, in order.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    matrices : MotionMatrices
+        Matrices of the same motion.
+    end : float
+        Last time of the search, which begins with the motion.
+
+    Returns
+    -------
+    list of float
+    """
     start, state = start_of(problem)
-    instants = zeros_of_controls(problem, start, end)
-    constraints = range(len(problem.multipliers)) if instants else ()
-    return sorted({t for beta in constraints for t in _without_gradient(matrices, instants, state, beta)})
+    times = zeros_of_controls(problem, start, end)
+    constraints = range(len(problem.multipliers)) if times else ()
+    return sorted({t for beta in constraints for t in _without_gradient(matrices, times, state, beta)})
 
 
-def require_gradient(problem: MotionProblem, t: float, at: Instant) -> None:
-    """Refuse to go on to an instant at which a constraint may lose its gradient, when it has just before."""
+def require_gradient(problem: MotionProblem, t: float, at: MotionState) -> None:
+    """Reject a time at which a constraint loses its gradient.
+
+    Its gradient is evaluated just before that time.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion, whose start gives the size of each gradient.
+    t : float
+        The time, for the message.
+    at : MotionState
+        State just before that time.
+
+    Raises
+    ------
+    HolonomError
+        A gradient has vanished.
+    """
     left, whole = (
         np.linalg.norm(at.matrices(*when).jacobian, axis=1) for when in ((at.t, at.state), start_of(problem))
     )
@@ -157,23 +277,71 @@ def require_gradient(problem: MotionProblem, t: float, at: Instant) -> None:
 
 
 def shortly_before(t: float, start: float) -> float:
-    """Return an instant just before another, where the equations of motion are still regular."""
+    """Return a time just before another, with regular equations of motion.
+
+    Parameters
+    ----------
+    t : float
+        The later time.
+    start : float
+        Initial time of the motion.
+
+    Returns
+    -------
+    float
+    """
     return t - SHORTLY * (t - start)
 
 
 def no_gradient(t: float, multiplier: str) -> HolonomError:
-    """Return the refusal to follow a motion to where the gradient of a constraint vanishes."""
-    return HolonomError(Failure.NO_GRADIENT, instant=float(t), multiplier=multiplier)
+    """Return the error of a motion at a time of a vanishing constraint gradient.
+
+    Parameters
+    ----------
+    t : float
+        Time of the vanishing gradient.
+    multiplier : str
+        Name of the constraint's multiplier.
+
+    Returns
+    -------
+    HolonomError
+    """
+    return HolonomError(ErrorKind.NO_GRADIENT, time=float(t), multiplier=multiplier)
 
 
 def no_controls(t: float) -> HolonomError:
-    """Return the refusal to follow a motion to where servo-constraints leave their controls without values."""
+    """Return the error for a time at which servo-constraints determine no controls.
+
+    Parameters
+    ----------
+    t : float
+        The time.
+
+    Returns
+    -------
+    HolonomError
+    """
     reason = "the controls move what servo-constraints prescribe in fewer directions"
-    return HolonomError(Failure.NO_WAY_ON, detail=f"{t:.10g}, where {reason}")
+    return HolonomError(ErrorKind.NO_WAY_ON, detail=f"{t:.10g}, where {reason}")
 
 
 def zeros_of_controls(problem: MotionProblem, start: float, end: float) -> list[float]:
-    """Instants inside a time span at which a control changes its sign, in order."""
+    """Return the times of sign changes of a control inside a time span, in order.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion, whose controls are functions of the time.
+    start : float
+        First time of the search.
+    end : float
+        Last time of the search.
+
+    Returns
+    -------
+    list of float
+    """
     matrices = in_numbers(problem, problem.matrices)
     assigned = {name for name, _ in matrices.assignments}
     laws = {name: Name(name) for name in assigned if f"dot({name})" in assigned}
@@ -181,7 +349,7 @@ def zeros_of_controls(problem: MotionProblem, start: float, end: float) -> list[
         return []
     of_tables = (name for table in problem.tables for name in table.inputs)
     law = computing(replace(matrices, inputs=("t", *of_tables), outputs=laws), laws)
-    values, grid = OfTime(law, problem.tables), np.linspace(start, end, POINTS)
+    values, grid = TimeFunction(law, problem.tables), np.linspace(start, end, POINTS)
     signs = np.sign(values(grid))
     controls, places = np.nonzero(signs[:, :-1] * signs[:, 1:] < 0)
     left, right = grid[places], grid[places + 1]
@@ -194,12 +362,12 @@ def zeros_of_controls(problem: MotionProblem, start: float, end: float) -> list[
     return sorted({*map(float, right), *map(float, touched)})
 
 
-def _without_gradient(matrices: MotionMatrices, instants: list[float], state: Vector, beta: int) -> Iterator[float]:
-    """Yield those of the instants at which a constraint is kept by a point where it has no gradient."""
-    first, sizes = matrices(instants[0], state), matrices.nominal.coordinates
+def _without_gradient(matrices: MotionMatrices, times: list[float], state: Vector, beta: int) -> Iterator[float]:
+    """Yield the times at which a point without gradient satisfies a constraint."""
+    first, sizes = matrices(times[0], state), matrices.nominal.coordinates
     size, n = np.linalg.norm(first.jacobian[beta] * sizes), len(state) // 2
     point = state
-    for t in instants:
+    for t in times:
         point = _critical_point(matrices, t, point, beta, NEGLIGIBLE * size)
         if point is None:
             return
@@ -209,7 +377,10 @@ def _without_gradient(matrices: MotionMatrices, instants: list[float], state: Ve
 
 
 def _critical_point(matrices: MotionMatrices, t: float, state: Vector, beta: int, negligible: float) -> Vector | None:
-    """Return a state where a constraint has no gradient, by Newton's method; None where it finds none."""
+    """Return a state without a gradient of a constraint, found by Newton's method.
+
+    None if the method fails.
+    """
     n, point, sizes = len(state) // 2, state.copy(), matrices.nominal.coordinates
     moves = DIFFERENCE * np.diag(matrices.nominal.state)[:n]
     for _ in range(ITERATIONS):

@@ -1,4 +1,4 @@
-"""The equations of motion for heyoka's integrators, as they are or with a stabilization of the constraints in them.
+"""Equations of motion for heyoka's integrators, with or without stabilization.
 
 The projection program gives the least d and e, in the mass metric, with J d = -f and J e = -df/dt. With them
 
@@ -24,26 +24,45 @@ Equations = list[tuple[Any, Any]]
 
 
 def equations_of_motion(problem: MotionProblem, program: Program, precision: Precision) -> Equations:
-    """Return the first-order equations as they are.
+    """Return the first-order equations without stabilization.
 
-    Each coordinate and each velocity with its rate; what is open are heyoka's parameters.
+    Each coordinate and velocity has its derivative; open inputs are heyoka's parameters.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    program : Program
+        Program with the accelerations as outputs.
+    precision : Precision
+        Numbers of the coefficients.
+
+    Returns
+    -------
+    list of (expression, expression)
+        Variable and derivative, coordinates before velocities.
     """
     return dynamics(program, heyoka_inputs(problem, precision.number("0")), precision.ratio)
 
 
 def stabilized_equations(
-    problem: MotionProblem, program: Program, precision: Precision, drift: Stabilization, decay: float
+    problem: MotionProblem, program: Program, precision: Precision, stabilization: Stabilization, decay: float
 ) -> Equations:
-    """Return the first-order equations with the stabilization of Baumgarte, or of Gear, Gupta and Leimkuhler.
+    """Return the first-order equations with Baumgarte's or the GGL stabilization.
 
     Parameters
     ----------
     problem, program, precision
         As for `equations_of_motion`.
-    drift : Stabilization
+    stabilization : Stabilization
         ``BAUMGARTE`` or ``GGL``.
     decay : float
         gamma, per unit of time.
+
+    Returns
+    -------
+    list of (expression, expression)
+        As `equations_of_motion`.
     """
     gamma = import_heyoka().expression(precision.ratio(Fraction(decay)))
     two = import_heyoka().expression(precision.ratio(Fraction(2)))
@@ -51,7 +70,7 @@ def stabilized_equations(
     n = len(problem.coordinates)
     position = [found[f"position_correction[{s}]"] for s in range(1, n + 1)]
     velocity = [found[f"velocity_correction[{s}]"] for s in range(1, n + 1)]
-    if drift is Stabilization.BAUMGARTE:
+    if stabilization is Stabilization.BAUMGARTE:
         pull = [two * gamma * e + gamma * gamma * d for d, e in zip(position, velocity, strict=True)]
         terms = [import_heyoka().expression(precision.number("0"))] * n + pull
     else:

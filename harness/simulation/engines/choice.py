@@ -1,9 +1,9 @@
-"""Which engine is quicker for a motion: the Taylor engine, or the Runge-Kutta engine once the C compiler is done.
+"""Choice of the quicker engine for a motion: the Taylor or the Runge-Kutta engine.
 
-The Taylor engine is compiled in a moment and takes a few steps; their average length tells how many more there are.
-What these cost, in whatever code pays for so many, is held against what the other engine costs, the C compiler
-included. All of it follows from counts, of steps and of operations, with fixed costs: measured on one machine, the same
-on all, so that the choice depends neither on the machine nor on what else it does.
+The Taylor engine is compiled quickly and takes a few steps; their average length gives the number of the others. Their
+cost, in the code that is worthwhile for that number, is compared with the cost of the other engine and of the C
+compiler. All costs follow from numbers of steps and of operations, with constants measured on one machine. So the
+choice depends neither on the machine nor on its load.
 
 Measured on the five motions of `tests/benchmarks/simulation.py`, 18 to 431 operations, tolerances 1e-6 to 1e-12.
 """
@@ -30,25 +30,30 @@ class Choice:
     refused: str = ""  # why the other could not be compiled, where it would have been quicker
 
 
-class Between(NamedTuple):
-    """How many states are wanted between steps: each takes the Runge-Kutta engine one more step."""
+class OutputCounts(NamedTuple):
+    """Numbers of states between steps. Each costs a step of the Runge-Kutta engine."""
 
     altogether: int
     in_each: int  # in each step
 
 
-def quicker_engine(steps: int, operations: int, tol: float, between: Between) -> Choice:
-    """Choose by what both engines are expected to take.
+def quicker_engine(steps: int, operations: int, tol: float, between: OutputCounts) -> Choice:
+    """Return the engine with the shorter expected time.
 
     Parameters
     ----------
     steps : int
-        Of the Taylor engine, compiled already, to the end of the motion.
+        Steps of the Taylor engine, compiled already, to the end of the motion.
     operations : int
-        Of the accelerations.
+        Operations of one evaluation of the accelerations.
     tol : float
-        Of a step.
-    between : Between
+        Tolerance of a step.
+    between : OutputCounts
+        Numbers of states between the steps.
+
+    Returns
+    -------
+    Choice
     """
     kinds = compared_engines()
     seconds = {kind.name: kind.expected_seconds(steps, operations, tol, between) for kind in kinds}

@@ -1,4 +1,4 @@
-"""How heyoka compiles an integrator, and which way pays.
+"""How heyoka compiles an integrator, and when better code is worthwhile.
 
 Measured at tolerance 1e-15 on the pendulum of controlled length to t = 100, the chain with N = 8 and Andrews' squeezer
 to the end of their time spans; 16, 212 and 438 operations:
@@ -19,7 +19,7 @@ from ...program.precision import Precision
 
 
 class Code(StrEnum):
-    """A way to compile, with heyoka's options for it: quick code is compact and not optimised."""
+    """A kind of compiled code, with heyoka's options. Quick code is not optimised."""
 
     QUICK = "quick"
     COMPACT = "compact"
@@ -27,7 +27,7 @@ class Code(StrEnum):
 
     @property
     def options(self) -> dict[str, object]:
-        """What heyoka is told."""
+        """The options of heyoka for this code."""
         return {"compact_mode": self is not Code.UNROLLED} | ({"opt_level": 0} if self is Code.QUICK else {})
 
 
@@ -38,25 +38,85 @@ HARDWARE = ("double", "extended")
 
 
 def better_code(code: Code, precision: Precision) -> Code | None:
-    """Return the next better code, if there is one in these numbers."""
+    """Return the next better code, if there is one in these numbers.
+
+    Parameters
+    ----------
+    code : Code
+        The present code.
+    precision : Precision
+        Numbers of the integrator.
+
+    Returns
+    -------
+    Code or None
+    """
     if code is Code.UNROLLED or precision.name not in HARDWARE:
         return None
     return Code.COMPACT if code is Code.QUICK else Code.UNROLLED
 
 
-def pays(code: Code, better: Code, operations: int, steps: float, tol: float) -> bool:
-    """Return True if the steps that are left of a run earn back the compilation of better code."""
+def is_worthwhile(code: Code, better: Code, operations: int, steps: float, tol: float) -> bool:
+    """Return True if the remaining steps of a run justify compilation of better code.
+
+    Parameters
+    ----------
+    code : Code
+        The present code.
+    better : Code
+        The code to compile.
+    operations : int
+        Operations of one evaluation of the accelerations.
+    steps : float
+        Number of remaining steps.
+    tol : float
+        Tolerance of a step.
+
+    Returns
+    -------
+    bool
+    """
     gained = running(code, operations, steps, tol) - running(better, operations, steps, tol)
     return gained > compilation(better, operations)
 
 
 def running(code: Code, operations: int, steps: float, tol: float) -> float:
-    """Return the seconds that steps of a motion program take, by its operations."""
+    """Return the expected time of steps of a motion program.
+
+    Parameters
+    ----------
+    code : Code
+        How the program is compiled.
+    operations : int
+        Operations of one evaluation of the accelerations.
+    steps : float
+        Number of steps.
+    tol : float
+        Tolerance of a step.
+
+    Returns
+    -------
+    float
+        In seconds.
+    """
     return SHARE[code] * steps * OPERATION * operations * (_order(tol) / _order(REFERENCE)) ** ORDERS
 
 
 def compilation(code: Code, operations: int) -> float:
-    """Seconds that the compilation of a motion program of so many operations takes, in one of the better codes."""
+    """Return the expected time of compilation in a better code.
+
+    Parameters
+    ----------
+    code : Code
+        ``COMPACT`` or ``UNROLLED``.
+    operations : int
+        Operations of one evaluation of the accelerations.
+
+    Returns
+    -------
+    float
+        In seconds.
+    """
     return 0.05 + (1.6e-3 * operations if code is Code.COMPACT else 5.5e-5 * operations**2)
 
 

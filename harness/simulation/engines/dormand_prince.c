@@ -25,7 +25,7 @@ struct follower {
                                     /* shortest of those that are shorter than the one before          */
     double usual;                   /* the longest of quiet steps since the motion began anew          */
     long most, taken;               /* steps                                                           */
-    double *instants, *states;      /* filled with the start of each step, unless they are NULL        */
+    double *times, *states;      /* filled with the start of each step, unless they are NULL        */
 };
 
 long evaluations;
@@ -211,8 +211,8 @@ static int follow(struct follower *f)
         f->last = 0;
     }
     while (f->t < f->until && f->taken < f->most) {
-        if (f->instants) {
-            f->instants[f->taken] = f->t;
+        if (f->times) {
+            f->times[f->taken] = f->t;
             memcpy(f->states + f->taken*STATE, f->state, sizeof left);
         }
         const double before = f->last;
@@ -264,12 +264,12 @@ long advance_quietly(struct follower *f, double until, long most)
     return 0;
 }
 
-/* Takes a state to an instant not far from its own, in as many steps as that needs. */
-int go_between(double t, double instant, double *state)
+/* Takes a state to a time not far from its own, in as many steps as that needs. */
+int go_between(double t, double time, double *state)
 {
-    double stride = instant - t;
+    double stride = time - t;
     slope_known = 0;
-    while (t < instant)
-        if (!(go_on(&t, instant, &stride, state) > 0)) return 1;
+    while (t < time)
+        if (!(go_on(&t, time, &stride, state) > 0)) return 1;
     return 0;
 }

@@ -1,4 +1,7 @@
-"""What every engine is: a motion that has come to an instant and a state, goes on, and says why where it cannot."""
+"""Interface of all engines: the time and state of a motion, and its integration.
+
+An engine that cannot continue raises an error with the reason.
+"""
 
 from collections.abc import Callable, Iterator
 from math import inf
@@ -6,23 +9,32 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from numpy.typing import NDArray
 
-from ...failures import Failure, HolonomError
+from ...failures import ErrorKind, HolonomError
 from ...program.motion_problem import MotionProblem
 from ...program.precision import Precision
 from ..evaluation import Numbers
-from ..hard_cases import HardCase
+from ..hard_cases import Difficulty
 from ..matrices import MotionMatrices
 from ..request import EngineName, SimulationRequest
-from .choice import Between
+from .choice import OutputCounts
 
 if TYPE_CHECKING:
     from ..mode import Mode
 
-JUDGED_AFTER, MOST_STEPS = 1_000, 1e11  # steps: after which what is left is judged, and which nobody waits for
+JUDGED_AFTER, MOST_STEPS = 1_000, 1e11  # steps: after which what is left is judged, and which would take too long
 
 
 def require_reach(steps: int, done: Any, left: Any) -> None:
-    """Refuse to go on where, by the steps taken so far in the time that is done, the time left takes too many.
+    """Reject a motion with too many remaining steps, by the steps taken so far.
+
+    Parameters
+    ----------
+    steps : int
+        Number of steps so far.
+    done : number
+        Time that they cover.
+    left : number
+        Remaining time.
 
     Raises
     ------
@@ -31,7 +43,7 @@ def require_reach(steps: int, done: Any, left: Any) -> None:
     """
     if steps >= JUDGED_AFTER and steps * float(left) > MOST_STEPS * float(done):
         about = steps * float(left) / float(done) if done > 0 else inf
-        raise HolonomError(Failure.TOO_MANY_STEPS, detail=f"the motion takes about {about:.0e} steps to its end")
+        raise HolonomError(ErrorKind.TOO_MANY_STEPS, detail=f"the motion takes about {about:.0e} steps to its end")
 
 
 class Step(NamedTuple):
@@ -39,7 +51,7 @@ class Step(NamedTuple):
 
     start: Any
     end: Any
-    # takes instants of the step, shape (k,), to states, shape (2n, k): coordinates, then velocities
+    # takes times of the step, shape (k,), to states, shape (2n, k): coordinates, then velocities
     states: Callable[[NDArray[Any]], NDArray[Any]]
     # mode, impulse: the motion's mode, and the energy that an impulse at the start brought; None from an engine
     mode: "Mode | None" = None
@@ -47,7 +59,7 @@ class Step(NamedTuple):
 
 
 class Solutions(NamedTuple):
-    """What the equations of motion determine at k states."""
+    """The unknowns of the equations of motion at k states."""
 
     accelerations: Numbers  # shape (n, k)
     # shape (g, k): zero for the constraints that the program leaves out as redundant; where dependent ones are left,
@@ -63,16 +75,16 @@ class Obstacle(HolonomError):
     Parameters
     ----------
     t : float
-        The instant that is reached.
-    reason : str
-        A clause about that instant.
+        The time that is reached.
+    cause : str
+        A clause about that time.
     passed : callable
-        Whether the obstacle lies behind an instant and a state.
+        Whether the obstacle lies behind a time and a state.
     """
 
-    def __init__(self, t: float, case: HardCase, reason: str, passed: Callable[[Any, Numbers], bool]) -> None:
-        super().__init__(Failure.NO_WAY_ON, detail=f"{t:.10g}, where {reason}")
-        self.case, self.reason, self.passed = case, reason, passed
+    def __init__(self, t: float, case: Difficulty, cause: str, passed: Callable[[Any, Numbers], bool]) -> None:
+        super().__init__(ErrorKind.NO_WAY_ON, detail=f"{t:.10g}, where {cause}")
+        self.case, self.cause, self.passed = case, cause, passed
 
 
 class Task(NamedTuple):
@@ -81,42 +93,91 @@ class Task(NamedTuple):
     problem: MotionProblem
     request: SimulationRequest
     precision: Precision
-    end: Any  # the last instant
+    end: Any  # the last time
     matrices: MotionMatrices  # of the same motion
 
 
 class Engine(Protocol):
-    """What follows a motion."""
+    """The interface of an engine."""
 
     name: EngineName
     # fixed_pivots, open_parameters: whether it takes the motion program's pivots, and parameters without their values
     fixed_pivots: bool
     open_parameters: bool
-    time: Any  # the instant that is reached
-    state: Numbers  # shape (2n,): coordinates, then velocities, at that instant
+    time: Any  # the time that is reached
+    state: Numbers  # shape (2n,): coordinates, then velocities, at that time
     steps: int  # taken so far
     tol: float  # tolerance of a step
     code: str  # how heyoka compiled it; empty where it did not
     compile_seconds: float
-    amid_passage: bool  # whether a singular configuration is so near that only this engine can go on
+    near_singularity: bool  # whether a singular configuration is so near that only this engine can go on
 
     @classmethod
     def for_motion(cls, task: Task) -> "Engine":
-        """Make the engine of a motion to its end; raises where it cannot follow it as the request asks."""
+        """Return the engine of a motion.
+
+        Parameters
+        ----------
+        task : Task
+            The motion, the request and the numbers.
+
+        Returns
+        -------
+        Engine
+
+        Raises
+        ------
+        HolonomError
+            The engine does not support the request.
+        """
 
     @classmethod
     def comparable(cls, tol: float | None) -> bool:
-        """Return True if it may begin a motion of that tolerance where no engine is asked for."""
+        """Return True if the engine may be chosen by default for a tolerance.
+
+        Parameters
+        ----------
+        tol : float or None
+            Tolerance of a step; None if none is requested.
+
+        Returns
+        -------
+        bool
+        """
 
     @classmethod
-    def expected_seconds(cls, steps: int, operations: int, tol: float, between: Between) -> float:
-        """Seconds that it takes for a motion, arguments as for `quicker_engine`."""
+    def expected_seconds(cls, steps: int, operations: int, tol: float, between: OutputCounts) -> float:
+        """Return the expected time of a motion.
 
-    def restart(self, instant: Any, state: Numbers) -> None:
-        """Go on from another instant and state, shape (2n,)."""
+        Parameters
+        ----------
+        steps, operations, tol, between : int, int, float, OutputCounts
+            As for `quicker_engine`.
+
+        Returns
+        -------
+        float
+            In seconds.
+        """
+
+    def restart(self, time_point: Any, state: Numbers) -> None:
+        """Continue from another time and state.
+
+        Parameters
+        ----------
+        time_point : number
+            The new time.
+        state : ndarray, shape (2n,)
+            Coordinates, then velocities.
+        """
 
     def advance(self, until: Any) -> None:
-        """Follow the motion to an instant.
+        """Integrate to a time.
+
+        Parameters
+        ----------
+        until : number
+            Last time.
 
         Raises
         ------
@@ -127,13 +188,38 @@ class Engine(Protocol):
         """
 
     def integrate(self, until: Any) -> Iterator[Step]:
-        """Follow the motion to an instant, step by step, with its states between; raises as `advance`.
+        """Integrate to a time and yield steps with their states.
 
-        A step's states are to be asked for before the next step.
+        Parameters
+        ----------
+        until : number
+            Last time.
+
+        Yields
+        ------
+        Step
+            Its states are available only until the next step.
+
+        Raises
+        ------
+        Obstacle, HolonomError
+            As `advance`.
         """
 
-    def solutions(self, instants: Numbers, states: Numbers) -> Solutions:
-        """Return what the equations of motion determine at instants, shape (k,), and states, shape (2n, k)."""
+    def solutions(self, times: Numbers, states: Numbers) -> Solutions:
+        """Return the unknowns of the equations of motion at times and states.
+
+        Parameters
+        ----------
+        times : ndarray, shape (k,)
+            Times that the engine has passed.
+        states : ndarray, shape (2n, k)
+            States at these times.
+
+        Returns
+        -------
+        Solutions
+        """
 
     def close(self) -> None:
-        """Give back what is held outside of Python; the motion is not followed any more."""
+        """Free resources outside of Python. The motion cannot be continued."""

@@ -1,9 +1,9 @@
-"""One motion followed by more engines than one: where the first meets an obstacle, the robust engine leads past it.
+"""Integration of a motion by several engines, with the robust engine as fallback.
 
-The Taylor engine is the first choice, or the Runge-Kutta engine where that is quicker; both take the motion program.
-Where constraints are redundant, no order of pivots solves the equations, and the robust engine does all; where the
-configuration nears a singular one, or numbers leave their range, it takes over from either until the
-constraints are as independent again as they were when it did.
+The Taylor engine is the first choice, or the Runge-Kutta engine if it is quicker; both use the motion program. If
+constraints are redundant, no order of pivots solves the equations, and the robust engine integrates the whole motion.
+Near a singular configuration, or if numbers leave their range, it replaces the other engine until the constraints are
+as independent again as they were before.
 """
 
 from collections import deque
@@ -13,15 +13,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...failures import Failure, HolonomError
+from ...failures import ErrorKind, HolonomError
 from ..evaluation import Numbers, as_floats
-from ..hard_cases import HardCase
+from ..hard_cases import Difficulty
 from ..request import EngineName
-from .choice import TRIAL, Between, Choice, quicker_engine
+from .choice import TRIAL, Choice, OutputCounts, quicker_engine
 from .engine import Engine, Obstacle, Solutions, Step, Task
 from .registry import DEFAULT, FALLBACK, compared_engines, engine_class
 
-UNCOMPILED = (Failure.COMPILER_UNUSABLE, Failure.COMPILER_REFUSED)
+UNCOMPILED = (ErrorKind.COMPILER_UNUSABLE, ErrorKind.COMPILER_REFUSED)
 FINE = 1e-13  # tolerance of the robust engine between two segments of a Taylor engine, where none is asked for
 
 
@@ -31,7 +31,7 @@ class EngineSegment(NamedTuple):
     engine: EngineName
     start: float
     end: float
-    case: HardCase | None = None  # why the robust engine went on; None where it did not
+    case: Difficulty | None = None  # why the robust engine went on; None where it did not
     reason: str = ""  # why it was called, a clause
 
 
@@ -41,7 +41,7 @@ class FallbackEngine:
     Parameters
     ----------
     task : Task
-    between : Between or None
+    between : OutputCounts or None
         What is wanted between the steps; None where the motion goes on after this one, so that engines cannot be
         weighed by what is ahead.
 
@@ -49,7 +49,7 @@ class FallbackEngine:
     ----------
     choice : Choice or None
         Why the engine that began was taken; None where there was nothing to weigh.
-    legs : list of EngineSegment
+    segments : list of EngineSegment
         In order, as far as the motion has come.
 
     Raises
@@ -58,21 +58,21 @@ class FallbackEngine:
         The engine asked for cannot follow this motion, or not in this precision or to this tolerance.
     """
 
-    def __init__(self, task: Task, between: Between | None = None) -> None:
+    def __init__(self, task: Task, between: OutputCounts | None = None) -> None:
         self._task, self._automatic = task, task.request.engine == EngineName.AUTO
         self.choice: Choice | None = None
         self._second: Engine | None = None
         self._current = self._first = self._first_engine(between)
-        self._begun, self.legs = float(self.time), []
+        self._begun, self.segments = float(self.time), []
 
     @property
     def time(self) -> Any:
-        """The instant that is reached."""
+        """The time that is reached."""
         return self._current.time
 
     @property
     def state(self) -> Numbers:
-        """The state at this instant."""
+        """The state at this time."""
         return self._current.state
 
     @property
@@ -95,13 +95,26 @@ class FallbackEngine:
         """Tolerance of the engine that began."""
         return self._first.tol
 
-    def restart(self, instant: Any, state: Numbers) -> None:
-        """Go on from another instant and state, shape (2n,), with the engine that began."""
-        self._first.restart(instant, state)
-        self._current, self._begun = self._first, float(instant)
+    def restart(self, time_point: Any, state: Numbers) -> None:
+        """Continue from another time and state, with the engine that began.
+
+        Parameters
+        ----------
+        time_point : number
+            The new time.
+        state : ndarray, shape (2n,)
+            Coordinates, then velocities.
+        """
+        self._first.restart(time_point, state)
+        self._current, self._begun = self._first, float(time_point)
 
     def advance(self, until: Any) -> None:
-        """Follow the motion to an instant, each engine at its fastest.
+        """Integrate to a time, each engine at its fastest.
+
+        Parameters
+        ----------
+        until : number
+            Last time.
 
         Raises
         ------
@@ -111,35 +124,64 @@ class FallbackEngine:
         deque(self._followed(until, _without_steps), maxlen=0)
 
     def integrate(self, until: Any) -> Iterator[Step]:
-        """Follow the motion to an instant, step by step; raises as `advance`."""
+        """Integrate to a time, step by step.
+
+        Parameters
+        ----------
+        until : number
+            Last time.
+
+        Returns
+        -------
+        iterator of Step
+
+        Raises
+        ------
+        HolonomError
+            As `advance`.
+        """
         return self._followed(until, _with_steps)
 
-    def solutions(self, instants: Numbers, states: Numbers) -> Solutions:
-        """Return what the equations of motion determine, by the engine that followed the motion there or is at work."""
+    def solutions(self, times: Numbers, states: Numbers) -> Solutions:
+        """Return the unknowns of the equations of motion, by the engine of those times.
+
+        Parameters
+        ----------
+        times : ndarray, shape (k,)
+            Times that the motion has passed.
+        states : ndarray, shape (2n, k)
+            States at these times.
+
+        Returns
+        -------
+        Solutions
+        """
         second = self._second
         if second is None:
-            return self._first.solutions(instants, states)
-        there = self._by(second, as_floats(instants))
+            return self._first.solutions(times, states)
+        there = self._by(second, as_floats(times))
         if there.all():
-            return second.solutions(instants, states)
-        found = self._first.solutions(instants, states)
+            return second.solutions(times, states)
+        found = self._first.solutions(times, states)
         if there.any():
-            for rows, better in zip(found, second.solutions(instants[there], states[:, there]), strict=True):
+            for rows, better in zip(found, second.solutions(times[there], states[:, there]), strict=True):
                 rows[:, there] = better[: len(rows)]
         return found
 
     def close(self) -> None:
-        """Give back what the engines hold outside of Python."""
+        """Free resources of the engines outside of Python."""
         for engine in self._set_up:
             engine.close()
 
     # ---- engines ----
 
-    def _first_engine(self, between: Between | None) -> Engine:
+    def _first_engine(self, between: OutputCounts | None) -> Engine:
         obstacle, request = self._task.problem.obstacle, self._task.request
         chosen = request.engine if not self._automatic else DEFAULT if obstacle is None else FALLBACK
+        if self._task.problem.reacting and (obstacle is not None or chosen == FALLBACK):
+            raise HolonomError(ErrorKind.REACTING, detail=f"and the robust engine is called for: {obstacle or chosen}")
         if obstacle is not None and engine_class(chosen).fixed_pivots:
-            raise HolonomError(Failure.NO_PIVOTS, detail=obstacle)
+            raise HolonomError(ErrorKind.NO_PIVOTS, detail=obstacle)
         first = engine_class(chosen).for_motion(self._task)
         weighs = self._automatic and obstacle is None and request.compact is None and self._in_doubles
         steps = first.steps_ahead(self._task.end, TRIAL) if weighs and between is not None else None
@@ -151,7 +193,7 @@ class FallbackEngine:
         try:
             return engine_class(self.choice.engine).for_motion(self._task)
         except HolonomError as refusal:
-            if refusal.failure not in UNCOMPILED:
+            if refusal.kind not in UNCOMPILED:
                 raise
             self.choice = replace(self.choice, engine=first.name, refused=str(refusal))
             return first
@@ -172,13 +214,13 @@ class FallbackEngine:
         """The engines that have been called for so far."""
         return [self._first] if self._second is None else [self._first, self._second]
 
-    def _by(self, engine: Engine, instants: Numbers) -> Numbers:
-        """Return which of the instants an engine has followed the motion to."""
-        legs = [leg for leg in self.legs if leg.engine is engine.name]
-        spans = [(leg.start, leg.end) for leg in legs]
+    def _by(self, engine: Engine, times: Numbers) -> Numbers:
+        """Return which of the times an engine has followed the motion to."""
+        segments = [segment for segment in self.segments if segment.engine is engine.name]
+        spans = [(segment.start, segment.end) for segment in segments]
         if engine is self._current:
             spans.append((self._begun, np.inf))
-        return np.array([any(start < t <= end for start, end in spans) for t in instants], dtype=bool)
+        return np.array([any(start < t <= end for start, end in spans) for t in times], dtype=bool)
 
     # ---- segments ----
 
@@ -187,19 +229,19 @@ class FallbackEngine:
             try:
                 yield from self._segment(along(self._first, until), lambda: False, *self._why_first)
             except Obstacle as obstacle:
-                if not (self._automatic and self._in_doubles):
+                if not (self._automatic and self._in_doubles) or self._task.problem.reacting:
                     raise
                 yield from self._past(obstacle, self._fallback(), until)
 
     def _past(self, obstacle: Obstacle, second: Engine, until: Any) -> Iterator[Step]:
-        """Yield the motion past an obstacle, or to an instant before that."""
+        """Yield the motion past an obstacle, or to a time before that."""
         second.restart(self._first.time, self._first.state.copy())
         self._current = second
 
         def passed() -> bool:
-            return not second.amid_passage and obstacle.passed(second.time, second.state)
+            return not second.near_singularity and obstacle.passed(second.time, second.state)
 
-        yield from self._segment(second.integrate(until), passed, obstacle.case, obstacle.reason)
+        yield from self._segment(second.integrate(until), passed, obstacle.case, obstacle.cause)
         self._first.restart(second.time, second.state)
         self._current = self._first
 
@@ -215,17 +257,17 @@ class FallbackEngine:
                 self._add_segment(EngineSegment(self._current.name, self._begun, float(self.time), *why))
 
     @property
-    def _why_first(self) -> tuple[HardCase | None, str]:
+    def _why_first(self) -> tuple[Difficulty | None, str]:
         """Why the engine that began is the robust one, where it was not asked for."""
         if self._task.problem.obstacle is None:
             return None, ""
         return self._first.case, self._task.problem.obstacle
 
-    def _add_segment(self, leg: EngineSegment) -> None:
-        """Keep a segment, as one with the last where the same engine went on for the same reason."""
-        if self.legs and self.legs[-1]._replace(start=leg.start, end=leg.end) == leg:
-            leg = leg._replace(start=self.legs.pop().start)
-        self.legs.append(leg)
+    def _add_segment(self, segment: EngineSegment) -> None:
+        """Add a segment; join it to the last one if engine and reason are the same."""
+        if self.segments and self.segments[-1]._replace(start=segment.start, end=segment.end) == segment:
+            segment = segment._replace(start=self.segments.pop().start)
+        self.segments.append(segment)
 
 
 def _with_steps(engine: Engine, until: Any) -> Iterator[Step]:

@@ -1,9 +1,9 @@
-"""A motion on its motion program: what the engines that take the program's fixed pivots have in common.
+"""Common base of the engines that use the motion program with its fixed pivots.
 
-An integrator takes its steps in blocks, without Python in between. A block whose steps have shrunk suddenly is taken
-back and repeated step by step, under watch: steps shrink in proportion to the distance of a singularity, and a singular
-configuration of the constraints is one for the fixed pivots of the motion program, although the motion itself goes
-through it. Behind an obstacle the next one may be near, and the first steps are under watch from the beginning.
+An integrator takes its steps in blocks, without Python in between. A block whose steps shrink suddenly is undone and
+repeated step by step, with checks: steps shrink in proportion to the distance of a singularity. A singular
+configuration of the constraints is a singularity for the fixed pivots of the motion program, although the motion itself
+is regular there. After an obstacle the next one may be near, so the first steps are checked from the beginning.
 """
 
 import time
@@ -15,14 +15,14 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ...failures import Failure, HolonomError
+from ...failures import ErrorKind, HolonomError
 from ...language import translatable
 from ...program.motion_problem import MotionProblem, require_signs_known
 from ...program.precision import Precision
 from ..constraints.factorization import factored_constraints
 from ..constraints.singularity import Watch, no_controls, no_gradient
 from ..evaluation import Evaluation, Numbers, as_floats, evaluation_once
-from ..hard_cases import HardCase
+from ..hard_cases import Difficulty
 from ..inputs import Inputs
 from ..matrices import MotionMatrices
 from ..request import EngineName
@@ -44,25 +44,37 @@ Taken = tuple[Any, Any, Any, int]
 
 
 class Integrator(Protocol):
-    """What takes the steps, as heyoka's integrators do."""
+    """The interface of an integrator, as heyoka's integrators have it."""
 
-    # time, last_h: the instant that is reached; the length of the last step
+    # time, last_h: the time that is reached; the length of the last step
     time: Any
     last_h: Any
-    state: Numbers  # shape (2n,): at that instant, in place
+    state: Numbers  # shape (2n,): at that time, in place
     tol: Any
 
     def propagate_until(self, until: Any, max_steps: int) -> tuple[Any, ...]:
-        """Take steps: to an instant, or so many, or until one fails; `Taken`, and what else the integrator says.
+        """Take steps to a time, or a number of them, or until one fails.
 
-        A step that the last instant cut short is neither the shortest nor the longest.
+        A step that is cut at the last time counts neither as the shortest nor as the longest.
+
+        Parameters
+        ----------
+        until : number
+            Last time.
+        max_steps : int
+            Largest number of steps.
+
+        Returns
+        -------
+        tuple
+            `Taken`, then further results of the integrator.
         """
 
 
 class ProgramEngine:
-    """What an engine on the motion program is; see `Engine`.
+    """An engine on the motion program; see `Engine`.
 
-    It provides the integrator, and says what is done between the blocks.
+    A subclass provides the integrator and the work between the blocks.
 
     Parameters
     ----------
@@ -73,7 +85,7 @@ class ProgramEngine:
     """
 
     name: EngineName
-    amid_passage = False
+    near_singularity = False
     state: Numbers
     tol: float
     code: str = ""
@@ -94,7 +106,7 @@ class ProgramEngine:
 
     @property
     def time(self) -> Any:
-        """The instant that is reached, a number of the precision."""
+        """The time that is reached, a number of the precision."""
         return self._integrator.time
 
     @cached_property
@@ -104,21 +116,34 @@ class ProgramEngine:
 
     @cached_property
     def watch(self) -> Watch:
-        """What looks at the constraints where steps shrink."""
+        """The monitor of the constraints if steps shrink."""
         return Watch(self._problem, self._matrices)
 
     @cached_property
     def _matrices(self) -> MotionMatrices:
         return self._known_matrices or MotionMatrices(self._problem)
 
-    def restart(self, instant: Any, state: Numbers) -> None:
-        """Go on from another instant and state, shape (2n,)."""
-        self._go_back(instant, state)
+    def restart(self, time_point: Any, state: Numbers) -> None:
+        """Continue from another time and state.
+
+        Parameters
+        ----------
+        time_point : number
+            The new time.
+        state : ndarray, shape (2n,)
+            Coordinates, then velocities.
+        """
+        self._go_back(time_point, state)
         self._behind_obstacle = self._obstacle is not None
         self._usual, self._obstacle = 0.0, None
 
     def advance(self, until: Any) -> None:
-        """Follow the motion to an instant, in the numbers of the precision.
+        """Integrate to a time, in the numbers of the precision.
+
+        Parameters
+        ----------
+        until : number
+            Last time.
 
         Raises
         ------
@@ -130,7 +155,22 @@ class ProgramEngine:
         deque(self._blocks(until, dense=False), maxlen=0)
 
     def integrate(self, until: Any) -> Iterator[Step]:
-        """Follow the motion to an instant, with its states between the steps; raises as `advance`."""
+        """Integrate to a time, with states between the steps.
+
+        Parameters
+        ----------
+        until : number
+            Last time.
+
+        Returns
+        -------
+        iterator of Step
+
+        Raises
+        ------
+        Obstacle, HolonomError
+            As `advance`.
+        """
         return self._blocks(until, dense=True)
 
     def _blocks(self, until: Any, dense: bool) -> Iterator[Step]:
@@ -141,14 +181,26 @@ class ProgramEngine:
             yield from dense_steps
             require_reach(self.steps - steps, self.time - begun, until - self.time)
 
-    def solutions(self, instants: Numbers, states: Numbers) -> Solutions:
-        """Return what the equations of motion determine at instants, shape (k,), and states, shape (2n, k)."""
+    def solutions(self, times: Numbers, states: Numbers) -> Solutions:
+        """Return the unknowns of the equations of motion at times and states.
+
+        Parameters
+        ----------
+        times : ndarray, shape (k,)
+            Times of the states.
+        states : ndarray, shape (2n, k)
+            Coordinates, then velocities.
+
+        Returns
+        -------
+        Solutions
+        """
         n, g = len(self._problem.coordinates), len(self._problem.multipliers)
         if self._evaluate is None:
             begun = time.perf_counter()
             self._evaluate = evaluation_once(self._problem, self._problem.motion, self.precision)
             self.compile_seconds += time.perf_counter() - begun
-        found = self._evaluate(self.inputs(instants, states))
+        found = self._evaluate(self.inputs(times, states))
         return Solutions(found[:n], found[n : n + g], found[n + g :])
 
     def close(self) -> None:
@@ -168,7 +220,10 @@ class ProgramEngine:
         raise NotImplementedError
 
     def _block(self, until: Any, dense: bool) -> tuple[bool, list[Step]]:
-        """Take a block of steps; whether it was the last, and its steps with their states where they are asked for."""
+        """Take a block of steps. Return True if it was the last, and its steps.
+
+        The steps include their states if `dense` is true.
+        """
         if self._obstacle is not None:
             raise self._obstacle
         if self._behind_obstacle:
@@ -176,7 +231,7 @@ class ProgramEngine:
             dense_steps = self._watched(until, dense, WATCHED)
             return self.time == until, dense_steps
         integrator = self._integrator
-        instant, before = integrator.time, self.state.copy()
+        time_point, before = integrator.time, self.state.copy()
         if dense:
             (_, shortest, longest, steps), dense_steps = self._with_states(until, self._length)
         else:
@@ -190,7 +245,7 @@ class ProgramEngine:
         elif quiet:
             self._prepare_next(until)
         if not quiet or not self._in_numbers:
-            self._go_back(instant, before)
+            self._go_back(time_point, before)
             dense_steps = self._watched(reached, dense, self._length)
             return self.time == until, dense_steps
         self.steps += steps
@@ -199,12 +254,15 @@ class ProgramEngine:
 
     @property
     def _in_numbers(self) -> bool:
-        """Whether the state is one: in a singular configuration no pivots put it onto the constraints."""
+        """True if the state is finite.
+
+        In a singular configuration no pivots project it onto the constraints.
+        """
         quickly = isfinite(self.state.dot(self.state))  # a square beyond the range is looked at closely
         return quickly or bool(np.isfinite(as_floats(self.state)).all())
 
     def _watched(self, until: Any, dense: bool, steps: int) -> list[Step]:
-        """Single steps, so many, until an instant or until the motion program is about to fail."""
+        """Take single steps until a time or until the motion program is about to fail."""
         self.watch.begin(self.time, self.state)
         dense_steps = []
         for _ in range(steps):
@@ -215,20 +273,20 @@ class ProgramEngine:
         return dense_steps
 
     def _watched_step(self, until: Any, dense: bool) -> list[Step]:
-        instant, before = self.time, self.state.copy()
+        time_point, before = self.time, self.state.copy()
         if dense:
             (outcome, _, step, _), dense_steps = self._with_states(until, 1)
         else:
             (outcome, _, step, *_), dense_steps = self._integrator.propagate_until(until, 1), []
         if outcome == self._failed:
-            self._go_back(instant, before)
+            self._go_back(time_point, before)
             reason = translatable("numbers leave the range of %(precision)s precision", precision=self.precision.name)
-            self._obstacle = self._obstacle_here(HardCase.OVERFLOW, reason)
+            self._obstacle = self._obstacle_here(Difficulty.OVERFLOW, reason)
             return []
         self._keep_constraints()
         if not self._in_numbers:
-            self._go_back(instant, before)
-            self._obstacle = self._obstacle_here(HardCase.SINGULAR_PASSAGE, NEARS_SINGULAR)
+            self._go_back(time_point, before)
+            self._obstacle = self._obstacle_here(Difficulty.SINGULAR_CONFIGURATION, NEARS_SINGULAR)
             return []
         self.steps += 1
         self._longest, self._usual = max(self._longest, self._usual, step), step or self._usual
@@ -236,47 +294,80 @@ class ProgramEngine:
         return dense_steps
 
     def _found_ahead(self, until: Any) -> HolonomError | None:
-        """Return the obstacle that the constraints and the length of the last step show ahead, or None."""
+        """Return the obstacle ahead, by the constraints and the last step, or None."""
         t = float(self.time)
         if self.watch.singular_ahead(t, self.state):
-            return self._obstacle_here(HardCase.SINGULAR_PASSAGE, NEARS_SINGULAR)
+            return self._obstacle_here(Difficulty.SINGULAR_CONFIGURATION, NEARS_SINGULAR)
         if self.time == until or abs(self._integrator.last_h) >= SHORTER * self._longest:
             return None
         if self._pivots_lose(t, self.state) > LOST:
-            return Obstacle(t, HardCase.SINGULAR_PASSAGE, VANISHING_PIVOT, lambda t, q: self._pivots_lose(t, q) < KEPT)
+            return Obstacle(
+                t, Difficulty.SINGULAR_CONFIGURATION, VANISHING_PIVOT, lambda t, q: self._pivots_lose(t, q) < KEPT
+            )
         if abs(self._integrator.last_h) >= SHORTEST * self._longest:
             return None
         vanished = self.watch.vanished(t, self.state)
         if vanished is None:
-            return HolonomError(Failure.NO_WAY_ON, detail=f"{t:.10g}, where steps become too short")
+            return HolonomError(ErrorKind.NO_WAY_ON, detail=f"{t:.10g}, where steps become too short")
         if vanished not in self._problem.reactions:
             return no_controls(t)
         return no_gradient(t, vanished)
 
     def _pivots_lose(self, t: Any, state: Numbers) -> float:
-        """Relative error of the program's accelerations, by a solve that chooses its pivots."""
+        """Return the relative error of the program's accelerations.
+
+        The reference is a solve that chooses its pivots.
+        """
         at = self._matrices.independent(float(t), as_floats(state))
         chosen = factored_constraints(at.mass, at.jacobian).accelerations(at.force, at.curvature)
         fixed = as_floats(self.solutions(np.array([t]), np.reshape(state, (-1, 1))).accelerations[:, 0])
         error = np.max(np.abs(fixed - chosen), initial=0.0) / np.max(np.abs(chosen), initial=1e-300)
         return float(error) if np.isfinite(error) else np.inf
 
-    def _obstacle_here(self, case: HardCase, reason: str) -> Obstacle:
-        """Return an obstacle that is passed where the constraints are more independent again than here."""
+    def _obstacle_here(self, case: Difficulty, reason: str) -> Obstacle:
+        """Return an obstacle that ends when the constraints become more independent."""
         least = self.watch.least(self.time, self.state)
         return Obstacle(float(self.time), case, reason, lambda t, state: self.watch.least(t, state) > least)
 
-    def _go_back(self, instant: Any, state: Numbers) -> None:
-        self._integrator.time = instant
+    def _go_back(self, time_point: Any, state: Numbers) -> None:
+        self._integrator.time = time_point
         self.state[:] = state
 
 
 def decay_until(end: Any, problem: MotionProblem, precision: Precision) -> float:
-    """Return the rate gamma of Baumgarte's and Gear's stabilization for a motion to an instant."""
+    """Return the rate gamma of the Baumgarte and GGL stabilization until a time.
+
+    Parameters
+    ----------
+    end : number
+        Last time of the motion, in the numbers of the precision.
+    problem : MotionProblem
+        The motion, which gives the first time.
+    precision : Precision
+        Numbers of the motion.
+
+    Returns
+    -------
+    float
+        Per unit of time.
+    """
     return DECAYS_IN_A_RUN / float(end - precision.number(problem.start["t"]))
 
 
 def decay_in(problem: MotionProblem, decay: float | None) -> float:
-    """Return the rate gamma: what is asked for, or `DECAYS_IN_A_RUN` by the time span's length, one without a span."""
+    """Return the rate gamma: the requested one, or `DECAYS_IN_A_RUN` per time span.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion, which gives the time span; its length is one if the scene gives none.
+    decay : float or None
+        Requested rate, per unit of time.
+
+    Returns
+    -------
+    float
+        Per unit of time.
+    """
     first, last = map(float, problem.time_span or (0, 1))
     return DECAYS_IN_A_RUN / (last - first) if decay is None else decay

@@ -1,7 +1,7 @@
-"""The engines by name: adding one takes its file and a line here.
+"""Registry of the engines by name. A new engine needs its file and a line here.
 
-One begins a motion where nothing else is asked for, or the quickest of those that are compared; another one goes on
-where that meets an obstacle, and is imported for that alone: SciPy takes long.
+The default engine, or the quickest of the compared ones, begins a motion. The robust engine continues at an obstacle.
+It is imported only then, because SciPy takes long to import.
 """
 
 from importlib import import_module
@@ -16,11 +16,27 @@ DEFAULT, FALLBACK = "taylor", "robust"
 
 
 def engine_class(name: str) -> Any:
-    """Return the class of an engine, imported when it is first asked for; see `Engine`."""
+    """Return the class of an engine, imported on first use.
+
+    Parameters
+    ----------
+    name : str
+        A key of `ENGINES`.
+
+    Returns
+    -------
+    type
+        It follows `Engine`.
+    """
     module, _, attribute = ENGINES[name].partition(":")
     return getattr(import_module(module, __package__), attribute)
 
 
 def compared_engines() -> list[Any]:
-    """Return the classes of the engines that may begin a motion, `DEFAULT` first."""
+    """Return the classes of the engines that may begin a motion, `DEFAULT` first.
+
+    Returns
+    -------
+    list of type
+    """
     return [engine_class(name) for name in ENGINES if name != FALLBACK]

@@ -1,14 +1,14 @@
-"""The robust engine: SciPy's integrators, pivoted linear algebra in the right-hand side, projection after each step.
+"""The robust engine: SciPy's integrators, pivoted solves, projection of each step.
 
-It works where the motion program's fixed pivots fail. Redundant constraints: the rank of J is found at states that
-keep the constraints and held between them, where rounding or a stage off the constraints would raise it. Singular
-configurations: the least singular value that counts is watched; where it runs to zero, one arc spans the place where
-it vanishes (`singular_passage`), and all steps before end at half of the way to it.
+It works if the fixed pivots of the motion program fail. For redundant constraints, the rank of J is determined at
+states that satisfy the constraints and kept between them, because rounding or a stage off the constraints would raise
+it. For singular configurations, the least singular value that counts is monitored. If it runs to zero, one arc spans
+the zero (`singular_arc`), and all steps before end at half of the distance.
 
-DOP853 takes the steps, of order 8. Two of its stages fall on the end of a step: how much the rates differ between them,
-beside the states, estimates the stiffness (Hairer & Wanner, Solving Ordinary Differential Equations II, section IV.2).
-Where steps stay at the boundary of its stability Radau's method takes over, of order 5 and stable for stiff
-motions.
+DOP853 takes the steps, of order 8. Two of its stages are at the end of a step: the difference of the rates between
+them, relative to that of the states, estimates the stiffness (Hairer & Wanner, Solving Ordinary Differential Equations
+II, section IV.2). If steps stay at the boundary of its stability, Radau's method replaces it, of order 5 and stable for
+stiff motions.
 """
 
 import time
@@ -17,17 +17,17 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.integrate import DOP853, OdeSolver, Radau
 
-from ...failures import Failure, HolonomError
+from ...failures import ErrorKind, HolonomError
 from ...program.motion_problem import MotionProblem
 from ..constraints.directions import EPSILON, dependent_constraints, rank_of, weighted_constraints
 from ..constraints.factorization import factored_constraints
 from ..constraints.projection import InconsistentConstraints, settle
 from ..constraints.singularity import extrapolated_zero, least_of, probed, singular_values_at
-from ..hard_cases import HardCase
+from ..hard_cases import Difficulty
 from ..matrices import Matrix, MotionMatrices, Vector, start_of
 from ..request import EngineName
 from .engine import Solutions, Step, Task, require_reach
-from .singular_passage import NODES, Arc, arc_over
+from .singular_arc import NODES, Arc, arc_over
 
 TOLERANCE = 1e-11
 TIGHTEST = 100 * EPSILON  # relative tolerance that SciPy's integrators hold
@@ -84,33 +84,61 @@ class RobustEngine:
 
     @classmethod
     def for_motion(cls, task: Task) -> "RobustEngine":
-        """As `Engine.for_motion`."""
+        """Return the engine of a motion.
+
+        Parameters
+        ----------
+        task : Task
+            The motion, the request and the numbers.
+
+        Returns
+        -------
+        RobustEngine
+
+        Raises
+        ------
+        HolonomError
+            The precision is not double, or the tolerance is outside of the engine's range.
+        """
         tol = task.request.tol
         if task.precision.name != "double":
-            raise HolonomError(Failure.ROBUST_IS_DOUBLE, detail=task.problem.obstacle or "--engine asks for it")
+            raise HolonomError(ErrorKind.ROBUST_IS_DOUBLE, detail=task.problem.obstacle or "--engine asks for it")
         if tol is not None and not TIGHTEST <= tol < 1:
             holds = f"the robust engine holds tolerances from {TIGHTEST:.1e} to 1, not {tol:g}"
-            raise HolonomError(Failure.TOLERANCE_UNHELD, detail=holds)
+            raise HolonomError(ErrorKind.TOLERANCE_UNHELD, detail=holds)
         return cls(task.problem, tol, task.matrices)
 
     @property
-    def case(self) -> HardCase:
+    def case(self) -> Difficulty:
         """Why no other engine begins the motion."""
-        return HardCase.REDUNDANT if self.rank < len(self._multipliers) else HardCase.SINGULAR_PASSAGE
+        return Difficulty.REDUNDANT if self.rank < len(self._multipliers) else Difficulty.SINGULAR_CONFIGURATION
 
-    def restart(self, instant: float, state: Vector) -> None:
-        """Go on from another instant and state, shape (2n,)."""
+    def restart(self, time_point: float, state: Vector) -> None:
+        """Continue from another time and state.
+
+        Parameters
+        ----------
+        time_point : float
+            The new time.
+        state : ndarray, shape (2n,)
+            Coordinates, then velocities.
+        """
         self._arc: Arc | None = None
-        self.rank, until_singular = probed(self.matrices, instant, state)
+        self.rank, until_singular = probed(self.matrices, time_point, state)
         if until_singular == 0:
-            self.time, self.state = instant, state
+            self.time, self.state = time_point, state
             self._arc = self._arc_away()
         else:
-            self._begin(instant, state)
-            self._vanishing = instant + until_singular
+            self._begin(time_point, state)
+            self._vanishing = time_point + until_singular
 
     def advance(self, until: float) -> None:
-        """Follow the motion to an instant.
+        """Integrate to a time.
+
+        Parameters
+        ----------
+        until : float
+            Last time.
 
         Raises
         ------
@@ -121,9 +149,22 @@ class RobustEngine:
             pass
 
     def integrate(self, until: float) -> Iterator[Step]:
-        """Follow the motion to an instant, step by step. A step's states are to be asked for before the next step.
+        """Integrate to a time, step by step.
 
-        Raises as `advance`.
+        Parameters
+        ----------
+        until : float
+            Last time.
+
+        Yields
+        ------
+        Step
+            Its states are available only until the next step.
+
+        Raises
+        ------
+        HolonomError
+            As `advance`.
         """
         steps, begun = self.steps, self.time
         while self.time < until:
@@ -135,22 +176,47 @@ class RobustEngine:
         """Nothing is held outside of Python."""
 
     @property
-    def amid_passage(self) -> bool:
-        """Whether a singular configuration is in reach of the next steps, or being passed."""
+    def near_singularity(self) -> bool:
+        """True if a singular configuration is within the next steps or on the current arc."""
         return self._arc is not None or self._vanishing - self.time <= REACH * self._solver.h_abs
 
     @property
-    def passages(self) -> list[float]:
-        """Instants at which the motion went through a singular configuration."""
-        return [instant for arc in self._arcs if (instant := self._place(arc)) <= self.time]
+    def singular_times(self) -> list[float]:
+        """Times at which the motion went through a singular configuration."""
+        return [time_point for arc in self._arcs if (time_point := self._place(arc)) <= self.time]
 
-    def solutions(self, instants: Vector, states: Matrix) -> Solutions:
-        """Return the solutions at instants, shape (k,), and states that keep the constraints."""
-        found = [self.solution(t, state) for t, state in zip(instants, states.T, strict=True)]
+    def solutions(self, times: Vector, states: Matrix) -> Solutions:
+        """Return the unknowns of the equations of motion at several times.
+
+        Parameters
+        ----------
+        times : ndarray, shape (k,)
+            Times of the states.
+        states : ndarray, shape (2n, k)
+            They keep the constraints.
+
+        Returns
+        -------
+        Solutions
+        """
+        found = [self.solution(t, state) for t, state in zip(times, states.T, strict=True)]
         return Solutions(*(np.array(each).T for each in zip(*found, strict=True)))
 
     def solution(self, t: float, state: Vector) -> Solutions:
-        """Return the same at one instant and state: vectors."""
+        """Return the unknowns of the equations of motion at one time.
+
+        Parameters
+        ----------
+        t : float
+            Time of the state.
+        state : ndarray, shape (2n,)
+            It keeps the constraints.
+
+        Returns
+        -------
+        Solutions
+            Vectors of shape (n,), (g,) and (n,).
+        """
         at = self.matrices(t, state)
         singular_values = weighted_constraints(at.mass, at.jacobian).singular_values()
         factored = factored_constraints(at.mass, at.jacobian, min(self.rank, rank_of(singular_values, UNTRUSTED)))
@@ -165,7 +231,10 @@ class RobustEngine:
         return Solutions(accelerations, self._as_in_the_program(at.jacobian, multipliers, forces), forces)
 
     def _as_in_the_program(self, jacobian: Matrix, multipliers: Vector, forces: Vector) -> Vector:
-        """Of the multipliers that give the constraint forces those that are zero for redundant constraints."""
+        """Return the multipliers that are zero for redundant constraints.
+
+        They give the same constraint forces.
+        """
         kept = list(self._independent)
         if len(kept) == len(multipliers):
             return multipliers
@@ -183,14 +252,14 @@ class RobustEngine:
     # ---- steps ----
 
     def _step(self, until: float) -> Step:
-        """One step of SciPy's integrator, at most half of the way to a singular configuration."""
+        """Take one step, at most half of the distance to a singular configuration."""
         start, solver, length = self.time, self._solver, self._solver.h_abs
         solver.t_bound, solver.status = min(until, (start + self._vanishing) / 2), "running"
         solver.step()
         self._longest = max(self._longest, solver.h_abs)
         cut_short = solver.status == "finished" and solver.t == until
         if solver.status == "failed" or (solver.h_abs < SHORTEST * self._longest and not cut_short):
-            raise HolonomError(Failure.NO_WAY_ON, detail=f"{start:.10g}, where steps become too short")
+            raise HolonomError(ErrorKind.NO_WAY_ON, detail=f"{start:.10g}, where steps become too short")
         if solver.status == "finished":
             solver.h_abs = max(solver.h_abs, length)
         if not self.stiff:
@@ -199,11 +268,11 @@ class RobustEngine:
         self._move(solver.t, solver.y)
         if self.stiff and isinstance(solver, DOP853):
             self._begin(self.time, self.state)
-        return Step(start, self.time, lambda instants: self._projected(instants, solver.dense_output()(instants)))
+        return Step(start, self.time, lambda times: self._projected(times, solver.dense_output()(times)))
 
-    def _projected(self, instants: Vector, states: Matrix) -> Matrix:
+    def _projected(self, times: Vector, states: Matrix) -> Matrix:
         """States between two steps, on the constraints."""
-        return settle(self.matrices, instants, states.T, self.rank)[0].T
+        return settle(self.matrices, times, states.T, self.rank)[0].T
 
     def _rates(self, t: float, state: Vector) -> Vector:
         at = self.matrices(t, state)
@@ -232,7 +301,10 @@ class RobustEngine:
         self._longest = self._solver.h_abs
 
     def _first_step(self, t: float, state: Vector) -> float:
-        """As SciPy estimates it (Hairer, Norsett & Wanner I, section II.4), with times in terms of the nominal one."""
+        """Return SciPy's estimate of the first step, scaled by the nominal time.
+
+        It is that of Hairer, Norsett & Wanner I, section II.4.
+        """
         nominal, order = self.matrices.nominal, RADAU_ORDER if self.stiff else DOP853.order
         scale = self.tol * (nominal.state + np.abs(state))
         slope = self._rates(t, state) * nominal.time
@@ -245,7 +317,7 @@ class RobustEngine:
         return length * nominal.time
 
     def _move(self, t: float, state: Vector) -> None:
-        """Project what a step gave, and go on from there."""
+        """Project the result of a step, and continue from there."""
         before, last = self.time, self._least
         self.state, accelerations = self._kept(t, state)
         self._least = self._least_at(t, self.state)
@@ -278,7 +350,7 @@ class RobustEngine:
         for at in zip(np.atleast_1d(t), np.atleast_2d(state), strict=True):
             if rank_of(singular_values_at(self.matrices, *at), UNTRUSTED) > self.rank:
                 raise HolonomError(
-                    Failure.NO_WAY_ON, detail=f"{at[0]:.10g}, a singular configuration that it starts from"
+                    ErrorKind.NO_WAY_ON, detail=f"{at[0]:.10g}, a singular configuration that it starts from"
                 )
 
     # ---- singular configurations ----
@@ -290,11 +362,11 @@ class RobustEngine:
             return False
         self._arc, self._refused = self._arc_over(ahead), ahead
         if self._arc is None and ahead < CLOSEST * max(self.matrices.nominal.time, abs(self.time)):
-            raise HolonomError(Failure.NO_WAY_ON, detail=f"{self.time + ahead:.10g}, a singular configuration")
+            raise HolonomError(ErrorKind.NO_WAY_ON, detail=f"{self.time + ahead:.10g}, a singular configuration")
         return self._arc is not None
 
     def _arc_over(self, ahead: float) -> Arc | None:
-        """Return an arc whose end is clear of the singular configuration; None where there is none of that length."""
+        """Return an arc that ends clear of the singular configuration, or None."""
         guess = np.tile(self._solver.f[self.n :], (NODES, 1))
         for longer in LONGER:
             arc = arc_over(
@@ -312,7 +384,7 @@ class RobustEngine:
         return None
 
     def _arc_away(self) -> Arc:
-        """Return an arc from a singular configuration, along the branch that the velocities point to."""
+        """Return an arc from a singular configuration, in the direction of the velocities."""
         rank = rank_of(singular_values_at(self.matrices, self.time, self.state), NEARLY_SINGULAR)
         state, factored = settle(self.matrices, self.time, self.state, rank)
         at = self.matrices(self.time, state)
@@ -323,10 +395,12 @@ class RobustEngine:
             arc = arc_over(self._accelerations, self.time, self.time + length, state, guess, sizes)
             if arc is not None and self._trusted(arc):
                 return self._taken(arc)
-        raise HolonomError(Failure.NO_WAY_ON, detail=f"{self.time:.10g}, a singular configuration that it starts from")
+        raise HolonomError(
+            ErrorKind.NO_WAY_ON, detail=f"{self.time:.10g}, a singular configuration that it starts from"
+        )
 
     def _place(self, arc: Arc) -> float:
-        """Return the instant of an arc at which the least singular value that counts vanishes."""
+        """Return the time of an arc at which the least counted singular value vanishes."""
         from scipy.optimize import minimize_scalar
 
         def least(t: float) -> float:
@@ -341,7 +415,7 @@ class RobustEngine:
         return arc
 
     def _trusted(self, arc: Arc) -> bool:
-        """Return True if the arc is as smooth as the tolerance asks, and ends on the constraints."""
+        """Return True if an arc is smooth to the tolerance and ends on the constraints."""
         if arc.error(self.matrices.nominal.coordinates) > max(self.tol, ARC_ERROR):
             return False
         try:
@@ -350,11 +424,11 @@ class RobustEngine:
             return False
         return self.matrices.nominal.share(kept - arc.last, kept) <= OFF_BRANCH
 
-    def _accelerations(self, instants: Vector, states: Matrix) -> Matrix:
-        return self._kept(instants, states)[1]
+    def _accelerations(self, times: Vector, states: Matrix) -> Matrix:
+        return self._kept(times, states)[1]
 
     def _along_arc(self, until: float) -> Step:
-        """Along the arc, to its end or to the instant asked for."""
+        """Along the arc, to its end or to the time asked for."""
         start, arc = self.time, self._arc
         if until < arc.end:
             self.time, self.state = until, arc(np.array([until]))[:, 0]

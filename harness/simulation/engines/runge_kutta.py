@@ -1,8 +1,8 @@
-"""The Runge-Kutta engine: the method of Dormand and Prince, of order 8, on the motion program in C.
+"""The Runge-Kutta engine: the Dormand-Prince method of order 8 in C.
 
-Its steps are compiled for the motion (`dormand_prince.c`). Its tolerance is that of a step, as the Taylor engine's is.
-It takes less time than the Taylor engine where a tolerance is not fine and the program long; and for short runs, since
-all of a run is one call.
+Its steps are compiled for the motion program (`dormand_prince.c`). Its tolerance is that of a step, as for the Taylor
+engine. It takes less time than the Taylor engine for coarse tolerances and long programs, and for short runs, since a
+whole run is one call.
 """
 
 import ctypes
@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...failures import Failure, HolonomError
+from ...failures import ErrorKind, HolonomError
 from ...program.c_function import has_compiler, load_c, unload
 from ...program.c_source import HELPERS, scalar_statements
 from ...program.motion_problem import MotionProblem, computing
@@ -29,7 +29,7 @@ from ..inputs import named_inputs
 from ..matrices import MotionMatrices
 from ..nominal import Nominal
 from ..request import EngineName, Stabilization
-from .choice import Between
+from .choice import OutputCounts
 from .code import REFERENCE
 from .engine import Step, Task
 from .program_engine import SHRUNK, ProgramEngine, Taken, decay_in, decay_until
@@ -60,13 +60,13 @@ Floats = NDArray[np.float64]
 
 
 class RungeKuttaEngine(ProgramEngine):
-    """A motion followed by the method of Dormand and Prince, in double precision; see `Engine`.
+    """The Dormand-Prince engine in double precision; see `Engine`.
 
     Parameters
     ----------
     tol : float or None
         Tolerance of a step, relative, and absolute in terms of nominal sizes; None for `USUAL`.
-    drift : Stabilization
+    stabilization : Stabilization
     decay : float or None
         gamma of Baumgarte's and Gear's stabilization, as for `TaylorEngine`.
     matrices : MotionMatrices or None
@@ -84,17 +84,17 @@ class RungeKuttaEngine(ProgramEngine):
         self,
         problem: MotionProblem,
         tol: float | None = None,
-        drift: Stabilization = Stabilization.PROJECTION,
+        stabilization: Stabilization = Stabilization.PROJECTION,
         decay: float | None = None,
         matrices: MotionMatrices | None = None,
     ) -> None:
         super().__init__(problem, read_precision("double"), True, matrices)
         if tol is not None and not FINEST <= tol < 1:
             holds = f"the Runge-Kutta engine holds tolerances from {FINEST:g} to 1, not {tol:g}"
-            raise HolonomError(Failure.TOLERANCE_UNHELD, detail=holds)
+            raise HolonomError(ErrorKind.TOLERANCE_UNHELD, detail=holds)
         self.tol = USUAL if tol is None else tol
         begun = time.perf_counter()
-        stabilization = drift if problem.multipliers else Stabilization.NONE
+        stabilization = stabilization if problem.multipliers else Stabilization.NONE
         nominal = self._matrices.nominal
         self._integrator = DormandPrince(problem, self.tol, stabilization, decay_in(problem, decay), nominal)
         self.state = self._integrator.state
@@ -102,29 +102,75 @@ class RungeKuttaEngine(ProgramEngine):
 
     @classmethod
     def for_motion(cls, task: Task) -> "RungeKuttaEngine":
-        """As `Engine.for_motion`."""
+        """Return the engine of a motion.
+
+        Parameters
+        ----------
+        task : Task
+            The motion, the request and the numbers.
+
+        Returns
+        -------
+        RungeKuttaEngine
+
+        Raises
+        ------
+        HolonomError
+            The precision is not double, or as for the class.
+        """
         problem, request, precision, end, matrices = task
         if precision.name != "double":
-            raise HolonomError(Failure.RUNGE_KUTTA_IS_DOUBLE, detail=precision.name)
+            raise HolonomError(ErrorKind.RUNGE_KUTTA_IS_DOUBLE, detail=precision.name)
         decay = decay_until(end, problem, precision)
-        return cls(with_values_in(problem), request.tol, request.drift, decay, matrices)
+        return cls(with_values_in(problem), request.tol, request.stabilization, decay, matrices)
 
     @classmethod
     def comparable(cls, tol: float | None) -> bool:
-        """Return True if it holds the tolerance and can be compiled here."""
+        """Return True if it holds the tolerance and can be compiled here.
+
+        Parameters
+        ----------
+        tol : float or None
+            Tolerance of a step; None if none is requested.
+
+        Returns
+        -------
+        bool
+        """
         return tol is not None and FINEST <= tol < 1 and has_compiler()
 
     @classmethod
-    def expected_seconds(cls, steps: int, operations: int, tol: float, between: Between) -> float:
-        """By the C compiler, and the steps."""
+    def expected_seconds(cls, steps: int, operations: int, tol: float, between: OutputCounts) -> float:
+        """Return the expected time of compilation and steps.
+
+        Parameters
+        ----------
+        steps, operations, tol, between : int, int, float, OutputCounts
+            As for `quicker_engine`.
+
+        Returns
+        -------
+        float
+            In seconds.
+        """
         taken = STRIDE * steps * (REFERENCE / tol) ** (1 / ORDER) * (1 + between.in_each) + between.altogether
         begun, each = COMPILER
         return begun + each * operations + taken * (STEP + STAGES * operations)
 
     def advance(self, until: float) -> None:
-        """Follow the motion to an instant, in one call of C where that is near and nothing is met on the way.
+        """Integrate to a time, in one call of C if possible.
 
-        Raises as `ProgramEngine.advance`.
+        This is possible for a near time without an obstacle before it.
+
+        Parameters
+        ----------
+        until : float
+            Last time.
+
+        Raises
+        ------
+        Obstacle, HolonomError
+            As `ProgramEngine.advance`.
         """
         integrator = self._integrator
         self._set_values()
@@ -140,7 +186,7 @@ class RungeKuttaEngine(ProgramEngine):
         self._set_values()
 
     def _set_values(self) -> None:
-        """Give the program the polynomials that tables are from this instant on."""
+        """Give the program the polynomials that tables are from this time on."""
         if self._problem.tables:
             self._integrator.open_values[:] = self.inputs.open_values(self._integrator.time, "right")
 
@@ -148,7 +194,7 @@ class RungeKuttaEngine(ProgramEngine):
         return self._integrator.with_states(until, most)
 
     def close(self) -> None:
-        """Close what was compiled for the motion, which cannot be followed any more."""
+        """Close the compiled functions of the motion, which cannot be continued."""
         self._integrator.close()
 
     @property
@@ -158,7 +204,7 @@ class RungeKuttaEngine(ProgramEngine):
 
 
 class DormandPrince(ctypes.Structure):
-    """Follows a motion in double precision, in C from the first to the last step.
+    """A Dormand-Prince integrator in double precision, in C for all of its steps.
 
     It is ``struct follower`` of `dormand_prince.c`, and has the part of the interface of heyoka's integrators that
     `Integrator` names.
@@ -167,7 +213,7 @@ class DormandPrince(ctypes.Structure):
     ----------
     tol : float
         Relative, and absolute in terms of nominal sizes.
-    drift : Stabilization
+    stabilization : Stabilization
     decay : float
         gamma.
     nominal : Nominal
@@ -176,13 +222,13 @@ class DormandPrince(ctypes.Structure):
     Attributes
     ----------
     time : float
-        The instant that is reached.
+        The time that is reached.
     state : ndarray, shape (2n,)
-        At that instant, in place.
+        At that time, in place.
     last_h : float
         Length of the last step.
     quiet_steps : callable
-        Takes an instant and a number of steps, and that many steps, or those to the instant, if there is nothing to
+        Takes a time and a number of steps, and that many steps, or those to the time, if there is nothing to
         watch on the way; returns their number, 0 where the motion is left as it was.
     open_values : sequence of float
         Of `MotionProblem.open_inputs`, in place.
@@ -200,17 +246,17 @@ class DormandPrince(ctypes.Structure):
         ("_state", ctypes.c_void_p),
         *((name, ctypes.c_double) for name in ("_until", "last_h", "_shortest", "_longest", "usual")),
         *((name, ctypes.c_long) for name in ("_most", "_taken")),
-        *((name, ctypes.c_void_p) for name in ("_instants", "_states")),
+        *((name, ctypes.c_void_p) for name in ("_times", "_states")),
     )
 
     def __init__(
-        self, problem: MotionProblem, tol: float, drift: Stabilization, decay: float, nominal: Nominal
+        self, problem: MotionProblem, tol: float, stabilization: Stabilization, decay: float, nominal: Nominal
     ) -> None:
         self.state, self.tol = np.array([float(problem.start[name]) for name in problem.state]), tol
         super().__init__(float(problem.start["t"]), self.state.ctypes.data)
         narrow = NO_VECTORS if len(problem.state) < WIDE else ()
         small = UNROLLED if problem.motion.operations < SMALL else ()
-        library = load_c("\n".join(_source(problem, drift, decay)), *narrow, *small)
+        library = load_c("\n".join(_source(problem, stabilization, decay)), *narrow, *small)
         self._advance, self._go_between = library.advance, library.go_between
         self._advance.argtypes = (ctypes.c_void_p,)
         library.advance_quietly.argtypes = (ctypes.c_void_p, ctypes.c_double, ctypes.c_long)
@@ -236,7 +282,14 @@ class DormandPrince(ctypes.Structure):
         return self._evaluations.value
 
     def propagate_until(self, until: float, max_steps: int) -> tuple[bool, float, float, int]:
-        """Take steps: to an instant, or so many, or until one fails.
+        """Take steps: to a time, or a number of them, or until one fails.
+
+        Parameters
+        ----------
+        until : float
+            Last time.
+        max_steps : int
+            Largest number of steps.
 
         Returns
         -------
@@ -249,46 +302,63 @@ class DormandPrince(ctypes.Structure):
         return failed, self._shortest, self._longest, self._taken
 
     def with_states(self, until: float, most: int) -> tuple[Taken, list[Step]]:
-        """Take steps likewise, each with its states."""
-        instants, states = np.empty(most + 1), np.empty((most, len(self.state)))
-        self._instants, self._states = instants.ctypes.data, states.ctypes.data
+        """Take steps as `propagate_until` does, each with its states.
+
+        Parameters
+        ----------
+        until : float
+            Last time.
+        most : int
+            Largest number of steps.
+
+        Returns
+        -------
+        taken : tuple
+            Result of `propagate_until`.
+        steps : list of Step
+        """
+        times, states = np.empty(most + 1), np.empty((most, len(self.state)))
+        self._times, self._states = times.ctypes.data, states.ctypes.data
         taken = self.propagate_until(until, most)
-        self._instants = None
-        instants[taken[3]] = self.time
-        ends = pairwise(instants[: taken[3] + 1].tolist())
-        between = (partial(self._states_between, begin, state) for begin, state in zip(instants, states, strict=False))
+        self._times = None
+        times[taken[3]] = self.time
+        ends = pairwise(times[: taken[3] + 1].tolist())
+        between = (partial(self._states_between, begin, state) for begin, state in zip(times, states, strict=False))
         return taken, [Step(*step, found) for step, found in zip(ends, between, strict=False)]
 
-    def _states_between(self, begin: float, state: Floats, instants: Floats) -> Floats:
-        """States at instants of a step, shape (2n, k), each reached by a step of its own, as exact as the motion."""
-        found = np.repeat(state[None, :], len(instants), axis=0)
-        for instant, reached in zip(instants, found, strict=True):
-            if self._go_between(begin, instant, reached.ctypes.data) != 0:
-                raise HolonomError(Failure.NO_WAY_ON, detail=f"{begin:.10g}, where a step between two others fails")
+    def _states_between(self, begin: float, state: Floats, times: Floats) -> Floats:
+        """Return states at times of a step, shape (2n, k), each by a step of its own.
+
+        They are as exact as the motion.
+        """
+        found = np.repeat(state[None, :], len(times), axis=0)
+        for time_point, reached in zip(times, found, strict=True):
+            if self._go_between(begin, time_point, reached.ctypes.data) != 0:
+                raise HolonomError(ErrorKind.NO_WAY_ON, detail=f"{begin:.10g}, where a step between two others fails")
         return found.T.copy()
 
 
-def _source(problem: MotionProblem, drift: Stabilization, decay: float) -> Iterator[str]:
+def _source(problem: MotionProblem, stabilization: Stabilization, decay: float) -> Iterator[str]:
     places = range(1, len(problem.coordinates) + 1)
     yield from ("#include <math.h>", "#include <stddef.h>", "#include <string.h>", HELPERS)
     yield f"double open_values[{max(1, len(problem.open_inputs))}];"
     yield _function(problem, "accelerations", problem.motion, {f"ddot({name})" for name in problem.coordinates})
-    if drift is not Stabilization.NONE:
+    if stabilization is not Stabilization.NONE:
         for kind in ("position", "velocity"):
             outputs = {f"{kind}_correction[{place}]" for place in places}
             yield _function(problem, f"{kind}_corrections", problem.projection, outputs)
-        yield from _keeping(drift, decay)
+        yield from _keeping(stabilization, decay)
     yield f"#define STATE {len(problem.state)}"
     yield f"#define SHRUNK {SHRUNK}"
     yield DRIVER.read_text(encoding="utf-8")
 
 
-def _keeping(drift: Stabilization, decay: float) -> Iterator[str]:
+def _keeping(stabilization: Stabilization, decay: float) -> Iterator[str]:
     """Yield how the constraints are kept."""
-    if drift is Stabilization.PROJECTION:
+    if stabilization is Stabilization.PROJECTION:
         yield f"#define PROJECTED {PROJECTED}"
     else:
-        yield f"#define {drift.name}"
+        yield f"#define {stabilization.name}"
         yield f"#define GAMMA {decay!r}"
 
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ...failures import Failure, HolonomError
+from ...failures import ErrorKind, HolonomError
 from ...program.expense import HIGH_ORDER, order_for, require_means
 from ...program.heyoka_function import import_heyoka
 from ...program.motion_problem import MotionProblem, computing
@@ -24,8 +24,8 @@ from ..constraints.stabilization import Equations, equations_of_motion, stabiliz
 from ..evaluation import Numbers
 from ..matrices import MotionMatrices
 from ..request import EngineName, Stabilization
-from .choice import Between
-from .code import Code, better_code, compilation, pays, running
+from .choice import OutputCounts
+from .code import Code, better_code, compilation, is_worthwhile, running
 from .engine import Step, Task
 from .program_engine import FIRST_BLOCK, ProgramEngine, Taken, decay_in, decay_until
 
@@ -52,7 +52,7 @@ class TaylorEngine(ProgramEngine):
     matrices : MotionMatrices or None
         Of the same motion; None to make them.
     end : number or None
-        The last instant of the motion; None for the next one to which it is followed.
+        The last time of the motion; None for the next one to which it is followed.
 
     Raises
     ------
@@ -67,7 +67,7 @@ class TaylorEngine(ProgramEngine):
         problem: MotionProblem,
         tol: float | None = None,
         precision: Precision | str = "double",
-        drift: Stabilization = Stabilization.PROJECTION,
+        stabilization: Stabilization = Stabilization.PROJECTION,
         compact: bool | None = None,
         decay: float | None = None,
         matrices: MotionMatrices | None = None,
@@ -83,12 +83,12 @@ class TaylorEngine(ProgramEngine):
         self._chosen, self._end = compact is not None, end
         self._program = computing(problem.motion, {f"ddot({name})" for name in problem.coordinates})
         code = Code.QUICK if compact is None else Code.COMPACT if compact else Code.UNROLLED
-        self._drift, self._decay = drift, decay
+        self._stabilization, self._decay = stabilization, decay
         begun, number = time.perf_counter(), self.precision.number
         start = np.array([number(problem.start[name]) for name in problem.state])
-        self._counted = number(problem.start["t"]), 0  # since this instant, and the steps until then
+        self._counted = number(problem.start["t"]), 0  # since this time, and the steps until then
         self._set_up(code, self._counted[0], start)
-        kept = drift is Stabilization.PROJECTION and problem.multipliers
+        kept = stabilization is Stabilization.PROJECTION and problem.multipliers
         self._keeper = ProgramProjection(problem, self.precision) if kept else None
         if kept and self._chosen:
             self._keeper.nearest  # noqa: B018
@@ -103,29 +103,77 @@ class TaylorEngine(ProgramEngine):
 
     @classmethod
     def for_motion(cls, task: Task) -> "TaylorEngine":
-        """As `Engine.for_motion`."""
+        """Return the engine of a motion.
+
+        Parameters
+        ----------
+        task : Task
+            The motion, the request and the numbers.
+
+        Returns
+        -------
+        TaylorEngine
+
+        Raises
+        ------
+        HolonomError
+            The precision cannot hold the tolerance, or as for the class.
+        """
         problem, request, precision, end, matrices = task
         digits = precision.digits + GUARD_DIGITS if request.tol is None else -log10(held(request.tol, precision))
         require_means(at_start(problem), precision, order_for(digits))
         decay = decay_until(end, problem, precision)
-        return cls(problem, request.tol, precision, request.drift, request.compact, decay, matrices, end)
+        return cls(problem, request.tol, precision, request.stabilization, request.compact, decay, matrices, end)
 
     @classmethod
     def comparable(cls, tol: float | None) -> bool:
-        """In any case."""
+        """Return True: the engine may be chosen for every tolerance.
+
+        Parameters
+        ----------
+        tol : float or None
+            Tolerance of a step; None if none is requested.
+
+        Returns
+        -------
+        bool
+        """
         return True
 
     @classmethod
-    def expected_seconds(cls, steps: int, operations: int, tol: float, between: Between) -> float:
-        """By the code that pays for this number of steps."""
+    def expected_seconds(cls, steps: int, operations: int, tol: float, between: OutputCounts) -> float:
+        """Return the expected time with the code that is worthwhile for the steps.
+
+        Parameters
+        ----------
+        steps, operations, tol, between : int, int, float, OutputCounts
+            As for `quicker_engine`.
+
+        Returns
+        -------
+        float
+            In seconds.
+        """
         run = {code: running(code, operations, steps, tol) for code in Code}
         compact, unrolled = (compilation(code, operations) for code in (Code.COMPACT, Code.UNROLLED))
         return min(run[Code.QUICK], compact + run[Code.COMPACT], compact + unrolled + run[Code.UNROLLED])
 
     def steps_ahead(self, until: Any, trial: int) -> int | None:
-        """About how many steps there are to an instant, by the length of the first ones.
+        """Estimate the number of steps to a time by the length of the first ones.
 
-        None where so few reach the instant, or do not succeed. `trial` steps are taken, and taken back.
+        The first steps are taken, and taken back.
+
+        Parameters
+        ----------
+        until : number
+            Last time.
+        trial : int
+            Number of first steps.
+
+        Returns
+        -------
+        int or None
+            None if these steps reach the time or fail.
         """
         begun, state = self.time, self.state.copy()
         outcome = self._integrator.propagate_until(until, max_steps=trial)[0]
@@ -136,7 +184,10 @@ class TaylorEngine(ProgramEngine):
         return ceil(trial * float(until - begun) / covered)
 
     def _with_states(self, until: Any, most: int) -> tuple[Taken, list[Step]]:
-        """Take steps: a few one by one, many at once, for which heyoka compiles a function of the states between."""
+        """Take steps with states between: a few one by one, or many at once.
+
+        For many, heyoka compiles a function of the states.
+        """
         longest = max(self._usual, self._integrator.last_h)
         few = most < FEW or until - self.time < FEW * longest
         return self._one_by_one(until, most) if few else self._at_once(until, most)
@@ -144,7 +195,7 @@ class TaylorEngine(ProgramEngine):
     def _at_once(self, until: Any, most: int) -> tuple[Taken, list[Step]]:
         *taken, between, _ = self._integrator.propagate_until(until, most, c_output=True)
         steps = [] if between is None else pairwise(between.times)
-        return tuple(taken), [Step(*step, lambda instants: between(instants).T.copy()) for step in steps]
+        return tuple(taken), [Step(*step, lambda times: between(times).T.copy()) for step in steps]
 
     def _one_by_one(self, until: Any, most: int) -> tuple[Taken, list[Step]]:
         """Return each step with its Taylor polynomials."""
@@ -163,14 +214,22 @@ class TaylorEngine(ProgramEngine):
                 break
         return (outcome, shortest, longest, len(dense_steps)), dense_steps
 
-    def restart(self, instant: Any, state: Numbers) -> None:
-        """Go on from another instant and state, shape (2n,)."""
-        super().restart(instant, state)
-        if instant <= self._counted[0]:
-            self._counted = instant, self.steps
+    def restart(self, time_point: Any, state: Numbers) -> None:
+        """Continue from another time and state.
+
+        Parameters
+        ----------
+        time_point : number
+            The new time.
+        state : ndarray, shape (2n,)
+            Coordinates, then velocities.
+        """
+        super().restart(time_point, state)
+        if time_point <= self._counted[0]:
+            self._counted = time_point, self.steps
 
     def _set_values(self) -> None:
-        """Give the equations the values of what is open from this instant on, as far as they contain it."""
+        """Set the values of open inputs in the equations from this time on."""
         contained = len(self._integrator.pars)
         if contained:
             self._integrator.pars[:] = self.inputs.open_values(self._integrator.time, "right")[:contained]
@@ -181,7 +240,7 @@ class TaylorEngine(ProgramEngine):
             self._set_values()
 
     def _block(self, until: Any, dense: bool) -> tuple[bool, list[Step]]:
-        self._compile_if_it_pays(until)
+        self._compile_if_worthwhile(until)
         return super()._block(until, dense)
 
     def _prepare_next(self, until: Any) -> None:
@@ -200,52 +259,62 @@ class TaylorEngine(ProgramEngine):
         if self._keeper is not None:
             self._keeper.project(self._integrator.time, self.state)
 
-    def _compile_if_it_pays(self, until: Any) -> None:
-        """Compile better code, if as many steps as are left, by those so far, earn that back."""
+    def _compile_if_worthwhile(self, until: Any) -> None:
+        """Compile better code if the remaining steps justify it.
+
+        Their number is estimated by the steps so far.
+        """
         better = None if self._chosen else better_code(self.code, self.precision)
         begun, before = self._counted
         if better is None or self.steps == before:
             return
         end = until if self._end is None else self._end
         left = (self.steps - before) * float((end - self.time) / (self.time - begun))
-        if pays(self.code, better, self._program.operations, left, float(self._integrator.tol)):
+        if is_worthwhile(self.code, better, self._program.operations, left, float(self._integrator.tol)):
             begun = time.perf_counter()
             self._set_up(better, self.time, self.state)
             self.compile_seconds += time.perf_counter() - begun
 
-    def _set_up(self, code: Code, instant: Any, state: Numbers) -> None:
+    def _set_up(self, code: Code, time_point: Any, state: Numbers) -> None:
         self.code = code
-        kind = ("taylor", code, self._drift, self.precision.name, *self._tolerance.values())
+        kind = ("taylor", code, self._stabilization, self.precision.name, *self._tolerance.values())
         built = self._problem.once(kind, self._problem.motion, lambda: self._compiled(code, state))
         self._integrator = copy(built) if self._problem.open_inputs else built
-        self._integrator.time = instant
+        self._integrator.time = time_point
         self._integrator.state[:] = state
         self._set_values()
         self.state = self._integrator.state  # a view: what the integrator does shows in it
 
     def _compiled(self, code: Code, state: Numbers) -> Any:
-        equations = self._equations_with(self._drift, self._decay)
+        equations = self._equations_with(self._stabilization, self._decay)
         return import_heyoka().taylor_adaptive(
             equations, state, **self._tolerance, **code.options, **self.precision.options
         )
 
-    def _equations_with(self, drift: Stabilization, decay: float | None) -> Equations:
-        if drift in (Stabilization.BAUMGARTE, Stabilization.GGL) and self._problem.multipliers:
+    def _equations_with(self, stabilization: Stabilization, decay: float | None) -> Equations:
+        if stabilization in (Stabilization.BAUMGARTE, Stabilization.GGL) and self._problem.multipliers:
             gamma = decay_in(self._problem, decay)
-            return stabilized_equations(self._problem, self._program, self.precision, drift, gamma)
+            return stabilized_equations(self._problem, self._program, self.precision, stabilization, gamma)
         return equations_of_motion(self._problem, self._program, self.precision)
 
 
-def states_of(begun: Any, rest: Any, coefficients: Numbers, instants: Numbers) -> Numbers:
-    """States at instants of a step, shape (2n, k), by polynomials of the time since its beginning.
+def states_of(begun: Any, rest: Any, coefficients: Numbers, times: Numbers) -> Numbers:
+    """Return states at times of a step by polynomials of the time.
 
     Parameters
     ----------
     begun, rest : number
-        The beginning is their sum, in twice the digits of a number.
+        Beginning of the step: their sum, in twice the digits of a number.
     coefficients : ndarray, shape (order + 1, 2n, 1)
+        Those of powers of the time since the beginning.
+    times : ndarray, shape (k,)
+        Times of the step.
+
+    Returns
+    -------
+    ndarray, shape (2n, k)
     """
-    since = instants - begun - rest
+    since = times - begun - rest
     states = coefficients[-1] * since
     for coefficient in coefficients[-2:0:-1]:
         states += coefficient
@@ -255,14 +324,21 @@ def states_of(begun: Any, rest: Any, coefficients: Numbers, instants: Numbers) -
 
 
 def block_within(allowed: float, steps: int, drift: float) -> int:
-    """Length of a block in which a state leaves the constraints no farther than is allowed.
+    """Return the length of a block in which the constraint drift stays allowed.
 
     Parameters
     ----------
+    allowed : float
+        Largest drift, as a relative distance.
     steps : int
-        Of the block before.
+        Number of steps of the block before.
     drift : float
-        How far it left them there. What a velocity misses grows with the time, what a position misses with its square.
+        Drift after that block. The error of a velocity grows with the time, that of a position with its square.
+
+    Returns
+    -------
+    int
+        Number of steps.
     """
     growth = (allowed / drift) ** 0.5 if drift > 0 else GROWTH
     return max(1, min(int(steps * min(growth, GROWTH)), LONGEST_BLOCK))
@@ -271,15 +347,27 @@ def block_within(allowed: float, steps: int, drift: float) -> int:
 def held(tol: float, precision: Precision) -> float:
     """Return a tolerance, if the numbers can hold it.
 
+    Parameters
+    ----------
+    tol : float
+        Relative tolerance of a step.
+    precision : Precision
+        Numbers of the integrator.
+
+    Returns
+    -------
+    float
+        The same tolerance.
+
     Raises
     ------
     HolonomError
-        It is finer than rounding, or it is none.
+        The tolerance is finer than rounding, or not below one.
     """
     finest = f"1e-{precision.sure_digits + 1}"
     if not float(finest) <= tol < 1:
         raise HolonomError(
-            Failure.TOLERANCE_UNHELD,
+            ErrorKind.TOLERANCE_UNHELD,
             detail=f"{precision.name} precision holds tolerances from {finest} to 1, not {tol:g}",
         )
     return tol

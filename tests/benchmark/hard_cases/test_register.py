@@ -6,7 +6,7 @@ from holonom.benchmark.hard_cases.case import CaseReport, Extent, Outcome, exami
 from holonom.benchmark.hard_cases.register import REGISTER
 from holonom.benchmark.hard_cases.runs import PLAIN
 from holonom.benchmark.hard_cases.solves import DIRECT, ORTHOGONAL, PIVOTED, TEXTBOOK
-from holonom.simulation.hard_cases import HardCase
+from holonom.simulation.hard_cases import Difficulty
 
 LOSING = {
     "parallel constraints": {TEXTBOOK, DIRECT},
@@ -30,7 +30,7 @@ def test_ours_hold_and_the_plain_ways_lose_where_the_case_is_hard_for_them(repor
 
 
 def test_register_meets_every_kind_of_hard_case():
-    assert {case.kind for case in REGISTER} == set(HardCase)
+    assert {case.kind for case in REGISTER} == set(Difficulty)
     assert len({case.name for case in REGISTER}) == len(REGISTER)
 
 

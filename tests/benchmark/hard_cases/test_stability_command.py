@@ -11,11 +11,11 @@ from holonom.benchmark.hard_cases.case import Case, Extent, Sweep, examined, our
 from holonom.cli import holonom
 from holonom.explanations import advice
 from holonom.formats import schema
-from holonom.simulation.hard_cases import HardCase
+from holonom.simulation.hard_cases import Difficulty
 
 
 def shown(name: str, *found) -> Case:
-    return Case(name, HardCase.STIFF, "a truth told by hand", lambda extent: iter(found))
+    return Case(name, Difficulty.STIFF, "a truth told by hand", lambda extent: iter(found))
 
 
 HELD = shown(
@@ -41,7 +41,7 @@ def test_document_keeps_its_schema_and_tells_digits_verdicts_and_advice(monkeypa
     assert [result["outcome"] for result in case["results"]] == ["loses it", "holds", "holds"]
     assert [result["digits"] for result in case["results"]] == [1.25, 9.0, None]
     assert case["sweep"]["digits"]["plain"] == [9.0, 7.0]
-    assert case["advice"] == advice(HardCase.STIFF)
+    assert case["advice"] == advice(Difficulty.STIFF)
     assert not case["fails"]
 
 
@@ -50,7 +50,7 @@ def test_a_failing_case_leaves_with_one(monkeypatch, capsys):
     table = capsys.readouterr().out
     assert "fails" in table
     assert "2 hard cases, 1 failure" in table
-    assert advice(HardCase.STIFF) in table
+    assert advice(Difficulty.STIFF) in table
 
 
 def test_figure_shows_every_method_and_is_the_same_twice(monkeypatch, tmp_path):
@@ -71,7 +71,7 @@ def test_figure_that_cannot_be_written_is_refused(monkeypatch, tmp_path, capsys)
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("kind", HardCase)
+@pytest.mark.parametrize("kind", Difficulty)
 def test_advice_is_one_sentence_for_each_kind(kind):
     sentence = advice(kind)
     assert sentence[0].isupper()

@@ -30,7 +30,7 @@ def test_the_cheapest_method_is_the_fastest_of_those_that_are_accurate_enough():
         measurement("rough", 4, 1e-6),
         measurement("slow", 13, 1.0),
         measurement("fast", 10, 1e-3),
-        measurement("at another instant", 20, 1e-9, Group.SERIES),
+        measurement("at another time", 20, 1e-9, Group.SERIES),
     ]
     found = {advice.digits: advice.cheapest and advice.cheapest.method for advice in cheapest_methods(rows)}
     assert found == {3: "rough", 6: "fast", 9: "fast", 12: "slow", 15: None, 30: None}

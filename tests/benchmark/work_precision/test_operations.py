@@ -46,7 +46,7 @@ def program(assignments):
     return Program.of_document(
         {
             "format": "holonom-program",
-            "version": 1,
+            "version": 2,
             "scene": None,
             "solve": "direct",
             "method": "schur",

@@ -2,6 +2,7 @@
 
 import shutil
 
+import pages
 import pytest
 from chromium import chromium, missing_programs
 from observation import keep_screenshot, observe
@@ -30,7 +31,7 @@ def seen(request, browser, companion, own):
     shutil.rmtree(folder, ignore_errors=True)
     observations = []
     for book in (companion, own):
-        for page in sorted(book.rglob("*.html")):
+        for page in pages.pages(book):
             observations.append(observe(browser, page, view))
             keep_screenshot(browser, (folder / book.name / page.relative_to(book)).with_suffix(".png"))
     return observations

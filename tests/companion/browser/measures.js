@@ -21,8 +21,12 @@ const told = elements => elements.map(said);
 
 // ---- widths ---------------------------------------------------------------------------------------------------
 
+// The theme keeps its drawers beside the screen until they are opened.
+const inDrawer = element => element.closest(".sidebar-drawer, .toc-drawer") !== null;
+
 function wider(width) {
-  const free = everything.filter(element => !inPicture(element) && shown(element) && !inScrollBox(element.parentElement));
+  const free = everything.filter(element => !inPicture(element) && !inDrawer(element) && shown(element)
+    && !inScrollBox(element.parentElement));
   const far = told(free.filter(element => box(element).right > width + ROUNDING));
   return document.documentElement.scrollWidth > width ? [`the page: ${document.documentElement.scrollWidth}`, ...far] : far;
 }

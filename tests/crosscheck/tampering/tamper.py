@@ -69,7 +69,7 @@ def held_up(record, true, seed):
 
 
 def wrong_records(trues, seed, count, kinds=tuple(CLASSES)):
-    """So many wrong records of each class, each shown to be wrong; of some classes there are fewer."""
+    """Wrong records of each class, each shown to be wrong; of some classes there are fewer."""
     for kind in kinds:
         made = 0
         for attempt in range(DRAWS * count):

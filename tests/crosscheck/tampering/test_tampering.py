@@ -9,7 +9,7 @@ from scenes import CIRCLE, KINKS, OTHERS, written_texts
 from tamper import held_up, of_other_scenes, true_records, wrong_records
 
 SEED = "make check"
-SOME = 18  # classes of which a wrong record is made for every change
+SOME = 9  # classes of which a wrong record is made for every change
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp
 
-from holonom.failures import Failure, HolonomError
+from holonom.failures import ErrorKind, HolonomError
 from holonom.simulation.constraints.directions import rank_of, weighted_constraints
 from holonom.simulation.constraints.factorization import factored_constraints
 
@@ -15,7 +15,7 @@ SEEDS = st.integers(0, 2**32 - 1)
 
 
 def random_system(seed: int, redundant: int):
-    """A, h, J and c of a consistent system, so many of the rows of J combinations of the others."""
+    """A, h, J and c of a consistent system, some of the rows of J combinations of the others."""
     draw = np.random.default_rng(seed)
     n = draw.integers(2, 8)
     rank = draw.integers(1, n + 1)
@@ -108,7 +108,7 @@ def test_a_coordinate_without_mass_moves_as_its_constraint_says():
 def test_a_free_coordinate_without_mass_is_refused():
     with pytest.raises(HolonomError) as refused:
         weighted_constraints(np.diag([1.0, 0.0]), np.array([[1.0, 0.0]]))
-    assert refused.value.failure is Failure.MASS_SINGULAR
+    assert refused.value.kind is ErrorKind.MASS_SINGULAR
 
 
 def test_a_negative_mass_was_called_singular():
@@ -119,7 +119,7 @@ def test_a_negative_mass_was_called_singular():
     for jacobian in (np.array([[1.0, -1.0]]), np.zeros((0, 2))):
         with pytest.raises(HolonomError) as refused:
             weighted_constraints(mass, jacobian)
-        assert refused.value.failure is Failure.MASS_INDEFINITE
+        assert refused.value.kind is ErrorKind.MASS_INDEFINITE
 
 
 def test_without_constraints_the_forces_alone_decide():
@@ -164,4 +164,4 @@ def test_constraints_that_are_singular_against_what_is_said_have_no_acceleration
 def test_a_mass_that_makes_the_equations_singular_is_refused_when_they_are_factored():
     with pytest.raises(HolonomError) as refused:
         factored_constraints(np.diag([1.0, 0.0]), np.array([[1.0, 0.0]]), 1)
-    assert refused.value.failure is Failure.MASS_SINGULAR
+    assert refused.value.kind is ErrorKind.MASS_SINGULAR

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from problems import problem
 
-from holonom.failures import Failure
+from holonom.failures import ErrorKind
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
 from holonom.sandbox import Limits
@@ -102,7 +102,7 @@ def test_contradicting_constraints_are_refused_with_what_remains():
     matrices.nominal = Nominal(1.0, np.ones(4))
     with pytest.raises(InconsistentConstraints) as refused:
         settle(matrices, 1.0, np.zeros(4), 1)
-    assert refused.value.failure is Failure.INCONSISTENT
+    assert refused.value.kind is ErrorKind.INCONSISTENT
     # x - y = 1/2 misses both by 1/2; over the length sqrt(2/m) of a gradient in the mass metric
     assert refused.value.residual == pytest.approx(0.5 / np.sqrt(2 / 3), rel=1e-12)
     assert "at t = 1" in str(refused.value)

@@ -8,12 +8,12 @@ import pytest
 from problems import problem
 
 from holonom.simulation.engines import fallback, runge_kutta
-from holonom.simulation.engines.choice import Between, Choice, quicker_engine
+from holonom.simulation.engines.choice import Choice, OutputCounts, quicker_engine
 from holonom.simulation.engines.runge_kutta import FINEST, RungeKuttaEngine
 from holonom.simulation.request import EngineName, SimulationRequest
 from holonom.simulation.simulate import simulate
 
-NOTHING = Between(0, 0)
+NOTHING = OutputCounts(0, 0)
 LONG, SHORT = Fraction(100_000), Fraction(10)
 
 
@@ -25,9 +25,9 @@ def report(until, **request):
 @pytest.mark.usefixtures("c_compiler")
 def test_a_long_motion_at_a_coarse_tolerance_goes_to_runge_kutta_and_a_short_one_does_not():
     long, short = report(LONG, tol=1e-6), report(SHORT, tol=1e-6)
-    assert [leg.engine for leg in long.legs] == [EngineName.RUNGE_KUTTA] == [long.choice.engine]
+    assert [segment.engine for segment in long.segments] == [EngineName.RUNGE_KUTTA] == [long.choice.engine]
     assert long.choice.runge_kutta < long.choice.taylor
-    assert [leg.engine for leg in short.legs] == [EngineName.TAYLOR]
+    assert [segment.engine for segment in short.segments] == [EngineName.TAYLOR]
 
 
 @pytest.mark.usefixtures("c_compiler")
@@ -83,8 +83,8 @@ def test_states_wanted_between_the_steps_count():
     """Truth: each takes the Runge-Kutta engine a step of its own, and the other next to nothing."""
     steps, operations, tol = 50_000, 210, 1e-6
     assert quicker_engine(steps, operations, tol, NOTHING).engine is EngineName.RUNGE_KUTTA
-    assert quicker_engine(steps, operations, tol, Between(10**6, 0)).engine is EngineName.TAYLOR
-    assert quicker_engine(steps, operations, tol, Between(0, 10)).engine is EngineName.TAYLOR
+    assert quicker_engine(steps, operations, tol, OutputCounts(10**6, 0)).engine is EngineName.TAYLOR
+    assert quicker_engine(steps, operations, tol, OutputCounts(0, 10)).engine is EngineName.TAYLOR
 
 
 @pytest.mark.usefixtures("c_compiler")
@@ -100,7 +100,7 @@ def test_runge_kutta_is_relieved_at_dead_centres_like_taylor(monkeypatch):
         return simulate(replace(problem("linkage.mac")), wanted).report
 
     ours, theirs = of(EngineName.RUNGE_KUTTA), of(EngineName.TAYLOR)
-    followed = [leg.engine for leg in ours.legs]
+    followed = [segment.engine for segment in ours.segments]
     assert EngineName.ROBUST in followed
     assert set(followed) == {EngineName.RUNGE_KUTTA, EngineName.ROBUST}
     for name, value in theirs.coordinates.items():

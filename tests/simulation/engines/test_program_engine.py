@@ -35,8 +35,8 @@ def engine(request):
 def test_it_goes_on_from_where_it_is(engine):
     at_once, in_parts = (engine(problem("chain.mac")) for _ in range(2))
     at_once.advance(2.0)
-    for instant in np.linspace(0.1, 2, 20):
-        in_parts.advance(instant)
+    for time in np.linspace(0.1, 2, 20):
+        in_parts.advance(time)
     assert in_parts.time == 2.0
     assert in_parts.state == pytest.approx(at_once.state, abs=10 * CLOSE[engine])
 
@@ -61,9 +61,9 @@ def test_pieces_join_and_hold_the_states_between(engine):
         ends = before.states(np.array([before.end])), after.states(np.array([after.start]))
         assert ends[0] == pytest.approx(ends[1], abs=CLOSE[engine])
     middle = pieces[len(pieces) // 2]
-    instants = np.linspace(middle.start, middle.end, 4)
-    other.advance(instants[2])
-    assert middle.states(instants)[:, 2] == pytest.approx(other.state, abs=10 * CLOSE[engine])
+    times = np.linspace(middle.start, middle.end, 4)
+    other.advance(times[2])
+    assert middle.states(times)[:, 2] == pytest.approx(other.state, abs=10 * CLOSE[engine])
 
 
 def test_an_obstacle_leaves_the_last_good_state(engine):
@@ -91,14 +91,14 @@ def test_behind_an_obstacle_the_way_to_the_next_one_was_gone_twice(monkeypatch):
     """A block of steps to the next dead centre shrank until it failed, and was taken back at each of them."""
     taken_back, go_back = [], TaylorEngine._go_back
 
-    def counted(engine, instant, state):
-        if instant < engine.time:
-            taken_back.append(instant)
-        go_back(engine, instant, state)
+    def counted(engine, time, state):
+        if time < engine.time:
+            taken_back.append(time)
+        go_back(engine, time, state)
 
     monkeypatch.setattr(TaylorEngine, "_go_back", counted)
     report = simulate(problem("linkage.mac"), SimulationRequest(until=Fraction(5))).report
-    assert sum(leg.engine is EngineName.ROBUST for leg in report.legs) > 3
+    assert sum(segment.engine is EngineName.ROBUST for segment in report.segments) > 3
     assert len(taken_back) == 1
 
 

@@ -34,10 +34,12 @@ def test_added_engine_is_chosen_relieved_recorded_and_reported(toy):
     motion, truth = followed(), followed(engine=EngineName.TAYLOR)
     report, document = motion.report, simulation_document(motion)
     assert report.choice.engine == document["choice"]["engine"] == "toy"
-    assert [leg.engine for leg in report.legs] == ["toy", "robust", "toy"]
-    assert [leg.start for leg in report.legs] == pytest.approx([0, 1, 1.5], abs=0.1)
-    assert document["legs"][1]["reason"] == "the toy stops here"
-    assert document["engine"] == "toy, robust {:.6g}..{:.6g}, toy".format(*(leg.start for leg in report.legs[1:]))
+    assert [segment.engine for segment in report.segments] == ["toy", "robust", "toy"]
+    assert [segment.start for segment in report.segments] == pytest.approx([0, 1, 1.5], abs=0.1)
+    assert document["segments"][1]["reason"] == "the toy stops here"
+    assert document["engine"] == "toy, robust {:.6g}..{:.6g}, toy".format(
+        *(segment.start for segment in report.segments[1:])
+    )
     for name, samples in truth.coordinates.items():
         assert np.allclose(motion.coordinates[name], samples, atol=1e-4)
 

@@ -6,7 +6,7 @@ from problems import problem
 from truths import GRAVITY, four_bar, linkage_period, linkage_tip, sarrus_angles
 
 import holonom
-from holonom.failures import Failure, HolonomError
+from holonom.failures import ErrorKind, HolonomError
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request
 from holonom.sandbox import Limits
@@ -21,8 +21,8 @@ def test_a_four_bar_linkage_goes_through_its_dead_centres():
     motion = RobustEngine(problem("linkage.mac"), 1e-12)
     motion.advance(10.0)
     assert np.allclose(motion.state[:2], FOUR_BAR_AT_10, rtol=0, atol=1e-9)
-    assert len(motion.passages) == 10
-    assert all(abs(linkage_tip(1, instant)[1]) < 1e-5 for instant in motion.passages)  # rods in line
+    assert len(motion.singular_times) == 10
+    assert all(abs(linkage_tip(1, time)[1]) < 1e-5 for time in motion.singular_times)  # rods in line
 
 
 @pytest.mark.parametrize(
@@ -32,25 +32,25 @@ def test_it_stays_on_its_branch_for_many_revolutions(bars, revolutions):
     motion = RobustEngine(problem("linkage.mac", N=str(bars)))
     motion.advance(revolutions * linkage_period(bars) + 0.1)
     assert np.allclose(motion.state[:2], linkage_tip(bars, motion.time), rtol=0, atol=1e-6)
-    assert len(motion.passages) == 2 * revolutions
+    assert len(motion.singular_times) == 2 * revolutions
     assert np.max(np.abs(motion.matrices(motion.time, motion.state).residual)) < 1e-12
 
 
 def test_states_between_the_steps_and_within_an_arc_are_on_the_motion():
     motion = RobustEngine(problem("linkage.mac"), 1e-12)
     for piece in motion.integrate(1.5):
-        instants = np.linspace(piece.start, piece.end, 5)
-        tips = np.array([linkage_tip(1, t) for t in instants])
-        assert np.allclose(piece.states(instants)[:2].T, tips, rtol=0, atol=1e-8)
+        times = np.linspace(piece.start, piece.end, 5)
+        tips = np.array([linkage_tip(1, t) for t in times])
+        assert np.allclose(piece.states(times)[:2].T, tips, rtol=0, atol=1e-8)
 
 
 def test_constraint_forces_stay_right_through_a_dead_centre():
     motion = RobustEngine(problem("linkage.mac"), 1e-12)
     motion.advance(1.5)
     for away in [-3e-2, -1e-3, -1e-5, 1e-8, 1e-6, 1e-4, 1e-2, 0.4]:
-        instant = motion.passages[0] + away
-        state, accelerations = four_bar(instant)
-        at, found = motion.matrices(instant, state), motion.solution(instant, state)
+        time = motion.singular_times[0] + away
+        state, accelerations = four_bar(time)
+        at, found = motion.matrices(time, state), motion.solution(time, state)
         assert found.accelerations == pytest.approx(accelerations, abs=1e-9)
         assert found.constraint_forces == pytest.approx(at.mass @ accelerations - at.force, abs=1e-9)
 
@@ -65,10 +65,10 @@ def test_it_may_start_at_a_dead_centre_and_beside_one(away):
 
 def test_a_motion_may_stop_and_go_on_anywhere():
     motion = RobustEngine(problem("linkage.mac"), 1e-12)
-    for instant in np.linspace(0.0, 1.5, 61)[1:]:
-        motion.advance(instant)
-        assert motion.time == instant
-        assert np.allclose(motion.state[:2], linkage_tip(1, instant), rtol=0, atol=1e-9)
+    for time in np.linspace(0.0, 1.5, 61)[1:]:
+        motion.advance(time)
+        assert motion.time == time
+        assert np.allclose(motion.state[:2], linkage_tip(1, time), rtol=0, atol=1e-9)
 
 
 IN_LINE = """
@@ -118,7 +118,7 @@ def test_a_velocity_along_no_branch_is_refused(in_line):
 def test_at_rest_in_a_singular_configuration_nothing_tells_the_branch(in_line):
     with pytest.raises(HolonomError, match="singular configuration") as refused:
         RobustEngine(in_line("0", "0"), 1e-10).advance(1.0)
-    assert refused.value.failure is Failure.NO_WAY_ON
+    assert refused.value.kind is ErrorKind.NO_WAY_ON
 
 
 def test_the_first_arc_was_as_long_as_a_division_by_no_speed_makes_it(in_line, monkeypatch):
@@ -130,14 +130,14 @@ def test_the_first_arc_was_as_long_as_a_division_by_no_speed_makes_it(in_line, m
 
 def test_a_redundant_spatial_mechanism_moves_through_its_singular_configurations():
     sarrus = problem("hard/sarrus_linkage.mac")
-    motion, instants = RobustEngine(sarrus, 1e-12), np.linspace(0.25, 4.0, 16)
+    motion, times = RobustEngine(sarrus, 1e-12), np.linspace(0.25, 4.0, 16)
     assert motion.rank == len(sarrus.multipliers) - 1
     height = sarrus.coordinates.index("p3z")
-    for instant, angle in zip(instants, sarrus_angles(instants), strict=True):
-        motion.advance(instant)
+    for time, angle in zip(times, sarrus_angles(times), strict=True):
+        motion.advance(time)
         assert motion.state[height] == pytest.approx(2 * np.sin(angle), abs=1e-9)
     flat_or_in_line = np.diff(np.sign(np.sin(2 * sarrus_angles(np.linspace(1e-3, 4.0, 4000)))))
-    assert len(motion.passages) == np.count_nonzero(flat_or_in_line)
+    assert len(motion.singular_times) == np.count_nonzero(flat_or_in_line)
 
 
 def test_under_redundant_constraints_forces_are_unique_and_multipliers_those_of_the_program():
@@ -154,16 +154,16 @@ def test_under_redundant_constraints_forces_are_unique_and_multipliers_those_of_
 
 def test_the_papers_free_motion_stays_right_until_the_control_overflows():
     motion = RobustEngine(problem("paper/paper.mac", "free_motion_scene"), 1e-11)
-    for instant in (10.0, 100.0, 400.0, 709.0):
-        motion.advance(instant)
+    for time in (10.0, 100.0, 400.0, 709.0):
+        motion.advance(time)
         # q1 + q2 = (a + b t) exp(-t), q3 = u0 (a + b t), and no reaction
-        assert motion.state[2] == pytest.approx(0.3 * (3 + (3 + 1 / 6) * instant), rel=1e-9)
-        found = motion.solution(instant, motion.state)
+        assert motion.state[2] == pytest.approx(0.3 * (3 + (3 + 1 / 6) * time), rel=1e-9)
+        found = motion.solution(time, motion.state)
         assert abs(found.multipliers[0]) <= 1e-13
         assert np.max(np.abs(found.constraint_forces)) <= 1e-13
     with pytest.raises(HolonomError) as refused:
         motion.advance(720.0)
-    assert refused.value.failure is Failure.NO_WAY_ON
+    assert refused.value.kind is ErrorKind.NO_WAY_ON
     assert 709 < motion.time < 710
 
 
@@ -200,7 +200,7 @@ upright : holonomic_scene(bars, initial_state = [x0 = 0, y0 = 1, x1 = 1, y1 = 1,
 """
 
 
-def test_a_near_miss_is_no_passage(write_scene):
+def test_a_near_miss_is_no_singularity(write_scene):
     asked = motion_problem(write_scene(NEAR_MISS), Request(), Limits())
     motion, conditions = RobustEngine(asked, 1e-11), []
     for piece in motion.integrate(3.0):
@@ -209,14 +209,14 @@ def test_a_near_miss_is_no_passage(write_scene):
         assert energy == pytest.approx(5 / 6 + 2 * GRAVITY, abs=1e-8), piece.end
         conditions.append(condition(motion.matrices(motion.time, motion.state)))
     assert max(conditions) > 1e3
-    assert motion.passages == []
+    assert motion.singular_times == []
 
 
 def test_a_length_that_vanishes_stops_the_motion():
     motion = RobustEngine(problem("hard/vanishing_length.mac"))
     with pytest.raises(HolonomError, match="steps become too short") as refused:
         motion.advance(2.0)
-    assert refused.value.failure is Failure.NO_WAY_ON
+    assert refused.value.kind is ErrorKind.NO_WAY_ON
     assert motion.time == pytest.approx(1.0, abs=1e-5)
 
 

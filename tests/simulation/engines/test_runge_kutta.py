@@ -40,7 +40,7 @@ def test_a_parabola_is_followed_to_rounding(write_scene):
 
 
 def test_far_from_zero_a_step_was_longer_or_shorter_than_the_time_it_took(write_scene):
-    """Of ddot(x) = sin(t) from t = 10^9, where instants are 1e-7 apart, dot(x) had an error of 1e-5 after 0.1."""
+    """Of ddot(x) = sin(t) from t = 10^9, where times are 1e-7 apart, dot(x) had an error of 1e-5 after 0.1."""
     driven = write_scene("""
         load("holonom.mac")$
         system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [sin(t)])$
@@ -95,27 +95,27 @@ def test_a_motion_in_one_call_is_that_in_pieces_and_past_a_block():
     assert np.array_equal(motions[0].state, motions[1].state)
 
 
-@pytest.mark.parametrize("drift", [Stabilization.BAUMGARTE, Stabilization.GGL])
-def test_the_cures_in_the_equations_let_an_error_die_out(drift):
-    """Truth: a position that misses its constraint by 1e-6 is back after many decay times; without a cure it is not."""
+@pytest.mark.parametrize("stabilization", [Stabilization.BAUMGARTE, Stabilization.GGL])
+def test_stabilizations_in_the_equations_let_an_error_die_out(stabilization):
+    """Truth: a position off its constraint by 1e-6 is back after many decay times, with stabilization only."""
     motion = problem("pendulum.mac", "swing_scene")
     astray = replace(motion, start={**motion.start, "y": str(float(motion.start["y"]) - 1e-6)})
 
-    def missed(drift):
-        engine = RungeKuttaEngine(astray, 1e-12, drift)
+    def missed(stabilization):
+        engine = RungeKuttaEngine(astray, 1e-12, stabilization)
         engine.advance(float(motion.time_span[1]))
         return abs(engine.state[0] ** 2 + engine.state[1] ** 2 - 1)
 
-    assert missed(drift) < 1e-12
+    assert missed(stabilization) < 1e-12
     assert missed(Stabilization.NONE) > 1e-7
 
 
-@pytest.mark.parametrize("drift", [Stabilization.BAUMGARTE, Stabilization.GGL])
-def test_with_a_cure_the_motion_is_that_of_the_taylor_engine(drift):
+@pytest.mark.parametrize("stabilization", [Stabilization.BAUMGARTE, Stabilization.GGL])
+def test_with_stabilization_the_motion_is_that_of_the_taylor_engine(stabilization):
     """Truth: both solve the same equations, with the same gamma."""
     ours, theirs = (
-        RungeKuttaEngine(problem("pendulum.mac"), 1e-13, drift),
-        TaylorEngine(problem("pendulum.mac"), drift=drift),
+        RungeKuttaEngine(problem("pendulum.mac"), 1e-13, stabilization),
+        TaylorEngine(problem("pendulum.mac"), stabilization=stabilization),
     )
     for engine in (ours, theirs):
         engine.advance(5.0)
@@ -123,8 +123,8 @@ def test_with_a_cure_the_motion_is_that_of_the_taylor_engine(drift):
 
 
 def test_projection_keeps_the_constraints_that_a_coarse_tolerance_loses():
-    def missed(drift):
-        motion = RungeKuttaEngine(problem("pendulum.mac", "swing_scene"), 1e-5, drift)
+    def missed(stabilization):
+        motion = RungeKuttaEngine(problem("pendulum.mac", "swing_scene"), 1e-5, stabilization)
         motion.advance(50.0)
         (x, y), (vx, vy) = motion.state[:2], motion.state[2:]
         return max(abs(x**2 + y**2 - 1), abs(x * vx + y * vy))
@@ -138,7 +138,7 @@ def test_the_work_of_a_control_is_balanced():
     request = SimulationRequest(tol=1e-11, engine=EngineName.RUNGE_KUTTA, samples=0)
     report = simulate(problem("car_axis.mac"), request).report
     assert abs(report.energy_error) < 1e-11
-    assert [leg.engine for leg in report.legs] == [EngineName.RUNGE_KUTTA]
+    assert [segment.engine for segment in report.segments] == [EngineName.RUNGE_KUTTA]
     assert report.code == ""
 
 

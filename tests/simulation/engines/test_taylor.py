@@ -11,14 +11,14 @@ from problems import problem
 from holonom.program.precision import read_precision
 from holonom.simulation.constraints.program_projection import ProgramProjection
 from holonom.simulation.engines import code
-from holonom.simulation.engines.code import Code, better_code, pays, running
+from holonom.simulation.engines.code import Code, better_code, is_worthwhile, running
 from holonom.simulation.engines.taylor import TaylorEngine
 from holonom.simulation.request import SimulationRequest, Stabilization
 from holonom.simulation.simulate import simulate
 
 
-def test_code_is_better_where_a_run_earns_it():
-    """What is compiled first is compiled quickly; better code pays for long runs, and in hardware numbers only."""
+def test_better_code_for_long_runs():
+    """Quick code first; better code is worthwhile for long runs, and in hardware numbers alone."""
     assert TaylorEngine(problem("pendulum.mac")).code is Code.QUICK
     assert TaylorEngine(problem("pendulum.mac"), compact=True).code is Code.COMPACT
     assert TaylorEngine(problem("pendulum.mac"), compact=False).code is Code.UNROLLED
@@ -26,9 +26,9 @@ def test_code_is_better_where_a_run_earns_it():
     long.advance(20000.0)
     assert long.code is not Code.QUICK
     second = 1 / running(Code.QUICK, 20, 1, 1e-9)  # steps
-    assert not pays(Code.QUICK, Code.COMPACT, 20, 1e-3 * second, 1e-9)
-    assert pays(Code.QUICK, Code.COMPACT, 20, 10 * second, 1e-9)
-    assert not pays(Code.COMPACT, Code.UNROLLED, 500, 10 / running(Code.COMPACT, 500, 1, 1e-9), 1e-9)
+    assert not is_worthwhile(Code.QUICK, Code.COMPACT, 20, 1e-3 * second, 1e-9)
+    assert is_worthwhile(Code.QUICK, Code.COMPACT, 20, 10 * second, 1e-9)
+    assert not is_worthwhile(Code.COMPACT, Code.UNROLLED, 500, 10 / running(Code.COMPACT, 500, 1, 1e-9), 1e-9)
     assert better_code(Code.QUICK, read_precision("quadruple")) is None
 
 
@@ -56,7 +56,7 @@ def test_a_run_with_many_stops_kept_the_code_that_is_quickly_compiled(monkeypatc
 def test_the_code_does_not_change_the_motion(compact):
     motion = TaylorEngine(problem("car_axis.mac"), compact=compact)
     motion.advance(1.0)
-    other = TaylorEngine(problem("car_axis.mac"), drift=Stabilization.NONE, compact=True)
+    other = TaylorEngine(problem("car_axis.mac"), stabilization=Stabilization.NONE, compact=True)
     other.advance(1.0)
     assert motion.state == pytest.approx(other.state, abs=1e-11)
 

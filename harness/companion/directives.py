@@ -1,0 +1,422 @@
+"""Directives and roles that put runs into the pages of the book and the manual.
+
+``{value}`EXPRESSION` `` is a value of the page's runs within a line, ``{show} EXPRESSION`` a block of it: a card of an
+equation, an answer, a table. An expression is Jinja's, over what the page's chapter computes and the macros of the
+templates; ``{show}`` without one takes a piece of template as its content. ``{run-figure} NAME`` is a figure of the
+chapter, of which the first paragraph is the text for who cannot see it and the rest the caption.
+``{exercise} GRADE`` is a question with its ``{answer}``.
+"""
+
+import logging
+import posixpath
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from babel.messages.mofile import write_mo
+from babel.messages.pofile import read_po
+from docutils import nodes
+from markupsafe import Markup
+from sphinx import addnodes
+from sphinx.application import Sphinx
+from sphinx.config import Config
+from sphinx.environment import BuildEnvironment
+from sphinx.util.docutils import SphinxDirective, SphinxRole
+from sphinx.writers.html5 import HTML5Translator
+
+from ..language import ENGLISH, LANGUAGES, catalog_file, gettext
+from ..typeset.mathml import inline_mathml, mathml
+from .finish import EQUATION, with_columns, with_equations
+from .fonts import mathematics_font
+from .kept import digest_of_all
+from .pages import source_name, source_page
+from .paper import REPOSITORY, chapters_of_the_paper
+from .shelf import Shelf
+
+GRADES = 3
+SHELF = "holonom_shelf"  # the chapters, among the data of the page that is read
+KEPT = ".kept"  # the folder of results that a later build takes
+FILES = "_runs"  # the folder of what runs made, beside the pages
+# where the folders are, from the root, that pieces of pages refer to
+FOLDERS = {"figures": FILES, "sessions": f"{FILES}/sessions", "source": "source"}
+Generated = tuple[str, dict[str, Any], str]  # name of a page, what its template is given, the template
+
+
+class shown(nodes.General, nodes.Element):
+    """HTML that a run has made."""
+
+
+class inline_shown(nodes.Inline, nodes.Element):
+    """HTML within a line."""
+
+
+class run_figure(nodes.General, nodes.Element):
+    """A figure: its first child is the alternative text, the others the caption."""
+
+
+class exercise(nodes.General, nodes.Element):
+    """A question and its answer."""
+
+
+class answer(nodes.General, nodes.Element):
+    """An answer, folded."""
+
+
+class Show(SphinxDirective):
+    """HTML that an expression, or a piece of a template, makes of the runs."""
+
+    optional_arguments, final_argument_whitespace, has_content = 1, True, True
+
+    def run(self) -> list[nodes.Node]:
+        """Return the HTML, and tell where its equations are.
+
+        Returns
+        -------
+        list of docutils.nodes.Node
+            Nodes of the page.
+        """
+        template = "\n".join(self.content) or f"{{{{ {self.arguments[0]} }}}}"
+        html = _rendered(self.env, template)
+        _equations(self.env).setdefault(self.env.docname, []).extend(EQUATION.findall(html))
+        return [shown("", html=html)]
+
+
+class Value(SphinxRole):
+    """A value of a run within a line."""
+
+    def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
+        """Return what the expression gives.
+
+        Returns
+        -------
+        tuple of two lists
+            Nodes, and messages of the system.
+        """
+        html = _rendered(self.env, f"{{{{ {self.text} }}}}")
+        return [inline_shown("", nodes.Text(Markup(html).striptags()), html=html)], []
+
+
+class Definition(SphinxRole):
+    """A word where it is defined, which the index lists."""
+
+    def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
+        """Return the word and its entry.
+
+        Returns
+        -------
+        tuple of two lists
+            Nodes, and messages of the system.
+        """
+        name = f"term-{self.env.new_serialno('index')}"
+        entry = addnodes.index(entries=[("single", self.text, name, "main", None)])
+        return [entry, nodes.target("", "", ids=[name]), nodes.emphasis("", self.text)], []
+
+
+class SessionOfMaxima(SphinxDirective):
+    """The chapter as a session of Maxima: what is asked, and the file to be downloaded."""
+
+    def run(self) -> list[nodes.Node]:
+        """Return the questions and the link.
+
+        Returns
+        -------
+        list of docutils.nodes.Node
+            Nodes of the page.
+        """
+        slug, shelf = posixpath.basename(self.env.docname), self.env.temp_data[SHELF]
+        return [shown("", html=shelf.session(slug))] if shelf else []
+
+
+class When(SphinxDirective):
+    """Content for the case that a condition on the runs holds."""
+
+    required_arguments, final_argument_whitespace, has_content = 1, True, True
+
+    def run(self) -> list[nodes.Node]:
+        """Return the content or nothing; all of it where messages are collected.
+
+        Returns
+        -------
+        list of docutils.nodes.Node
+            Nodes of the page.
+        """
+        condition = f"{{{{ 1 if {self.arguments[0]} else '' }}}}"
+        if self.env.temp_data[SHELF] is None or _rendered(self.env, condition):
+            return self.parse_content_to_nodes()
+        return []
+
+
+class RunFigure(SphinxDirective):
+    """A figure that the chapter draws."""
+
+    required_arguments, has_content = 1, True
+
+    def run(self) -> list[nodes.Node]:
+        """Return the figure.
+
+        Returns
+        -------
+        list of docutils.nodes.Node
+            Nodes of the page.
+        """
+        return [
+            run_figure("", *self.parse_content_to_nodes(), name=self.arguments[0], ids=[f"fig-{self.arguments[0]}"])
+        ]
+
+
+class Exercise(SphinxDirective):
+    """A question, with its grade."""
+
+    required_arguments, has_content = 1, True
+
+    def run(self) -> list[nodes.Node]:
+        """Return the question with its answer in it.
+
+        Returns
+        -------
+        list of docutils.nodes.Node
+            Nodes of the page.
+        """
+        return [exercise("", *self.parse_content_to_nodes(), grade=int(self.arguments[0]))]
+
+
+class Answer(SphinxDirective):
+    """An answer."""
+
+    has_content = True
+
+    def run(self) -> list[nodes.Node]:
+        """Return the answer.
+
+        Returns
+        -------
+        list of docutils.nodes.Node
+            Nodes of the page.
+        """
+        return [answer("", *self.parse_content_to_nodes())]
+
+
+def _collecting(app: Sphinx) -> bool:
+    """Return True where messages are collected, which takes no runs."""
+    return app.builder.name == "gettext"
+
+
+def _rendered(env: BuildEnvironment, template: str) -> str:
+    """Return what a piece of a template makes of the runs of the page that is read."""
+    shelf = env.temp_data[SHELF]
+    return shelf.rendered(env.docname, template) if shelf else ""
+
+
+def _put_shelf(app: Sphinx, name: str, source: list[str]) -> None:
+    """Let the directives of a page that is read find the chapters; there are none where messages are collected."""
+    app.env.temp_data[SHELF] = None if _collecting(app) else _shelf_of(app)
+
+
+def _shelf_of(app: Sphinx) -> Shelf:
+    """Return the chapters of a build, those of the paper where no others were given."""
+    if not hasattr(app, "holonom_shelf"):
+        files, kept = Path(app.outdir) / FILES, Path(app.doctreedir).parent / KEPT
+        app.holonom_shelf = Shelf(chapters_of_the_paper(), _language_of(app), files, kept)
+    return app.holonom_shelf
+
+
+def _equations(env: BuildEnvironment) -> dict[str, list[str]]:
+    """Return the numbers of the equations that have cards, by page."""
+    if not hasattr(env, "holonom_equations"):
+        env.holonom_equations = {}
+    return env.holonom_equations
+
+
+def _up(name: str) -> str:
+    """Return the way from a page to the root."""
+    return "../" * name.count("/")
+
+
+def _within(translator: HTML5Translator, html: str) -> str:
+    """Return HTML with its links as they are from the page that is written."""
+    up = _up(translator.builder.current_docname)
+    for folder, place in FOLDERS.items():
+        html = html.replace(f'="{folder}/', f'="{up}{place}/')
+    return html
+
+
+def _visit_shown(translator: HTML5Translator, node: nodes.Element) -> None:
+    """Write HTML as it is."""
+    translator.body.append(_within(translator, node["html"]))
+    raise nodes.SkipNode
+
+
+def _visit_run_figure(translator: HTML5Translator, node: nodes.Element) -> None:
+    """Write the picture; the caption follows."""
+    alternative = translator.attval(node.pop(0).astext())
+    file = _within(translator, f'="figures/{node["name"]}.svg"')
+    translator.body.append(
+        f'<figure id="{node["ids"][0]}"><a href{file}><img src{file} alt="{alternative}" /></a><figcaption>'
+    )
+
+
+def _depart_run_figure(translator: HTML5Translator, node: nodes.Element) -> None:
+    """End the caption."""
+    translator.body.append("</figcaption></figure>\n")
+
+
+def _visit_exercise(translator: HTML5Translator, node: nodes.Element) -> None:
+    """Begin a question."""
+    grade = node["grade"]
+    said = [gettext("easy"), gettext("middling"), gettext("hard")][grade - 1]
+    marks = "●" * grade + "○" * (GRADES - grade)
+    translator.body.append(f'<div class="exercise"><span class="grade" role="img" aria-label="{said}">{marks}</span>')
+
+
+def _depart_exercise(translator: HTML5Translator, node: nodes.Element) -> None:
+    """End a question."""
+    translator.body.append("</div>\n")
+
+
+def _visit_answer(translator: HTML5Translator, node: nodes.Element) -> None:
+    """Begin an answer."""
+    translator.body.append(f'<details><summary>{gettext("Answer")}</summary><div class="answer">')
+
+
+def _depart_answer(translator: HTML5Translator, node: nodes.Element) -> None:
+    """End an answer."""
+    translator.body.append("</div></details>\n")
+
+
+def _visit_math(translator: HTML5Translator, node: nodes.math) -> None:
+    """Write a formula within a line."""
+    translator.body.append(inline_mathml(node.astext()))
+    raise nodes.SkipNode
+
+
+def _visit_math_block(translator: HTML5Translator, node: nodes.math_block) -> None:
+    """Write a formula on lines of its own."""
+    translator.body.append(f'<div class="formula">{mathml(node.astext())}</div>')
+    raise nodes.SkipNode
+
+
+def _perform_runs(app: Sphinx, env: BuildEnvironment, names: list[str]) -> None:
+    """Have the results that the pages to be read take."""
+    if not _collecting(app):
+        _shelf_of(app).perform(names)
+
+
+def _outdated(app: Sphinx, env: BuildEnvironment, added: set[str], changed: set[str], removed: set[str]) -> list[str]:
+    """Remove pages whose texts are gone, and return all with chapters where what they show may have changed."""
+    for name in removed if app.builder.name == "html" else ():
+        Path(app.builder.get_outfilename(name)).unlink(missing_ok=True)
+    before, now = getattr(env, "holonom_program", ""), digest_of_all()
+    env.holonom_program = now
+    shelf = _shelf_of(app)
+    same = before == now and shelf.kept is not None
+    return [] if same else [name for name in env.found_docs if shelf.chapter(name)]
+
+
+def _purge(app: Sphinx, env: BuildEnvironment, name: str) -> None:
+    """Forget the equations of a page."""
+    _equations(env).pop(name, None)
+
+
+def _finish_page(app: Sphinx, name: str, template: str, context: dict[str, Any], tree: nodes.document | None) -> None:
+    """Link the equations that a page names, and tell its table cells the heads of their columns."""
+    twins = context.get("folders", {}).items()
+    context["twins"] = [(each, LANGUAGES[each], f"{_up(name)}{folder}{name}.html") for each, folder in twins]
+    if "body" in context and app.builder.name == "html":
+        context["body"] = with_columns(with_equations(context["body"], _places_from(app, name)))
+
+
+def _places_from(app: Sphinx, name: str) -> dict[str, str]:
+    """Return where each equation is, as seen from a page: on the page itself, else where the book has it first."""
+    found = _equations(app.env)
+    order = [each for each in app.env.toctree_includes.get("book/index", ()) if each in found]
+    places: dict[str, str] = {}
+    for page in [name, *order] if name in found else order:
+        uri = "" if page == name else app.builder.get_relative_uri(name, page)
+        for number in found[page]:
+            places.setdefault(number, f"{uri}#eq-{number}")
+    return places
+
+
+def _other_pages(app: Sphinx) -> Iterator[Generated]:
+    """Yield the pages of the Maxima files that the pages of this build refer to."""
+    pages = _shelf_of(app).pages.values()
+    for file in dict.fromkeys(file for page in pages for file in page.sources):
+        yield source_name(file).removesuffix(".html"), _context(file, source_page(REPOSITORY, file)), "page.html"
+
+
+def _context(title: str, body: str) -> dict[str, str]:
+    return {"title": title, "body": body}
+
+
+def _put_font(app: Sphinx) -> None:
+    """Put the font of formulas beside the pages."""
+    files = Path(app.outdir) / FILES
+    logging.getLogger("fontTools").setLevel(logging.WARNING)
+    font, notice = mathematics_font()
+    files.mkdir(parents=True, exist_ok=True)
+    (files / "mathematics.woff").write_bytes(font)
+    (files / "mathematics.txt").write_text(notice, encoding="utf-8")
+
+
+def _language_of(app: Sphinx) -> str:
+    """Return the language that messages are translated into: zh of zh_CN."""
+    return (app.config.language or ENGLISH).partition("_")[0]
+
+
+def _compile_catalogs(app: Sphinx, config: Config) -> None:
+    """Make the catalogs ready for Sphinx, whose Chinese is called zh_CN."""
+    language = _language_of(app)
+    config.locale_dirs = [str(Path(app.doctreedir) / "locale")]
+    target = Path(config.locale_dirs[0], config.language, "LC_MESSAGES")
+    target.mkdir(parents=True, exist_ok=True)
+    for file in catalog_file(language).parent.glob("*.po"):
+        with file.open("rb") as text, (target / f"{file.stem}.mo").open("wb") as compiled:
+            write_mo(compiled, read_po(text, locale=language))
+
+
+DIRECTIVES = {
+    "show": Show,
+    "when": When,
+    "session": SessionOfMaxima,
+    "run-figure": RunFigure,
+    "exercise": Exercise,
+    "answer": Answer,
+}
+EVENTS = {
+    "config-inited": _compile_catalogs,
+    "builder-inited": _put_font,
+    "env-get-outdated": _outdated,
+    "env-before-read-docs": _perform_runs,
+    "env-purge-doc": _purge,
+    "source-read": _put_shelf,
+    "html-page-context": _finish_page,
+    "html-collect-pages": _other_pages,
+}
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Tell Sphinx of all of this.
+
+    Parameters
+    ----------
+    app : Sphinx
+        Application.
+
+    Returns
+    -------
+    dict of str to bool
+        Properties of the extension.
+    """
+    for name, directive in DIRECTIVES.items():
+        app.add_directive(name, directive)
+    app.add_role("value", Value())
+    app.add_role("dfn", Definition(), override=True)
+    app.add_node(shown, html=(_visit_shown, None))
+    app.add_node(inline_shown, html=(_visit_shown, None))
+    app.add_node(run_figure, html=(_visit_run_figure, _depart_run_figure))
+    app.add_node(exercise, html=(_visit_exercise, _depart_exercise))
+    app.add_node(answer, html=(_visit_answer, _depart_answer))
+    app.add_html_math_renderer("mathml", (_visit_math, None), (_visit_math_block, None))
+    for event, function in EVENTS.items():
+        app.connect(event, function)
+    return {"parallel_read_safe": False, "parallel_write_safe": True}

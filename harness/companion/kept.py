@@ -1,0 +1,88 @@
+"""Results of runs, kept in files by what they depend on: the program, the examples, and the run's own arguments."""
+
+import hashlib
+import inspect
+import pickle
+import shutil
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from ..files import shared, write_whole
+from .chapter import Run
+from .runs import perform
+
+HARNESS = Path(__file__).parents[1]
+APART = {"cli", "companion", "display", "locale", "reference", "__pycache__"}  # folders that no result depends on
+SUFFIXES = {".py", ".mac", ".lisp", ".json", ".toml", ".c", ".h"}
+
+
+def results_of(runs: Iterable[Run], directory: Path | None, done: Callable[[], None]) -> dict[Run, Any]:
+    """Return the results of runs, those from a directory that it has, and keep the others there.
+
+    Parameters
+    ----------
+    runs : iterable of Run
+        Runs.
+    directory : Path or None
+        Folder of the results of earlier builds.
+    done : callable
+        Function that is called after each run.
+
+    Returns
+    -------
+    dict of Run to Any
+        Results by run.
+    """
+    wanted = dict.fromkeys(runs)
+    files = {run: directory / f"{_key(run)}.pickle" for run in wanted} if directory else {}
+    found = {run: pickle.loads(file.read_bytes()) for run, file in files.items() if file.is_file()}
+    made = perform([run for run in wanted if run not in found], done)
+    for run, result in made.items():
+        if directory:
+            directory.mkdir(parents=True, exist_ok=True)
+            write_whole(files[run], pickle.dumps(result))
+    return found | made
+
+
+def _digest(files: Iterable[Path]) -> str:
+    """Return what tells the contents of files from any others."""
+    return hashlib.sha256(b"".join(hashlib.sha256(file.read_bytes()).digest() for file in sorted(files))).hexdigest()
+
+
+def digest_of_all() -> str:
+    """Return the digest of all that pages are made of, but their texts.
+
+    Returns
+    -------
+    str
+        Hexadecimal digest.
+    """
+    chapters = HARNESS / "companion"
+    own = [*chapters.glob("*.py"), *chapters.glob("chapters/*.py"), *chapters.glob("templates/*")]
+    return _digest([*_below(shared("maxima")), *_below(shared("examples")), *_below(HARNESS), *own])
+
+
+def _key(run: Run) -> str:
+    paths = [each for each in run.arguments if isinstance(each, Path)]
+    own = _digest([*(paths or _below(shared("examples"))), Path(inspect.getfile(run.compute))])
+    said = (_program(), own, run.compute.__module__, run.compute.__qualname__, run.arguments)
+    return hashlib.sha256(repr(said).encode()).hexdigest()
+
+
+@cache
+def _program() -> str:
+    """Return the digest of all that computes."""
+    tools = [HARNESS / "companion" / name for name in ("runs.py", "motions.py")]
+    installed = [Path(found) for found in (shutil.which("maxima"), sys.executable) if found]
+    return _digest([*_below(shared("maxima")), *_below(HARNESS), *tools, *installed])
+
+
+def _below(directory: Path) -> Iterator[Path]:
+    for file in directory.iterdir():
+        if file.is_dir():
+            yield from () if file.name in APART else _below(file)
+        elif file.suffix in SUFFIXES:
+            yield file

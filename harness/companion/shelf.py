@@ -1,0 +1,138 @@
+"""The chapters behind the pages of one build: their runs performed, their templates rendered, their files written."""
+
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from ..files import write_whole
+from ..language import speaking
+from .chapter import Chapter, Page, Run
+from .kept import results_of
+from .pages import environment
+from .paper import REPOSITORY
+from .sessions import questions, session_text
+
+
+class Shelf:
+    """What the pages of a build take from their chapters.
+
+    Parameters
+    ----------
+    chapters : mapping of str to Chapter
+        The chapters, by the last part of the name of their page.
+    language : str
+        What templates and figures speak.
+    files : Path
+        Where the figures and other files of the pages are put.
+    kept : Path or None
+        Where results of runs are kept from one build to the next.
+    results : dict, optional
+        Those that are there already; others are added.
+    done : callable, optional
+        Called each time that one of the runs is done.
+    """
+
+    def __init__(
+        self,
+        chapters: Mapping[str, Chapter],
+        language: str,
+        files: Path,
+        kept: Path | None,
+        results: dict[Run, Any] | None = None,
+        done: Callable[[], None] = lambda: None,
+    ) -> None:
+        self.chapters, self.language, self.files, self.kept, self.done = chapters, language, files, kept, done
+        self.results = {} if results is None else results
+        self.pages: dict[str, Page] = {}
+
+    def perform(self, names: Iterable[str]) -> None:
+        """Have the results of the runs that pages take.
+
+        Parameters
+        ----------
+        names : iterable of str
+            Names of the pages.
+        """
+        wanted = [run for name in names if (chapter := self.chapter(name)) for run in chapter.runs.values()]
+        self.results.update(results_of((run for run in wanted if run not in self.results), self.kept, self.done))
+
+    def chapter(self, name: str) -> Chapter | None:
+        """Return the chapter of a page, where it has one.
+
+        Parameters
+        ----------
+        name : str
+            Name of the page.
+
+        Returns
+        -------
+        Chapter or None
+            Chapter; None for a page without one.
+        """
+        return self.chapters.get(name.rpartition("/")[2])
+
+    def page(self, name: str) -> Page:
+        """Return what the chapter of a page computes, and write its files.
+
+        Parameters
+        ----------
+        name : str
+            Name of the page.
+
+        Returns
+        -------
+        Page
+            Content and files of the page.
+        """
+        if name not in self.pages:
+            self.pages[name] = made = self._made(name)
+            figures = {f"{figure}.svg": svg for figure, svg in made.figures.items()}
+            for file, text in (figures | dict(made.files)).items():
+                self._write(file, text)
+        return self.pages[name]
+
+    def rendered(self, name: str, template: str) -> str:
+        """Return a piece of a page that a template makes of what its chapter computes.
+
+        Parameters
+        ----------
+        name : str
+            Name of the page.
+        template : str
+            Jinja template.
+
+        Returns
+        -------
+        str
+            HTML.
+        """
+        with speaking(self.language):
+            return str(environment(self.language).from_string(template).render(**self.page(name).content)).strip()
+
+    def session(self, slug: str) -> str:
+        """Return the questions of a chapter's session of Maxima with the link to its file, and write that.
+
+        Parameters
+        ----------
+        slug : str
+            Name of the chapter.
+
+        Returns
+        -------
+        str
+            HTML.
+        """
+        with speaking(self.language):
+            self._write(f"sessions/{slug}.mac", session_text(REPOSITORY, slug))
+            return str(environment(self.language).globals["session"](slug, questions(slug)))
+
+    def _write(self, name: str, text: str) -> None:
+        (self.files / name).parent.mkdir(parents=True, exist_ok=True)
+        write_whole(self.files / name, text)
+
+    def _made(self, name: str) -> Page:
+        chapter = self.chapter(name)
+        if chapter is None:
+            return Page({})
+        with speaking(self.language):
+            return chapter.page({each: self.results[run] for each, run in chapter.runs.items()})

@@ -1,0 +1,129 @@
+"""Pages that Sphinx makes of the book and the manual, or of scene files, in each language, and the book in print."""
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from sphinx.application import Sphinx
+from sphinx.errors import SphinxError
+from sphinx.locale import translators
+from sphinx.util.docutils import docutils_namespace, patch_docutils
+
+from ..failures import ErrorKind, HolonomError
+from ..files import write_whole_directory
+from ..language import gettext, speaking
+from .chapter import Chapter, Run
+from .directives import FILES, KEPT
+from .own_scenes import texts_of_scenes
+from .printing import browser, print_site
+from .shelf import Shelf
+
+SOURCES = Path(__file__).parent
+SPHINX = {"en": "en", "zh": "zh_CN"}  # what Sphinx calls a language
+TEXTS = ".texts"  # the folder of what pages about scene files say
+MARK = ".doctrees"  # a folder of each directory that Sphinx has written into
+
+
+def make_site(
+    scenes: Sequence[Path],
+    chapters: Mapping[str, Chapter],
+    directory: Path,
+    pdf: Path | None,
+    languages: Sequence[str],
+    done: Callable[[], None],
+) -> None:
+    """Perform the runs of pages, and write these in each language, and print them.
+
+    Parameters
+    ----------
+    scenes : sequence of Path
+        The files that the pages are about; without any they are the book and the manual.
+    chapters : mapping of str to Chapter
+        What stands behind the pages, by the last part of their names.
+    directory : Path
+        Where the pages are put, those of each language but the first in a directory of its name.
+    pdf : Path or None
+        The file that the book is printed to; of each language but the first, with its name before the ending.
+    languages : sequence of str
+        Language codes; the first is that of the root folder.
+    done : callable
+        Called each time that one of the runs is done.
+
+    Raises
+    ------
+    HolonomError
+        A run fails, or the directory holds something else or cannot be written.
+    """
+    _require_site_or_nothing(directory)
+    if pdf is not None:
+        browser()  # before the work, not after it
+    root, kept = ("index", None) if scenes else ("book/index", directory / KEPT)
+    results: dict[Run, Any] = {}
+    for language in languages:
+        first = language == languages[0]
+        folder = directory if first else directory / language
+        shelf = Shelf(chapters, language, folder / FILES, kept, results, done)
+        if scenes:
+            shelf.perform(chapters)  # where one is refused, nothing is written
+        with speaking(language):
+            folders = {each: _from(language, each, languages[0]) for each in languages if each != language}
+            app = build(scenes, folder, shelf, folders)
+            if pdf is not None:
+                print_site(app, root, pdf if first else pdf.with_suffix(f".{language}{pdf.suffix}"))
+
+
+def _from(language: str, other: str, first: str) -> str:
+    """Return the way from the pages of a language to those of another one."""
+    return ("" if language == first else "../") + ("" if other == first else f"{other}/")
+
+
+def build(scenes: Sequence[Path], directory: Path, shelf: Shelf, folders: Mapping[str, str]) -> Sphinx:
+    """Have Sphinx make pages, and return what knows them; of each other language it is given the folder.
+
+    Parameters
+    ----------
+    scenes : sequence of Path
+        Scene files; empty for the book and the manual.
+    directory : Path
+        Folder of the pages.
+    shelf : Shelf
+        Chapters of the build.
+    folders : mapping of str to str
+        Folder of each other language.
+
+    Returns
+    -------
+    Sphinx
+        Application after the build.
+    """
+    settings: dict[str, Any] = {"language": SPHINX[shelf.language], "html_context": {"folders": folders}}
+    if scenes:
+        settings |= {"bibtex_bibfiles": [], "html_title": gettext("A companion to systems of your own")}
+    try:
+        sources = _texts_about(scenes, directory) if scenes else SOURCES
+        translators.clear()  # Sphinx would add the messages of this build to those of the one before
+        with patch_docutils(SOURCES), docutils_namespace():
+            app = Sphinx(sources, SOURCES, directory, directory / ".doctrees", "html", settings, status=None)
+            app.holonom_shelf = shelf
+            app.build()
+        return app
+    except (OSError, SphinxError) as error:
+        if isinstance(reason := getattr(error, "orig_exc", None), HolonomError):
+            raise reason from None
+        raise HolonomError(ErrorKind.UNWRITABLE, directory, error) from None
+
+
+def _texts_about(scenes: Sequence[Path], directory: Path) -> Path:
+    """Write the texts of the pages about scene files into a folder of theirs, and return it."""
+    folder = directory / TEXTS
+    directory.mkdir(parents=True, exist_ok=True)
+    write_whole_directory(folder, texts_of_scenes(scenes))
+    return folder
+
+
+def _require_site_or_nothing(directory: Path) -> None:
+    """Refuse a directory that holds what Sphinx has not written."""
+    if not directory.exists() or (directory.is_dir() and not any(directory.iterdir())):
+        return
+    if not (directory / MARK).is_dir():
+        raise HolonomError(ErrorKind.NOT_A_COMPANION, directory)

@@ -1,0 +1,108 @@
+"""Compare values at states with the expected values in 50 digits.
+
+A difference counts if it is confirmed in twice the digits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from mpmath import mp
+
+from .digits import DIGITS, WORKING_DIGITS
+from .irregular_point import IrregularPoint
+from .motion_states import ComparedValue
+
+VANISHED = 2 * DIGITS // 3  # digits by which a difference shrinks in twice the digits where it is rounding
+
+Parts = Iterator[tuple[str, ComparedValue]]  # each value with the part of the programs that makes it
+
+
+def first_differences(compared: Callable[[int], Parts], attempt: int) -> tuple[dict[str, str], bool]:
+    """Return the first wrong value of each part at a state, and True if it is regular.
+
+    Each is confirmed in twice the digits.
+
+    Parameters
+    ----------
+    compared : callable
+        Function from the number of an attempt to values, each with its part of the programs.
+    attempt : int
+        Number of the state.
+
+    Returns
+    -------
+    differences : dict of str to str
+        Message for each part with a wrong value.
+    regular : bool
+        True if all of them are numbers.
+    """
+    with mp.workdps(WORKING_DIGITS):
+        made, regular = _made(compared(attempt))
+        suspected = {place: abs(each.given - each.true) for place, (_, each) in enumerate(made) if _differs(each)}
+    if not suspected:
+        return {}, regular
+    found: dict[str, str] = {}
+    with mp.workdps(2 * WORKING_DIGITS):
+        again, still = _made(compared(attempt))
+        for place, before in suspected.items():
+            if place >= len(again) and not still:
+                continue  # rounding hid that a value is missing at this state
+            part, value = again[place] if place < len(again) else made[place]
+            rounding = abs(value.given - value.true) <= before * mp.mpf(10) ** -VANISHED
+            if _differs(value) and not rounding:
+                found.setdefault(part, _told(value))
+    return found, regular and still
+
+
+def differing(compared: Callable[[], Iterator[ComparedValue]], digits: int = DIGITS) -> str:
+    """Return the first wrong value, confirmed in twice the digits; empty without one.
+
+    Parameters
+    ----------
+    compared : callable
+        Function that makes the values in the working precision.
+    digits : int
+        Digits in which given and expected numbers have to agree.
+
+    Returns
+    -------
+    str
+    """
+    with mp.workdps(WORKING_DIGITS):
+        suspected = {
+            place: abs(each.given - each.true) for place, each in enumerate(compared()) if _differs(each, digits)
+        }
+    if not suspected:
+        return ""
+    with mp.workdps(2 * WORKING_DIGITS):
+        for place, value in enumerate(compared()):
+            before = suspected.get(place)
+            if before is None or abs(value.given - value.true) <= before * mp.mpf(10) ** -VANISHED:
+                continue
+            if _differs(value, digits):
+                return _told(value)
+    return ""
+
+
+def _made(compared: Parts) -> tuple[list[tuple[str, ComparedValue]], bool]:
+    """Return the values at a state, and True if all are numbers.
+
+    They end before the first one without a value.
+    """
+    made: list[tuple[str, ComparedValue]] = []
+    try:
+        for each in compared:
+            made.append(each)
+    except (IrregularPoint, ZeroDivisionError, OverflowError):
+        return made, False
+    return made, True
+
+
+def _differs(value: ComparedValue, digits: int = DIGITS) -> bool:
+    size = max(value.size, abs(value.given), abs(value.true))
+    return abs(value.given - value.true) > mp.mpf(10) ** -digits * size
+
+
+def _told(value: ComparedValue) -> str:
+    return f"{value.quantity}: {mp.nstr(value.given, 12)} where {mp.nstr(value.true, 12)} is so"

@@ -1,0 +1,32 @@
+"""Values at a state, found once more in twice the digits."""
+
+import pytest
+from mpmath import mp
+
+from holonom.crosscheck.compared_values import first_differences
+from holonom.crosscheck.digits import WORKING_DIGITS
+from holonom.crosscheck.irregular_point import IrregularPoint
+from holonom.crosscheck.motion_states import ComparedValue
+
+
+def test_rounding_beside_a_value_that_is_missing_is_no_difference():
+    """A program that divides by what cancels has a value in 70 digits, and none in 140."""
+
+    def compared(attempt):
+        if mp.dps > WORKING_DIGITS:
+            raise IrregularPoint
+        yield "program", ComparedValue("a", mp.mpf(10) ** -72, mp.zero, mp.mpf(10) ** -72)
+
+    assert first_differences(compared, 0) == ({}, False)
+
+
+@pytest.mark.parametrize("missing", [False, True])
+def test_difference_is_found_though_a_later_value_is_missing(missing):
+    def compared(attempt):
+        yield "program", ComparedValue("a", mp.one, mp.zero, mp.one)
+        if missing:
+            raise IrregularPoint
+
+    found, regular = first_differences(compared, 0)
+    assert list(found) == ["program"]
+    assert regular is not missing

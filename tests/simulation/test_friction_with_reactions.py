@@ -1,0 +1,234 @@
+"""Coulomb friction with the normal force, against closed forms and Newton-Euler equations solved for each sign."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+import holonom
+from holonom.failures import HolonomError
+
+INCLINE = """
+system : holonomic_system(coordinates = [x, y], parameters = [m, g, alpha, mu],
+  kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2, potential_energy = [gravity = m*g*(y*cos(alpha) - x*sin(alpha))],
+  forces = [friction = [-mu*abs(lambda1)*signum(dot(x)), 0]], constraints = [y])$
+scene : holonomic_scene(system, parameter_values = [m = 2, g = 981/100, alpha = 1/4, mu = 1/2],
+  initial_state = [x = 0, dot(x) = VELOCITY], time_span = [0, 2])$
+"""
+
+
+def of_text(text):
+    return holonom.system(f'load("holonom.mac")$ {text}')
+
+
+@pytest.mark.parametrize(("mu", "v"), [(0.5, 2), (0.25, 0), (0.26, 0), (0.2, -1)])
+def test_a_block_on_an_incline_slides_and_stops_and_stays_where_friction_holds_it(mu, v):
+    motion = of_text(INCLINE.replace("VELOCITY", str(v))).simulate(until=2, samples=2, mu=str(mu))
+    g, alpha, t, x = 9.81, 0.25, 2.0, 0.0
+    if v:
+        rate = g * (np.sin(alpha) - np.sign(v) * mu * np.cos(alpha))
+        stop = -v / rate if rate * v < 0 else np.inf
+        passed = min(stop, t)
+        x, v, t = v * passed + rate * passed**2 / 2, v + rate * passed if stop > t else 0, t - passed
+    if v == 0 and np.tan(alpha) > mu:
+        x += g * (np.sin(alpha) - mu * np.cos(alpha)) * t**2 / 2
+    assert motion["x"][-1] == pytest.approx(x, abs=1e-12)
+    assert motion["lambda1"] == pytest.approx(2 * g * np.cos(alpha))
+
+
+def test_a_bead_on_a_rough_hoop_has_the_speed_of_the_closed_form():
+    hoop = of_text("""
+system : holonomic_system(coordinates = [x, y], parameters = [m, g, r, mu],
+  kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2, potential_energy = [gravity = m*g*y],
+  forces = [friction = -mu*2*abs(lambda1)*signum(x*dot(y) - y*dot(x))*[-y, x]], constraints = [x^2 + y^2 - r^2])$
+scene : holonomic_scene(system, parameter_values = [m = 3, g = 10, r = 2, mu = 1/5],
+  initial_state = [x = 0, y = -2, dot(x) = 20], time_span = [0, 1])$
+""")
+    motion = hoop.simulate(until=0.6, samples=10)
+    phi = np.unwrap(np.arctan2(motion["x"], -motion["y"]))
+    g, r, mu = 10, 2, 0.2
+    a, b = -6 * mu * r * g / (1 + 4 * mu**2), 2 * r * g * (1 - 2 * mu**2) / (1 + 4 * mu**2)
+    square = (20**2 - b) * np.exp(-2 * mu * phi) + a * np.sin(phi) + b * np.cos(phi)
+    assert phi[-1] > np.pi
+    assert motion["dot(x)"] ** 2 + motion["dot(y)"] ** 2 == pytest.approx(square, rel=1e-11)
+
+
+ROD = """
+system : holonomic_system(coordinates = [x, y, phi], parameters = [m, g, l, mu],
+  kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2 + m*l^2/6*dot(phi)^2, potential_energy = [gravity = m*g*y],
+  forces = [friction = -mu*abs(lambda1)*signum(dot(x) + l*sin(phi)*dot(phi))*[1, 0, l*sin(phi)]],
+  constraints = [y - l*sin(phi)])$
+scene : holonomic_scene(system, parameter_values = [m = 1, g = 10, l = 1, mu = MU],
+  initial_state = [x = 0, phi = PHI, dot(x) = 30, dot(phi) = -1], time_span = [0, 1])$
+"""
+
+
+def singular_angle(mu, low, high):
+    """Where 1 + 3 cos(phi)^2 = 3 mu sin(phi) cos(phi), the boundary of Painleve's paradoxes."""
+    return brentq(lambda phi: 1 + 3 * np.cos(phi) ** 2 - 3 * mu * np.sin(phi) * np.cos(phi), low, high)
+
+
+def test_a_sliding_rod_is_followed_up_to_the_paradoxes_of_painleve_and_not_into_them():
+    mu = 2
+    first, last = singular_angle(mu, 0.5, 1.0), singular_angle(mu, 1.2, 1.57)
+    for phi, there in ((first - 0.01, True), (first + 0.01, False), (last - 0.01, False), (last + 0.01, True)):
+        scene = of_text(ROD.replace("MU", str(mu)).replace("PHI", repr(phi)))
+        if there:
+            assert np.isfinite(scene.simulate(until=0.001, samples=2)["lambda1"]).all()
+        else:
+            with pytest.raises(HolonomError, match=r"beyond t = 0, where .*Painleve"):
+                scene.simulate(until=0.001, samples=2)
+    with pytest.raises(HolonomError, match=r"beyond t = 0\.\d+, where"):
+        of_text(ROD.replace("MU", str(mu)).replace("PHI", repr(last + 0.01))).simulate(until=1)
+
+
+def test_a_rod_with_less_friction_than_four_thirds_has_no_paradox():
+    scene = of_text(ROD.replace("MU", "13/10").replace("PHI", "13/10"))
+    assert scene.simulate(until=1, samples=2)["phi"][-1] < 1.3
+
+
+CRANK = """
+system : holonomic_system(coordinates = [a, b, x, y], parameters = [mu],
+  kinetic_energy = dot(a)^2/4 + dot(x)^2/2 + dot(y)^2/2 + dot(b)^2*4*4/5/24
+    + 4/5*((-dot(a)*sin(a) - dot(b)*sin(b))^2 + (dot(a)*cos(a) + dot(b)*cos(b))^2)/2,
+  forces = [drive = [1, 0, 0, 0], friction = [0, 0, -mu*abs(lambda3)*signum(dot(x)), 0]],
+  constraints = [x - cos(a) - 2*cos(b), y - sin(a) - 2*sin(b), y])$
+scene : holonomic_scene(system, parameter_values = [mu = 3/10],
+  initial_state = [a = 1/2, dot(a) = 2], initial_guess = [b = -1/4, x = 2, y = 0, dot(b) = 0, dot(x) = 0, dot(y) = 0],
+  time_span = [0, 2])$
+"""
+
+
+def crank_acceleration(a, rate, mu):
+    """Newton-Euler: crank of length 1 and inertia 1/2, rod of length 2 and mass 4/5, slider of mass 1; and the guide.
+
+    Unknown are the accelerations of a and b, the forces on the rod at its ends and the guide's force.
+    """
+    b = -np.arcsin(np.sin(a) / 2)
+    turn = -rate * np.cos(a) / (2 * np.cos(b))
+    (ca, sa), (cb, sb), m = (np.cos(a), np.sin(a)), (np.cos(b), np.sin(b)), 0.8
+    sliding = np.sign(-rate * sa - 2 * turn * sb)
+    found = []
+    for side in (1, -1):
+        # columns: a'', b'', Px, Py at the crank, Qx, Qy at the slider, N
+        rows = [
+            [0.5, 0, -sa, ca, 0, 0, 0],
+            [-m * sa, -m * sb, -1, 0, -1, 0, 0],
+            [m * ca, m * cb, 0, -1, 0, -1, 0],
+            [0, m * 4 / 12, -sb, cb, sb, -cb, 0],
+            [-sa, -2 * sb, 0, 0, 1, 0, mu * sliding * side],
+            [ca, 2 * cb, 0, 0, 0, 0, 0],
+            [0, 0, 0, 0, 0, 1, -1],
+        ]
+        right = [
+            1,
+            m * (rate**2 * ca + turn**2 * cb),
+            m * (rate**2 * sa + turn**2 * sb),
+            0,
+            rate**2 * ca + 2 * turn**2 * cb,
+            rate**2 * sa + 2 * turn**2 * sb,
+            0,
+        ]
+        solution = np.linalg.solve(rows, right)
+        if side * solution[6] >= 0:
+            found.append((solution[0], solution[6]))
+    assert len(found) == 1
+    return found[0]
+
+
+def test_a_slider_crank_moves_as_the_equations_of_newton_and_euler_say():
+    motion = of_text(CRANK).simulate(until=2, samples=5)
+    truth = solve_ivp(
+        lambda t, state: [state[1], crank_acceleration(*state, 0.3)[0]],
+        (0, 2),
+        (0.5, 2),
+        t_eval=np.linspace(0, 2, 5),
+        rtol=1e-9,
+        atol=1e-10,
+        max_step=0.02,
+    ).y
+    assert motion["a"] == pytest.approx(truth[0], rel=1e-6)
+    guides = [crank_acceleration(a, v, 0.3)[1] for a, v in zip(motion["a"], motion["dot(a)"], strict=True)]
+    assert np.abs(motion["lambda3"]) == pytest.approx(np.abs(guides), rel=1e-9)
+    assert any(switching.function == "lambda3" for switching in motion.report.switchings)
+
+
+def planted(seed):
+    """Numbers of a system of 4 coordinates, with friction in two of them that two multipliers bound."""
+    draw = np.random.default_rng(seed)
+    root, J, F = draw.normal(size=(4, 4)), draw.normal(size=(2, 4)), draw.normal(size=4)
+    A, mu = root @ root.T + np.eye(4), draw.uniform(0.2, 4, 2)
+    v = np.linalg.svd(J)[2][2:].T @ draw.normal(size=2)
+    A, J, F, mu, v = (np.round(each * 1024) / 1024 for each in (A, J, F, mu, v))
+    v[2:] = np.linalg.solve(J[:, 2:], -J[:, :2] @ v[:2])
+    return A, J, F, mu, v
+
+
+def solved(A, J, F, mu, v):
+    """The one solution of a consistent pattern of signs; None where a determinant is not positive."""
+    found = []
+    plain = np.linalg.det(np.block([[A, -J.T], [J, np.zeros((2, 2))]]))
+    for signs in product((1, -1), repeat=2):
+        rubbed = np.zeros((4, 2))
+        rubbed[[0, 1], [0, 1]] = mu * np.sign(v[:2]) * signs
+        matrix = np.block([[A, rubbed - J.T], [J, np.zeros((2, 2))]])
+        if np.linalg.det(matrix) / plain <= 0:
+            return None
+        solution = np.linalg.solve(matrix, [*F, 0, 0])
+        if (solution[4:] * signs >= 0).all():
+            found.append(solution)
+    (only,) = found
+    return only
+
+
+def exact(x):
+    return f"({round(x * 1024)}/1024)"
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_random_systems_accelerate_as_the_one_pattern_of_signs_says_or_are_refused(seed):
+    A, J, F, mu, v = planted(seed)
+    rates = [f"dot(q{s})" for s in range(1, 5)]
+    energy = " + ".join(f"{exact(A[i, k])}*{rates[i]}*{rates[k]}/2" for i, k in product(range(4), repeat=2))
+    friction = [f"-{exact(mu[k])}*abs(lambda{k + 1})*signum({rates[k]})" for k in range(2)]
+    constraints = ", ".join(" + ".join(f"{exact(x)}*q{s}" for s, x in enumerate(row, 1)) for row in J)
+    scene = of_text(
+        f"""
+system : holonomic_system(coordinates = [q1, q2, q3, q4], kinetic_energy = {energy},
+  forces = [push = [{", ".join(map(exact, F))}], friction = [{", ".join(friction)}, 0, 0]],
+  constraints = [{constraints}])$
+scene : holonomic_scene(system, observe = [trajectory, multipliers, a1 = ddot(q1)],
+  initial_state = [q1 = 0, q2 = 0, dot(q1) = {exact(v[0])}, dot(q2) = {exact(v[1])}])$
+""".replace("diff(dot(q1), t)", "ddot(q1)")
+    )
+    truth = solved(A, J, F, mu, v)
+    if truth is None:
+        with pytest.raises(HolonomError, match="beyond t = 0, where"):
+            scene.simulate(until=1e-3, samples=2)
+        return
+    motion = scene.simulate(until=1e-3, samples=2)
+    assert [motion["a1"][0], motion["lambda1"][0], motion["lambda2"][0]] == pytest.approx(truth[[0, 4, 5]], rel=1e-9)
+
+
+def test_without_a_reaction_there_is_no_friction():
+    scene = of_text("""
+system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  forces = [friction = [-abs(lambda1)*signum(dot(x)), 0]], constraints = [y])$
+scene : holonomic_scene(system, initial_state = [x = 0, dot(x) = 1], time_span = [0, 1])$
+""")
+    motion = scene.simulate(until=1, samples=2)
+    assert motion["x"][-1] == pytest.approx(1, abs=1e-14)
+    assert not motion.report.switchings
+
+
+def test_joints_name_their_reactions_in_forces():
+    scene = of_text("""
+bob : particle(m, [x, y])$
+rail : point_on_line(bob, marker(ground, [0, 0], [1, 0]))$
+system : holonomic_system(parameters = [m, g, mu], assembly(bob, rail, gravity = uniform_gravity(g, bob)),
+  forces = [friction = [-mu*abs(reaction(rail)[2])*signum(dot(x)), 0]])$
+scene : holonomic_scene(system, parameter_values = [m = 2, g = 10, mu = 1/4], initial_state = [x = 0, dot(x) = 5])$
+""")
+    assert scene.simulate(until=1, samples=2)["x"][-1] == pytest.approx(5 - 2.5 / 2, rel=1e-12)

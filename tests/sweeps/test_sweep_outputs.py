@@ -1,0 +1,55 @@
+"""What is kept: items of a small language, which nothing runs as code."""
+
+from fractions import Fraction
+
+import pytest
+
+from holonom.failures import ErrorKind, HolonomError
+from holonom.program.motion_program import Call, Name, Operation
+from holonom.sweeps.outputs import Kind, read_quantities
+
+
+def test_items_are_told_apart_by_commas_outside_of_brackets():
+    kept = read_quantities(["final, at(x, 5/2)", "max(abs(lambda1)),zero( dot(y) )", "final"])
+    assert [(item.text, item.kind) for item in kept] == [
+        ("final", Kind.FINAL),
+        ("at(x,5/2)", Kind.AT),
+        ("max(abs(lambda1))", Kind.LARGEST),
+        ("zero(dot(y))", Kind.ZERO),
+    ]
+    assert kept[1].time == Fraction(5, 2)
+    assert kept[3].quantity == Name("dot(y)")
+
+
+def test_an_expression_has_the_precedence_of_maxima():
+    (kept,) = read_quantities(["-x^2/2 + m*Lambda[1]"])
+    two = Fraction(2)
+    power = Call(Operation.POWER, (Name("x"), two))
+    half = Call(Operation.DIVIDE, (Call(Operation.NEGATE, (power,)), two))
+    assert kept.quantity == Call(Operation.ADD, (half, Call(Operation.MULTIPLY, (Name("m"), Name("Lambda[1]")))))
+    assert (kept.kind, kept.time) == (Kind.AT, None)
+
+
+@pytest.mark.parametrize(
+    "item",
+    [
+        "",
+        "x +",
+        "__import__('os')",
+        "x.y",
+        "(lambda: 1)()",
+        "[1]",
+        "'x'",
+        "True",
+        "mean(abs(x))",
+        "min(abs(x))",
+        "at(x,soon)",
+        "at(x,1/0)",
+        "(" * 400 + "x" + ")" * 400,
+        "1e999",
+    ],
+)
+def test_what_cannot_be_kept_is_refused(item):
+    with pytest.raises(HolonomError) as refused:
+        read_quantities([item])
+    assert refused.value.kind is ErrorKind.NOT_KEPT
