@@ -7,7 +7,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from holonom.benchmark.hard_cases import register
-from holonom.benchmark.hard_cases.case import Case, Extent, Sweep, examined, ours, required, theirs
+from holonom.benchmark.hard_cases.case import Case, Extent, Sweep, examined, holonom_result, reference_result, required
 from holonom.cli import holonom
 from holonom.explanations import advice
 from holonom.formats import schema
@@ -20,12 +20,12 @@ def shown(name: str, *found) -> Case:
 
 HELD = shown(
     "held",
-    theirs("plain", "place", 1.25, 6.0),
-    ours("ours", "place", 9.0, 6.0),
+    reference_result("plain", "place", 1.25, 6.0),
+    holonom_result("ours", "place", 9.0, 6.0),
     required("ours", "reported", True),
     Sweep("angle", (0.1, 0.01), {"ours": (9.0, 8.0), "plain": (9.0, 7.0)}),
 )
-FAILED = shown("failed", ours("ours", "place", 5.0, 6.0))
+FAILED = shown("failed", holonom_result("ours", "place", 5.0, 6.0))
 
 
 def run(monkeypatch, cases, *arguments) -> int:
