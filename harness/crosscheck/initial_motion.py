@@ -310,7 +310,7 @@ def determined_initial_values(checked: CheckedScene, relations: Relations) -> tu
     """Compare (19): determined initial values are present and satisfy the constraints.
 
     With the values put in, the constraints that determine them vanish identically. A value that is a number, in
-    constraints that contain further initial values, holds for the scene's own numbers only. Each value is that of the
+    constraints that contain further initial values or parameters, holds for the scene's own numbers only. Each value is that of the
     initial state, for which (12) has the constraints; this also decides the branch of a root.
 
     Parameters
@@ -357,10 +357,10 @@ def _for_all_states(
     containing = _containing(known, residuals)
     without = _without_closed_form(numbers, containing)
     numbers = {x for x in without if not _is_quadratic(checked, x, known, containing[x])}
-    left_open = {x for x in checked.state if initial(x) not in fixed or not fixed[initial(x)].is_number}
+    constants = {x for x in checked.state if initial(x) in fixed and fixed[initial(x)].is_number}
     for residual in residuals:
         present = residual.free_symbols & symbols
-        others = (present - numbers) | (residual.free_symbols & left_open)
+        others = (present - numbers) | (residual.free_symbols - constants)
         if present & known and not (present & numbers and others):
             yield residual
 

@@ -152,11 +152,15 @@ class _Search:
             own, other = (_length(metric, way) for way in ways)
         except (IrregularPoint, ZeroDivisionError, OverflowError):
             return ""
-        if own >= (NEARER if is_open else NEARER_ROOT) * other:
+        if own >= (NEARER if is_open else NEARER_ROOT) * other or self._is_same(found):
             return ""
         name = max(self._guess, key=lambda name: abs(found[name] - self._start[name]))
         given, true = mp.nstr(self._start[name], 12), mp.nstr(found[name], 12)
         return f"initial value of {name}: {given}, where {true} is nearer to the guess"
+
+    def _is_same(self, found: State) -> bool:
+        """Return True if a root is the initial state, to the digits that it has."""
+        return max(abs(found[name] - self._start[name]) for name in self._guess) <= _step_of_root(found)
 
     def _metric(self, state: State) -> list[Row]:
         """Return the mass matrix of the names at a state.
@@ -186,7 +190,7 @@ class _Search:
         left, rows = self._residuals(state)
         for _ in range(NEWTON_STEPS):
             step = _shortest(metric, rows, left)
-            if max(map(abs, step), default=mp.zero) <= mp.mpf(10) ** -CONVERGED * max(map(abs, state.values())):
+            if max(map(abs, step), default=mp.zero) <= _step_of_root(state):
                 return state, Elimination(rows).rank < len(metric)
             state, left, rows = self._damped(state, step, left)
         raise IrregularPoint
@@ -215,6 +219,11 @@ class _Search:
         slopes = [tape.gradient(order, values, {place: (mp.one,)}) for place in self._conditions]
         rows = [{i: slope[q][0] for q, i in self._columns.items() if q in slope and slope[q][0]} for slope in slopes]
         return left, rows
+
+
+def _step_of_root(state: State) -> mp.mpf:
+    """Return the largest step of Newton's method that counts as none."""
+    return mp.mpf(10) ** -CONVERGED * max(map(abs, state.values()))
 
 
 def _shortest(metric: Sequence[Row], rows: Sequence[Row], left: Sequence[mp.mpf]) -> list[mp.mpf]:

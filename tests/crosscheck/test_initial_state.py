@@ -128,6 +128,29 @@ scene : holonomic_scene(system, initial_state = makelist(q[j] = j, j, 7))$
     assert verdicts(record, described, wrong)["19"] is Verdict.DISAGREES
 
 
+def test_numbers_for_the_scene_alone_are_not_held_against_all_parameters(tmp_path):
+    """Four coordinates of a crank and rod are numbers, as r = 1 and l = 2 have it; the check put other lengths in."""
+    file = tmp_path / "scene.mac"
+    file.write_text("""
+load("holonom.mac")$
+rod : planar_body(m, I, [x, y], b)$
+slider : particle(M, [s, h])$
+system : holonomic_system(parameters = [m, I, M, r, l], assembly(rotor(I, a), rod, slider,
+  revolute_joint(marker(rod, [-l/2, 0]), [r*cos(a), r*sin(a)]),
+  revolute_joint(marker(rod, [l/2, 0]), slider), point_on_line(slider, marker(ground, [0, 0], [1, 0]))))$
+scene : holonomic_scene(system, parameter_values = [m = 1, I = 1, M = 1, r = 1, l = 2],
+  initial_state = [a = 0, dot(a) = 1],
+  initial_guess = [x = 2, y = 0, b = 0, s = 3, h = 0, dot(x) = 0, dot(y) = 0, dot(b) = 0, dot(s) = 0, dot(h) = 0])$
+""")
+    record, described = derived_record(file), describe(file)
+    (scene,) = record.scenes
+    relations = fixed_values(scene).relations
+    assert verdicts(record, described, scene)["19"] in (Verdict.PROVED, Verdict.AGREES)
+    for i, relation in enumerate(relations):
+        wrong = with_relations(scene, (*relations[:i], Relation(relation.left_tree, 5), *relations[i + 1 :]))
+        assert verdicts(record, described, wrong)["19"] is Verdict.DISAGREES, relation.left
+
+
 def test_force_without_a_value_at_the_start_is_no_error(tmp_path):
     """The start itself is compared; the check ended as an internal error."""
     file = tmp_path / "scene.mac"

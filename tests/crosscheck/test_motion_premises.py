@@ -121,3 +121,18 @@ def test_only_a_nearer_start_is_told(asked):
         start = {name: mp.mpf(text) for name, text in programs.problems[Solve.DIRECT].start.items()}
         assert nearer_start(motion, start) == ""
         assert "nearer to the guess" in nearer_start(motion, start | {"y": -start["y"], "dot(y)": -start["dot(y)"]})
+
+
+def test_a_guess_on_the_constraints_is_no_nearer_start(tmp_path):
+    """The start has the digits of its text; its distance from the fraction -2/3 was held against it."""
+    file = tmp_path / "scene.mac"
+    file.write_text("""load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2, constraints = [2*x + 3*y])$
+run : holonomic_scene(system, initial_state = [x = 1, dot(x) = 0], initial_guess = [y = -2/3, dot(y) = 0])$
+""")
+    description = Source(file).description()
+    motion = DescribedMotion(description, description.scenes[0])
+    with mp.workdps(WORKING_DIGITS):
+        start = {"t": mp.zero, "x": mp.one, "y": mp.mpf(f"-0.{'6' * 45}7"), "dot(x)": mp.zero, "dot(y)": mp.zero}
+        assert nearer_start(motion, start) == ""
+        assert "nearer to the guess" in nearer_start(motion, start | {"y": mp.mpf("-0.6667")})
