@@ -310,8 +310,8 @@ def determined_initial_values(checked: CheckedScene, relations: Relations) -> tu
     """Compare (19): determined initial values are present and satisfy the constraints.
 
     With the values put in, the constraints that determine them vanish identically. A value that is a number, in
-    constraints that contain further initial values or parameters, holds for the scene's own numbers only. Each value is that of the
-    initial state, for which (12) has the constraints; this also decides the branch of a root.
+    constraints that contain further initial values or parameters, holds for the scene's own numbers only. Each value
+    is that of the initial state, for which (12) has the constraints; this also decides the branch of a root.
 
     Parameters
     ----------
