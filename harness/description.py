@@ -235,8 +235,8 @@ def read_description(text: str, file: Path) -> Description:
     content = read(Document.DESCRIPTION, text)
     if len(content["scenes"]) > MOST_SCENES:
         raise HolonomError(ErrorKind.TOO_MANY_SCENES, file, str(len(content["scenes"])))
-    for said in _texts(content):
-        if hidden := hidden_character(said):
+    for prose in _texts(content):
+        if hidden := hidden_character(prose):
             raise HolonomError(ErrorKind.HIDDEN_CHARACTER, file, hidden)
     return Description(file, content)
 

@@ -261,9 +261,9 @@ def has_sandbox() -> bool:
         tried = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, timeout=PROBE_TIME, check=False)
     except (OSError, subprocess.TimeoutExpired) as error:
         raise HolonomError(ErrorKind.SANDBOX_FAILED, bubblewrap, str(error)) from None
-    said = tried.stderr.decode(errors="replace").strip()
-    if tried.returncode and not any(words in said for words in FORBIDDEN):
-        raise HolonomError(ErrorKind.SANDBOX_FAILED, bubblewrap, said or f"exit status {tried.returncode}")
+    message = tried.stderr.decode(errors="replace").strip()
+    if tried.returncode and not any(words in message for words in FORBIDDEN):
+        raise HolonomError(ErrorKind.SANDBOX_FAILED, bubblewrap, message or f"exit status {tried.returncode}")
     return tried.returncode == 0
 
 

@@ -312,8 +312,8 @@ class Scene:
     def _name_among(self, names: Sequence[str]) -> str | None:
         """Return the scene's name, by default the last one; None without a scene."""
         if self._name is not None and self._name not in names:
-            said = f"{self._name}; the file has {', '.join(names) or 'none'}"
-            raise HolonomError(ErrorKind.NO_SUCH_SCENE, self.file, said)
+            detail = f"{self._name}; the file has {', '.join(names) or 'none'}"
+            raise HolonomError(ErrorKind.NO_SUCH_SCENE, self.file, detail)
         return self._name or next(reversed(names), None)
 
     @cached_property

@@ -124,10 +124,10 @@ def check(
 
         with doing("checking with SymPy"):
             checked = [
-                check_record(record, said, seed, closed_form_size, time_to_limit() - TIME_TO_TELL)
-                for record, said in zip(records, described, strict=True)
+                check_record(record, description, seed, closed_form_size, time_to_limit() - TIME_TO_TELL)
+                for record, description in zip(records, described, strict=True)
             ]
-            over = [verdicts_out_of_time(said) for said in described]
+            over = [verdicts_out_of_time(description) for description in described]
             motions = result_of(child, time_to_limit() - TIME_TO_TELL, over)
     reports = [
         (as_given(source.file), report.with_verdicts(verdicts))
@@ -150,9 +150,9 @@ def _judge_motions(sources: Sequence["Source"], settings: dict[str, str], seed: 
 
     verdicts = []
     for source, answers in zip(sources, asked, strict=True):
-        said = source.description(settings)
-        motions = read_motions(said, answers)
-        verdicts.append(list(motion_verdicts(said, motions, seed, time_to_limit() - TIME_TO_TELL)))
+        description = source.description(settings)
+        motions = read_motions(description, answers)
+        verdicts.append(list(motion_verdicts(description, motions, seed, time_to_limit() - TIME_TO_TELL)))
     return verdicts
 
 

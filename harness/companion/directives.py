@@ -263,9 +263,9 @@ def _depart_run_figure(translator: HTML5Translator, node: nodes.Element) -> None
 def _visit_exercise(translator: HTML5Translator, node: nodes.Element) -> None:
     """Begin a question."""
     grade = node["grade"]
-    said = [gettext("easy"), gettext("middling"), gettext("hard")][grade - 1]
+    label = [gettext("easy"), gettext("middling"), gettext("hard")][grade - 1]
     marks = "●" * grade + "○" * (GRADES - grade)
-    translator.body.append(f'<div class="exercise"><span class="grade" role="img" aria-label="{said}">{marks}</span>')
+    translator.body.append(f'<div class="exercise"><span class="grade" role="img" aria-label="{label}">{marks}</span>')
 
 
 def _depart_exercise(translator: HTML5Translator, node: nodes.Element) -> None:

@@ -68,8 +68,8 @@ def digest_of_all() -> str:
 def _key(run: Run) -> str:
     paths = [each for each in run.arguments if isinstance(each, Path)]
     own = _digest([*(paths or _below(shared("examples"))), Path(inspect.getfile(run.compute))])
-    said = (_program(), own, run.compute.__module__, run.compute.__qualname__, run.arguments)
-    return hashlib.sha256(repr(said).encode()).hexdigest()
+    parts = (_program(), own, run.compute.__module__, run.compute.__qualname__, run.arguments)
+    return hashlib.sha256(repr(parts).encode()).hexdigest()
 
 
 @cache

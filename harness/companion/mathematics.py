@@ -195,9 +195,9 @@ def typeset(equation: Equation) -> Typeset:
     Typeset
         Typeset relations.
     """
-    said = "; ".join(f"{relation.left} = {relation.right}" for relation in equation.relations)
+    spoken = "; ".join(f"{relation.left} = {relation.right}" for relation in equation.relations)
     lines = sum(formula.count(LINE_BREAK) + 1 for formula in latex_equation(equation, WIDTH))
-    return Typeset(_at_each_width(lambda width: latex_equation(equation, width), said), lines)
+    return Typeset(_at_each_width(lambda width: latex_equation(equation, width), spoken), lines)
 
 
 def nothing_to_show(equation: Equation) -> str:
@@ -270,22 +270,22 @@ def _printed(tree: Tree, other: Tree, colour: str, text: str) -> Markup:
     return _block(lambda width: [latex_marked(tree, other, colour, width)], text)
 
 
-def _block(formulas: Formulas, said: str) -> Markup:
-    return Markup('<div class="formula">{}</div>').format(_at_each_width(formulas, said))
+def _block(formulas: Formulas, spoken: str) -> Markup:
+    return Markup('<div class="formula">{}</div>').format(_at_each_width(formulas, spoken))
 
 
-def _at_each_width(formulas: Formulas, said: str) -> Markup:
+def _at_each_width(formulas: Formulas, spoken: str) -> Markup:
     """Formulas as they are broken on a desk and on a phone; the style shows the one that fits."""
     wide, narrow = formulas(WIDTH), formulas(NARROW)
     if wide == narrow:
-        return _blocks(wide, said)
+        return _blocks(wide, spoken)
     return Markup('<div class="wide">{}</div><div class="narrow">{}</div>').format(
-        _blocks(wide, said), _blocks(narrow, said)
+        _blocks(wide, spoken), _blocks(narrow, spoken)
     )
 
 
-def _blocks(formulas: Sequence[str], said: str) -> Markup:
-    return Markup("").join(Markup(mathml(formula, said)) for formula in formulas)
+def _blocks(formulas: Sequence[str], spoken: str) -> Markup:
+    return Markup("").join(Markup(mathml(formula, spoken)) for formula in formulas)
 
 
 def description(system: System) -> list[Markup]:

@@ -76,8 +76,8 @@ def _series_of(description: Description, scene: str, answer: Answer | None) -> S
         return SceneSeries(scene, None, why_missing(answer))
     if holds_special_functions(description):
         return SceneSeries(scene, None, OF_SPECIAL_FUNCTIONS)
-    said = f"no power series of {len(description.system.coordinates)} coordinates is asked for"
-    return SceneSeries(scene, None, CheckResult(Verdict.NOTHING, None, None, said))
+    reason = f"no power series of {len(description.system.coordinates)} coordinates is asked for"
+    return SceneSeries(scene, None, CheckResult(Verdict.NOTHING, None, None, reason))
 
 
 def judge_series(

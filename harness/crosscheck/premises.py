@@ -93,12 +93,12 @@ def differences(record: Record, premises: Premises) -> Iterator[Difference]:
         One difference.
     """
     for field in fields(System):
-        said, stated = getattr(record.system, field.name), getattr(premises.system, field.name)
-        if said != stated:
-            yield Difference(f"system.{field.name}", _told(said, stated))
+        recorded, stated = getattr(record.system, field.name), getattr(premises.system, field.name)
+        if recorded != stated:
+            yield Difference(f"system.{field.name}", _difference(recorded, stated))
     names = tuple(scene.name for scene in premises.scenes)
-    if (said := tuple(scene.name for scene in record.scenes)) != names:
-        yield Difference("scenes", _told(said, names))
+    if (recorded := tuple(scene.name for scene in record.scenes)) != names:
+        yield Difference("scenes", _difference(recorded, names))
     else:
         for scene, stated in zip(record.scenes, premises.scenes, strict=True):
             yield from _differences_of_scene(scene, DescribedMotion(premises.description, stated))
@@ -108,7 +108,7 @@ def differences(record: Record, premises: Premises) -> Iterator[Difference]:
 def _differences_of_scene(scene: Scene, motion: DescribedMotion) -> Iterator[Difference]:
     stated = motion.scene
     switched = any(map(is_switched, stated.control_law.trees.values()))
-    said = {
+    recorded = {
         "title": (scene.title, stated.title),
         "effects": (scene.effects, stated.effects),
         "observe": (scene.observe, stated.observe),
@@ -118,20 +118,20 @@ def _differences_of_scene(scene: Scene, motion: DescribedMotion) -> Iterator[Dif
         "law_around_start": (scene.law_around_start, switched),
     }
     if not switched:
-        said["control_law"] = (dict(scene.control_law), dict(stated.control_law))
+        recorded["control_law"] = (dict(scene.control_law), dict(stated.control_law))
     elif detail := _law_differs(scene, motion):
         yield Difference("control_law", detail, scene.name)
     if detail := _nearer_start(scene, motion):
         yield Difference("initial_guess", detail, scene.name)
-    for what, (found, belongs) in said.items():
+    for what, (found, belongs) in recorded.items():
         if found != belongs or _order(found) != _order(belongs):
-            yield Difference(what, _told(found, belongs), scene.name)
+            yield Difference(what, _difference(found, belongs), scene.name)
 
 
 def _law_differs(scene: Scene, motion: DescribedMotion) -> str:
     """Return the name of a law that differs around the first time; empty if none does."""
     if list(scene.control_law) != list(motion.scene.control_law):
-        return _told(scene.control_law, motion.scene.control_law)
+        return _difference(scene.control_law, motion.scene.control_law)
     with mp.workdps(CONFIRMING_DIGITS):
         held = Law(scene.control_law.trees, motion.splines)
         parameters = {name: (mp.mpf(k) / 7,) for k, name in enumerate(motion.system.parameters, 8)}
@@ -171,13 +171,13 @@ def _differences_of_effects(record: Record, premises: Premises) -> Iterator[Diff
     parts = (*system.kinetic_energy, *system.potential_energy, *system.forces)
     everything = tuple(sorted({*system.switches, *(part.effect for part in parts)}))  # as Maxima's sets are
     stated = list(dict.fromkeys(scene.effects for scene in premises.scenes))
-    said = [derived.effects for derived in record.derivations]
-    if premises.scenes and said != stated:
-        yield Difference("derivations", _told(said, stated))
-    elif not premises.scenes and said != [everything]:
-        yield Difference("derivations", _told(said, [everything]))
+    recorded = [derived.effects for derived in record.derivations]
+    if premises.scenes and recorded != stated:
+        yield Difference("derivations", _difference(recorded, stated))
+    elif not premises.scenes and recorded != [everything]:
+        yield Difference("derivations", _difference(recorded, [everything]))
     for scene in record.scenes:
-        if scene.derivation >= len(said) or said[scene.derivation] != scene.effects:
+        if scene.derivation >= len(recorded) or recorded[scene.derivation] != scene.effects:
             yield Difference("derivation", "its effects are not those of the scene", scene.name)
 
 
@@ -185,10 +185,10 @@ def _order(found: object) -> object:
     return list(found) if isinstance(found, Mapping) else found
 
 
-def _told(said: object, stated: object) -> str:
-    return f"the record has {_short(said)}, the description {_short(stated)}"
+def _difference(recorded: object, stated: object) -> str:
+    return f"the record has {_short(recorded)}, the description {_short(stated)}"
 
 
-def _short(said: object, most: int = 120) -> str:
-    text = ", ".join(map(str, said)) if isinstance(said, Iterable) and not isinstance(said, str) else str(said)
+def _short(value: object, most: int = 120) -> str:
+    text = ", ".join(map(str, value)) if isinstance(value, Iterable) and not isinstance(value, str) else str(value)
     return text if len(text) <= most else f"{text[:most]}..."

@@ -191,7 +191,7 @@ def _configurations(
     Unknown values are random.
     """
     moving = {system.time, *system.coordinates, *system.controls}
-    exact = [_in_numbers(start) for start in starts]
+    exact = [_rational_values(start) for start in starts]
     for attempt in range(DRAWS):
         known = exact[attempt % len(exact)] if exact else {}
         drawn = random_point(names, 2 * attempt, seed)
@@ -199,7 +199,7 @@ def _configurations(
         yield {x: known[x] + (STEP * step[x] if x in moving else 0) if x in known else drawn[x] for x in drawn}
 
 
-def _in_numbers(start: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, sp.Rational]:
+def _rational_values(start: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, sp.Rational]:
     with mp.workdps(WORKING_DIGITS):
         values = Steps(list(start.values())).at({})
     return {

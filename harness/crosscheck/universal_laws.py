@@ -32,7 +32,7 @@ DRAWS = 40
 
 
 @dataclass(frozen=True)
-class LawOfControls:
+class ControlLaw:
     """A law for the controls."""
 
     controls: Mapping[sp.Symbol, sp.Expr]  # by control, in the time, in constants and in controls that stay free
@@ -42,7 +42,7 @@ class LawOfControls:
 def judge_law(
     system: MechanicalSystem,
     values: Mapping[sp.Symbol, sp.Expr],
-    law: LawOfControls,
+    law: ControlLaw,
     span: tuple[sp.Expr, sp.Expr] | None = None,
 ) -> CheckResult:
     """Return the verdict on a law, by the multipliers in random states.
@@ -54,7 +54,7 @@ def judge_law(
     system : MechanicalSystem
     values : mapping of Symbol to Expr
         Values of parameters; others are random.
-    law : LawOfControls
+    law : ControlLaw
     span : tuple of (Expr, Expr) or None
         First and last time of the states; None for no limits.
 
@@ -103,7 +103,7 @@ def _residual_at_next_state(moved: _MovedByLaw, draws: Iterator[Mapping[sp.Symbo
 class _MovedByLaw:
     """The equations of a system with a law and parameter values substituted."""
 
-    def __init__(self, system: MechanicalSystem, values: Mapping[sp.Symbol, sp.Expr], law: LawOfControls) -> None:
+    def __init__(self, system: MechanicalSystem, values: Mapping[sp.Symbol, sp.Expr], law: ControlLaw) -> None:
         equations = IndependentEquations(system)
         history = dict(values)
         for control, expression in law.controls.items():

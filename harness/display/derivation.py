@@ -87,8 +87,8 @@ def show_verdicts(console: Console, report: "CheckReport") -> None:
             console.print(f"({found.number}) {found.name}: {found.detail}", soft_wrap=True)
     for left_out in dict.fromkeys(found.left_out for found in report.verdicts if found.left_out):
         numbers = dict.fromkeys(f"({found.number})" for found in report.verdicts if found.left_out == left_out)
-        said = f"{', '.join(numbers)} left out: {why_left_out(left_out)}."
-        console.print(said, soft_wrap=True)
+        line = f"{', '.join(numbers)} left out: {why_left_out(left_out)}."
+        console.print(line, soft_wrap=True)
     console.print(f"{_sum(report)}; random points drawn by --seed {report.seed}", soft_wrap=True)
 
 
@@ -225,7 +225,7 @@ def _errata_table(equations: Sequence["PrintedEquation"]) -> Table:
 
 
 def _show_misprint(console: Console, equation: "PrintedEquation") -> None:
-    said = {
+    texts = {
         gettext("difference"): equation.difference,
         gettext("corrected"): equation.corrected,
         gettext("note"): equation.note and translated(equation.note),
@@ -234,6 +234,6 @@ def _show_misprint(console: Console, equation: "PrintedEquation") -> None:
         return
     number = f"({equation.number}) " if equation.number else ""
     console.print(Text(f"{number}{translated(equation.name)}", style="cyan"))
-    for what, text in said.items():
+    for what, text in texts.items():
         if text:
             console.print(f"    {what}: {text}", soft_wrap=True)

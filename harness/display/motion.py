@@ -224,7 +224,7 @@ def rejection(violation: "AccuracyViolation") -> str:
     str
         One line that begins with ``holonom: error:``.
     """
-    if isnan(violation.missed):
+    if isnan(violation.error):
         return f"holonom: error: simulation rejected: {violation.reason}. End the run before that."
     return (
         f"holonom: error: simulation rejected: {violation.reason}. "

@@ -159,10 +159,10 @@ def compile_shared(sources: Sequence[Path], library: Path, *options: str) -> Non
         As `compile_c`.
     """
     command = [*_compiler(), *map(str, sources), "-o", str(library), *options, "-lm"]
-    said = bytearray()
+    messages = bytearray()
     try:
         with doing("compiling C"):
-            status = run_process(command, Place(library.parent, os.environ, COMPILER_LIMITS), said)
+            status = run_process(command, Place(library.parent, os.environ, COMPILER_LIMITS), messages)
     except LimitExceeded as exceeded:
         raise HolonomError(
             ErrorKind.COMPILER_UNUSABLE, detail=f"{command[0]} took more than {exceeded.detail}"
@@ -170,7 +170,7 @@ def compile_shared(sources: Sequence[Path], library: Path, *options: str) -> Non
     except OSError as error:
         raise HolonomError(ErrorKind.COMPILER_UNUSABLE, detail=f"{command[0]}: {error.strerror}") from None
     if status != 0:
-        shown = " ".join(said.decode(errors="replace").split())[:SHOWN]
+        shown = " ".join(messages.decode(errors="replace").split())[:SHOWN]
         raise HolonomError(ErrorKind.COMPILER_REFUSED, detail=shown or f"exit status {status}")
     if not library.exists():
         raise HolonomError(ErrorKind.COMPILER_UNUSABLE, detail=f"{command[0]} made no library")

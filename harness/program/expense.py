@@ -74,5 +74,5 @@ def require_means(problem: MotionProblem, precision: Precision, order: int) -> N
     needed = len(counted.decomposition) * (order + 1) * (bits / 8 + BYTES_BESIDE_DIGITS) / MIB
     free = psutil.virtual_memory().available / MIB
     if needed > free:
-        said = f"an expansion in {precision.digits} digits takes about {needed:.0f} MiB of memory"
-        raise HolonomError(ErrorKind.MEMORY_TOO_SMALL, detail=f"{said}, and {free:.0f} are free")
+        estimate = f"an expansion in {precision.digits} digits takes about {needed:.0f} MiB of memory"
+        raise HolonomError(ErrorKind.MEMORY_TOO_SMALL, detail=f"{estimate}, and {free:.0f} are free")

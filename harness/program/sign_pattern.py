@@ -94,7 +94,7 @@ def drawing_at_any_time(problem: MotionProblem) -> Drawing:
     return replace(problem.drawing, program=program)
 
 
-def drawing_in_numbers(problem: MotionProblem) -> Drawing:
+def drawing_with_values(problem: MotionProblem) -> Drawing:
     """Return `drawing_at_any_time` with the values of the open parameters put in.
 
     Parameters
@@ -107,7 +107,7 @@ def drawing_in_numbers(problem: MotionProblem) -> Drawing:
     Drawing
     """
     drawing = drawing_at_any_time(problem)
-    return replace(drawing, program=in_numbers(problem, drawing.program))
+    return replace(drawing, program=program_with_values(problem, drawing.program))
 
 
 def holdable(problem: MotionProblem, name: str) -> bool:
@@ -197,7 +197,7 @@ def uniqueness(problem: MotionProblem, pattern: Pattern) -> list[tuple[int, Prog
     return found + [(-1, program_in(problem, grip, each)) for each in sides]
 
 
-def in_numbers(problem: MotionProblem, program: Program) -> Program:
+def program_with_values(problem: MotionProblem, program: Program) -> Program:
     """Return a program of the motion with the values of the open parameters put in.
 
     Parameters
@@ -229,8 +229,8 @@ def with_values_in(problem: MotionProblem) -> MotionProblem:
     if not problem.parameters:
         return problem
     return replace(
-        _with_programs(problem, lambda program: in_numbers(problem, program)),
-        switching=problem.switching and in_numbers(problem, problem.switching),
+        _with_programs(problem, lambda program: program_with_values(problem, program)),
+        switching=problem.switching and program_with_values(problem, problem.switching),
         released=tuple(
             replace(each, after=with_values_in(replace(each.after, values=problem.values))) for each in problem.released
         ),

@@ -18,7 +18,7 @@ class Refusal:
     """An entry that raises an error, and a part of its message."""
 
     given: str
-    said: str
+    message: str
     also: tuple[str, ...] = ()
 
 

@@ -34,27 +34,27 @@ class AccuracyViolation(NamedTuple):
     # ``position``, ``velocity``, ``energy``, ``multipliers``, or ``acceleration``: of the equations of motion within a
     # step
     quantity: str
-    # missed, expected: relative: what was found, and the most that the tolerance lets expect
-    missed: float
+    # error, expected: relative: what was found, and the most that the tolerance lets expect
+    error: float
     expected: float
 
     @property
     def reason(self) -> str:
         """Clause that names the quantity, its error and the expected error."""
         what = MISSED.get(self.quantity, f"the {self.quantity} that the constraints allow")
-        if np.isnan(self.missed):
+        if np.isnan(self.error):
             return f"{what} has no finite value"
         return (
-            f"relative error of {what} is {self.missed:.1e}; at most {self.expected:.1e} is expected at this tolerance"
+            f"relative error of {what} is {self.error:.1e}; at most {self.expected:.1e} is expected at this tolerance"
         )
 
 
-def violations(missed: Mapping[str, float], tol: float, steps: int) -> Iterator[AccuracyViolation]:
+def violations(errors: Mapping[str, float], tol: float, steps: int) -> Iterator[AccuracyViolation]:
     """Yield the quantities whose relative error is too large for the tolerance.
 
     Parameters
     ----------
-    missed : mapping of str to float
+    errors : mapping of str to float
         Relative error by quantity.
     tol : float
         Tolerance of a step.
@@ -66,17 +66,17 @@ def violations(missed: Mapping[str, float], tol: float, steps: int) -> Iterator[
     AccuracyViolation
     """
     most = float(expected(tol, steps))
-    for quantity, value in missed.items():
+    for quantity, value in errors.items():
         if not value <= most:
             yield AccuracyViolation(quantity, value, most)
 
 
-def trusted(missed: Mapping[str, Vector], tol: float, steps: NDArray[np.int64]) -> NDArray[np.bool_]:
+def trusted(errors: Mapping[str, Vector], tol: float, steps: NDArray[np.int64]) -> NDArray[np.bool_]:
     """Return True for each of k motions without unexpected errors.
 
     Parameters
     ----------
-    missed : mapping of str to ndarray, shape (k,)
+    errors : mapping of str to ndarray, shape (k,)
         Relative errors by quantity.
     tol : float
         Tolerance of a step.
@@ -87,7 +87,7 @@ def trusted(missed: Mapping[str, Vector], tol: float, steps: NDArray[np.int64]) 
     -------
     ndarray of bool, shape (k,)
     """
-    return np.logical_and.reduce([values <= expected(tol, steps) for values in missed.values()])
+    return np.logical_and.reduce([values <= expected(tol, steps) for values in errors.values()])
 
 
 def expected(tol: float, steps: int | NDArray[np.int64]) -> float | Vector:

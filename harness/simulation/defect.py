@@ -34,7 +34,7 @@ class DefectControl:
 
     Attributes
     ----------
-    missed : float
+    error : float
         Relative to the largest velocity where that is more than its nominal size.
     """
 
@@ -43,7 +43,7 @@ class DefectControl:
         self._nodes, self._weights = (
             np.array([precision.number(repr(float(value))) for value in values]) for values in (NODES, WEIGHTS)
         )
-        self.missed = 0.0
+        self.error = 0.0
 
     def take(self, step: Step) -> None:
         """Compare the states of a step with its accelerations if the step is long.
@@ -58,9 +58,9 @@ class DefectControl:
         if parts > 1:
             for first in range(0, parts, AT_ONCE):
                 edges = step.start + length * np.arange(first, min(first + AT_ONCE, parts) + 1) / parts
-                self.missed = max(self.missed, self._missed_between(edges, step), key=_size)
+                self.error = max(self.error, self._error_between(edges, step), key=_size)
 
-    def _missed_between(self, edges: Numbers, step: Step) -> float:
+    def _error_between(self, edges: Numbers, step: Step) -> float:
         half = (edges[1:] - edges[:-1]) / 2
         times = (edges[:-1, None] + half[:, None] * (1 + self._nodes)).ravel()
         accelerations = step.mode.engine.solutions(times, step.states(times)).accelerations
@@ -68,11 +68,11 @@ class DefectControl:
         gained = half * (accelerations.reshape(n, len(half), -1) * self._weights).sum(axis=2)
         velocities = step.states(edges)[n:]
         sizes = step.mode.matrices.nominal.velocities[:, None]
-        missed = as_floats(np.diff(velocities, axis=1) - gained) / sizes
+        error = as_floats(np.diff(velocities, axis=1) - gained) / sizes
         largest = np.max(np.abs(as_floats(velocities) / sizes), initial=1.0)
-        return float(np.max(np.abs(missed), initial=0.0) / largest)
+        return float(np.max(np.abs(error), initial=0.0) / largest)
 
 
-def _size(missed: float) -> float:
+def _size(error: float) -> float:
     """Return the error, infinite if it is not a number."""
-    return missed if missed == missed else np.inf
+    return error if error == error else np.inf

@@ -14,9 +14,9 @@ from ..program.precision import Precision
 from ..program.sign_pattern import (
     SLIDING,
     Pattern,
-    in_numbers,
     problem_in,
     program_in,
+    program_with_values,
     sharing_programs,
     switching_function,
     uniqueness,
@@ -147,7 +147,7 @@ class Mode:
         self._doubtful = vanishing_times(self.problem, self.matrices, self._end)
         to_come = (float(event.t) for name, event in time_events.items() if pattern[name] != event.to)
         self.by_time = time_dependence(
-            in_numbers(self.problem, self.problem.matrices),
+            program_with_values(self.problem, self.problem.matrices),
             self._start,
             min([self._end, *to_come]),
             self.problem.tables,

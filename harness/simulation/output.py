@@ -81,8 +81,8 @@ def require_memory(problem: MotionProblem, samples: int, memory_mib: int) -> Non
     needed = samples * numbers * BYTES_OF_NUMBER / MIB
     if needed > memory_mib:
         room = int(memory_mib * MIB / (numbers * BYTES_OF_NUMBER))
-        said = f"{samples} samples take about {needed:.0f} MiB of memory, and there are {memory_mib} for {room}"
-        raise HolonomError(ErrorKind.TOO_MANY_SAMPLES, detail=said)
+        estimate = f"{samples} samples take about {needed:.0f} MiB of memory, and there are {memory_mib} for {room}"
+        raise HolonomError(ErrorKind.TOO_MANY_SAMPLES, detail=estimate)
 
 
 def require_disk(problem: MotionProblem, samples: int, path: Path) -> None:
@@ -106,9 +106,9 @@ def require_disk(problem: MotionProblem, samples: int, path: Path) -> None:
     free = shutil.disk_usage(folder).free / MIB
     size = _numbers_a_sample(problem) * BYTES_ON_DISK[path.suffix]
     if samples * size / MIB > free:
-        said = f"{samples} samples take about {samples * size / MIB:.0f} MiB of disk"
+        estimate = f"{samples} samples take about {samples * size / MIB:.0f} MiB of disk"
         raise HolonomError(
-            ErrorKind.DISK_TOO_SMALL, path, f"{said}, and {folder} has room for {int(free * MIB / size)}"
+            ErrorKind.DISK_TOO_SMALL, path, f"{estimate}, and {folder} has room for {int(free * MIB / size)}"
         )
 
 
@@ -347,7 +347,7 @@ def report_document(report: Report) -> dict[str, Any]:
     -------
     dict
     """
-    said = {"engine": engine_text(report.segments), "notes": tuple(notes(report))}
+    texts = {"engine": engine_text(report.segments), "notes": tuple(notes(report))}
     lists = {
         name: tuple(each._asdict() for each in getattr(report, name))
         for name in ("segments", "switchings", "violations")
@@ -356,7 +356,7 @@ def report_document(report: Report) -> dict[str, Any]:
         change and dict(zip(("name", "size"), change, strict=True)) for change in (report.correction, report.moved)
     )
     ending = None if report.ending is None else report.ending._asdict()
-    attributes = vars(report) | lists | said
+    attributes = vars(report) | lists | texts
     choice = None if report.choice is None else vars(report.choice)
     attributes |= {
         "trusted": report.trusted,

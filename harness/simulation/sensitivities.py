@@ -255,14 +255,14 @@ class Sensitivities:
         if self._problem.signs or self._problem.released:
             self._last = step.states(np.array([step.end]))[:, 0]
 
-    def samples(self, stretch: SampleBlock) -> dict[str, Numbers]:
+    def samples(self, block: SampleBlock) -> dict[str, Numbers]:
         """Return the derivatives at samples by name, such as ``d(x, m)``.
 
         Derivatives of multipliers of ended constraints are zero.
 
         Parameters
         ----------
-        stretch : SampleBlock
+        block : SampleBlock
             Consecutive samples of the motion.
 
         Returns
@@ -270,9 +270,9 @@ class Sensitivities:
         dict of str to ndarray, shape (k,)
         """
         self._advance()
-        found = [self._in_mode(self._of(mode), t, states) for mode, t, states in stretch.by_mode()]
-        self._pieces = [piece for piece in self._pieces if piece.end >= stretch.times[-1]]
-        none = [np.zeros((len(self.directions), len(t))) for _, t, _ in stretch.by_mode()]
+        found = [self._in_mode(self._of(mode), t, states) for mode, t, states in block.by_mode()]
+        self._pieces = [piece for piece in self._pieces if piece.end >= block.times[-1]]
+        none = [np.zeros((len(self.directions), len(t))) for _, t, _ in block.by_mode()]
         return self._named({
             name: np.concatenate([part.get(name, zero) for part, zero in zip(found, none, strict=True)], axis=1)
             for name in found[0] | found[-1]

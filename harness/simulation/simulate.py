@@ -14,7 +14,7 @@ from ..program.differentiation import derivative_name
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Program
 from ..program.precision import Precision, read_precision
-from ..program.sign_pattern import drawing_in_numbers, with_values_in
+from ..program.sign_pattern import drawing_with_values, with_values_in
 from ..supervisor import doing
 from .accuracy_check import energy_missed, expected, may_hide, violations
 from .defect import DefectControl
@@ -60,7 +60,7 @@ def simulate(problem: MotionProblem, request: SimulationRequest, progress: Progr
     """
     parts: list[Sampled] = []
     report = follow(problem, request, parts.append, progress)
-    drawing = problem.drawing and drawing_in_numbers(problem)
+    drawing = problem.drawing and drawing_with_values(problem)
     named = {"scene": problem.scene, "title": problem.title, "drawing": drawing}
     return Simulation(**named, report=report, **vars(joined(parts)))
 
@@ -244,10 +244,10 @@ class _Simulation:
         self.recording.flush()
         return self._report(seconds)
 
-    def _process(self, stretch: SampleBlock) -> None:
+    def _process(self, block: SampleBlock) -> None:
         """Compute observed quantities at samples, and the data of the report."""
-        found = [mode.engine.solutions(t, states) for mode, t, states in stretch.by_mode()]
-        parts = list(zip(stretch.by_mode(), found, strict=True))
+        found = [mode.engine.solutions(t, states) for mode, t, states in block.by_mode()]
+        parts = list(zip(block.by_mode(), found, strict=True))
         own = [mode.outputs(t, states, each) for (mode, t, states), each in parts]
         self.outputs = _named(self.problem.outputs, own)
         found = [self._with_ended(each, mode) for (mode, *_), each in parts]
@@ -255,17 +255,17 @@ class _Simulation:
         self.reactions = np.array(
             [largest(row, known) for row, known in zip(self.solutions.multipliers, self.reactions, strict=True)]
         )
-        energies, self.controls = self._energies(stretch), self._controls(stretch)
+        energies, self.controls = self._energies(block), self._controls(block)
         self.exchange.add(energies["energy"], energies["energy_error"])
         self.take(
             Sampled(
-                times=stretch.times,
-                **self._motion(stretch.states, self.solutions),
+                times=block.times,
+                **self._motion(block.states, self.solutions),
                 energy=energies if "energy" in self.problem.observe else {},
-                residuals=self._residual_samples(stretch, self.solutions),
+                residuals=self._residual_samples(block, self.solutions),
                 controls=self.controls,
                 outputs=self.outputs,
-                sensitivities=self._sensitivity_samples(stretch),
+                sensitivities=self._sensitivity_samples(block),
             )
         )
 
@@ -317,16 +317,16 @@ class _Simulation:
 
         return take
 
-    def _energies(self, stretch: SampleBlock) -> Samples:
+    def _energies(self, block: SampleBlock) -> Samples:
         """Return the energies at the samples, and their errors.
 
         An error is the difference from the initial energy and the work done since.
         """
-        energy = np.concatenate([mode.balance.energy(t, states) for mode, t, states in stretch.by_mode()])
-        return {"energy": energy, "energy_error": energy - self.begun.energy_at(self.start, self.first) - stretch.works}
+        energy = np.concatenate([mode.balance.energy(t, states) for mode, t, states in block.by_mode()])
+        return {"energy": energy, "energy_error": energy - self.begun.energy_at(self.start, self.first) - block.works}
 
-    def _controls(self, stretch: SampleBlock) -> Samples:
-        return _named(self.problem.controls, [mode.controls(t, states) for mode, t, states in stretch.by_mode()])
+    def _controls(self, block: SampleBlock) -> Samples:
+        return _named(self.problem.controls, [mode.controls(t, states) for mode, t, states in block.by_mode()])
 
     def _motion(self, states: Numbers, solutions: Solutions) -> Mapping[str, Samples]:
         """Return samples of the quantities that the scene observes."""
@@ -341,11 +341,11 @@ class _Simulation:
             "constraint_forces": {f"Lambda[{s}]": row for s, row in enumerate(forces, start=1)},
         }
 
-    def _sensitivity_samples(self, stretch: SampleBlock) -> Samples:
+    def _sensitivity_samples(self, block: SampleBlock) -> Samples:
         """Return derivatives of the quantities that the scene observes."""
         if self.sensitivities is None:
             return {}
-        found = self._observed_derivatives(self.sensitivities.samples(stretch))
+        found = self._observed_derivatives(self.sensitivities.samples(block))
         self.last_derivatives = {name: row[-1] for name, row in found.items()}
         return found
 
@@ -364,10 +364,10 @@ class _Simulation:
             return self.last_derivatives
         return self._observed_derivatives(self.sensitivities.at_event(self.ending.crossed))
 
-    def _residual_samples(self, stretch: SampleBlock, solutions: Solutions) -> Samples:
+    def _residual_samples(self, block: SampleBlock, solutions: Solutions) -> Samples:
         if "residuals" not in self.problem.observe:
             return {}
-        columns = zip(stretch.modes, stretch.times, stretch.states.T, solutions.accelerations.T, strict=True)
+        columns = zip(block.modes, block.times, block.states.T, solutions.accelerations.T, strict=True)
         found = [
             _residuals(MotionState(mode.matrices, float(t), as_floats(state)), accelerations)
             for mode, t, state, accelerations in columns
@@ -427,7 +427,7 @@ class _Simulation:
 
         They are relative to the size of each quantity.
         """
-        within = {} if self.steps is None else {"acceleration": self.steps.missed}
+        within = {} if self.steps is None else {"acceleration": self.steps.error}
         kept = {name: left[name] for name in ("position", "velocity")}
         if not np.isfinite(self.reactions).all():
             kept["multipliers"] = np.nan

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from ..program.arithmetic import Arithmetic, run_program
 from ..program.motion_problem import DependsOn, MotionProblem, computing
 from ..program.motion_program import Constant, Operation, Program, names_in
-from ..program.sign_pattern import in_numbers
+from ..program.sign_pattern import program_with_values
 
 
 class TimeEvent(NamedTuple):
@@ -50,7 +50,7 @@ def time_events(problem: MotionProblem) -> Mapping[str, TimeEvent]:
     found = {}
     for index, sign in enumerate(problem.signs, start=1):
         if sign.by is DependsOn.TIME:
-            function = _affine(in_numbers(problem, computing(problem.switching, {f"switch[{index}]"})))
+            function = _affine(program_with_values(problem, computing(problem.switching, {f"switch[{index}]"})))
             if function is not None and function.b:
                 found[sign.name] = TimeEvent(-function.a / function.b, 1 if function.b > 0 else -1)
     return found

@@ -27,7 +27,7 @@ def in_context(step: PartText, called: str) -> str:
 
 
 def misused(step: PartText) -> list[tuple[str, str]]:
-    """Return calls of a step with too few arguments and with texts in their place, and what is said of them."""
+    """Return calls of a step with too few arguments and with texts in their place, and what is message of them."""
     texts = ", ".join('"no"' for _ in step.call.split(","))
     return [(f"{step.name}()", "arguments"), (f"{step.name}({texts})", step.name)]
 
@@ -40,18 +40,18 @@ CASES = [
         for entry in function.entries
     ),
     *(
-        (call(function, refusal.given, *refusal.also, system=entry.system), refusal.said)
+        (call(function, refusal.given, *refusal.also, system=entry.system), refusal.message)
         for function in (SYSTEM, SCENE)
         for entry in function.entries
         for refusal in entry.refused
     ),
     *((f"block([{BODIES}], {part.example})", None) for part in part_texts()),
-    *((f"block([{BODIES}], {refusal.given})", refusal.said) for part in part_texts() for refusal in part.refused),
+    *((f"block([{BODIES}], {refusal.given})", refusal.message) for part in part_texts() for refusal in part.refused),
     *(
         (in_context(step, f'if ratsimp({step.example}) # ratsimp({step.gives}) then error("gives another")'), None)
         for step in step_texts()
     ),
-    *((in_context(step, refusal.given), refusal.said) for step in step_texts() for refusal in step.refused),
+    *((in_context(step, refusal.given), refusal.message) for step in step_texts() for refusal in step.refused),
     *(case for step in step_texts() for case in misused(step)),
     ("dot(x + y)", "Write dot of each name"),
     *((f"{name}(x)", f"{name}: the first argument") for name in ("print_derivation", "free_motion_of")),
@@ -77,13 +77,13 @@ def answers(tmp_path_factory) -> list[str]:
 
 @pytest.mark.parametrize("number", range(len(CASES)), ids=lambda number: " ".join(str(CASES[number][1]).split()[:6]))
 def test_maxima_answers_as_the_text_says(answers, number):
-    case, said = CASES[number]
+    case, message = CASES[number]
     assert len(answers) == len(CASES)
-    if said is None:
+    if message is None:
         assert answers[number] == "accepted", case
     else:
         assert answers[number].endswith("refused"), case
-        assert said in answers[number]
+        assert message in answers[number]
 
 
 @pytest.mark.parametrize("function", [SYSTEM, SCENE], ids=lambda function: function.name)

@@ -21,7 +21,7 @@ def test_the_errors_of_a_motion_that_was_followed_are_in_proportion():
 def test_a_position_residual_of_0_04_and_an_energy_error_of_13_were_passed_over():
     found = list(violations({**KEPT, "position": 0.04, "energy": 13.0 / 40.0}, 1e-16, 100))
     assert [violation.quantity for violation in found] == ["position", "energy"]
-    assert found[1].missed == 13.0 / 40.0
+    assert found[1].error == 13.0 / 40.0
 
 
 @pytest.mark.parametrize(("tol", "steps"), [(1e-15, 1), (1e-30, 1), (1e-30, 0), (1e-14, 10), (1e-12, 1000)])

@@ -169,7 +169,7 @@ def required(method: str, quantity: str, holds: bool) -> Result:
     return Result(method, quantity, None, Outcome.HOLDS if holds else Outcome.FAILS)
 
 
-def digits_kept(computed: Iterable[float], truth: Iterable[mpf], scale: float | mpf | None = None) -> float:
+def correct_digits(computed: Iterable[float], truth: Iterable[mpf], scale: float | mpf | None = None) -> float:
     """Return the correct decimal digits of the worst number, from 0 to 16.
 
     An error is relative to the scale; without it, to the largest of the true numbers. Numbers that are not finite have

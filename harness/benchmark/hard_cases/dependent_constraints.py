@@ -12,7 +12,7 @@ from mpmath import asin, cos, findroot, mpf, quad, sin, sqrt
 from ...language import translatable
 from ...simulation.hard_cases import Difficulty
 from ...simulation.matrices import MotionMatrices, Vector
-from .case import Extent, Findings, Sweep, certified, digits_kept, holonom_result, required
+from .case import Extent, Findings, Sweep, certified, correct_digits, holonom_result, required
 from .runs import baseline_motion, places_kept, problem, simulated
 from .solves import SolveAt, every_solve, solves_kept
 
@@ -52,7 +52,7 @@ def _worst(solve: SolveAt, angle: float) -> float:
         along = SLANTING * np.cos(place) - SIDEWAYS * np.sin(place)
         state = np.concatenate([outward, RATE * along])
         pendulum = (WEIGHT @ along) * along - RATE**2 * outward  # gravity along the circle, and towards its centre
-        digits.append(digits_kept(solve(angle, state).accelerations, pendulum))
+        digits.append(correct_digits(solve(angle, state).accelerations, pendulum))
     return min(digits)
 
 
@@ -83,10 +83,10 @@ def sarrus_linkage(extent: Extent) -> Findings:
     multipliers = chosen_multipliers(motion.state, reactions)
     yield from places_kept(translatable("coordinates"), plain, motion, places, needed)
     yield holonom_result(
-        motion.engine, translatable("constraint forces"), digits_kept(motion.constraint_forces, reactions), needed
+        motion.engine, translatable("constraint forces"), correct_digits(motion.constraint_forces, reactions), needed
     )
     yield holonom_result(
-        motion.engine, translatable("multipliers"), digits_kept(motion.multipliers, multipliers), needed
+        motion.engine, translatable("multipliers"), correct_digits(motion.multipliers, multipliers), needed
     )
     yield required(motion.engine, translatable("redundancy reported"), Difficulty.REDUNDANT in motion.cases)
 

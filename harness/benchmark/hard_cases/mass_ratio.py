@@ -13,7 +13,7 @@ from mpmath import mp, mpf, sqrt
 
 from ...language import translatable
 from ...simulation.matrices import Vector
-from .case import Extent, Findings, digits_kept, holonom_result
+from .case import Extent, Findings, correct_digits, holonom_result
 from .runs import problem, simulated
 from .solves import SolveAt, every_solve, solves_kept
 
@@ -47,14 +47,14 @@ def mass_ratio(extent: Extent) -> Findings:
     digits = {name: _worst(solve) for name, solve in every_solve(FILE).items()}
     yield from solves_kept(translatable("accelerations"), digits, NEEDED)
     motion = simulated(problem(FILE), UNTIL)
-    places = digits_kept(motion.coordinates, falling(mpf(UNTIL)))
+    places = correct_digits(motion.coordinates, falling(mpf(UNTIL)))
     yield holonom_result(motion.engine, translatable("places at t = %(t)s", t=UNTIL), places, NEEDED_PLACES)
 
 
 def _worst(solve: SolveAt) -> float:
     """Fewest digits that a solve keeps of the accelerations, over states of the chain."""
     states = [hanging(*at) for at in product(DIRECTIONS, BENDS)]
-    return min(digits_kept(solve(0.0, state).accelerations, certified_accelerations(state)) for state in states)
+    return min(correct_digits(solve(0.0, state).accelerations, certified_accelerations(state)) for state in states)
 
 
 def falling(t: mpf) -> list[mpf]:

@@ -22,7 +22,7 @@ from ...simulation.hard_cases import Difficulty
 from ...simulation.matrices import Matrix, MotionMatrices, Vector
 from ...simulation.request import FINAL_STATE_ALONE, SimulationRequest
 from ...simulation.simulate import simulate
-from .case import Result, digits_kept, holonom_result, reference_result
+from .case import Result, correct_digits, holonom_result, reference_result
 
 EXAMPLES = shared("examples")
 TOLERANCE = 1e-12  # of the baseline
@@ -131,8 +131,8 @@ def places_kept(
         One method's digits.
     """
     first = slice(len(truth))
-    yield reference_result(PLAIN, quantity, digits_kept(plain[first], truth, scale), needed)
-    yield holonom_result(motion.engine, quantity, digits_kept(motion.coordinates[first], truth, scale), needed)
+    yield reference_result(PLAIN, quantity, correct_digits(plain[first], truth, scale), needed)
+    yield holonom_result(motion.engine, quantity, correct_digits(motion.coordinates[first], truth, scale), needed)
 
 
 class Stuck(ArithmeticError):

@@ -10,7 +10,7 @@ from mpmath import mpf
 
 from ...failures import ErrorKind, HolonomError
 from ...language import translatable
-from .case import Extent, Findings, Result, digits_kept, holonom_result, required
+from .case import Extent, Findings, Result, correct_digits, holonom_result, required
 from .runs import problem, simulated
 
 FILE, SCENES, UNTIL = "hard/vanishing_length.mac", ("straight_scene", "whirling_scene"), 2
@@ -51,7 +51,7 @@ def results_of(scene: str) -> Iterator[Result]:
     """
     refused = refusal(scene)
     facts = refused.facts if refused else {}
-    digits = digits_kept([facts.get("time", nan)], [VANISHES])
+    digits = correct_digits([facts.get("time", nan)], [VANISHES])
     yield holonom_result(ENGINE, translatable("time of the stop, %(scene)s", scene=scene), digits, NEEDED)
     yield required(ENGINE, translatable("constraint named"), facts.get("multiplier") == "lambda1")
     given = refused is not None and refused.kind is ErrorKind.NO_GRADIENT

@@ -72,7 +72,7 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
             "scene": scene_named(paper, INITIAL_SCENE),
             "fixed": named_equations(paper, INITIAL_SCENE)["determined_initial_values"],
             "bob_accelerations": bob_equations["initial_accelerations"],
-            "bob_numbers": _values_in_numbers(bob_equations["initial_accelerations"], bob_scene),
+            "bob_numbers": _numeric_values(bob_equations["initial_accelerations"], bob_scene),
             "time": TIME,
             "orders": (LOW_ORDER, HIGH_ORDER),
             "compared": _compared(results["expanded"]),
@@ -82,7 +82,7 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
     )
 
 
-def _values_in_numbers(equation: Equation, scene: Scene) -> dict[str, Expr]:
+def _numeric_values(equation: Equation, scene: Scene) -> dict[str, Expr]:
     """Return right sides of a scene's equation at its start and parameters, by their left sides."""
     values = {f"{name}_0": value for name, value in scene.initial_state.items()} | dict(scene.parameter_values)
     numbers = {Symbol(name, real=True): value for name, value in values.items()}

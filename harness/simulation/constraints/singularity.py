@@ -18,7 +18,7 @@ import numpy as np
 from ...failures import ErrorKind, HolonomError
 from ...program.motion_problem import MotionProblem, computing
 from ...program.motion_program import Name
-from ...program.sign_pattern import in_numbers
+from ...program.sign_pattern import program_with_values
 from ...program.table_numbers import TimeFunction
 from ..evaluation import Numbers, as_floats
 from ..hard_cases import MotionState
@@ -342,7 +342,7 @@ def zeros_of_controls(problem: MotionProblem, start: float, end: float) -> list[
     -------
     list of float
     """
-    matrices = in_numbers(problem, problem.matrices)
+    matrices = program_with_values(problem, problem.matrices)
     assigned = {name for name, _ in matrices.assignments}
     laws = {name: Name(name) for name in assigned if f"dot({name})" in assigned}
     if not laws:

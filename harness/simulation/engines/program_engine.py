@@ -244,7 +244,7 @@ class ProgramEngine:
             self._keep_constraints()
         elif quiet:
             self._prepare_next(until)
-        if not quiet or not self._in_numbers:
+        if not quiet or not self._is_finite:
             self._go_back(time_point, before)
             dense_steps = self._watched(reached, dense, self._length)
             return self.time == until, dense_steps
@@ -253,7 +253,7 @@ class ProgramEngine:
         return ended, dense_steps
 
     @property
-    def _in_numbers(self) -> bool:
+    def _is_finite(self) -> bool:
         """True if the state is finite.
 
         In a singular configuration no pivots project it onto the constraints.
@@ -284,7 +284,7 @@ class ProgramEngine:
             self._obstacle = self._obstacle_here(Difficulty.OVERFLOW, reason)
             return []
         self._keep_constraints()
-        if not self._in_numbers:
+        if not self._is_finite:
             self._go_back(time_point, before)
             self._obstacle = self._obstacle_here(Difficulty.SINGULAR_CONFIGURATION, NEARS_SINGULAR)
             return []

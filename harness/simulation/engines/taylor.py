@@ -252,8 +252,8 @@ class TaylorEngine(ProgramEngine):
             self._length = min(block_within(self._allowed, self._length, drift), self._longest_block)
 
     @property
-    def _in_numbers(self) -> bool:
-        return self._keeper is None or super()._in_numbers  # heyoka says itself where a step does not end in numbers
+    def _is_finite(self) -> bool:
+        return self._keeper is None or super()._is_finite  # heyoka says itself where a step does not end in numbers
 
     def _keep_constraints(self) -> None:
         if self._keeper is not None:

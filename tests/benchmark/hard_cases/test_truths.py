@@ -5,7 +5,7 @@ import pytest
 from mpmath import cos, exp, mp, mpf, odefun, pi, sin, sqrt
 
 from holonom.benchmark.hard_cases import dependent_constraints, mass_ratio, paper_motion, pendulums, stiff_springs
-from holonom.benchmark.hard_cases.case import MOST, certified, digits_kept, digits_of_error
+from holonom.benchmark.hard_cases.case import MOST, certified, correct_digits, digits_of_error
 from holonom.benchmark.hard_cases.runs import problem
 from holonom.simulation.matrices import MotionMatrices
 
@@ -117,10 +117,10 @@ def test_heavy_bob_keeps_its_rods():
 @pytest.mark.parametrize("digits", [1, 7, 15])
 def test_digits_are_counted_against_the_scale(digits):
     truth = [mpf(4), mpf(-8)]
-    assert digits_kept([4.0, -8.0 * (1 + 10.0**-digits)], truth) == pytest.approx(digits, abs=0.1)
+    assert correct_digits([4.0, -8.0 * (1 + 10.0**-digits)], truth) == pytest.approx(digits, abs=0.1)
     assert digits_of_error(3 * 10.0**-digits, 3) == pytest.approx(digits)
 
 
 @pytest.mark.parametrize(("computed", "kept"), [([1.0], MOST), ([np.nan], 0), ([np.inf], 0), ([3.0], 0)])
 def test_digits_end_at_those_of_a_double_and_at_none(computed, kept):
-    assert digits_kept(computed, [mpf(1)]) == kept
+    assert correct_digits(computed, [mpf(1)]) == kept
