@@ -25,42 +25,42 @@ class ErrorKind(Enum):
         self.status = first if isinstance(first, int) else INPUT
         self.reason, *self.hints = more if isinstance(first, int) else (first, *more)
 
-    FILE_MISSING = ("there is no such file{detail}", "give the path of a scene, for instance examples/paper/paper.mac")
+    FILE_MISSING = ("file not found{detail}", "give the path of a scene, for example examples/paper/paper.mac")
     FILE_UNREADABLE = ("the file cannot be read: {detail}", "give the path of a readable Maxima file")
     TOO_MUCH_BESIDE = (
-        "{detail} that end in .mac, .lisp or .csv are beside the scene",
+        "{detail} that end in .mac, .lisp or .csv are in the folder of the scene",
         "put the scene and the files that it reads into a folder of their own",
     )
-    NOT_UTF8 = ("the file is not UTF-8 text: byte {detail}", "save it as UTF-8")
+    NOT_UTF8 = ("the file is not UTF-8 text: byte {detail}", "save the file as UTF-8")
     NOT_MAXIMA = (
         MACHINE,
-        "this does not run as Maxima: {detail}",
-        "put a Maxima that works first in PATH, free space for temporary files",
+        "Maxima does not start: {detail}",
+        "put a working Maxima first in PATH, free space for temporary files",
         "lift a limit on memory",
     )
     OUTPUT_TRUNCATED = (
         MACHINE,
-        "what Maxima left behind is not whole: its {detail}",
-        "free space for temporary files, and run it again",
+        "Maxima's output is incomplete: its {detail}",
+        "free space for temporary files and try again",
     )
-    KILLED = (MACHINE, "Maxima was ended by {detail}", "see what ends it, perhaps a lack of memory, and run it again")
+    KILLED = (MACHINE, "Maxima was ended by {detail}", "check the memory of the machine and try again")
     NO_PRIVATE_DIRECTORY = (
         MACHINE,
-        "no directory for temporary files can be made: {detail}",
-        "name one that can be written in the variable TMPDIR",
+        "cannot create a directory for temporary files: {detail}",
+        "set TMPDIR to a writable directory",
         "free space",
     )
     NO_SANDBOX = (
         MACHINE,
-        "bubblewrap is missing or forbidden here",
+        "bubblewrap is missing or not permitted",
         "install the package `bubblewrap`",
-        "allow it to make user namespaces",
+        "allow it to create user namespaces",
         "run the scene without {--sandbox}",
     )
     SANDBOX_FAILED = (
         MACHINE,
         "the sandbox failed: {detail}",
-        "run it again when the machine is less busy or has more processes and descriptors",
+        "try again when the machine is less busy or has more processes and descriptors",
         "run it with {--trust}",
     )
     MAXIMA_MISSING = (
@@ -72,203 +72,203 @@ class ErrorKind(Enum):
     REFUSED = "{detail}"
     QUESTION = (
         "Maxima asks a question that a batch run cannot answer: {detail}",
-        "answer it in the file, for instance by assume(...)",
+        "add an assumption to the scene file, for example assume(m > 0)",
     )
     SYNTAX = "Maxima cannot read this: {detail}"
-    LISP_ERROR = "Maxima broke off with a Lisp error: {detail}"
-    ENDED_EARLY = ("Maxima ended before the file did", "remove what ends it, for instance quit()")
+    LISP_ERROR = "Maxima ended with a Lisp error: {detail}"
+    ENDED_EARLY = ("Maxima ended before the file did", "remove the statement that ends it, for example quit()")
     NOTHING_WRITTEN = (
         "the file describes no system",
         "load holonom.mac and assign a holonomic_system(...)",
     )
-    TOO_LONG = ("Maxima took longer than {detail}", "ask for less", "raise {--time-limit}")
-    TOO_LARGE = ("Maxima took more memory than {detail}", "ask for less", "raise {--memory-limit}")
+    TOO_LONG = ("Maxima took longer than {detail}", "reduce the problem", "raise {--time-limit}")
+    TOO_LARGE = ("Maxima took more memory than {detail}", "reduce the problem", "raise {--memory-limit}")
     TOO_MANY_PROCESSES = ("the scene started more than {detail} processes", "start fewer")
     TOO_MUCH_TEXT = ("Maxima printed more than {detail}", "print less")
-    FILE_TOO_LARGE = ("the file is larger than {detail}", "describe less", "read data from tables")
-    NAME_TOO_LONG = ("the name {detail}... has more than 200 letters", "give it a shorter one")
-    TOO_MANY_SCENES = ("the file describes {detail} scenes, and 1000 are the most", "put them into several files")
-    DESCRIPTION_TOO_LARGE = ("the description is longer than {detail}", "describe less")
+    FILE_TOO_LARGE = ("the file is larger than {detail}", "shorten the description", "read data from tables")
+    NAME_TOO_LONG = ("the name {detail}... has more than 200 characters", "shorten it")
+    TOO_MANY_SCENES = ("the file describes {detail} scenes; at most 1000 are allowed", "split it into several files")
+    DESCRIPTION_TOO_LARGE = ("the description is longer than {detail}", "shorten it")
     HIDDEN_CHARACTER = (
-        "a title or a source holds the character {detail}, which hides or reverses text",
-        "leave it out",
+        "a title or a source contains the character {detail}, which hides or reverses text",
+        "remove it",
     )
     NOT_SETTABLE = (
-        "{detail} is no parameter of this description",
-        "set what else the scene file leaves open where it is described, with `holonom describe`",
+        "unknown parameter {detail}",
+        "set variables of the scene file with `holonom describe`",
     )
-    NOT_A_DOCUMENT = ("this is no document {detail}", "write it anew with this version of holonom")
-    NOT_A_RECORD = ("this is not a derivation record: {detail}", "derive it anew with `holonom derive`")
+    NOT_A_DOCUMENT = ("not a document {detail}", "create it again with this version of holonom")
+    NOT_A_RECORD = ("this is not a derivation record: {detail}", "create it again with `holonom derive`")
     NOT_AN_EXPRESSION = "{detail} is not an expression that a derivation record can hold"
-    UNWRITABLE = ("the output cannot be written: {detail}", "give a file in a directory that can be written")
-    DISK_FULL = (MACHINE, "the output cannot be written: {detail}", "free space, and run it again")
-    COMPILER_UNUSABLE = (MACHINE, "the C compiler cannot be run: {detail}", "name one that works in the variable CC")
-    OUTPUT_TAKEN = ("this output would take the place of {detail}", "give it a name of its own")
+    UNWRITABLE = ("the output cannot be written: {detail}", "choose a writable directory")
+    DISK_FULL = (MACHINE, "the output cannot be written: {detail}", "free some space and try again")
+    COMPILER_UNUSABLE = (MACHINE, "the C compiler cannot be run: {detail}", "set CC to a working compiler")
+    OUTPUT_TAKEN = ("the output would overwrite {detail}", "choose another name")
     UNRELATED_FILE = (
-        "there is a file of that name, which is not replaced unasked",
-        "give another name",
-        "replace it with {--force}",
+        "the file exists",
+        "choose another name",
+        "overwrite it with {--force}",
     )
     UNRELATED_IN_MAXIMA = (
-        "Maxima's user directory has a file that Holonom did not put there: {detail}",
-        "move it away",
-        "name another directory in the variable MAXIMA_USERDIR",
+        "Maxima's user directory contains a file that Holonom did not create: {detail}",
+        "move it",
+        "set MAXIMA_USERDIR to another directory",
     )
     NOT_A_COMPANION = (
-        "the directory holds other things than a companion",
-        "give the name of a new directory",
+        "the directory contains other files than a companion",
+        "choose a new directory",
         "name one that `holonom companion` made",
     )
     DEFINITION_MISSING = ("the file does not define {detail}", "the companion shows how each step is derived there")
-    NOT_A_SETTING = ("{detail} sets nothing", "write NAME=VALUE with a number, for instance N=64 or u0=3/10")
-    NOT_A_PARAMETER = ("{detail} cannot be the name of a parameter", "give names with commas between them, such as m,g")
+    NOT_A_SETTING = ("invalid setting '{detail}'", "write NAME=VALUE with a number, for example N=64 or u0=3/10")
+    NOT_A_PARAMETER = ("'{detail}' cannot name a parameter", "separate names by commas, for example m,g")
     NO_NAME_IN_TEXT = (
-        "the form {detail} has the scene's values, and no names of its own",
-        "leave {--name} and {--parameters} out",
-        "write it as c, fmu or matlab, or as python with {--module}",
+        "the form {detail} contains the values of the scene and takes neither a name nor parameters",
+        "remove {--name} and {--parameters}",
+        "use c, fmu, matlab, or python with {--module}",
     )
     NO_SUCH_MODULE = (
-        "there is no module {detail}",
-        "{--module} goes with python, and is numpy, jax or casadi",
+        "unknown module {detail}",
+        "use {--module} numpy, jax or casadi with python",
     )
     NO_TABLES = (
-        "the control law has a table, which the expressions of {detail} do not hold",
-        "write it for numpy, jax, matlab or c",
+        "tables in control laws are not supported by {detail}",
+        "use numpy, jax, matlab or c",
         "give the law as a formula",
     )
-    NOT_A_FILE = ("this form is no text for the terminal", "say where it goes: -o DIR for C, -o FILE.fmu for FMI")
-    NOT_A_CHOICE = "there is no {detail}"
+    NOT_A_FILE = ("C and FMI output needs a destination", "use -o DIR for C, -o FILE.fmu for FMI")
+    NOT_A_CHOICE = "unknown value {detail}"
     NOT_A_TIME = (
         "invalid time '{detail}'",
-        "write a number such as 0.75 or 3/4, of a size that a double can have",
+        "write a number such as 0.75 or 3/4, within the range of double precision",
     )
     NOT_IN_RANGE = "the value is out of range: {detail}"
-    NO_SUCH_SCENE = "there is no scene {detail}"
-    TOO_MANY_SAMPLES = ("{detail}", "ask for fewer, for a file in CSV or Parquet alone", "raise {--memory-limit}")
-    DISK_TOO_SMALL = ("{detail}", "ask for fewer", "write to another disk")
-    TOO_MANY_STEPS = ("{detail}", "ask for an earlier end with {--until}", "take longer steps")
-    NOT_A_STEP = ("{detail} is no length of a step", "give a number greater than 0 with {--max-step}")
-    MEMORY_TOO_SMALL = ("{detail}", "ask for fewer digits or a lower order")
-    SETTING_TOO_LARGE = ("{detail} is beyond what a double holds", "set a smaller number", "set one less close to zero")
+    NO_SUCH_SCENE = "unknown scene {detail}"
+    TOO_MANY_SAMPLES = ("{detail}", "reduce the number of samples, write CSV or Parquet only", "raise {--memory-limit}")
+    DISK_TOO_SMALL = ("{detail}", "reduce the number of samples", "write to another disk")
+    TOO_MANY_STEPS = ("{detail}", "end earlier with {--until}", "use longer steps")
+    NOT_A_STEP = ("invalid step length {detail}", "give a number greater than 0 with {--max-step}")
+    MEMORY_TOO_SMALL = ("{detail}", "reduce the digits or the order")
+    SETTING_TOO_LARGE = ("{detail} is outside the range of double precision", "set a number of moderate size")
     NUMBER_TOO_LARGE = (
-        "a number of the motion is larger than a double can be",
+        "a number of the motion exceeds the range of double precision",
         "describe the system in units in which its numbers are smaller",
     )
     NOT_A_SCENE_NAME = ("{detail} cannot be the name of a scene", "give the name that the scene is assigned to")
-    NOT_A_PROGRAM = ("this is not a motion program: {detail}", "write it anew with `holonom program`")
+    NOT_A_PROGRAM = ("this is not a motion program: {detail}", "create it again with `holonom program`")
     NOT_AN_IDENTIFIER = ("{detail} cannot name a function in C and Python", "use letters, digits and underscores")
-    INPUT_MISSING = ("nothing is given for {detail}", "give the controls a law and the parameters their values")
+    INPUT_MISSING = ("no value for {detail}", "give every control a law and every parameter a value")
     COMPILER_MISSING = (
         MACHINE,
         "no C compiler is installed",
-        "install one, for instance the package `gcc` of your distribution",
-        "name one in the variable CC",
+        "install one, for example the package `gcc` of your distribution",
+        "set CC to a compiler",
     )
     BROWSER_MISSING = (
-        "no browser is installed that prints",
-        "install one, for instance the package `chromium` of your distribution",
+        "no browser that prints is installed",
+        "install one, for example the package `chromium` of your distribution",
     )
     NOT_PRINTED = "the browser did not print the book: {detail}"
-    COMPILER_REFUSED = "the C compiler refused the motion program: {detail}"
+    COMPILER_REFUSED = "the C compiler cannot compile the motion program: {detail}"
     EXTRA_MISSING = (MACHINE, "this needs {detail}")
-    BEYOND_RADIUS = ("{detail}", "ask for an earlier time", "continue the motion with {--until}")
-    ORDER_TOO_HIGH = ("{detail}", "ask for a lower order", "ask for digits")
-    NOT_A_PRECISION = ("{detail}", "take another one", "ask for {--digits}, which Maxima computes with")
-    NO_CONTINUATION = ("{detail}", "ask for an earlier time")
+    BEYOND_RADIUS = ("{detail}", "choose an earlier time", "continue the motion with {--until}")
+    ORDER_TOO_HIGH = ("{detail}", "use a lower order", "use {--digits}")
+    NOT_A_PRECISION = ("{detail}", "use another precision", "use {--digits}, for Maxima's numbers")
+    NO_CONTINUATION = ("{detail}", "choose an earlier time")
     NO_SUCH_FORMAT = ("unsupported file format", "use {detail}")
     NO_CURVE = ("the motion has no samples of {detail}", "observe the quantity, or choose another curve")
     NOT_FILMED = (
         "the motion cannot be filmed: {detail}",
-        "observe the trajectory, take {--samples}, and give the system a drawing, which bodies and joints have",
+        "observe the trajectory, use {--samples}, and give the system a drawing",
     )
-    NO_FFMPEG = ("ffmpeg, which writes .mp4, is not installed", "install it, or take .svg, .html or .gif")
-    NO_INITIAL_STATE = "the start does not follow these parameters: {detail}"
+    NO_FFMPEG = ("ffmpeg, which writes .mp4, is not installed", "install it, or use .svg, .html or .gif")
+    NO_INITIAL_STATE = "no consistent initial state for these parameters: {detail}"
     NOTHING_VARIES = ("no parameter varies", "name one with {--grid}, {--list} or {--sample}")
     NOT_AN_AXIS = (
         "{detail}",
-        "write for instance {--grid} m=50:500:1000, {--list} m=1,2,5 or {--sample} 'm=normal(100,5)' {--size} 1000",
+        "write for example {--grid} m=50:500:1000, {--list} m=1,2,5 or {--sample} 'm=normal(100,5)' {--size} 1000",
     )
-    NOT_KEPT = ("{detail}", "keep for instance final, x, at(x,2), max(abs(lambda1)), zero(y), radius, free")
+    NOT_KEPT = ("{detail}", "keep for example final, x, at(x,2), max(abs(lambda1)), zero(y), radius, free")
     NOT_PLOTTED = "this cannot be drawn: {detail}"
-    OTHER_SWEEP = ("the folder holds another sweep: {detail}", "give another folder")
-    UNRELATED_FOLDER = ("the folder holds other things than a sweep", "give the name of a new folder")
-    FOLDER_TAKEN = ("another command is at work in this folder", "wait until it ends")
-    NOTHING_TO_RESUME = ("there is no sweep to resume", "leave {--resume} out to begin one")
-    WORKERS_LOST = (MACHINE, "the workers are gone: {detail}", "run the same command again; what is finished stays")
+    OTHER_SWEEP = ("the folder contains another sweep: {detail}", "choose another folder")
+    UNRELATED_FOLDER = ("the folder contains other files than a sweep", "choose a new folder")
+    FOLDER_TAKEN = ("another command is using this folder", "wait until it ends")
+    NOTHING_TO_RESUME = ("no sweep to resume", "remove {--resume} to start one")
+    WORKERS_LOST = (MACHINE, "the workers are gone: {detail}", "run the same command again; finished rows are kept")
     NOT_A_SCHEDULER = (
-        "{detail} is no address of a Dask scheduler",
-        "write for instance {--dask} tcp://127.0.0.1:8786",
+        "invalid address of a Dask scheduler: {detail}",
+        "write for example {--dask} tcp://127.0.0.1:8786",
     )
     WORKER_ENDED = (
         MACHINE,
-        "a process that computes was ended",
-        "see what ends it, perhaps a lack of memory, and run the same command again",
+        "a worker process was killed",
+        "check the memory of the machine and run the same command again",
     )
     NO_END = ("the scene has no time span", "add time_span", "pass the final time with {--until}")
     NO_COMMON_END = (
-        "the scene ends where an expression of its until vanishes, and methods are compared at one time",
-        "say which with {--until}",
+        "the scene ends at an event (until), but methods are compared at one time",
+        "pass that time with {--until}",
     )
-    NOT_AFTER_START = ("the last time is not after the start: {detail}", "give a later one with {--until}")
+    NOT_AFTER_START = ("the final time is not after the initial time: {detail}", "pass a later one with {--until}")
     NO_EVENT_VALUE = (
         "an expression in 'until' has no real, finite value: {detail}",
-        "give one that has values along the whole motion",
+        "use an expression that has values along the whole motion",
     )
     SERIES_SWITCHED = (
-        "where {detail} changes its sign the motion is another than the series, perhaps before the time asked for",
-        "take holonom simulate, which steps to such times",
+        "the series is valid while {detail} keeps its sign, which may change before the requested time",
+        "use `holonom simulate`, which locates sign changes",
     )
     LAW_ENDS = (
-        "the drives end at t = {detail}, with a table or, of special functions, with the scene's time span",
-        "let the motion end there or before, with {--until}",
+        "a control law ends at t = {detail}, with its table or, for special functions, with the time span",
+        "end the motion there or before, with {--until}",
         "give a longer table or time span",
     )
     SPECIAL_EXPANDED = (
-        "{detail} is a special function, which programs hold as a polynomial with other derivatives of high order",
-        "take `holonom series` without {--precision}: Maxima expands it to any digits",
+        "{detail} is a special function, which programs approximate by a polynomial too coarse for a series",
+        "use `holonom series` without {--precision}: Maxima expands it to any digits",
     )
-    NO_PIVOTS = ("the motion program cannot be solved: {detail}", "take {--engine} auto or robust")
+    NO_PIVOTS = ("the motion program cannot be solved: {detail}", "use {--engine} auto or robust")
     RUNGE_KUTTA_IS_DOUBLE = (
         "the Runge-Kutta engine computes in double precision, not {detail}",
-        "take {--engine} auto or taylor for more digits",
+        "use {--engine} auto or taylor for more digits",
     )
     REACTING = (
         "forces contain multipliers, {detail}",
-        "follow the motion with {--engine} auto, without derivatives, where its constraints are independent",
+        "use {--engine} auto, without derivatives, and independent constraints",
     )
     ROBUST_IS_DOUBLE = (
-        "this takes the robust engine, which computes in double precision: {detail}",
-        "leave {--precision} out",
+        "the robust engine is needed, which computes in double precision: {detail}",
+        "remove {--precision}",
         "make the constraints independent",
     )
     TOLERANCE_UNHELD = (
         "{detail}",
-        "ask for another tolerance",
-        "take the Taylor engine for more digits with {--precision}",
+        "use another tolerance",
+        "use the Taylor engine for more digits with {--precision}",
     )
-    NO_MOTION_PROGRAM = ("there is no motion program to measure: {detail}", "take constraints that are independent")
+    NO_MOTION_PROGRAM = ("no motion program to measure: {detail}", "make the constraints independent")
     NOT_ANALYTIC = (
         "the motion is not analytic where {detail} changes its sign",
-        "follow it with `holonom simulate`, which steps to such times",
+        "use `holonom simulate`, which locates sign changes",
     )
     NO_LAW = ("a control has no law", "give every control a control_law")
     NEVER_AT_REST = (
-        "the equations of motion contain the time, and equilibria are looked for where they do not",
+        "equilibria need equations of motion that do not contain the time",
         "choose effects and constraints without it",
     )
-    NOT_A_CONTROL = ("{detail} is no control of the system", "name one of its controls")
-    NO_SUCH_EQUILIBRIUM = ("no equilibrium {detail} was found", "take one that `holonom equilibria` names")
-    TWO_STATES = ("a time and an equilibrium exclude one another", "give one of {--at} and {--equilibrium}")
-    NOT_REACHED = ("the motion does not lead to t = {time:.10g}: {detail}", "choose another time")
+    NOT_A_CONTROL = ("unknown control {detail}", "name a control of the system")
+    NO_SUCH_EQUILIBRIUM = ("no equilibrium {detail} was found", "use one that `holonom equilibria` lists")
+    TWO_STATES = ("a time and an equilibrium exclude each other", "pass one of {--at} and {--equilibrium}")
+    NOT_REACHED = ("the motion does not reach t = {time:.10g}: {detail}", "choose another time")
     NOT_LINEARIZED = (
         "the constraints lose rank at t = {time:.10g}: there is no tangent space to linearise in",
         "choose another time",
     )
-    METHOD_GAVE_UP = ("{detail}", "ask for a larger tolerance", "take another method")
+    METHOD_GAVE_UP = ("{detail}", "use a larger tolerance", "use another method")
     MASS_INDEFINITE = (
-        "the kinetic energy is negative for some velocities, and it measures how far a state is from the constraints",
-        "look for a mass of the wrong sign",
-        "take the power series, which measures nothing",
+        "the kinetic energy is negative for some velocities, so it does not measure distances from the constraints",
+        "correct a mass of the wrong sign",
+        "use `holonom series`",
     )
     MASS_SINGULAR = (
         "the mass matrix is singular along a direction that the constraints leave free",
@@ -276,21 +276,21 @@ class ErrorKind(Enum):
     )
     INCONSISTENT = (
         "the constraints cannot all be satisfied at t = {detail}",
-        "end the run before",
+        "end the motion earlier",
         "remove the constraint that contradicts the others",
     )
     NO_GRADIENT = (
-        "the motion cannot be followed beyond t = {time:.10g}, where the gradient of the constraint of {multiplier} "
+        "the motion cannot be continued beyond t = {time:.10g}, where the gradient of the constraint of {multiplier} "
         "vanishes and no reaction can act",
-        "end the run before it",
+        "end the motion earlier",
         "choose a law that keeps the length away from zero",
     )
     NO_SENSITIVITY = (
         "these derivatives of the motion cannot be found: {detail}",
         "name parameters, coordinates or velocities with {--sensitivity}",
-        "leave it out",
+        "remove it",
     )
-    NO_WAY_ON = ("the motion cannot be followed beyond t = {detail}", "end the run before it")
+    NO_WAY_ON = ("the motion cannot be continued beyond t = {detail}", "end it earlier")
 
 
 ALIASES = {"failure": "kind", "said": "reason", "sentence": "message"}  # names in version 0.1, kept until 1.1
@@ -327,7 +327,7 @@ class HolonomError(Exception):
     ...     holonom.load("nowhere.mac")
     ... except holonom.HolonomError as error:
     ...     print(error.reason, error.kind.status)
-    there is no such file 2
+    file not found 2
     """
 
     def __init__(

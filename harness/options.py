@@ -37,7 +37,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 class Option:
     """The spelling of an option and its allowed values."""
 
-    help: str  # one sentence, on the command line and in Python
+    help: str  # one or two sentences, on the command line and in Python
     metavar: str | None = None  # placeholder of the value on the command line
     spelt: tuple[str, ...] = ()  # on the command line, if it is not the name of the field
     alias: str = ""  # former name, accepted for one release

@@ -45,7 +45,7 @@ KERNEL = ("--proc", "/proc", "--remount-ro", "/proc", "--dev", "/dev")
 # Words of bubblewrap if the kernel or a container forbids it, or if it is too old for these options.
 FORBIDDEN = ("not permitted", "ermission", "does not support", "Unknown option", "Read-only file system")
 UNCONFINED = (
-    "bubblewrap is missing or forbidden here: only limits confine the scene file, and it may reach your files. "
+    "no sandbox, because bubblewrap is missing or not permitted: the scene file can access your files. "
     "Install or allow bubblewrap, or run with --trust."
 )
 

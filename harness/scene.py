@@ -455,7 +455,7 @@ class Scene:
         Raises
         ------
         HolonomError
-            The request cannot be met, or the motion cannot be followed so far.
+            The request cannot be met, or the motion cannot be continued so far.
 
         Examples
         --------
@@ -490,7 +490,7 @@ class Scene:
         Raises
         ------
         HolonomError
-            A control has no law, a parameter no value; the motion is not analytic or cannot be followed so far; the
+            A control has no law, a parameter no value; the motion is not analytic or cannot be continued so far; the
             constraints lose rank there.
 
         Examples

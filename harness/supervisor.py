@@ -216,4 +216,4 @@ def _ending_of(status: int) -> Ending:
     if -status in QUIET_ENDS:
         return Ending(SIGNALLED - status)
     name = next((each.name for each in signal.Signals if each == -status), f"signal {-status}")
-    return Ending(CRASHED, f"ended by {name}{during}; perhaps this machine lacks memory: ask for less.")
+    return Ending(CRASHED, f"ended by {name}{during}; perhaps for lack of memory. Reduce the problem.")

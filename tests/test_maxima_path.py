@@ -104,7 +104,7 @@ def test_a_file_of_somebody_elses_is_not_replaced(tmp_path, name):
     before = sorted(tmp_path.rglob("*"))
     done = holonom_maxima_path(tmp_path)
     assert done.returncode == 2
-    assert f"a file that Holonom did not put there: {foreign}" in done.stderr
+    assert f"a file that Holonom did not create: {foreign}" in done.stderr
     assert foreign.read_text(encoding="utf-8") == "/* mine */\n"
     assert sorted(tmp_path.rglob("*")) == before
 

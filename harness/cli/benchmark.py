@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 @holonom.command(examples=["accuracy examples/pendulum.mac", "accuracy examples/pendulum.mac --plot accuracy.svg"])
 @asks_one_scene()
 @takes(*options_of(SimulationRequest, "until"))
-@click.option("--plot", "plot_file", metavar="FILE", type=OutputFile(), help="Also draw a figure, SVG.")
+@click.option("--plot", "plot_file", metavar="FILE", type=OutputFile(), help="Draw a figure (SVG).")
 @writes_json
 @runs_scenes
 def accuracy(
@@ -34,7 +34,7 @@ def accuracy(
 ) -> int:
     """Measure what accuracy costs in time.
 
-    The motion of a SCENE is followed with tolerances from coarse to fine, and plain advice is given.
+    The motion of a SCENE is integrated at coarse to fine tolerances. The report recommends methods.
     """
     from ..benchmark.work_precision.study import Plan, study, study_document
     from ..display.measurements import show_study
@@ -55,13 +55,13 @@ FAILED = 1
 
 
 @holonom.command(examples=["stability --short", "stability --plot stability.svg --json stability.json"])
-@click.option("--short", is_flag=True, help="Follow the long motions for less time: under a minute in all.")
-@click.option("--plot", "plot_file", metavar="FILE", type=OutputFile(), help="Also draw a figure.")
+@click.option("--short", is_flag=True, help="Shorten the long motions: under a minute in total.")
+@click.option("--plot", "plot_file", metavar="FILE", type=OutputFile(), help="Draw a figure.")
 @writes_json
 def stability(short: bool, plot_file: Path | None, json_file: Path | None) -> int:
     """Run the test set of hard cases.
 
-    The result is how many digits each method keeps, and advice.
+    The report states the correct digits of each method, and advice.
     """
     from ..benchmark.hard_cases.case import Extent
     from ..benchmark.hard_cases.register import REGISTER, examine_all

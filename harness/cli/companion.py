@@ -37,15 +37,15 @@ EXTRAS = (
     metavar="DIR",
     required=True,
     type=click.Path(path_type=Path),
-    help="Where the pages are put; begin to read with index.html.",
+    help="Directory of the pages; open index.html first.",
 )
-@click.option("--pdf", type=OutputFile(), help="A file that all pages are printed to as one book, by Chromium.")
+@click.option("--pdf", type=OutputFile(), help="Print all pages to one PDF, by Chromium.")
 @click.option(
     "--language",
     "languages",
     multiple=True,
     type=click.Choice(list(LANGUAGES)),
-    help="Of the pages, en without it; of several, all but the first are put into directories of their names.",
+    help="Language of the pages. Default: en. May be repeated; further languages go to subdirectories.",
 )
 @takes_settings
 @runs_scenes
@@ -59,7 +59,7 @@ def companion(
 ) -> int:
     """Make the textbook, or pages of a SCENE.
 
-    Without a SCENE it is the textbook companion of the paper, else pages of the SCENEs, for a browser.
+    Without a SCENE, make the textbook companion of the paper, otherwise pages about each SCENE.
     """
     require_extras()
     from ..companion.own_scenes import chapters_of_scenes

@@ -26,7 +26,7 @@ limits_closed_forms = click.option(
     "--closed-form-size",
     metavar="N",
     type=click.IntRange(min=1),
-    help="Make closed forms of up to this many terms; without it, up to the scene file's closed_form_size, or 500.",
+    help="Largest closed form, in terms. Default: closed_form_size of the scene file, or 500.",
 )
 
 
@@ -36,9 +36,9 @@ limits_closed_forms = click.option(
 @writes_json
 @runs_scenes
 def describe(scene: Path, settings: dict[str, str], json_file: Path | None, limits: Limits) -> int:
-    """Show what a SCENE file says.
+    """Show the description in a SCENE file.
 
-    Nothing is derived. The document that --json writes is taken wherever a SCENE is.
+    Nothing is derived. Commands accept the document that --json writes in place of a SCENE.
     """
     from ..display.description import show_description
     from ..source import describe as describe_file
@@ -53,7 +53,7 @@ def describe(scene: Path, settings: dict[str, str], json_file: Path | None, limi
 @takes_settings
 @limits_closed_forms
 @writes_json
-@click.option("--tex", "tex_file", metavar="FILE|-", type=OutputFile(), help="Also write it as a LaTeX document.")
+@click.option("--tex", "tex_file", metavar="FILE|-", type=OutputFile(), help="Write a LaTeX document.")
 @runs_scenes
 def derive(
     scene: Path,
@@ -65,7 +65,7 @@ def derive(
 ) -> int:
     """Derive the equations of motion.
 
-    They stand under the equation numbers of the paper, (1) to (19).
+    The equations have the numbers of the paper, (1) to (19).
     """
     from ..display.derivation import show_record
     from ..documents import ask
@@ -87,8 +87,8 @@ def derive(
 @takes_settings
 @limits_closed_forms
 @writes_json
-@click.option("--seed", metavar="TEXT", help="Compare at the random points of an earlier check, which printed it.")
-@click.option("--allow-undecided", is_flag=True, help="End with status 0 although something is undecided.")
+@click.option("--seed", metavar="TEXT", help="Repeat the random points of an earlier check, which printed this seed.")
+@click.option("--allow-undecided", is_flag=True, help="Exit with status 0 if something is undecided.")
 @runs_scenes
 def check(
     scenes: Sequence[Path],
@@ -170,18 +170,18 @@ def _import_what_judges_motions() -> None:
 
 @holonom.command(examples=["errata", "errata --language zh --svg errata.svg"])
 @writes_json
-@click.option("--svg", "svg_file", metavar="FILE", type=OutputFile(), help="Also draw the table.")
+@click.option("--svg", "svg_file", metavar="FILE", type=OutputFile(), help="Draw the table.")
 @click.option(
     "--language",
     type=click.Choice(list(LANGUAGES)),
     default=ENGLISH,
     show_default=True,
-    help="Of the table, not of JSON.",
+    help="Language of the table.",
 )
 def errata(json_file: Path | None, svg_file: Path | None, language: str) -> int:
     """Compare the printed with derived equations.
 
-    Every equation that the paper prints is compared with the derived one.
+    Every equation printed in the paper is compared with the derived one.
     """
     from ..display.derivation import draw_errata, show_errata
     from ..errata import errata as compare

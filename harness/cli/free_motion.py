@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     "--order",
     metavar="N",
     type=click.IntRange(min=2),
-    help="Up to which power of the time the multipliers are looked at, 40 unless asked otherwise.",
+    help="Order of the power series that tests whether the multipliers vanish. Default: 40.",
 )
 @writes_json
 @runs_scenes
@@ -36,8 +36,8 @@ def free(
 ) -> int:
     """Find when a motion is free.
 
-    The verdicts are about the motion as it is, about control laws that make every motion free, and about laws that
-    make one trajectory free. The exit status is 1 where SymPy's own evaluation contradicts a law that was found.
+    A motion is free if all constraint forces vanish. The command tests the motion of the SCENE, and finds control laws
+    that make every motion free, or one trajectory. The exit status is 1 if SymPy contradicts a law that was found.
     """
     from ..documents import ask
     from ..formats import Document

@@ -55,7 +55,7 @@ class Commands(click.Group):
         except BrokenPipeError:
             return PIPE_CLOSED
         except MemoryError:
-            return _report("there is not enough memory for this; ask for less.", MACHINE_AT_FAULT)
+            return _report("not enough memory. Reduce the problem.", MACHINE_AT_FAULT)
         except OSError as error:
             return _system_error(error)
         except (click.ClickException, click.Abort, click.exceptions.Exit):
@@ -108,15 +108,15 @@ class Commands(click.Group):
 
 
 @click.group(cls=Commands)
-@click.option("-v", "--verbose", is_flag=True, help="On failure show Maxima's last lines and how to repeat the run.")
-@click.option("-q", "--quiet", is_flag=True, help="Print no tables: only failures, and what `-` asks for.")
+@click.option("-v", "--verbose", is_flag=True, help="On failure, show Maxima's last lines and how to repeat the run.")
+@click.option("-q", "--quiet", is_flag=True, help="Print only errors, and output to `-`.")
 @click.option(
     "--version",
     is_flag=True,
     is_eager=True,
     expose_value=False,
     callback=lambda *arguments: _print_versions(*arguments),
-    help="Tell the versions of Holonom, Maxima and its Lisp, heyoka and SymPy.",
+    help="Show the versions of Holonom, Maxima, its Lisp, heyoka and SymPy.",
 )
 def holonom(verbose: bool, quiet: bool) -> None:
     """Derive, check and simulate holonomic systems with redundant coordinates.

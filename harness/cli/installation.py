@@ -22,7 +22,7 @@ MISSING = 1
 def doctor(json_file: Path | None) -> int:
     """List what is installed and missing.
 
-    For what is missing it prints the command that installs it.
+    The report names the command that installs each missing component.
     """
     from ..formats import Publication, published
     from ..installation import components
@@ -66,10 +66,10 @@ def show_components(console: "Console", components: "Iterable[Component]") -> No
 def maxima_path() -> int:
     """Let Maxima load the library anywhere.
 
-    Holonom is put into Maxima's user directory, where load(holonom) finds it. Then `? holonomic_system`,
-    example(holonomic_system) and demo(holonom) work in Maxima as well. Like all of Maxima's demonstrations, the latter
-    waits for a `;` after each step, in batch too; the example does not. The directory is the one that MAXIMA_USERDIR
-    names, or .maxima in the home directory; no file of yours there is replaced.
+    The command puts Holonom into Maxima's user directory. There load(holonom), `? holonomic_system`,
+    example(holonomic_system) and demo(holonom) work. The demonstration waits for a `;` after each step.
+
+    The directory is MAXIMA_USERDIR, or .maxima in the home directory. Other files there are not replaced.
     """
     from ..installation import put_into_maxima, user_directory
     from .console import make_console

@@ -27,9 +27,9 @@ from .outputs import STANDARD_OUTPUT, OutputFile
 )
 @asks_one_scene()
 @takes(*options_of(SeriesRequest, "order", "precision", "until"))
-@click.option("--exact", is_flag=True, help="Rational coefficients, or none; the default is exact where possible.")
-@click.option("--digits", metavar="D", type=click.IntRange(min=1), help="Coefficients of D significant digits.")
-@click.option("--at", metavar="T", callback=as_time, help="Also add the series up at the time T.")
+@click.option("--exact", is_flag=True, help="Use rational coefficients only. Default: exact if possible.")
+@click.option("--digits", metavar="D", type=click.IntRange(min=1), help="Significant digits of the coefficients.")
+@click.option("--at", metavar="T", callback=as_time, help="Also evaluate the series at time T.")
 @writes_json
 @runs_scenes
 def series(
@@ -44,7 +44,7 @@ def series(
 ) -> int:
     """Expand the initial motion in power series.
 
-    The result says how far the series hold.
+    The report states the radius of convergence.
     """
     from ..display.motion import show_series
     from ..series.compute import compute_series
@@ -72,23 +72,23 @@ FAILED = 1  # exit status of a result that is none
 )
 @asks_one_scene(*options_of(Request, "solve"))
 @takes(*options_of(SimulationRequest))
-@click.option("--final", is_flag=True, help="Of the motion, only the final state goes into the JSON document.")
+@click.option("--final", is_flag=True, help="Write only the final state to the JSON document.")
 @writes_json
 @click.option(
     "-o",
     "--output",
     metavar="FILE.csv|.npz|.parquet",
     type=OutputFile(),
-    help="Also write the samples of the motion.",
+    help="Write the samples of the motion.",
 )
-@click.option("--plot", "plot_file", metavar="FILE.svg|.png", type=OutputFile(), help="Also draw the motion.")
+@click.option("--plot", "plot_file", metavar="FILE.svg|.png", type=OutputFile(), help="Plot the motion.")
 @click.option("--curves", metavar="NAME,...", help="Curves of the plot, such as x,dot(x),energy. Default: all.")
 @click.option(
     "--film",
     "film_file",
     metavar="FILE.svg|.html|.gif|.mp4",
     type=OutputFile(),
-    help="Also film the system as it is drawn.",
+    help="Write a film of the system.",
 )
 @runs_scenes
 def simulate(
@@ -105,9 +105,9 @@ def simulate(
 ) -> int:
     """Integrate the equations of motion.
 
-    The report says how well the motion was followed. No step misses a pulse in time that lasts longer than 1/32768 of
-    the time span. The exit status is 1 if the constraints, the energy, or forces within a step are missed out of
-    proportion to the tolerance.
+    The report states the accuracy. Functions of time are scanned first, so that no step misses a pulse longer than
+    1/32768 of the time span. The exit status is 1 if errors of the constraints, the energy or forces are too large for
+    the tolerance.
     """
     from ..program.motion_problem import motion_problem, problem_document, read_problem
     from ..simulation.derivations import open_names, stands

@@ -42,7 +42,7 @@ def writes_json(command: Callable[..., int]) -> Callable[..., int]:
         "json_file",
         metavar="FILE|-",
         type=OutputFile(json=True),
-        help="Also write the result to FILE as one JSON document; with -, write nothing but that to standard output.",
+        help="Write the result as JSON to FILE. With -, print JSON instead of the tables.",
     )(command)
 
 
@@ -65,7 +65,7 @@ def takes_settings(command: Callable[..., int]) -> Callable[..., int]:
         metavar="NAME=VALUE",
         multiple=True,
         callback=_read_settings,
-        help="A number that the file leaves open.",
+        help="Set a parameter, or a variable of the scene file. May be repeated.",
     )(command)
 
 
@@ -185,8 +185,8 @@ def runs_scenes(command: Callable[..., int]) -> Callable[..., int]:
         metavar="SECONDS",
         type=float,
         callback=_read_seconds,
-        help=f"Time for the whole command; without it, {defaults.seconds:g} s for each run of Maxima, and nothing in "
-        f"many digits that takes longer than {EXPECTED:g} s.",
+        help=f"Time limit for the whole command. Default: {defaults.seconds:g} s for each run of Maxima, and "
+        f"{EXPECTED:g} s for computations in many digits.",
     )
     @click.option(
         "--memory-limit",
@@ -194,16 +194,16 @@ def runs_scenes(command: Callable[..., int]) -> Callable[..., int]:
         type=click.IntRange(256, MOST_MEMORY),
         default=defaults.memory_mib,
         show_default=True,
-        help="Memory that Maxima may take for a scene.",
+        help="Memory limit of a Maxima run.",
     )
-    @click.option("--trust", is_flag=True, help="Run the scene file outside the sandbox: it may do what you may do.")
-    @click.option("--sandbox", is_flag=True, help="Refuse to run a scene file on a machine without a sandbox.")
+    @click.option("--trust", is_flag=True, help="Run the scene file without a sandbox, with your permissions.")
+    @click.option("--sandbox", is_flag=True, help="Fail if the sandbox is not available.")
     @click.option(
         "--allow",
         metavar="FILE",
         multiple=True,
         type=click.Path(exists=True, dir_okay=False, path_type=Path),
-        help="Let the scene read this file in the sandbox. May be given several times.",
+        help="Let the scene read this file in the sandbox. May be repeated.",
     )
     @functools.wraps(command)
     def limited(
@@ -225,7 +225,7 @@ def runs_scenes(command: Callable[..., int]) -> Callable[..., int]:
 
 def _read_seconds(ctx: click.Context, parameter: click.Parameter, seconds: float | None) -> float | None:
     if seconds is not None and not 0 < seconds <= LONGEST:
-        raise click.BadParameter(f"{seconds:g} is no time; give seconds, more than 0 and at most {LONGEST:g}")
+        raise click.BadParameter(f"expected seconds above 0 and up to {LONGEST:g}, not {seconds:g}.")
     return seconds
 
 
@@ -235,7 +235,7 @@ def _sandbox(trust: bool, sandbox: bool) -> Sandbox:
     Print one line if this machine has no sandbox and no option asks for one.
     """
     if trust and sandbox:
-        raise click.UsageError("--trust and --sandbox exclude one another")
+        raise click.UsageError("--trust and --sandbox exclude each other")
     if trust:
         return Sandbox.TRUSTED
     wanted = Sandbox.REQUIRED if sandbox else Sandbox.WHERE_POSSIBLE

@@ -108,7 +108,7 @@ class Command(click.Command):
         self.examples = tuple(examples)
         if any(isinstance(each.type, OutputFile) for each in self.params):
             self.params.append(
-                click.Option(["--force"], is_flag=True, help="Replace files, and not only Holonom's own documents.")
+                click.Option(["--force"], is_flag=True, help="Overwrite existing files, whatever they contain.")
             )
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

@@ -29,19 +29,18 @@ from .outputs import STANDARD_OUTPUT, OutputFile, is_forced
     type=click.Choice(FORMS),
     default="json",
     show_default=True,
-    help="What is written.",
+    help="Format of the code.",
 )
-@click.option("--module", type=click.Choice(MODULES), help="With python: the package that it computes with.")
+@click.option("--module", type=click.Choice(MODULES), help="Python package that the code uses, with --to python.")
 @click.option(
     "--name",
-    help="With c, fmu, matlab and --module: the name of the whole, which the public names of c and casadi begin with; "
-    "without it, the file's name.",
+    help="Name of the library or unit, for c, fmu, matlab and --module. Default: the name of the file.",
 )
 @click.option(
     "--parameters",
     metavar="NAME,...",
     callback=lambda ctx, parameter, text: tuple(text.split(",")) if text else (),
-    help="With c, fmu, matlab and --module: parameters that stay open although the scene gives them values.",
+    help="Parameters that become inputs, for c, fmu, matlab and --module.",
 )
 @click.option(
     "-o",
@@ -49,7 +48,7 @@ from .outputs import STANDARD_OUTPUT, OutputFile, is_forced
     metavar="FILE|DIR",
     type=OutputFile(json=True, directory=True),
     default=STANDARD_OUTPUT,
-    help="Where it goes; c takes a directory, fmu a file.",
+    help="Destination: a directory for c, otherwise a file.",
 )
 @runs_scenes
 def program(
@@ -64,10 +63,11 @@ def program(
 ) -> int:
     """Write the motion as code.
 
-    As json, python or javascript the motion program has the scene's values, and controls as inputs. As c it is a
-    library in C11: accelerations and multipliers, the control law, residuals and Jacobian of the constraints,
-    projection; as fmu the same for FMI 3 model exchange; as matlab, and as python with --module, functions of arrays.
-    Controls, and parameters without a value or named by --parameters, are inputs of all these.
+    json, python and javascript contain the values of the scene; controls are inputs.
+
+    c is a C11 library: accelerations and multipliers, the control law, residuals and Jacobian of the constraints, and
+    projection. fmu is the same for FMI 3 model exchange. matlab, and python with --module, are functions of arrays.
+    Inputs are the controls, the parameters without a value, and those of --parameters.
     """
     from ..files import require_own_files, write_files, write_whole
     from ..program.forms import MotionProgram
@@ -99,7 +99,7 @@ def effects(
 ) -> int:
     """Measure what each term costs.
 
-    The terms and effects of a SCENE are listed with their operations and their measured time.
+    The terms and effects of a SCENE are listed with their operations and measured times.
     """
     from ..display.measurements import show_costs
     from ..formats import Publication, published

@@ -25,7 +25,7 @@ def linearize(
 ) -> int:
     """Linearise the motion of a SCENE.
 
-    The result holds eigenvalues, modes and the state space in coordinates of the constraint manifold.
+    The report lists eigenvalues, modes and the state space in coordinates of the constraint manifold.
     """
     from ..display.stability import show_linearization
     from ..formats import Publication, published
@@ -41,10 +41,20 @@ def linearize(
 )
 @asks_one_scene()
 @click.option(
-    "--control", "controls", metavar="NAME=VALUE", multiple=True, help="A constant control, not as its law begins."
+    "--control",
+    "controls",
+    metavar="NAME=VALUE",
+    multiple=True,
+    help="Value of a control. Default: the initial one.",
 )
-@click.option("--over", metavar="NAME=FIRST:LAST:COUNT", help="Values of a control, one after the other.")
-@click.option("--plot", "plot_file", metavar="FILE.svg|.png", type=OutputFile(), help="Also draw them over --over.")
+@click.option("--over", metavar="NAME=FIRST:LAST:COUNT", help="Values of a control, in order.")
+@click.option(
+    "--plot",
+    "plot_file",
+    metavar="FILE.svg|.png",
+    type=OutputFile(),
+    help="Plot them over that control.",
+)
 @takes(*options_of(EquilibriaRequest))
 @writes_json
 @runs_scenes
@@ -60,7 +70,7 @@ def equilibria(
 ) -> int:
     """Find states at rest and their stability.
 
-    The controls are constant. Others than the states found may exist.
+    The controls are constant. The search is random and may miss equilibria.
     """
     from ..display.stability import show_branches, show_equilibria
     from ..formats import Publication, published

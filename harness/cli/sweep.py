@@ -24,27 +24,27 @@ FAILED = 1  # exit status of a sweep none of whose rows came about
     ]
 )
 @asks_one_scene(*options_of(Request, "solve"))
-@click.option("--grid", "grids", metavar="NAME=FIRST:LAST:COUNT", multiple=True, help="Equidistant values.")
-@click.option("--list", "lists", metavar="NAME=VALUE,...", multiple=True, help="These values.")
+@click.option("--grid", "grids", metavar="NAME=FIRST:LAST:COUNT", multiple=True, help="Equally spaced values.")
+@click.option("--list", "lists", metavar="NAME=VALUE,...", multiple=True, help="List of values.")
 @click.option(
     "--sample",
     "samples",
     metavar="NAME=normal(A,B)|uniform(A,B)|loguniform(A,B)",
     multiple=True,
-    help="Random values: mean and deviation, or least and greatest.",
+    help="Random values: mean and deviation, or smallest and largest value.",
 )
-@click.option("--size", metavar="N", type=click.IntRange(min=1), help="Members of the sample.")
-@click.option("--seed", metavar="N", type=click.IntRange(min=0), help="Of the sample; without it, 0.")
+@click.option("--size", metavar="N", type=click.IntRange(min=1), help="Size of the sample.")
+@click.option("--seed", metavar="N", type=click.IntRange(min=0), help="Seed of the sample. Default: 0.")
 @click.option(
     "--keep",
     metavar="WHAT,...",
     multiple=True,
     default=("final",),
     show_default=True,
-    help="final, EXPR, at(EXPR,T), max(EXPR), max(abs(EXPR)), min(EXPR), mean(EXPR), zero(EXPR), free, radius.",
+    help="Output: final, EXPR, at(EXPR,T), max(EXPR), max(abs(EXPR)), min(EXPR), mean(EXPR), zero(EXPR), free, radius.",
 )
 @click.option(
-    "-o", "--output", metavar="FOLDER", required=True, type=click.Path(path_type=Path), help="Where the rows go."
+    "-o", "--output", metavar="FOLDER", required=True, type=click.Path(path_type=Path), help="Folder of the rows."
 )
 @takes(*options_of(SweepRequest))
 @click.option(
@@ -52,7 +52,7 @@ FAILED = 1  # exit status of a sweep none of whose rows came about
     "plot_file",
     metavar="FILE.svg|.png",
     type=OutputFile(),
-    help="Also draw the first that is kept: a curve over one parameter, a map over two.",
+    help="Plot the first output: a curve over one parameter, a map over two.",
 )
 @writes_json
 @runs_scenes
@@ -73,11 +73,11 @@ def sweep(
 ) -> int:
     """Vary parameters over many motions.
 
-    The rows go into a folder of Parquet files, each with its parameters, what is kept, its residual and its status.
-    The same command again computes only what is missing there. The exit status is 1 where no row came about.
+    The rows are written to Parquet files in a folder: parameters, outputs, residual and status. Run the same command
+    again to compute only missing rows. The exit status is 1 if no row succeeds.
 
-    A Dask scheduler is started by `dask scheduler`, each worker by `dask worker ADDRESS`. On a cluster dask-jobqueue
-    does both: SLURMCluster(cores=8, processes=8, memory="16GB").scale(jobs=20), and its scheduler_address for --dask.
+    To use Dask, start `dask scheduler` and, for each worker, `dask worker ADDRESS`. On a cluster dask-jobqueue starts
+    both: SLURMCluster(cores=8, processes=8, memory="16GB").scale(jobs=20). Pass its scheduler_address to --dask.
     """
     from ..display.motion import show_sweep
     from ..display.progress import sweep_progress

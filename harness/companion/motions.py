@@ -91,7 +91,7 @@ def _follow(file: Path, scene: str | None, until: Fraction | None, settings: Set
     Raises
     ------
     HolonomError
-        The motion has no end, or cannot be followed to it.
+        The motion has no end, or cannot be continued to it.
     """
     problem = replace(motion_problem(file, Request(scene, settings=dict(settings)), limits), observe=SHOWN)
     simulation = simulate(problem, SimulationRequest(until=until, samples=SAMPLES))

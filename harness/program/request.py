@@ -20,13 +20,13 @@ class Solve(StrEnum):
 
 @dataclass(frozen=True)
 class Request:
-    """Which scene of a file, and how."""
+    """A request about one scene of a file."""
 
     # name of the scene; None for the last one, or for the system where there is none
-    scene: str | None = option(None, "The scene in the file; without it, the last one.", metavar="NAME")
+    scene: str | None = option(None, "Scene in the file. Default: the last one.", metavar="NAME")
     solve: Solve = option(
         Solve.DIRECT,
-        "How the multipliers are solved for; orthogonal keeps more digits near singular configurations.",
+        "Method that solves for the multipliers. orthogonal is more accurate near singular configurations.",
     )
     # numbers in Maxima's notation, for what the file leaves open and for parameters
     settings: Mapping[str, str] = field(default_factory=dict)
@@ -73,6 +73,6 @@ class Index(StrEnum):
 
 @dataclass(frozen=True)
 class DaeRequest:
-    """Which form is asked for."""
+    """A request for a form of the system."""
 
-    index: Index = option(Index.GGL, "Differentiation index; ggl is 2 with the constraints themselves kept, too.")
+    index: Index = option(Index.GGL, "Differentiation index. ggl: index 2, with the constraints kept, too.")

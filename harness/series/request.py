@@ -18,13 +18,13 @@ class SeriesRequest:
     scene: str | None = None  # name of the scene; None for the last one
     # on the command line --digits and --exact
     digits: int | str = option(
-        AUTOMATIC, "Confirmed digits; exact for rationals or nothing; automatic: exact if possible."
+        AUTOMATIC, "Confirmed digits. exact: rational numbers only; automatic: exact if possible."
     )
     precision: int | str | None = option(
         None,
-        "Compute with heyoka, in these numbers; their last digits are rounded, not confirmed.",
+        "Compute with heyoka in this precision: faster, but the last digits are not verified.",
         metavar="double|extended|quadruple|DIGITS",
     )
-    until: Fraction | None = option(None, "Also continue the motion to T, beyond the radius.", metavar="T")
+    until: Fraction | None = option(None, "Also continue the motion to time T, beyond the radius.", metavar="T")
     # numbers for what the file leaves open and for parameters
     settings: Mapping[str, str] = field(default_factory=dict)

@@ -53,7 +53,7 @@ def first_event(motion: "HybridMotion", precision: Precision, end: Any) -> Cross
     Raises
     ------
     HolonomError
-        An expression has no real, finite value; the motion cannot be followed so far.
+        An expression has no real, finite value; the motion cannot be continued so far.
     """
     sides: dict[str, int] = {}
     events: dict[Mode, Events] = {}

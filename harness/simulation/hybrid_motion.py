@@ -194,7 +194,7 @@ class HybridMotion:
         Raises
         ------
         HolonomError
-            The motion cannot be followed so far.
+            The motion cannot be continued so far.
         """
         if self.problem.switching or self.problem.released or controls_may_fail(self.problem):
             deque(self.integrate(until), maxlen=0)

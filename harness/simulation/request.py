@@ -30,29 +30,29 @@ class Stabilization(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class SimulationRequest:
-    """How a motion is to be followed."""
+    """A request for a simulation."""
 
-    until: Fraction | None = option(None, "The last time, in place of the scene's.", metavar="T")
+    until: Fraction | None = option(None, "Final time. Default: that of the scene.", metavar="T")
     # 0 keeps the final state alone
-    samples: int | None = option(None, "Keep N equidistant times, not the steps.", metavar="N", least=2)
+    samples: int | None = option(None, "Output N equally spaced samples. Default: one per step.", metavar="N", least=2)
     # relative
-    tol: float | None = option(None, "Tolerance of a step; without it, what the precision holds.")
+    tol: float | None = option(None, "Relative tolerance of a step. Default: the rounding error of the precision.")
     # only the Taylor engine knows others than double
-    precision: int | str = option("double", "Numbers to use.", metavar="double|extended|quadruple|DIGITS")
+    precision: int | str = option("double", "Floating-point precision.", metavar="double|extended|quadruple|DIGITS")
     engine: EngineName = option(
         EngineName.AUTO,
-        "What follows the motion; auto is the quicker of taylor and runge-kutta, and robust where that fails.",
+        "Integrator. auto uses the faster of taylor and runge-kutta, and robust near singular configurations.",
     )
     stabilization: Stabilization = option(
         Stabilization.PROJECTION,
-        "Constraint stabilization; the robust engine always projects. --drift is the former name.",
+        "Constraint stabilization. The robust engine always projects. --drift is the former name.",
         alias="drift",
     )
-    max_step: float | None = option(None, "No step is to be longer.", metavar="H", above=0)
+    max_step: float | None = option(None, "Largest step.", metavar="H", above=0)
     sensitivities: tuple[str, ...] = option(
         (),
-        "Also find derivatives by these parameters and, for initial values, coordinates and velocities.",
+        "Compute derivatives by these parameters and initial coordinates or velocities.",
         metavar="NAME,...",
         spelt=("--sensitivity",),
     )
-    compact: bool | None = option(None, "heyoka's compact mode; without it, the faster one.")
+    compact: bool | None = option(None, "heyoka's compact mode. Default: the faster mode.")

@@ -221,7 +221,7 @@ class Sensitivities:
     ) -> None:
         self._problem, self.directions, self._tol, self._end = problem, tuple(directions), tol, end
         if unknown := [name for name in directions if name not in (*problem.parameters, *problem.state)]:
-            detail = f"{unknown[0]} is no parameter and none of {', '.join(problem.state)}"
+            detail = f"unknown name {unknown[0]}: it is neither a parameter nor one of {', '.join(problem.state)}"
             raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=detail)
         if problem.reacting:
             raise HolonomError(ErrorKind.NO_SENSITIVITY, detail="forces contain multipliers")

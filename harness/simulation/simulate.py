@@ -94,7 +94,7 @@ def follow(
     Raises
     ------
     HolonomError
-        The request cannot be met: its precision, tolerance, engine or end; or the motion cannot be followed so far.
+        The request cannot be met: its precision, tolerance, engine or end; or the motion cannot be continued so far.
     """
     with one_blas_thread(), np.errstate(all="ignore"):  # numbers that leave their range are rejected in the report
         _require_steps(problem, request)

@@ -248,7 +248,7 @@ def linearize(problem: MotionProblem, equations: LinearEquations, at: Fraction |
     Raises
     ------
     HolonomError
-        The motion is not analytic, or cannot be followed so far; the constraints are singular there.
+        The motion is not analytic, or cannot be continued so far; the constraints are singular there.
     """
     require_analytic(problem)
     t, state = state_at(problem, at)
@@ -318,7 +318,7 @@ def state_at(problem: MotionProblem, at: Fraction | None) -> tuple[float, Vector
     Raises
     ------
     HolonomError
-        The motion cannot be followed so far, ends before, or misses something out of proportion to the tolerance.
+        The motion cannot be continued so far, ends before, or misses something out of proportion to the tolerance.
     """
     start = start_of(problem)
     if at is None or at == start[0]:

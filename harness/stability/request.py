@@ -10,8 +10,8 @@ from ..options import option
 class LinearizationRequest:
     """A request for a linearisation about a state."""
 
-    at: Fraction | None = option(None, "The time; without it, the start.", metavar="T")
-    equilibrium: str | None = option(None, "Instead, one of those that equilibria finds.", metavar="NAME")
+    at: Fraction | None = option(None, "Time of the state. Default: the initial time.", metavar="T")
+    equilibrium: str | None = option(None, "Name of an equilibrium, in place of a time.", metavar="NAME")
 
 
 @dataclass(frozen=True)
@@ -19,4 +19,4 @@ class EquilibriaRequest:
     """A request for equilibria."""
 
     starts: int = option(200, "Random starts of Newton's method.", metavar="N", least=1)
-    seed: int = option(1, "Of their random numbers.", metavar="N", least=0)
+    seed: int = option(1, "Seed of the random starts.", metavar="N", least=0)

@@ -229,7 +229,7 @@ def make_axes(values: Sequence[Values], samples: Sequence[Sample], size: int | N
         raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=missing)
     axes = Axes(tuple(values), tuple(samples), size or 1, seed or 0)
     if axes.rows > MOST_ROWS:
-        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"these are {axes.rows} rows, and {MOST_ROWS} are the most")
+        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"these are {axes.rows} rows; at most {MOST_ROWS} are allowed")
     return axes
 
 

@@ -22,20 +22,20 @@ class SweepRequest:
     axes: "Axes"
     kept: "tuple[OutputQuantity, ...]"
     tol: float = option(TOLERANCE, "Tolerance of a step.")
-    until: Fraction | None = option(None, "The last time, in place of the scene's.", metavar="T")
+    until: Fraction | None = option(None, "Final time. Default: that of the scene.", metavar="T")
     stabilization: Stabilization = option(
         Stabilization.PROJECTION,
         "Constraint stabilization. --drift is the former name.",
         alias="drift",
         choices=(Stabilization.PROJECTION, Stabilization.NONE),
     )
-    chunk: int = option(CHUNK, "Rows of a file.", metavar="ROWS", least=1, most=10**7)
+    chunk: int = option(CHUNK, "Rows per file.", metavar="ROWS", least=1, most=10**7)
     # in Python 1, since each process imports the program that asks for more
     workers: int | None = option(
-        None, "Processes; without it, one a processor.", metavar="N", least=1, most=4096, in_python=1
+        None, "Number of processes. Default: one per processor.", metavar="N", least=1, most=4096, in_python=1
     )
     scheduler: str | None = option(
-        None, "A running Dask scheduler, whose workers compute instead.", metavar="ADDRESS", spelt=("--dask",)
+        None, "Address of a Dask scheduler whose workers compute.", metavar="ADDRESS", spelt=("--dask",)
     )
-    resume: bool = option(False, "Go on with what is there; without it, that or begin.")
+    resume: bool = option(False, "Resume a sweep; fail if there is none. Default: resume or start.")
     called: str | None = None  # what the document calls the scene file; None for its path

@@ -183,7 +183,7 @@ def _derived(source: Source, request: Request, axes: Axes) -> str:
 
 def _require_parameters(problem: MotionProblem, axes: Axes) -> None:
     if foreign := [name for name in axes.names if name not in problem.parameters]:
-        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{foreign[0]} is no parameter of {problem.scene}")
+        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"unknown parameter {foreign[0]} of {problem.scene}")
 
 
 def _document(file: Path, request: Request, wanted: SweepRequest, derived: str, maker: RowMaker) -> dict[str, Any]:

@@ -77,7 +77,7 @@ class SingleMotions:
         Raises
         ------
         HolonomError
-            The motion cannot be followed to the end.
+            The motion cannot be continued to the end.
         """
         look = _Look(partial(self._values, problem), self._along, stops)
         report = follow(problem, self._request, lambda samples: None, watch=look.take)

@@ -84,7 +84,7 @@ def test_a_directory_with_other_things_in_it_is_left_alone(tmp_path):
     (tmp_path / "pages" / "thesis.txt").write_text("years of work")
     outcome, directory = made(tmp_path, {"own": SMOOTH})
     assert outcome.return_value == 2
-    assert "other things than a companion" in outcome.stderr
+    assert "other files than a companion" in outcome.stderr
     assert (directory / "thesis.txt").read_text() == "years of work"
 
 

@@ -123,11 +123,11 @@ OPTIONS = [
     Fault("trusted and needs_sandbox in", "derive scene.mac --trust --sandbox", "exclude one another"),
     Fault("exact and in digits", "series scene.mac --order 4 --exact --digits 9", "exclude one another"),
     *(
-        Fault(f"{text} as a setting", f"derive scene.mac --set {text}", "sets nothing")
+        Fault(f"{text} as a setting", f"derive scene.mac --set {text}", "invalid setting")
         for text in ("m", "m=", "m=x", "=1", "m=1e", "m=system(1)", "m=1;quit()")
     ),
     *(
-        Fault(f"{text} as a setting", f"derive scene.mac --set {text}", "beyond what a double holds")
+        Fault(f"{text} as a setting", f"derive scene.mac --set {text}", "outside the range of double precision")
         for text in ("m=1e400", "m=1e-400", "m=1e1000000000", f"m={'9' * 400}")
     ),
     *(
@@ -168,7 +168,7 @@ OUTPUTS = [
         Fault(
             f"an unrelated {name}",
             f"{command} {name}",
-            "there is a file of that name",
+            "the file exists",
             prepare=holding(name, content),
         )
         for name, command, content in (
@@ -188,11 +188,11 @@ OUTPUTS = [
         "samples that may be replaced", "simulate scene.mac --until 1 -o x.csv --force", "", 0, holding("x.csv", "t\n")
     ),
     Fault("no such format", "simulate scene.mac --until 1 -o out.xls", "unsupported file format"),
-    Fault("a directory of others for the companion", "companion scene.mac -o .", "other things than a companion"),
+    Fault("a directory of others for the companion", "companion scene.mac -o .", "other files than a companion"),
 ]
 
 SCENES = [
-    Fault("no such file", "derive nowhere.mac", "there is no such file"),
+    Fault("no such file", "derive nowhere.mac", "file not found"),
     Fault("a directory as a scene", "derive .", "no regular file"),
     Fault("a pipe without a writer", "derive pipe", "no regular file", prepare=lambda here: os.mkfifo(here / "pipe")),
     Fault("an endless device", "derive /dev/zero", "no regular file"),
@@ -354,7 +354,7 @@ ENVIRONMENTS = [
     Fault(
         "a Maxima that is none",
         "derive scene.mac",
-        "does not run as Maxima",
+        "Maxima does not start",
         MACHINE_AT_FAULT,
         maxima("not a program"),
         OTHER_MAXIMA,
@@ -362,7 +362,7 @@ ENVIRONMENTS = [
     Fault(
         "a Maxima that says nothing",
         "derive scene.mac",
-        "does not run as Maxima: exit status 0",
+        "Maxima does not start: exit status 0",
         MACHINE_AT_FAULT,
         maxima("#!/bin/sh\nexit 0\n"),
         OTHER_MAXIMA,
@@ -370,7 +370,7 @@ ENVIRONMENTS = [
     Fault(
         "a Maxima that fails",
         "derive scene.mac",
-        "does not run as Maxima: exit status 7",
+        "Maxima does not start: exit status 7",
         MACHINE_AT_FAULT,
         maxima("#!/bin/sh\necho garbage; exit 7\n"),
         OTHER_MAXIMA,
@@ -378,12 +378,12 @@ ENVIRONMENTS = [
     *(
         Fault(name, "derive scene.mac", says, MACHINE_AT_FAULT, leaving(what, command), OTHER_MAXIMA)
         for name, what, command, says in (
-            ("a truncated outcome", "outcome", "printf 'FINI' > {name}", "not whole: its outcome"),
-            ("an alien outcome", "outcome", "seq 100 > {name}", "not whole: its outcome"),
-            ("an outcome in bytes", "outcome", "head -c 9999 /dev/urandom > {name}", "not whole: its outcome"),
-            ("an outcome that is a directory", "outcome", "mkdir {name}", "does not run as Maxima"),
-            ("an outcome that is a pipe", "outcome", "mkfifo {name}", "does not run as Maxima"),
-            ("an outcome that is a link", "outcome", "ln -s /etc/passwd {name}", "does not run as Maxima"),
+            ("a truncated outcome", "outcome", "printf 'FINI' > {name}", "incomplete: its outcome"),
+            ("an alien outcome", "outcome", "seq 100 > {name}", "incomplete: its outcome"),
+            ("an outcome in bytes", "outcome", "head -c 9999 /dev/urandom > {name}", "incomplete: its outcome"),
+            ("an outcome that is a directory", "outcome", "mkdir {name}", "Maxima does not start"),
+            ("an outcome that is a pipe", "outcome", "mkfifo {name}", "Maxima does not start"),
+            ("an outcome that is a link", "outcome", "ln -s /etc/passwd {name}", "Maxima does not start"),
         )
     ),
     *(
@@ -394,7 +394,7 @@ ENVIRONMENTS = [
             ("no document", "true", "describes no system", 2),
             ("a document that is a directory", "mkdir {name}", "describes no system", 2),
             ("a document that is a link", "ln -s /etc/passwd {name}", "describes no system", 2),
-            ("a truncated document", "printf '{{\"format\"' > {name}", "not whole: its document", MACHINE_AT_FAULT),
+            ("a truncated document", "printf '{{\"format\"' > {name}", "incomplete: its document", MACHINE_AT_FAULT),
             ("an alien document", "echo hello > {name}", "", 2),
             ("a document of another kind", "echo '{{}}' > {name}", "", 2),
         )
@@ -488,7 +488,11 @@ WORK = [
     Fault("a tolerance of zero", "simulate scene.mac --until 1 --tol 0", "tolerances", long=True),
     *(
         Fault(f"a step of {text}", f"simulate scene.mac --until 1 --max-step {text}", says)
-        for text, says in (("nan", "is no length"), ("inf", "is no length"), ("1e-300", "steps to its end"))
+        for text, says in (
+            ("nan", "invalid step length"),
+            ("inf", "invalid step length"),
+            ("1e-300", "steps to its end"),
+        )
     ),
     *(
         Fault(
@@ -500,14 +504,14 @@ WORK = [
         )
         for engine in ("taylor", "runge-kutta", "robust")
     ),
-    Fault("an end before the start", "simulate scene.mac --until -1", "not after the start", long=True),
+    Fault("an end before the start", "simulate scene.mac --until -1", "not after the initial time", long=True),
     Fault("5000 digits", "series scene.mac --order 4 --precision 5000", "", 0, long=True),
     Fault("one digit", "simulate scene.mac --until 1 --precision 1 --final", "", 0, long=True),
     Fault("an unused setting", "derive scene.mac --set k=1", "k", long=True),
     Fault(
         "a law that ends within the time span",
         "simulate law.mac --until 1",
-        "cannot be followed beyond t = 0.5, where",
+        "cannot be continued beyond t = 0.5, where",
         prepare=holding("law.mac", PARTICLE.replace("u = t]", "u = (1/2-t)^(5/2)]")),
         long=True,
     ),

@@ -213,7 +213,7 @@ def test_names_that_c_does_not_know_stay_apart():
         (["--to", "c"], "Say where it goes: -o DIR"),
         (["--to", "c", "--name", "a-b", "-o", "lib"], "a-b cannot name a function"),
         (["--to", "c", "--parameters", "m,k", "-o", "lib"], "'k' cannot stay open; .* the scene, which has m, g, l0"),
-        (["--to", "c", "--parameters", "m;", "-o", "lib"], "m; cannot be the name of a parameter"),
+        (["--to", "c", "--parameters", "m;", "-o", "lib"], "'m;' cannot name a parameter"),
         (["--to", "python", "--name", "bob"], "Leave --name and --parameters out"),
     ],
 )

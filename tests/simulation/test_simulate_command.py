@@ -89,7 +89,7 @@ def test_samples_and_figures_are_written(tmp_path, simulate):
     ("options", "sentence"),
     [
         (["--tol", "1e-30"], "double precision holds tolerances from 1e-16 to 1, not 1e-30"),
-        (["--until", "-1"], "the last time is not after the start"),
+        (["--until", "-1"], "the final time is not after the initial time"),
         (["--precision", "single"], "single is no precision"),
         (["-o", "motion.xls"], "Use .csv, .npz, .parquet."),
         (["--plot", "motion.pdf"], "Use .svg, .png."),
@@ -158,4 +158,4 @@ def test_heyoka_was_called_not_installed_where_memory_was_short(tmp_path):
     environment = os.environ | {"PYTHONPATH": str(tmp_path)}
     done = subprocess.run(asked, capture_output=True, text=True, timeout=120, env=environment)
     assert (done.returncode, without_notice(done.stderr).count("\n")) == (3, 1)
-    assert "there is not enough memory for this" in done.stderr
+    assert "not enough memory" in done.stderr

@@ -78,7 +78,7 @@ def test_a_file_written_in_parts_holds_what_one_written_at_once_does(lengthening
 def test_a_motion_that_breaks_off_leaves_no_file(lengthening, tmp_path, suffix):
     (part,) = followed(lengthening, samples=5)
     file = tmp_path / f"broken{suffix}"
-    with pytest.raises(HolonomError, match="cannot be followed"):
+    with pytest.raises(HolonomError, match="cannot be continued"):
         broken_off(part, file)
     assert list(tmp_path.iterdir()) == []
 

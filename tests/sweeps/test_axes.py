@@ -49,7 +49,7 @@ def test_samples_have_the_moments_of_their_distributions():
         ([], [], ["m=loguniform(0,1)"], 10, "no logarithm"),
         ([], [], ["m=normal(0,1)"], None, "needs its --size"),
         (["m=1:2:3"], [], [], 10, "there is none"),
-        (["m=0:1:999999999", "c=0:1:999999999"], [], [], None, "are the most"),
+        (["m=0:1:999999999", "c=0:1:999999999"], [], [], None, "at most"),
     ],
 )
 def test_what_is_no_axis_is_told_in_one_sentence(grids, lists, samples, size, told):

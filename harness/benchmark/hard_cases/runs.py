@@ -84,7 +84,7 @@ def simulated(motion: MotionProblem, until: float, **asked: object) -> Arrived:
     Raises
     ------
     HolonomError
-        The motion cannot be followed so far.
+        The motion cannot be continued so far.
     """
     simulation = simulate(motion, SimulationRequest(until=Fraction(until), samples=FINAL_STATE_ALONE, **asked))
     report = simulation.report

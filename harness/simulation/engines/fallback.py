@@ -119,7 +119,7 @@ class FallbackEngine:
         Raises
         ------
         HolonomError
-            The motion cannot be followed so far by the engines allowed.
+            The motion cannot be continued so far by the engines allowed.
         """
         deque(self._followed(until, _without_steps), maxlen=0)
 

@@ -143,7 +143,7 @@ class RobustEngine:
         Raises
         ------
         HolonomError
-            The motion cannot be followed so far.
+            The motion cannot be continued so far.
         """
         for _ in self.integrate(until):
             pass
