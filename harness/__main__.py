@@ -4,7 +4,7 @@ import signal
 
 
 def main() -> None:
-    """Run the command line; an earlier interruption ends the process silently."""
+    """Run the command line. An earlier interruption ends the process silently."""
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
     from .cli import main as command

@@ -84,7 +84,7 @@ class Dae:
 
     @property
     def yp0(self) -> Floats:
-        """The initial y', consistent; zeros for the algebraic components."""
+        """The consistent initial y', with zeros for the algebraic components."""
         velocities, others = self._start.state[self._n :], np.zeros(len(self._kept) + self._added)
         return np.concatenate([velocities, self._start.accelerations, others])
 

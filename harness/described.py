@@ -69,12 +69,12 @@ class System:
 
     @cached_property
     def constraints(self) -> "tuple[Expr, ...]":
-        """The constraints, g of them."""
+        """The g constraints."""
         return each(expression, self.constraint_trees)
 
 
 class Correction(NamedTuple):
-    """A change of an initial value, so that it satisfies the constraints."""
+    """A change of an initial value to satisfy the constraints."""
 
     name: str
     size: str  # in decimal digits

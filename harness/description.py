@@ -161,7 +161,7 @@ class Description:
 
     @property
     def unused_parameters(self) -> tuple[str, ...]:
-        """Parameters that the system declares, and that neither it nor a scene contains."""
+        """Parameters that the system declares, but neither it nor a scene uses."""
         system = {key: value for key, value in self.content["system"].items() if key != "parameters"}
         used = set(_strings([system, *({**scene, "parameter_values": []} for scene in self.content["scenes"])]))
         return tuple(name for name in self.content["system"]["parameters"] if name not in used)

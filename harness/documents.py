@@ -88,7 +88,7 @@ def ask_all(
     settings: Mapping[str, str] = NO_SETTINGS,
     limits: Limits = DEFAULT_LIMITS,
 ) -> list[str | HolonomError]:
-    """Ask one process for several documents; return each text, or the error.
+    """Ask one process for several documents. Return each text, or the error.
 
     Parameters
     ----------

@@ -10,13 +10,13 @@ from sympy.core.function import ArgumentIndexError
 
 
 class _Jacobi(Function):
-    """One of the three; `kind` is its name in mpmath."""
+    """A Jacobi elliptic function, with the name `kind` in mpmath."""
 
     nargs = 2
     kind: str
 
     def fdiff(self, argindex: int = 1) -> Expr:
-        """Return the derivative by u; that by the parameter m is not supported."""
+        """Return the derivative by u. The derivative by m is not supported."""
         if argindex != 1:
             raise ArgumentIndexError(self, argindex)
         return self._rate(*self.args)

@@ -53,7 +53,7 @@ ADVICE = {
 
 
 def advice(kind: Difficulty) -> str:
-    """Return the advice for a hard case, in one sentence.
+    """Return the advice for a hard case.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def notes(report: "Report") -> Iterator[str]:
 
 
 def unresolved(start: float) -> str:
-    """Return the sentence on the time after which discontinuities may be missed.
+    """Return the note on the time after which discontinuities may be missed.
 
     Parameters
     ----------

@@ -249,7 +249,7 @@ def require_own_files(directory: Path, names: Iterable[str]) -> None:
 
 
 def write_whole_directory(path: Path, files: Mapping[str, str | bytes]) -> None:
-    """Write a directory; a new one appears completely or not at all.
+    """Write a directory completely or not at all.
 
     In an existing directory, the files that its manifest lists are replaced or removed, each at once and only when
     all new ones are on the disk. The others stay unchanged.
@@ -285,7 +285,7 @@ def write_whole_directory(path: Path, files: Mapping[str, str | bytes]) -> None:
 
 
 def _target(path: Path) -> Path:
-    """Return the file that a name leads to; links of other users are not followed."""
+    """Return the target of a file name, except for links of other users."""
     link = path
     for _ in range(LINKS):
         if not link.is_symlink():
@@ -297,7 +297,7 @@ def _target(path: Path) -> Path:
 
 
 def _status(path: Path) -> os.stat_result | None:
-    """Return the status of a name; None if it does not exist."""
+    """Return the status of a name, or None if it does not exist."""
     with suppress(FileNotFoundError):
         return path.lstat()
     return None

@@ -60,7 +60,7 @@ class MotionVerdict:
 
 @dataclass(frozen=True)
 class UniversalLaw:
-    """A law under which every motion is free, or a family of them."""
+    """A law under which every motion is free, or a family of such laws."""
 
     controls: Law  # by control; in the time, the constants and the free controls
     constants: tuple[str, ...]  # constants of integration: any numbers
@@ -221,7 +221,7 @@ def free_motion(
 
 
 def read_free_motion(text: str) -> FreeMotion:
-    """Read the results that Maxima wrote; `judged` checks their verdicts.
+    """Read the results that Maxima wrote, without a check of their verdicts.
 
     Parameters
     ----------

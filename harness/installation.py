@@ -69,7 +69,7 @@ def components() -> Iterator[Component]:
 
 
 def _hindrance_of_sandbox() -> str:
-    """Return the hint to make bubblewrap work; empty if it works."""
+    """Return the hint to make bubblewrap work, empty if it works."""
     try:
         return "" if has_sandbox() else ALLOW
     except HolonomError as error:

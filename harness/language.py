@@ -28,7 +28,7 @@ _spoken: ContextVar[str] = ContextVar("spoken", default=ENGLISH)
 
 
 class Message(str):
-    """A message in English that keeps its parts, so that it can be translated later."""
+    """A message in English with its parts, for later translation."""
 
     pattern: str  # the message with its named placeholders, ``%(name)s``
     values: dict[str, Any]  # what stands in their places; messages among them are translated with it
@@ -161,7 +161,7 @@ def catalog_file(language: str, name: str = DOMAIN) -> Path:
 
 @cache
 def _catalog(language: str) -> catalogs.NullTranslations:
-    """Return the messages of a language; empty for English.
+    """Return the messages of a language, or empty for English.
 
     Raises
     ------

@@ -414,7 +414,7 @@ def _run(run: Run, start: str) -> Ended:
 
 
 def _attempt(run: Run, start: str, maxima: str, image: Path | None, place: Place, output: bytearray) -> Ending | None:
-    """Run Maxima, or an image of it; return its early ending, if any."""
+    """Run Maxima, or an image of it. Return its early ending, if any."""
     preparation = f"(holonom_print : false, {_set(run.settings or NO_SETTINGS)})$"
     facts = (run.file.resolve(), LIBRARY, preparation, run.leaves(OUTCOME).name, run.mark)
     known = [] if image else [each.read_text(encoding="utf-8") for each in JOBS]
@@ -480,7 +480,7 @@ def _memory_of_the_machine() -> int:
 
 
 def _read_ending(run: Run, what: str, broken_off: Ending) -> Ending | None:
-    """Return the ending that `headless.lisp` wrote; None for finished parts."""
+    """Return the ending that `headless.lisp` wrote, or None for finished parts."""
     lines = (_read_left(run.leaves(what), LONGEST_OUTCOME) or b"").decode(errors="replace").split("\n")
     if lines == [""]:
         return broken_off
@@ -507,7 +507,7 @@ def _unfinished(run: Run, status: int) -> Ending:
 
 
 def _finished_document(run: Run, ended: Ended, writer: str, document: str = DOCUMENT) -> str:
-    """Return the document of a run; raise if the run is incomplete."""
+    """Return the document of a run, or raise if the run is incomplete."""
     ended.require_finished(run, writer)
     last_lines = _last_lines(ended.printed)
     content = _read_left(run.leaves(document), run.limits.file_mib * MIB)

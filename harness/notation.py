@@ -98,7 +98,7 @@ def _expanded(tree: Tree) -> Expanded:
 
 
 def _parted(tree: Tree) -> tuple[bool, Tree]:
-    """Return True if a minus sign stands before a tree, and the tree without it."""
+    """Return True if a tree has a minus sign, and the tree without it."""
     match tree:
         case bool():
             return False, tree

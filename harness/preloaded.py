@@ -64,7 +64,7 @@ def preloaded_image(maxima: str, library: Path, environment: frozenset[tuple[str
 
 
 def remove_if_broken(image: Path, place: Place) -> None:
-    """Remove an image that no longer runs under any limits; the next run remakes it.
+    """Remove an image that does not run, so that the next run makes it again.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def quoted(text: str | Path) -> str:
 
 
 def _own_folder() -> Path:
-    """Return the folder of the images; refuse one that others may write to."""
+    """Return the folder of the images, or raise if others may write to it."""
     given = Path(os.environ.get("XDG_CACHE_HOME", ""))  # a relative one is ignored, as its standard says
     folder = Path(given if given.is_absolute() else Path.home() / ".cache", "holonom")
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -149,7 +149,7 @@ def _make(image: Path, maxima: str, library: Path, environment: Mapping[str, str
 
 
 def _saves(saved: Path, maxima: str, library: Path, place: Place) -> bool:
-    """Have Maxima save itself; return True if that succeeds and the image runs."""
+    """Save an image of Maxima. Return True if that succeeds and the image runs."""
     asked = f"{PRELOAD.read_text(encoding='utf-8')}\n(save-with-library {' '.join(map(quoted, (library, *JOBS)))})\n"
     (place.directory / "save.lisp").write_text(asked, encoding="utf-8")
     with suppress(LimitExceeded):

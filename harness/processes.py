@@ -167,7 +167,7 @@ def end_children() -> None:
 
 
 def _control_process(option: int, value: int) -> bool:
-    """Call Linux's prctl; return True if there is one and it succeeded."""
+    """Call Linux's prctl. Return True if it exists and succeeds."""
     return sys.platform == "linux" and ctypes.CDLL(None).prctl(option, ctypes.c_ulong(value), 0, 0, 0) == 0
 
 

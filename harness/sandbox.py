@@ -1,4 +1,4 @@
-"""One process, limited, and isolated by bubblewrap if asked.
+"""Run a process with limits, and in a bubblewrap sandbox if requested.
 
 In the sandbox a process has namespaces of its own: no network, no other process, the user nobody without privileges.
 It sees the system's programs and the files that it is given, read-only. Memory of limited size stands in for its
@@ -51,7 +51,7 @@ UNCONFINED = (
 
 
 class Sandbox(Enum):
-    """When a scene file runs in the sandbox: always, if possible, or never.
+    """The use of the sandbox for a scene file: always, if possible, or never.
 
     In it, the file sees the system's programs, the library, copies of the files that its text names below its own
     folder, and copies of the ``.mac``, ``.lisp`` and ``.csv`` files beside it; `Limits.allow` adds others. It has no

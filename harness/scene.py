@@ -310,7 +310,7 @@ class Scene:
         return Equations((*record.derivations[chosen.derivation].equations, *chosen.equations))
 
     def _name_among(self, names: Sequence[str]) -> str | None:
-        """Return the scene's name, by default the last one; None without a scene."""
+        """Return the scene's name, by default the last one, or None."""
         if self._name is not None and self._name not in names:
             detail = f"{self._name}; the file has {', '.join(names) or 'none'}"
             raise HolonomError(ErrorKind.NO_SUCH_SCENE, self.file, detail)

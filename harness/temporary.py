@@ -82,7 +82,7 @@ def remove_tree(path: Path) -> None:
 
 
 def _remove_entry(name: str, top: int) -> bool:
-    """Remove a file or a directory; return True on success.
+    """Remove a file or a directory. Return True on success.
 
     The entries of a directory are first moved to the topmost one.
     """

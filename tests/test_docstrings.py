@@ -26,11 +26,26 @@ def test_examples_print_what_they_say(file):
     assert found.failed == 0
 
 
+def docstrings(file):
+    documented = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+    nodes = (node for node in ast.walk(parsed(file)) if isinstance(node, documented))
+    return [text for text in map(ast.get_docstring, nodes) if text]
+
+
+def parsed(file):
+    return ast.parse(file.read_text(encoding="utf-8"))
+
+
+SUMMARIES = [(file.name, text.split("\n\n")[0]) for file in sorted(PACKAGE.rglob("*.py")) for text in docstrings(file)]
+
+
 def test_a_summary_is_one_short_line():
-    book = PACKAGE / "companion"
-    files = [file for file in sorted(PACKAGE.rglob("*.py")) if book not in file.parents]
-    summaries = [(file.name, text.split("\n\n")[0]) for file in files for text in docstrings(file)]
-    assert [each for each in summaries if len(each[1]) > 80 or "\n" in each[1]] == []
+    assert [each for each in SUMMARIES if len(each[1]) > 80 or "\n" in each[1] or ";" in each[1]] == []
+
+
+def test_a_summary_names_its_subject():
+    clause = re.compile(r"((Return|Yield) )?(what|whatever|whether|where|when|how|why|those|the same) ", re.IGNORECASE)
+    assert [each for each in SUMMARIES if clause.match(each[1])] == []
 
 
 def test_public_functions_document_parameters_and_results():
@@ -69,13 +84,3 @@ def undocumented(function):
 def section(text, title):
     found = re.search(rf"^{title}\n-+\n(.*?)(?=\n\n\w+\n---|\Z)", text, re.MULTILINE | re.DOTALL)
     return found[1] if found else ""
-
-
-def docstrings(file):
-    documented = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
-    nodes = (node for node in ast.walk(parsed(file)) if isinstance(node, documented))
-    return [text for text in map(ast.get_docstring, nodes) if text]
-
-
-def parsed(file):
-    return ast.parse(file.read_text(encoding="utf-8"))

@@ -1,4 +1,4 @@
-"""Work of a child process while a command goes on."""
+"""Work in a child process while a command runs."""
 
 import math
 import os

@@ -34,7 +34,7 @@ class Commands(click.Group):
     command_class = Command
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run the command asked for; return its exit status.
+        """Run the command. Return its exit status.
 
         Parameters
         ----------
@@ -68,7 +68,7 @@ class Commands(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Find the command; the error for an unknown name suggests a similar one.
+        """Find the command, or raise an error that suggests a similar name.
 
         Parameters
         ----------
@@ -153,7 +153,7 @@ def main() -> None:
 
 
 def run() -> int:
-    """Run the command line in this process; return its exit status.
+    """Run the command line in this process. Return its exit status.
 
     Every error is reported in one message.
 
@@ -180,7 +180,7 @@ def run() -> int:
 
 
 def _show_warning(message: Warning | str, category: type[Warning], filename: str, lineno: int, *more: Any) -> None:
-    """Print a warning about a scene file as one line; any other as Python does."""
+    """Print a warning about a scene file as one line, any other as Python does."""
     if issubclass(category, HolonomWarning):
         click.echo(f"holonom: warning: {visible(str(message))}", err=True)
     else:
@@ -218,7 +218,7 @@ def _system_error(error: OSError) -> int:
 
 
 def _refused(error: HolonomError, verbose: bool, options: Collection[str], standing_in: str) -> int:
-    """Report an error; a temporary copy of standard input is not named."""
+    """Report an error, without the name of the temporary copy of standard input."""
     named = "standard input"
     _report(error.message(options).replace(standing_in or named, named), error.kind.status)
     if verbose:

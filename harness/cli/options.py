@@ -230,7 +230,7 @@ def _read_seconds(ctx: click.Context, parameter: click.Parameter, seconds: float
 
 
 def _sandbox(trust: bool, sandbox: bool) -> Sandbox:
-    """Return when the scene runs in the sandbox.
+    """Return the use of the sandbox that the options ask for.
 
     Print one line if this machine has no sandbox and no option asks for one.
     """
@@ -245,7 +245,7 @@ def _sandbox(trust: bool, sandbox: bool) -> Sandbox:
 
 
 def as_time(ctx: click.Context, parameter: click.Parameter, text: str | None) -> Fraction | None:
-    """Read a time; a callback of Click.
+    """Read a time (a callback of Click).
 
     Parameters
     ----------

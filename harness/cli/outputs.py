@@ -21,7 +21,7 @@ FORCE = "holonom.force"  # where the context of a command holds whether it has t
 
 
 class SceneFile(click.Path):
-    """The type of a scene file; ``-`` is standard input.
+    """The type of a scene file, where ``-`` is standard input.
 
     Standard input is stored in a temporary file while the command runs.
     """
@@ -134,7 +134,7 @@ class Command(click.Command):
                     formatter.write(f"{'':{formatter.current_indent}}holonom {each}\n")
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Raise for unsafe or unwritable outputs; then run the command.
+        """Run the command, after a check of its outputs.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""The textbook companion: the paper as a living book, made of static pages out of runs of this repository.
+"""The textbook companion: static pages whose results come from runs.
 
 A chapter says which runs it needs and what it makes of their results; a template turns that into a page. Numbers,
 equations and verdicts on the pages come from the runs, and the Maxima lines from the source files, at every build.
@@ -12,7 +12,7 @@ TEMPLATES = Path(__file__).with_name("templates")
 
 
 def table(name: str) -> dict[str, Any]:
-    """Return what the pages are told beside the runs: the table of that name, which lies with the templates.
+    """Return the table of that name among the templates.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The card of an equation: as printed, as derived, by which Maxima lines, with which verdict, and in plain words."""
+"""Cards of equations: printed and derived form, Maxima lines, verdict."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -25,7 +25,7 @@ class Instance:
 
 @dataclass(frozen=True)
 class Card:
-    """All that a reader is told about one equation."""
+    """The content of the card of one equation."""
 
     anchor: str  # where the card is, on its page
     # number, name: the paper's number and what the equation is
@@ -74,7 +74,7 @@ def scene_cards(
     root: Path,
     prefix: str = "",
 ) -> list[Card]:
-    """Cards of equations (10) and (12) to (19) of scenes, each given with the derivation that it belongs to.
+    """Return the cards of equations (10) and (12) to (19) of scenes.
 
     A prefix begins the anchors, where a page shows the cards of several scenes.
 
@@ -101,7 +101,7 @@ def scene_cards(
 
 
 def printed_card(printed: Iterable[PrintedEquation], name: str) -> Card:
-    """Return the card of an equation that the paper prints without a number, and no record has, given its name.
+    """Return the card of a printed equation without a number, by its name.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def scene_named(derived: Derived, name: str) -> Scene:
 
 
 def verdicts_on(derived: Derived, equation: Equation, scene: str | None) -> tuple[EquationVerdict, ...]:
-    """Return the verdicts on an equation of a scene or, without a scene, of the derivation.
+    """Return the verdicts on an equation of a scene, or of the derivation.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def verdicts_on(derived: Derived, equation: Equation, scene: str | None) -> tupl
 
 
 def missing(derived: Derived) -> list[EquationVerdict]:
-    """Return the verdicts on equations that a record should hold and does not: they have no card.
+    """Return the verdicts on equations that are missing in a record.
 
     Parameters
     ----------
@@ -211,7 +211,7 @@ def files_of(cards: Iterable[Card]) -> tuple[str, ...]:
 
 
 def anchor(prefix: str, equation: Equation | PrintedEquation, taken: Iterable[str] = ()) -> str:
-    """Return the anchor of an equation: its number, or its name where there is none or another has it.
+    """Return the anchor of an equation: its number if that is unique, else its name.
 
     Parameters
     ----------
@@ -286,12 +286,12 @@ def _distinct(equations: Iterable[Equation]) -> list[Equation]:
 
 
 def _same(one: PrintedEquation, other: Equation) -> bool:
-    """Return True if a derived equation is the one printed; the print bears its number and its name."""
+    """Return True if a derived equation has the number and the name of a printed one."""
     return (one.number, one.name) == (other.number, other.name)
 
 
 def _derivation_instances(derived: Derived) -> list[Instance]:
-    """Return the equations of all derivations of a record, those with most effects first."""
+    """Return the equations of all derivations, those with most effects first."""
     record = derived.record
     report = [found for found in derived.report.verdicts if found.scene is None]
     parts = sorted(enumerate(record.derivations), key=lambda part: len(part[1].effects), reverse=True)
@@ -316,5 +316,5 @@ def _scene_instances(derived: Derived, name: str) -> list[Instance]:
 
 
 def _speaks_of(found: EquationVerdict, equation: Equation) -> bool:
-    """Return True if a verdict is one on an equation; SymPy's own LagrangesMethod speaks of equation (2)."""
+    """Return True if a verdict is about an equation."""
     return found.id == equation.id or (found.id, equation.id) == (OPINION.id, "lagrange_equations")

@@ -7,7 +7,7 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Run:
-    """A computation that chapters can share: two that are equal are done once."""
+    """A computation that chapters share. Equal runs are performed once."""
 
     compute: Callable[..., Any]  # a function of a module, for it may be called in another process
     arguments: tuple[Any, ...] = ()  # what it is given; hashable
@@ -15,7 +15,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Page:
-    """What the pieces of a chapter's page are given, and the files that go beside the page."""
+    """Values for the templates of a page, and further files of the page."""
 
     content: Mapping[str, Any]  # the template's variables
     figures: Mapping[str, str] = field(default_factory=dict)  # text of each SVG file, by its name
@@ -26,7 +26,7 @@ class Page:
 
 @dataclass(frozen=True, eq=False)
 class Chapter:
-    """What stands behind one page."""
+    """The computation of one page."""
 
     runs: Mapping[str, Run]  # what it needs, by the name that `page` knows it by
     page: Callable[[Mapping[str, Any]], Page]  # makes the page of the runs' results

@@ -1,4 +1,4 @@
-"""Sphinx's settings for the book and the manual: `make` builds both in English and in Chinese."""
+"""Sphinx settings for the book and the manual, in English and in Chinese."""
 
 project = "Holonom"
 extensions = [

@@ -1,4 +1,4 @@
-"""How far the series of a motion holds: its partial sums, and the radius of convergence that the control governs.
+"""Convergence of the series of a motion: partial sums and radius of convergence.
 
 Partial sums follow the motion up to the radius of convergence, and leave it there. No order helps beyond; the more
 terms, the more sharply they leave.
@@ -49,7 +49,7 @@ SMALLEST = 1e-16  # error that is still drawn
 
 
 def draw_partial_sums(name: str, coefficients: Sequence[float], radius: Radius, times: NDArray, motion: NDArray) -> str:
-    """Draw the partial sums of a series over the motion that it is of, and their errors, as SVG.
+    """Draw the partial sums of a series over its motion, and their errors, as SVG.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ AT_ONCE = 2  # runs of Maxima
 
 
 class RadiiFound(NamedTuple):
-    """Radii, one for each of the initial controls: under u0 + t from few orders and from many, and under u0 exp(t)."""
+    """Radii by initial control: for u0 + t at low and high order, and for u0 exp(t)."""
 
     controls: Sequence[Fraction]
     coarse: list[Radius]
@@ -112,7 +112,7 @@ class RadiiFound(NamedTuple):
 
 
 def find_radii(controls: Sequence[Fraction] = CONTROLS) -> RadiiFound:
-    """Estimate the radii that `draw_radius` draws; raises as `holonom.series.power_series.compute_series`.
+    """Estimate the radii that `draw_radius` draws.
 
     Parameters
     ----------

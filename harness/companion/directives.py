@@ -68,7 +68,7 @@ class Show(SphinxDirective):
     optional_arguments, final_argument_whitespace, has_content = 1, True, True
 
     def run(self) -> list[nodes.Node]:
-        """Return the HTML, and tell where its equations are.
+        """Return the HTML, and record the places of its equations.
 
         Returns
         -------
@@ -85,7 +85,7 @@ class Value(SphinxRole):
     """A value of a run within a line."""
 
     def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
-        """Return what the expression gives.
+        """Return the value of the expression.
 
         Returns
         -------
@@ -97,7 +97,7 @@ class Value(SphinxRole):
 
 
 class Definition(SphinxRole):
-    """A word where it is defined, which the index lists."""
+    """The definition of a word, which the index lists."""
 
     def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
         """Return the word and its entry.
@@ -113,7 +113,7 @@ class Definition(SphinxRole):
 
 
 class SessionOfMaxima(SphinxDirective):
-    """The chapter as a session of Maxima: what is asked, and the file to be downloaded."""
+    """The chapter as a Maxima session: its questions and a file to download."""
 
     def run(self) -> list[nodes.Node]:
         """Return the questions and the link.
@@ -133,7 +133,7 @@ class When(SphinxDirective):
     required_arguments, final_argument_whitespace, has_content = 1, True, True
 
     def run(self) -> list[nodes.Node]:
-        """Return the content or nothing; all of it where messages are collected.
+        """Return the content if the condition holds, or while messages are collected.
 
         Returns
         -------
@@ -197,18 +197,18 @@ class Answer(SphinxDirective):
 
 
 def _collecting(app: Sphinx) -> bool:
-    """Return True where messages are collected, which takes no runs."""
+    """Return True if messages are collected, without runs."""
     return app.builder.name == "gettext"
 
 
 def _rendered(env: BuildEnvironment, template: str) -> str:
-    """Return what a piece of a template makes of the runs of the page that is read."""
+    """Return a piece of a template, rendered with the runs of the current page."""
     shelf = env.temp_data[SHELF]
     return shelf.rendered(env.docname, template) if shelf else ""
 
 
 def _put_shelf(app: Sphinx, name: str, source: list[str]) -> None:
-    """Let the directives of a page that is read find the chapters; there are none where messages are collected."""
+    """Make the chapters available to the directives of a page."""
     app.env.temp_data[SHELF] = None if _collecting(app) else _shelf_of(app)
 
 
@@ -247,7 +247,7 @@ def _visit_shown(translator: HTML5Translator, node: nodes.Element) -> None:
 
 
 def _visit_run_figure(translator: HTML5Translator, node: nodes.Element) -> None:
-    """Write the picture; the caption follows."""
+    """Write the picture, before its caption."""
     alternative = translator.attval(node.pop(0).astext())
     file = _within(translator, f'="figures/{node["name"]}.svg"')
     translator.body.append(
@@ -302,7 +302,7 @@ def _perform_runs(app: Sphinx, env: BuildEnvironment, names: list[str]) -> None:
 
 
 def _outdated(app: Sphinx, env: BuildEnvironment, added: set[str], changed: set[str], removed: set[str]) -> list[str]:
-    """Remove pages whose texts are gone, and return all with chapters where what they show may have changed."""
+    """Remove pages without a text. Return pages whose results may have changed."""
     for name in removed if app.builder.name == "html" else ():
         Path(app.builder.get_outfilename(name)).unlink(missing_ok=True)
     before, now = getattr(env, "holonom_program", ""), digest_of_all()
@@ -318,7 +318,7 @@ def _purge(app: Sphinx, env: BuildEnvironment, name: str) -> None:
 
 
 def _finish_page(app: Sphinx, name: str, template: str, context: dict[str, Any], tree: nodes.document | None) -> None:
-    """Link the equations that a page names, and tell its table cells the heads of their columns."""
+    """Link the equations of a page, and add column names to its table cells."""
     twins = context.get("folders", {}).items()
     context["twins"] = [(each, LANGUAGES[each], f"{_up(name)}{folder}{name}.html") for each, folder in twins]
     if "body" in context and app.builder.name == "html":
@@ -326,7 +326,7 @@ def _finish_page(app: Sphinx, name: str, template: str, context: dict[str, Any],
 
 
 def _places_from(app: Sphinx, name: str) -> dict[str, str]:
-    """Return where each equation is, as seen from a page: on the page itself, else where the book has it first."""
+    """Return the link to each equation from a page."""
     found = _equations(app.env)
     order = [each for each in app.env.toctree_includes.get("book/index", ()) if each in found]
     places: dict[str, str] = {}
@@ -349,7 +349,7 @@ def _context(title: str, body: str) -> dict[str, str]:
 
 
 def _put_font(app: Sphinx) -> None:
-    """Put the font of formulas beside the pages."""
+    """Copy the font of formulas to the folder of the pages."""
     files = Path(app.outdir) / FILES
     logging.getLogger("fontTools").setLevel(logging.WARNING)
     font, notice = mathematics_font()

@@ -1,4 +1,4 @@
-"""The Maxima lines that do a step, taken from the source file by the name of what they define."""
+"""Excerpts of Maxima sources, by the name of the function that they define."""
 
 import re
 from dataclasses import dataclass
@@ -71,7 +71,7 @@ def step(root: Path, name: str) -> tuple[Excerpt, ...]:
 
 
 def _with_comment(text: str, start: int) -> int:
-    """Return where the comment begins that ends on the line above, or the start itself."""
+    """Return the start of the comment that ends on the line above, or `start`."""
     if not text[:start].endswith("*/\n"):
         return start
     opening = text.rindex("/*", 0, start)

@@ -31,7 +31,7 @@ def under(law: Mapping[str, Expr], expression: Expr) -> Expr:
 
 
 def right_side(tree: Tree) -> Expr:
-    """Return the right side of a printed equation of the example as a SymPy expression.
+    """Return the right side of a printed equation of the example, for SymPy.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def right_side(tree: Tree) -> Expr:
 
 
 def _named(tree: Tree) -> Tree:
-    """Return the same tree with the names of a record: Dot of q1 is dot(q1) there."""
+    """Return the tree with the names of a record, such as dot(q1) for Dot of q1."""
     match tree:
         case [("Dot" | "Ddot") as dots, str(name)]:
             return f"{dots.lower()}({name})"

@@ -1,4 +1,4 @@
-"""What is put into pages when all of them are there: links to equations, and names of the columns of folded tables."""
+"""Final changes of pages: links to equations and column names of folded tables."""
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -57,7 +57,7 @@ def with_equations(page: str, places: Mapping[str, str]) -> str:
 
 
 def _outside(page: str, change: Callable[[str], str]) -> Iterator[str]:
-    """Yield the page with its text changed, but for that in elements where nothing is to be changed."""
+    """Yield the page with its text changed outside of protected elements."""
     inside = 0
     for piece in TAG.split(page):
         if name := TAG_NAME.match(piece):
@@ -69,7 +69,7 @@ def _outside(page: str, change: Callable[[str], str]) -> Iterator[str]:
 
 
 def with_columns(page: str) -> str:
-    """Return a page whose table cells know the heads of their columns, for folded tables.
+    """Return a page whose table cells have the names of their columns.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The font of the formulas: a subset of STIX Two Math, which travels with the pages.
+"""The font of the formulas, a subset of STIX Two Math.
 
 STIX Two Math is under the SIL Open Font License 1.1, which its name table says; the subset keeps it. The file comes
 with the package ziamath, of which nothing else is used.

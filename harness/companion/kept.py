@@ -1,4 +1,4 @@
-"""Results of runs, kept in files by what they depend on: the program, the examples, and the run's own arguments."""
+"""Stored results of runs, by program, examples and arguments."""
 
 import hashlib
 import inspect
@@ -20,7 +20,7 @@ SUFFIXES = {".py", ".mac", ".lisp", ".json", ".toml", ".c", ".h"}
 
 
 def results_of(runs: Iterable[Run], directory: Path | None, done: Callable[[], None]) -> dict[Run, Any]:
-    """Return the results of runs, those from a directory that it has, and keep the others there.
+    """Return the results of runs from a directory, and store new ones there.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def results_of(runs: Iterable[Run], directory: Path | None, done: Callable[[], N
 
 
 def _digest(files: Iterable[Path]) -> str:
-    """Return what tells the contents of files from any others."""
+    """Return a digest of the contents of files."""
     return hashlib.sha256(b"".join(hashlib.sha256(file.read_bytes()).digest() for file in sorted(files))).hexdigest()
 
 

@@ -154,7 +154,7 @@ def display_expression(value: Expr) -> Markup:
 
 
 def symbol(name: str) -> Markup:
-    """Return the letter of a quantity within a line of text.
+    """Return the symbol of a quantity within a line of text.
 
     Parameters
     ----------
@@ -178,12 +178,12 @@ class Typeset:
 
     @property
     def is_tall(self) -> bool:
-        """Whether it would fill a screen."""
+        """True if the picture would fill a screen."""
         return self.lines > TALL
 
 
 def typeset(equation: Equation) -> Typeset:
-    """Return the relations of an equation; those of the entries of one array as one, where it is narrow enough.
+    """Return the relations of an equation, entries of an array as one if they fit.
 
     Parameters
     ----------
@@ -201,7 +201,7 @@ def typeset(equation: Equation) -> Typeset:
 
 
 def nothing_to_show(equation: Equation) -> str:
-    """Return what an equation without relations says.
+    """Return the text for an equation without relations.
 
     Parameters
     ----------
@@ -251,7 +251,7 @@ def as_corrected(printed: PrintedEquation) -> Markup:
 
 
 def difference(printed: PrintedEquation) -> Markup:
-    """Return what is printed less what is derived.
+    """Return the printed minus the derived expression.
 
     Parameters
     ----------
@@ -275,7 +275,7 @@ def _block(formulas: Formulas, spoken: str) -> Markup:
 
 
 def _at_each_width(formulas: Formulas, spoken: str) -> Markup:
-    """Formulas as they are broken on a desk and on a phone; the style shows the one that fits."""
+    """Return a formula broken for a wide and for a narrow page."""
     wide, narrow = formulas(WIDTH), formulas(NARROW)
     if wide == narrow:
         return _blocks(wide, spoken)

@@ -1,4 +1,4 @@
-"""Pictures of a motion: the system drawn as it moves, where it says how it looks, and its curves."""
+"""Pictures of a motion: the drawing of the system, and curves."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -35,12 +35,12 @@ class Motion:
 
     @property
     def report(self) -> Report:
-        """How well the motion was followed."""
+        """The accuracy of the motion."""
         return self.simulation.report
 
 
 def motion(file: Path, scene: str | None = None, until: Fraction | None = None) -> Run:
-    """Return the pictures of a scene's motion, through its time span or to a time: a `Motion`.
+    """Return the pictures of a scene's motion, a `Motion`.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def motion(file: Path, scene: str | None = None, until: Fraction | None = None) 
 
 
 def motions(file: Path, settings: Settings, limits: Limits) -> Run:
-    """Return the pictures of all motions of a file: by scene a `Motion`, or the `Refusal` that takes its place.
+    """Return the pictures of all motions of a file: by scene, a `Motion` or `Refusal`.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def _follow_all(file: Path, settings: Settings, limits: Limits) -> dict[str, Mot
 
 
 def _follow(file: Path, scene: str | None, until: Fraction | None, settings: Settings, limits: Limits) -> Motion:
-    """Follow a motion, of the file's last scene without a name, to the end of the scene's time span without a time.
+    """Simulate a scene to a time, by default to the end of its time span.
 
     Raises
     ------

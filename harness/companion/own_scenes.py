@@ -1,4 +1,4 @@
-"""Pages about any scene files: the same cards and answers, without the teaching.
+"""Pages about any scene files: cards and answers, without the textbook.
 
 Each file has five chapters, in whose pages' names the file's prefix comes first.
 """
@@ -48,7 +48,7 @@ CONTENTS = """```{{toctree}}
 
 
 def chapters_of_scenes(files: Sequence[Path], settings: Settings, limits: Limits) -> dict[str, Chapter]:
-    """Return what stands behind the pages about scene files, by the pages' names.
+    """Return the chapters of the pages about scene files, by page name.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def chapters_of_scenes(files: Sequence[Path], settings: Settings, limits: Limits
 
 
 def texts_of_scenes(files: Sequence[Path]) -> dict[str, str]:
-    """Return the texts of these pages in the language spoken, by the names of their files.
+    """Return the texts of the pages in the current language, by file name.
 
     Parameters
     ----------
@@ -96,12 +96,12 @@ def texts_of_scenes(files: Sequence[Path]) -> dict[str, str]:
 
 
 def _prefixed(files: Sequence[Path]) -> list[tuple[str, Path]]:
-    """Return files with what the names of their pages begin with: nothing where there is one file."""
+    """Return files with the prefixes of their page names, empty for one file."""
     return [("" if len(files) == 1 else _prefix(file, place), file) for place, file in enumerate(files, 1)]
 
 
 def _prefix(file: Path, place: int) -> str:
-    """Return what the names of a file's pages begin with: no two files have the same."""
+    """Return the unique prefix of the page names of a file."""
     return f"{place}-{re.sub(r'[^a-z0-9]+', '-', file.stem.lower())}-"
 
 
@@ -145,7 +145,7 @@ def _equations(prefix: str, file: Path, results: Mapping[str, FileAnswers]) -> P
 
 
 def _free_motion(prefix: str, file: Path, results: Mapping[str, FileAnswers]) -> Page:
-    """When the motion of the system is free."""
+    """Return the verdicts on free motion."""
     found = results["study"]
     cards = derivation_cards(["10"], [found.derived], (), REPOSITORY)
     scenes = [
@@ -157,7 +157,7 @@ def _free_motion(prefix: str, file: Path, results: Mapping[str, FileAnswers]) ->
 
 
 def _initial_motion(prefix: str, file: Path, results: Mapping[str, FileAnswers]) -> Page:
-    """Return the initial motion of each scene: the power series with its radius, and closed forms."""
+    """Return power series, radius and closed forms of each scene."""
     found = results["study"]
     scenes = [
         {"name": name, "title": title, "cards": _scene_cards(found, INITIAL_MOTION, name), "series": found.series[name]}
@@ -167,7 +167,7 @@ def _initial_motion(prefix: str, file: Path, results: Mapping[str, FileAnswers])
 
 
 def motion(prefix: str, file: Path, results: Mapping[str, Any]) -> Page:
-    """Return the motion of each scene: drawn, where the system says how it looks, and as curves.
+    """Return drawing and curves of the motion of each scene.
 
     Parameters
     ----------
@@ -190,7 +190,7 @@ def motion(prefix: str, file: Path, results: Mapping[str, Any]) -> Page:
 
 
 def _scene_cards(found: FileAnswers, numbers: Sequence[str], scene: str) -> list[Card]:
-    """Cards of a scene's equations; none where it prescribes reactions and so is not in the record."""
+    """Return cards of a scene's equations, none for prescribed reactions."""
     if scene not in {each.name for each in found.record.scenes}:
         return []
     return scene_cards(numbers, [(found.derived, scene)], (), REPOSITORY, scene)

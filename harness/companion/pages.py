@@ -1,4 +1,4 @@
-"""Pieces of pages from templates: XHTML that a browser reads as HTML, and that parses as XML."""
+"""Pieces of pages from templates, as XHTML."""
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -68,7 +68,7 @@ def _source_link(excerpt: Excerpt) -> str:
 
 @cache
 def environment(language: str) -> jinja2.Environment:
-    """Return the environment of the templates, whose macros all pieces of pages have; once a language.
+    """Return the environment of the templates with its macros, one per language.
 
     Parameters
     ----------
@@ -149,7 +149,7 @@ def _listed(items: Iterable[Markup]) -> Markup:
 
 
 def _both(items: Iterable[Markup]) -> Markup:
-    """Return two things, or more of them, joined by the word for and."""
+    """Return texts joined by commas and the word for "and"."""
     return Markup(gettext(" and ")).join(items)
 
 
@@ -175,7 +175,7 @@ def _emphasized(names: Iterable[str]) -> Markup:
 
 
 def _law_text(law: UniversalLaw) -> Markup:
-    """Return a control law: what the controls are, which of them are free, and what has to be positive for it."""
+    """Return a control law: controls, free controls and positivity conditions."""
     text = _equalities(law.controls)
     for name in law.free:
         message = Markup(gettext("%(law)s, %(control)s any function of the time"))
@@ -191,7 +191,7 @@ def _rounded(value: float, digits: int = 6) -> str:
 
 
 def _signed(value: float) -> str:
-    """Return a rounded number with its sign; nothing has a sign only where it is nothing."""
+    """Return a rounded number with its sign, or "under 1"."""
     return f"{value:+.0f}" if round(value) else gettext("under 1")
 
 
@@ -239,5 +239,5 @@ def _power_of_ten(value: float) -> Markup:
 
 
 def _with_code(text: str) -> Markup:
-    """Text with what stands between backquotes as code."""
+    """Return the text with parts between backquotes as code."""
     return Markup(CODE_IN_TEXT.sub(r"<code>\1</code>", str(escape(text))))

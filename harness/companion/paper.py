@@ -1,4 +1,4 @@
-"""The chapters of the book and the manual that compute, by the names of their pages."""
+"""Chapters of the book and the manual with computations, by page name."""
 
 from functools import partial
 from importlib import import_module

@@ -1,4 +1,4 @@
-"""What turning the knob costs: the power of the reactions along a motion, and the balance of energy that checks it."""
+"""Power of the constraint forces along a motion, and its energy balance."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ from .expressions import under
 
 @dataclass(frozen=True)
 class EnergyBalance:
-    """Where the kinetic energy of a motion comes from; arrays of shape (k,) at its times."""
+    """Energy balance of a motion: arrays of shape (k,) at its times."""
 
     power: NDArray[np.float64]  # of the reactions, -lambda (df/dt + du/dt df/du)
     gained: NDArray[np.float64]  # kinetic energy since the start
@@ -62,7 +62,7 @@ def energy_balance(system: System, scene: Scene, motion: Simulation) -> EnergyBa
 
 
 def values_along(expression: Expr, scene: Scene, motion: Simulation) -> NDArray[np.float64]:
-    """Return an expression of state, multipliers and controls along a motion under the law.
+    """Return the values of an expression along a motion.
 
     Parameters
     ----------

@@ -96,7 +96,7 @@ def print_site(app: Sphinx, root: str, pdf: Path) -> None:
 
 
 def one_document(app: Sphinx, root: str, numbers: Mapping[str, int]) -> str:
-    """Return the pages below a root page in one document, with the page numbers of places that are known.
+    """Return all pages below a root page in one document, with known page numbers.
 
     Parameters
     ----------
@@ -139,7 +139,7 @@ def _place(uri: str) -> str:
 
 
 def _fitted(text: str, name: str) -> str:
-    """Return the text of a page with its ids and links as they are in one document; what leads out of it is no link."""
+    """Return the text of a page with ids and links for one document."""
 
     def linked(link: re.Match) -> str:
         page, anchor = link[1], (link[2] or "")[1:]
@@ -153,7 +153,7 @@ def _fitted(text: str, name: str) -> str:
 
 
 def browser() -> str:
-    """Return the browser that prints, or the refusal where none is installed.
+    """Return the browser that prints, or a `Refusal`.
 
     Returns
     -------
@@ -181,7 +181,7 @@ def _printed(page: Path) -> Path:
 
 
 def _page_numbers(pdf: Path) -> dict[str, int]:
-    """Return the sheet, from 1 on, that each place of a printed document is on."""
+    """Return the page number, from 1, of each place of a printed document."""
     try:
         from pypdf import PdfReader
     except ImportError:

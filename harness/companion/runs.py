@@ -1,4 +1,4 @@
-"""The runs that chapters ask for, and all of them performed, two at a time.
+"""The runs of chapters, and their execution, two at a time.
 
 They are performed by processes, not by threads: mpmath's precision belongs to the whole process.
 """
@@ -49,14 +49,14 @@ class Derived:
 
 @dataclass(frozen=True)
 class Refusal:
-    """Why there is no answer."""
+    """The reason for a missing answer."""
 
     reason: str
 
 
 @dataclass(frozen=True)
 class FileAnswers:
-    """Answers about one scene file; where mathematics refuses one, the reason is the answer.
+    """Answers about one scene file, or the reasons for missing ones.
 
     A scene that prescribes reactions is not in the record, but it has its free motion and its series.
     """
@@ -67,12 +67,12 @@ class FileAnswers:
 
     @property
     def record(self) -> Record:
-        """What Maxima derived."""
+        """The record that Maxima derived."""
         return self.derived.record
 
     @property
     def titles(self) -> dict[str, str]:
-        """Title of each scene by its name, which stands in where it is not known."""
+        """Title of each scene, by default its name."""
         expanded = {name: answer.title for name, answer in self.series.items() if isinstance(answer, MotionSeries)}
         return {name: name for name in self.free} | expanded | {each.name: each.title for each in self.record.scenes}
 
@@ -98,7 +98,7 @@ def derived(file: Path, settings: Settings = NO_SETTINGS, limits: Limits = DEFAU
 
 
 def printed() -> Run:
-    """Return the paper as printed, compared with the derivation: a tuple of `PrintedEquation`.
+    """Return the comparison of the printed paper: a tuple of `PrintedEquation`.
 
     Returns
     -------
@@ -161,7 +161,7 @@ def series(
 def simulation(
     file: Path, scene: str | None, until: Fraction | None, samples: int | None, settings: Settings = NO_SETTINGS
 ) -> Run:
-    """Return a scene's motion followed through its time span or to a time: a `Simulation`.
+    """Return a scene's motion through its time span or to a time, a `Simulation`.
 
     Parameters
     ----------
@@ -185,7 +185,7 @@ def simulation(
 
 
 def study(file: Path, settings: Settings, limits: Limits) -> Run:
-    """Return all that is asked of somebody's own scene file: a `FileAnswers`.
+    """Return all answers about a scene file, a `FileAnswers`.
 
     Parameters
     ----------
@@ -205,7 +205,7 @@ def study(file: Path, settings: Settings, limits: Limits) -> Run:
 
 
 def perform(runs: Iterable[Run], done: Callable[[], None]) -> dict[Run, Any]:
-    """Perform runs, equal ones once, two at a time, and call `done` after each; where one fails, give up the others.
+    """Perform runs two at a time, equal ones once, and call `done` after each.
 
     Parameters
     ----------
@@ -309,7 +309,7 @@ def names_of_scenes(file: Path, settings: Settings, limits: Limits) -> list[str]
 
 
 def or_refusal(compute: Callable[..., Any], *arguments: Any) -> Any:
-    """Return what a function returns, or why it does not.
+    """Return the value of a function, or a `Refusal`.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The Maxima session of each chapter, to be downloaded: an example, and what the chapter asks of it."""
+"""Maxima sessions of the chapters: an example and its questions."""
 
 import re
 from pathlib import Path
@@ -11,7 +11,7 @@ PRINTING = re.compile(r"^(print_derivation\(.*\)\$|if holonom_print then\n(.+\n)
 
 
 def session_text(root: Path, slug: str) -> str:
-    """Return the session of a chapter as a Maxima file, its comments in the language spoken.
+    """Return the session of a chapter as a Maxima file, in the current language.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def session_text(root: Path, slug: str) -> str:
 
 
 def questions(slug: str) -> str:
-    """Return what the session of a chapter asks of Maxima.
+    """Return the questions of the session of a chapter.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The chapters behind the pages of one build: their runs performed, their templates rendered, their files written."""
+"""The chapters of one build: run, rendered and written."""
 
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
@@ -14,7 +14,7 @@ from .sessions import questions, session_text
 
 
 class Shelf:
-    """What the pages of a build take from their chapters.
+    """The results of the chapters of a build.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ class Shelf:
         return self.chapters.get(name.rpartition("/")[2])
 
     def page(self, name: str) -> Page:
-        """Return what the chapter of a page computes, and write its files.
+        """Return the results of the chapter of a page, and write its files.
 
         Parameters
         ----------
@@ -92,7 +92,7 @@ class Shelf:
         return self.pages[name]
 
     def rendered(self, name: str, template: str) -> str:
-        """Return a piece of a page that a template makes of what its chapter computes.
+        """Return a piece of a page, rendered with the results of its chapter.
 
         Parameters
         ----------
@@ -110,7 +110,7 @@ class Shelf:
             return str(environment(self.language).from_string(template).render(**self.page(name).content)).strip()
 
     def session(self, slug: str) -> str:
-        """Return the questions of a chapter's session of Maxima with the link to its file, and write that.
+        """Write the session file of a chapter. Return its questions with a link.
 
         Parameters
         ----------

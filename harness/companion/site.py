@@ -1,4 +1,4 @@
-"""Pages that Sphinx makes of the book and the manual, or of scene files, in each language, and the book in print."""
+"""Build the pages of book and manual, or of scene files, with Sphinx."""
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -32,7 +32,7 @@ def make_site(
     languages: Sequence[str],
     done: Callable[[], None],
 ) -> None:
-    """Perform the runs of pages, and write these in each language, and print them.
+    """Perform the runs of pages, write the pages in each language, and print them.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def _from(language: str, other: str, first: str) -> str:
 
 
 def build(scenes: Sequence[Path], directory: Path, shelf: Shelf, folders: Mapping[str, str]) -> Sphinx:
-    """Have Sphinx make pages, and return what knows them; of each other language it is given the folder.
+    """Build pages with Sphinx, and return its application.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def build(scenes: Sequence[Path], directory: Path, shelf: Shelf, folders: Mappin
 
 
 def _texts_about(scenes: Sequence[Path], directory: Path) -> Path:
-    """Write the texts of the pages about scene files into a folder of theirs, and return it."""
+    """Write the texts of the pages about scene files to a new folder. Return it."""
     folder = directory / TEXTS
     directory.mkdir(parents=True, exist_ok=True)
     write_whole_directory(folder, texts_of_scenes(scenes))
@@ -122,7 +122,7 @@ def _texts_about(scenes: Sequence[Path], directory: Path) -> Path:
 
 
 def _require_site_or_nothing(directory: Path) -> None:
-    """Refuse a directory that holds what Sphinx has not written."""
+    """Raise if a directory contains files that Sphinx did not write."""
     if not directory.exists() or (directory.is_dir() and not any(directory.iterdir())):
         return
     if not (directory / MARK).is_dir():

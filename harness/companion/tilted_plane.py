@@ -1,4 +1,4 @@
-"""The paper's example as it looks: a plane hinged in the ground along q1 + q2 = 0, tilted by the knob u.
+"""Picture of the paper's example: a plane hinged along q1 + q2 = 0, tilted by u.
 
 The particle at (q1, q2, q3) stays on the plane q3 = u (q1 + q2). The reaction is lambda df/dq = lambda (-u, -u, 1),
 normal to it.
@@ -23,7 +23,7 @@ ABOVE = 1.25  # how far the plane goes beyond the particle
 
 
 def draw_tilted_plane(particle: Sequence[float], tilt: float) -> str:
-    """Draw the plane tilted by u, the knob, the particle on it and the reaction, as SVG.
+    """Draw the plane tilted by u, the particle on it and the reaction, as SVG.
 
     Parameters
     ----------

@@ -56,7 +56,7 @@ def first_differences(compared: Callable[[int], Parts], attempt: int) -> tuple[d
 
 
 def differing(compared: Callable[[], Iterator[ComparedValue]], digits: int = DIGITS) -> str:
-    """Return the first wrong value, confirmed in twice the digits; empty without one.
+    """Return the first wrong value, confirmed in twice the digits, or an empty text.
 
     Parameters
     ----------

@@ -175,7 +175,7 @@ def _slopes(momentum: sp.Expr, velocities: Sequence[sp.Symbol]) -> list[tuple[in
 
 
 def _sparse_pairs(name: str, claimed: Entries, expected: Entries) -> tuple[Pair, ...]:
-    """Pair all entries that the record holds, and all that are not zero."""
+    """Pair the entries of the record, and all nonzero entries."""
     zero = sp.Integer(0)
     return tuple(
         Pair(f"{name}{list(key)}", claimed.get(key, zero), expected.get(key, zero))

@@ -115,7 +115,7 @@ class DescribedMotion:
 
     @cached_property
     def span(self) -> tuple[mp.mpf, mp.mpf] | None:
-        """First and last time of the scene; None if it states none."""
+        """First and last time of the scene, or None if it states none."""
         if self.scene is None or self.scene.span_trees is None:
             return None
         with mp.workdps(DATA_DIGITS):
@@ -124,7 +124,7 @@ class DescribedMotion:
 
     @property
     def first_time(self) -> mp.mpf:
-        """Beginning of the time span; zero without one."""
+        """Beginning of the time span, or zero."""
         return self.span[0] if self.span else mp.zero
 
     @cached_property

@@ -49,7 +49,7 @@ class Step(NamedTuple):
 
 
 class Steps:
-    """The steps that lead from the values of symbols to those of expressions."""
+    """The operations from values of symbols to values of expressions."""
 
     def __init__(self, expressions: Sequence[sp.Expr]) -> None:
         self._places: dict[sp.Expr, int] = {}

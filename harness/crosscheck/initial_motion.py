@@ -61,7 +61,7 @@ class CheckedScene:
 
     @property
     def initial_time(self) -> sp.Expr:
-        """The beginning t0 of the time span; zero without one."""
+        """The beginning t0 of the time span, or zero."""
         return exact(self.premises.time_span[0]) if self.premises.time_span else sp.Integer(0)
 
     @cached_property
@@ -99,7 +99,7 @@ class CheckedScene:
 
     @cached_property
     def controls_at_start(self) -> Definitions:
-        """The initial time and the initial controls; those without a law are u_0, ..."""
+        """The initial time and the initial controls, u_0, ... for those without a law."""
         without_law = (
             symbol for control in self.system.controls if control not in self.control_law for symbol in history(control)
         )

@@ -35,7 +35,7 @@ class LinearEquations:
         return Steps([*(entry for row in self.coefficients for entry in row), *self.constants])
 
     def solution(self, values: Values, real: bool = False) -> dict[sp.Symbol, Number | None]:
-        """Return the solution at a point; None for each unknown if there is no solution.
+        """Return the solution at a point, None for each unknown if there is no solution.
 
         Parameters
         ----------

@@ -32,7 +32,7 @@ ATTEMPTS = 6  # draws for each state before the search for a regular one is give
 
 @dataclass(frozen=True)
 class ScenePrograms:
-    """The programs of one scene, or of a system without one; or the reason for none."""
+    """The programs of a scene or system, or the reason for missing ones."""
 
     scene: str | None
     problems: Mapping[Solve, MotionProblem] = field(default_factory=dict)  # where the controls have laws
@@ -92,7 +92,7 @@ def _programs_of(
 
 
 def why_missing(error: HolonomError) -> CheckResult:
-    """Return the verdict if Maxima wrote nothing.
+    """Return the verdict for missing output of Maxima.
 
     Parameters
     ----------

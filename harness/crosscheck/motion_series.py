@@ -242,7 +242,7 @@ def _changes(
     before: Sequence[Polynomial],
     made: Callable[[Sequence[Polynomial], list[Polynomial]], list[Polynomial]],
 ) -> list[list[mp.mpf]]:
-    """Return how relative changes of all coefficients change the results so far.
+    """Return the sensitivity of results to relative changes of all coefficients.
 
     The coefficients are rounded.
     """

@@ -80,7 +80,7 @@ def _changes(slopes: Mapping[str, Polynomial], start: State, q: str, order: int)
 
 
 def nearer_start(motion: DescribedMotion, start: State, masses: State | None = None) -> str:
-    """Return a value that Newton's method finds nearer to the guess; empty if none.
+    """Return a value that Newton's method finds nearer to the guess, empty if none.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ class _Search:
         self._conditions = [*motion.constraints, *motion.outputs]
 
     def nearer(self) -> str:
-        """Return a value of a root nearer than the initial state; empty if none is found."""
+        """Return a value of a root nearer than the initial state, empty if none is found."""
         try:
             guess = {**self._start, **self._guess}
             metric = self._metric(guess)

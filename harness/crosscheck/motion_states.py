@@ -47,7 +47,7 @@ class Bordered(NamedTuple):
     left_out: frozenset[int]
 
     def solution(self, right: Sequence[mp.mpf]) -> list[mp.mpf]:
-        """Return accelerations, then multipliers; those of redundant constraints are zero.
+        """Return accelerations and multipliers, zero for redundant constraints.
 
         Parameters
         ----------

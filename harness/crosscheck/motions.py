@@ -50,7 +50,7 @@ def read_motions(description: Description, answers: Answers) -> Motions:
 def motion_verdicts(
     description: Description, motions: Motions, seed: str, seconds: float = math.inf
 ) -> Iterator[EquationVerdict]:
-    """Yield verdicts on motions for a report; undecided if the time is over.
+    """Yield verdicts on motions for a report, undecided after the time limit.
 
     Parameters
     ----------

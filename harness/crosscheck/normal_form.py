@@ -232,7 +232,7 @@ def _generators(expression: sp.Expr) -> Iterator[sp.Expr]:
 
 
 def _root_and_exponent(expression: sp.Expr) -> tuple[sp.Expr, int]:
-    """Write an expression as base^integer; b^(p/q) is the p-th power of b^(1/q)."""
+    """Write an expression as base^integer, b^(p/q) as the p-th power of b^(1/q)."""
     match expression:
         case sp.Pow(args=(base, sp.Integer() as exponent)):
             return base, int(exponent)

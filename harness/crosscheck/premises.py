@@ -129,7 +129,7 @@ def _differences_of_scene(scene: Scene, motion: DescribedMotion) -> Iterator[Dif
 
 
 def _law_differs(scene: Scene, motion: DescribedMotion) -> str:
-    """Return the name of a law that differs around the first time; empty if none does."""
+    """Return the name of a law that differs around the first time, empty if none does."""
     if list(scene.control_law) != list(motion.scene.control_law):
         return _difference(scene.control_law, motion.scene.control_law)
     with mp.workdps(CONFIRMING_DIGITS):
@@ -149,7 +149,7 @@ def _law_differs(scene: Scene, motion: DescribedMotion) -> str:
 
 
 def _nearer_start(scene: Scene, motion: DescribedMotion) -> str:
-    """Return an initial value with another nearer to the scene's guess; empty if none."""
+    """Return an initial value with another nearer to the scene's guess, empty if none."""
     if not motion.scene.initial_guess or list(scene.initial_state) != _state_of(motion):
         return ""
     try:

@@ -38,7 +38,7 @@ class Elimination:
         return len(self._pivots)
 
     def solution(self) -> Row:
-        """Return a solution of the independent equations; undetermined unknowns are zero.
+        """Return a solution of the independent equations, zero for undetermined unknowns.
 
         Returns
         -------
@@ -115,7 +115,7 @@ def least_solution(rows: Sequence[Row], right: Sequence[mp.mpf]) -> Row:
 
 
 def _subtract(left: Row, factor: mp.mpf, row: Row) -> mp.mpf:
-    """Subtract a multiple of a row from another; return the largest change."""
+    """Subtract a multiple of a row from another. Return the largest change."""
     largest = mp.zero
     for k, value in row.items():
         change = factor * value

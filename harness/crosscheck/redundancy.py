@@ -120,7 +120,7 @@ class _Manifold:
         self.held_alone = 0  # configurations where the constraints that are kept hold, and not all others
 
     def ranks_near(self, point: Point) -> Ranks | None:
-        """Return ranks at a configuration of the manifold near a point; None without one."""
+        """Return ranks at a configuration of the manifold near a point, or None."""
         state: State = {x: mp.mpf(number.p) / number.q for x, number in point.items()}
         if not self._brought_onto(state):
             return None
@@ -168,7 +168,7 @@ class _Sparse:
         self._length = len(rows)
 
     def at(self, state: State) -> list[Row] | None:
-        """Return the rows of the matrix; None if an entry has no real value."""
+        """Return the rows of the matrix, or None if an entry has no real value."""
         rows: list[Row] = [{} for _ in range(self._length)]
         for (i, k), value in zip(self._places, self._steps.at(state), strict=True):
             if value is None or mp.im(value):

@@ -16,7 +16,7 @@ Entries = Mapping[tuple[int, ...], sp.Expr]
 
 
 class NotComparable(Exception):
-    """A relation is missing, or has another left side; the message names it."""
+    """A relation that is missing, or has another left side."""
 
 
 def read_exactly(keys: Sequence[Tree], relations: Sequence[Relation]) -> list[sp.Expr]:

@@ -119,7 +119,7 @@ class CheckReport(Shown):
     seed: str
 
     def with_verdicts(self, verdicts: Iterable[EquationVerdict]) -> CheckReport:
-        """Return the same report with further verdicts.
+        """Return the report with further verdicts.
 
         Parameters
         ----------

@@ -122,7 +122,7 @@ def _multipliers_in_words(redundant: Sequence[str]) -> str:
 
 
 def predicted_size(system: System, derived: Derivation, known: MechanicalSystem, limit: int) -> float:
-    """Predict the length of the closed forms; infinite if forces contain multipliers.
+    """Predict the length of closed forms, infinite if forces contain multipliers.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The system as described: T, V, Q and f of the effects called for.
+"""The system as described: T, V, Q and f of the chosen effects.
 
 The independent evaluation uses nothing else of a record. Every symbol has a rate, the symbol that is its derivative
 along the motion:

@@ -20,7 +20,7 @@ ALARM = signal.SIGVTALRM
 
 
 class OutOfTime(BaseException):
-    """The time is over; handlers of ordinary errors do not catch it."""
+    """End of the time limit, which handlers of ordinary errors do not catch."""
 
 
 class TimeLimit:

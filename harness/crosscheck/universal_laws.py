@@ -80,7 +80,7 @@ def judge_law(
 def _within(
     span: tuple[sp.Expr, sp.Expr] | None, point: dict[sp.Symbol, sp.Rational], time: sp.Symbol
 ) -> dict[sp.Symbol, sp.Rational]:
-    """Move the time of a point, which lies between -2 and 2, into the time span."""
+    """Move the time of a point from the interval [-2, 2] into the time span."""
     if span is None or time not in point:
         return point
     first, last = (sp.Rational(str(sp.N(end, 30))) for end in span)
@@ -88,7 +88,7 @@ def _within(
 
 
 def _residual_at_next_state(moved: _MovedByLaw, draws: Iterator[Mapping[sp.Symbol, sp.Rational]]) -> str | None:
-    """Return the first nonzero multiplier at the next state; empty if all are zero.
+    """Return the first nonzero multiplier at the next state, empty if all are zero.
 
     None if the draws end without a state.
     """
@@ -132,7 +132,7 @@ class _MovedByLaw:
         self.names = sorted(symbol.name for symbol in (symbols | state) - {*self.motion.unknowns})
 
     def residual(self, point: Mapping[sp.Symbol, sp.Rational]) -> str:
-        """Return the first nonzero multiplier; empty if all are zero."""
+        """Return the first nonzero multiplier, empty if all are zero."""
         state: dict[sp.Symbol, mp.mpf] = {symbol: mp.mpf(number.p) / number.q for symbol, number in point.items()}
         if any(value <= 0 for value in self.positive.real_at(state)):
             raise IrregularPoint

@@ -169,7 +169,7 @@ class _Judge:
         return CheckResult(verdict, DIGITS, min(self.equal))
 
     def _difference(self, points: Iterable[Point], enough: bool = False) -> str:
-        """Return the first difference; empty if there is none.
+        """Return the first difference, empty if there is none.
 
         The search stops when each pair has enough points.
         """
@@ -271,7 +271,7 @@ class Evaluation:
                 yield _finding((left, left_again), (right, right_again), complex_too), left_again, right_again
 
     def values_of(self, expressions: Sequence[sp.Expr], point: Point) -> Sequence[Number | None]:
-        """Return the values of other expressions at a point; None if one has no value.
+        """Return the values of other expressions at a point, or None if one has no value.
 
         Parameters
         ----------
@@ -382,7 +382,7 @@ def _rounded_values(comparison: Comparison) -> Values:
 
 
 def confirmed(difference: Callable[[], str]) -> str:
-    """Return a difference that is confirmed in more digits; empty if there is none.
+    """Return a difference that is confirmed in more digits, or an empty text.
 
     Differences made by rounding do not count.
 
@@ -448,7 +448,7 @@ def _is_proved(comparison: Comparison) -> bool:
 
 
 def _resolved(definitions: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, sp.Expr]:
-    """Return definitions in terms of undefined symbols; each may use those before it."""
+    """Return definitions in terms of undefined symbols, in order of use."""
     found: dict[sp.Symbol, sp.Expr] = {}
     for symbol, meaning in definitions.items():
         found[symbol] = meaning.xreplace(found)

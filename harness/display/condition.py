@@ -81,7 +81,7 @@ def _rebuilt(roots: Roots, prefix: str, head: str, *arguments: Tree) -> Tree:
 
 
 def _named(roots: Roots, prefix: str, base: Tree, degree: int) -> Tree:
-    """Replace roots by their names; roots of numbers stay."""
+    """Replace roots by their names, except roots of numbers."""
     root = ["Sqrt", base] if degree == 2 else ["Power", base, ["Rational", 1, degree]]
     if isinstance(base, int | dict):
         return root

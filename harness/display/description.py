@@ -1,4 +1,4 @@
-"""A description on the console: what a scene file says, entry by entry."""
+"""Show a description on the console, entry by entry."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING

@@ -24,7 +24,7 @@ SHOWN_TEXT = 24  # characters of an exact number
 
 
 def show_series(console: "Console", motion: "MotionSeries", values: "Values | None" = None) -> None:
-    """Print the power series of a motion, their radii, and the values asked for.
+    """Print the power series of a motion, their radii, and requested values.
 
     Parameters
     ----------

@@ -80,7 +80,7 @@ def sweep_progress(rows: int) -> Iterator[Callable[[int], None] | None]:
 
 @contextmanager
 def _bar(title: str, total: float, *columns: object) -> "Iterator[Progress | None]":
-    """Yield a bar with one task; None in a pipe.
+    """Yield a bar with one task, or None in a pipe.
 
     The columns are those of rich unless others are given.
     """

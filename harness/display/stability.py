@@ -119,7 +119,7 @@ def _rounded(value: complex, size: float) -> complex:
 
 
 def _pair(value: complex) -> str:
-    """Return an eigenvalue; one above the real axis is shown with its conjugate."""
+    """Return the text of an eigenvalue, with its conjugate if it is complex."""
     if not value.imag:
         return f"{value.real:.6g}"
     return f"{value.real:.6g} ± {value.imag:.6g} i" if value.real else f"± {value.imag:.6g} i"

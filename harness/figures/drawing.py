@@ -112,7 +112,7 @@ def film_of(simulation: "Simulation", drawing: Drawing) -> Film:
 
 
 def animation(film: Film) -> str:
-    """Return a film as SVG that moves; it begins again when it is over.
+    """Return a film as animated SVG in a loop.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def animation(film: Film) -> str:
 
 
 def strip(film: Film) -> str:
-    """Return a film as SVG that stands still.
+    """Return a film as a strip of pictures in SVG.
 
     Positions over each other, side by side if it is tall, in a column if flat.
 

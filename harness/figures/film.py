@@ -1,4 +1,4 @@
-"""Write films of motions as SVG, HTML, GIF or MP4; MP4 needs the program ffmpeg."""
+"""Write films of motions as SVG, HTML, GIF or, with ffmpeg, MP4."""
 
 import shutil
 from collections.abc import Callable, Mapping
@@ -30,7 +30,7 @@ ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;"})
 
 
 class MovingPicture:
-    """A film that a notebook shows, and that can be written to a file."""
+    """A film for notebooks and files."""
 
     def __init__(self, film: Film) -> None:
         self.film = film
@@ -83,7 +83,7 @@ def moving_picture(simulation: "Simulation") -> MovingPicture:
 
 
 def film_format(path: Path) -> Callable[[Film], str | bytes]:
-    """Return the function that makes the content of a file of that name.
+    """Return the function that encodes films for a file name.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def _frames(film: Film, suffix: str) -> bytes:
 
 
 def _artist(axes: "Axes", shape: Shape, numbers: NDArray[np.float64]) -> Callable[[int], None]:
-    """Add a shape; return the function that moves it to a frame."""
+    """Add a shape. Return the function that moves it to a frame."""
     if shape is Shape.CIRCLE:
         from matplotlib.patches import Circle
 

@@ -81,7 +81,7 @@ COLOUR_OF_INK = f"<style>{INK_RULE}</style>"
 
 @contextmanager
 def figure_style() -> Iterator[None]:
-    """Draw in this style inside the block; Matplotlib's own settings return after it.
+    """Apply this style inside the block, and restore Matplotlib's settings after it.
 
     Yields
     ------
@@ -185,7 +185,7 @@ def lettered_text(text: str) -> str:
 
 
 def _in_greek(name: str) -> str:
-    """Return the Greek letter of that name, or the name where there is none."""
+    """Return the Greek letter of that name, or the name."""
     case = "SMALL" if name.islower() else "CAPITAL"
     try:
         return unicodedata.lookup(f"GREEK {case} LETTER {name.lower().replace('lambda', 'lamda')}")
@@ -214,7 +214,7 @@ def write_figure(figure: "Figure", path: Path) -> None:
 
 
 class Picture:
-    """A figure that a notebook shows, and that can be written to a file."""
+    """A figure for notebooks and files."""
 
     def __init__(self, figure: "Figure") -> None:
         self.figure = figure

@@ -80,7 +80,7 @@ def require_plottable(axes: "SweepAxes") -> None:
 
 
 def plotted(document: dict[str, Any]) -> str:
-    """Return the first quantity that a sweep records; its residual if there is none.
+    """Return the first quantity that a sweep records, or its residual.
 
     Parameters
     ----------

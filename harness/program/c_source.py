@@ -160,7 +160,7 @@ def _table(program: Program) -> Iterator[str]:
 
 
 def statements(program: Program, target: Target, inputs: Sequence[str], writes: Sequence[str]) -> Iterator[str]:
-    """Yield the program as statements of C or of a language with the same formulas.
+    """Yield the program as statements of C or of a language with similar formulas.
 
     Parameters
     ----------

@@ -27,7 +27,7 @@ class Shape(StrEnum):
 
 @dataclass(frozen=True)
 class Drawing:
-    """How a system looks."""
+    """The drawing of a system."""
 
     shapes: tuple[Shape, ...]
     # of t, the coordinates and more; ``drawing[i,k]`` is the k-th number of the i-th shape, indices from 1

@@ -40,7 +40,7 @@ def order_for(digits: float) -> int:
 
 
 def require_means(problem: MotionProblem, precision: Precision, order: int) -> None:
-    """Reject expansions that exceed the free memory; limit the time of the others.
+    """Raise if an expansion exceeds the free memory. Otherwise limit its time.
 
     Parameters
     ----------

@@ -8,7 +8,7 @@ ZERO, ONE = Fraction(0), Fraction(1)
 
 
 def folded(operation: Operation, arguments: list[Expression]) -> Expression:
-    """Return the operation on its arguments, evaluated if all of them are numbers.
+    """Return the operation on its arguments, evaluated if all are numbers.
 
     Parameters
     ----------

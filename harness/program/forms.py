@@ -77,7 +77,7 @@ class MotionProgram:
 
     @naming_the_extra()
     def lambdify(self) -> "NumpyFunction":
-        """Return the same function by NumPy alone.
+        """Return the function with NumPy only.
 
         Returns
         -------
@@ -126,7 +126,7 @@ class MotionProgram:
         return self.written("matlab", name, parameters)
 
     def to_javascript(self) -> str:
-        """Return a script for a page or for Node that needs nothing but Math.
+        """Return a script without dependencies, for a page or for Node.
 
         Returns
         -------
@@ -150,7 +150,7 @@ class MotionProgram:
         write_files(Path(directory), self.written("c", name, parameters))
 
     def to_fmu(self, file: str | Path, name: str | None = None, parameters: Sequence[str] = ()) -> None:
-        """Write an FMI 3.0 unit for model exchange; otherwise like `to_c`.
+        """Write an FMI 3.0 unit for model exchange, with the arguments of `to_c`.
 
         Parameters
         ----------

@@ -5,7 +5,7 @@ from enum import IntEnum
 
 
 class Rank(IntEnum):
-    """How tightly the parts of a formula hold together."""
+    """Precedence of the parts of a formula."""
 
     SUM = 0
     PRODUCT = 1

@@ -21,7 +21,7 @@ from .table import Table
 
 @dataclass(frozen=True)
 class Model:
-    """A scene whose controls, and some of whose parameters, are inputs."""
+    """A scene with controls, and some parameters, as inputs."""
 
     system: str
     source: str

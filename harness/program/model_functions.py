@@ -31,7 +31,7 @@ class ModelFunction(NamedTuple):
 
 
 def model_functions(model: Model) -> Iterator[ModelFunction]:
-    """Yield the functions of a model except ``rhs``, which is made of two of them.
+    """Yield the functions of a model except ``rhs``.
 
     Parameters
     ----------

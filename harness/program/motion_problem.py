@@ -72,7 +72,7 @@ class ParametricStart:
 
 @dataclass(frozen=True)
 class Release:
-    """Constraints that end where a condition first crosses zero."""
+    """Constraints that end at the first zero crossing of a condition."""
 
     of: str  # the condition, as Maxima prints it
     multipliers: tuple[str, ...]  # those of the constraints
@@ -81,7 +81,7 @@ class Release:
 
 @dataclass(frozen=True)
 class MotionProblem:
-    """A motion to follow.
+    """The data of a motion to be simulated.
 
     Every program takes t, the coordinates, the velocities, the multipliers, the signs, the open parameters and what
     the tables are at t, in this order; that of the outputs the accelerations, too.
@@ -196,7 +196,7 @@ class MotionProblem:
 
     @property
     def independent(self) -> tuple[int, ...]:
-        """Which constraints, counted from 0, are not known to follow from the others."""
+        """Independent constraints, counted from 0."""
         redundant = self.motion.redundant if self.motion else ()
         return tuple(beta for beta, multiplier in enumerate(self.multipliers) if multiplier not in redundant)
 

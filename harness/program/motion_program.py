@@ -30,7 +30,7 @@ DECIMAL = re.compile(r"-?\d+(\.\d*)?([eE][+-]?\d{1,4})?")
 
 
 class Operation(StrEnum):
-    """The operations of a program; the value is the head of the MathJSON tree."""
+    """The operations of a program, by the head of the MathJSON tree."""
 
     ADD = "Add"
     MULTIPLY = "Multiply"

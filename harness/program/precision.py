@@ -126,7 +126,7 @@ def _binary(
     text: Callable[[Any], str],
     options: Mapping[str, Any],
 ) -> Precision:
-    """Numbers whose significand has this many bits, the smallest of them 2^-exponents."""
+    """Binary floating-point numbers with a significand of that many bits."""
     digits, sure_digits = math.ceil(bits * math.log10(2)) + 1, math.floor((bits - 1) * math.log10(2))
     return Precision(name, digits, sure_digits, _highest_order(exponents), number, text, options)
 

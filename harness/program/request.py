@@ -12,7 +12,7 @@ SETTING = re.compile(r"([^\W\d]\w*)=(-?\d+(?:\.\d+)?(?:e-?\d+)?(?:/\d+)?)", re.I
 
 
 class Solve(StrEnum):
-    """How the program solves for the multipliers."""
+    """The method that solves for the multipliers."""
 
     DIRECT = "direct"
     ORTHOGONAL = "orthogonal"

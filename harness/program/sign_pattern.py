@@ -95,7 +95,7 @@ def drawing_at_any_time(problem: MotionProblem) -> Drawing:
 
 
 def drawing_with_values(problem: MotionProblem) -> Drawing:
-    """Return `drawing_at_any_time` with the values of the open parameters put in.
+    """Return `drawing_at_any_time` with the values of the open parameters.
 
     Parameters
     ----------
@@ -198,7 +198,7 @@ def uniqueness(problem: MotionProblem, pattern: Pattern) -> list[tuple[int, Prog
 
 
 def program_with_values(problem: MotionProblem, program: Program) -> Program:
-    """Return a program of the motion with the values of the open parameters put in.
+    """Return a program of the motion with the values of the open parameters.
 
     Parameters
     ----------
@@ -419,7 +419,7 @@ def _index(problem: MotionProblem, name: str) -> int:
 
 
 def _holding(problem: MotionProblem, name: str) -> Program:
-    """Return the program of a sliding sign; its one output has the sign's name."""
+    """Return the program of a sliding sign, with one output of that name."""
     index = _index(problem, name)
     program = with_numbers(computing(problem.switching, {f"drive[{index}]", f"grip[{index}]"}), {name: ZERO})
     value = Call(Operation.DIVIDE, (

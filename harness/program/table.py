@@ -14,7 +14,7 @@ Piece = tuple[str, str, str, str, str]  # t_k, c0, c1, c2, c3, exact or in decim
 
 @dataclass(frozen=True)
 class Table:
-    """The polynomials of one table, in order; the last one reaches to the table's end."""
+    """The polynomials of one table, in order."""
 
     inputs: tuple[str, ...]  # names of the five numbers of a polynomial in programs
     pieces: tuple[Piece, ...]
@@ -26,7 +26,7 @@ class Table:
 
     @property
     def knots(self) -> tuple[Fraction, ...]:
-        """The times at which one polynomial follows on another."""
+        """The knots between the polynomials."""
         return self.begins[1:]
 
     @property

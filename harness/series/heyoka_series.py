@@ -35,7 +35,7 @@ ONCE, OFTEN = 0, 3  # LLVM's levels of optimisation: compiled in a tenth of the 
 
 
 def expand_by_heyoka(file: Source | Path, request: SeriesRequest, limits: Limits) -> MotionSeries:
-    """Expand a scene's motion with heyoka, and continue it if the request says so.
+    """Expand a scene's motion with heyoka, and continue it if requested.
 
     Parameters
     ----------

@@ -83,7 +83,7 @@ class MotionSeries(Shown):
             return decided(found, [numbers(row) for row in self.coordinates.values()], self.program, number(self.t0))
 
     def up_to(self, order: int) -> "MotionSeries":
-        """Return the same series without the powers above a lower order.
+        """Return the series without the powers above a lower order.
 
         Parameters
         ----------

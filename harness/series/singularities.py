@@ -85,7 +85,7 @@ def _at_most(bound: float, radius: Radius) -> Radius:
 
 
 def _located(zero: complex, zeros: Sequence[complex]) -> Radius:
-    """Return the radius set by a singularity, with all at the same distance."""
+    """Return the radius of convergence, with all singularities at that distance."""
     as_far = [z for z in zeros if abs(abs(z) - abs(zero)) <= CLOSE * abs(zero)]
     kind = "a real time" if abs(zero.imag) <= CLOSE * abs(zero) else "a complex pair"
     note = f"the equations of motion are singular there; the nearest singularity is {kind}"

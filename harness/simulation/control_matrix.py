@@ -88,7 +88,7 @@ class ControlMatrix(SignedFunctions):
             step = step._replace(start=behind)
 
     def values(self, times: Numbers, states: Numbers) -> Numbers:
-        """Return the determinant of the rows that are followed.
+        """Return the determinant of the rows that are watched.
 
         Parameters
         ----------
@@ -141,7 +141,7 @@ class ControlMatrix(SignedFunctions):
         ]
 
     def _changed(self, part: Step, before: float, after: float) -> float | None:
-        """Return where the determinant changes its sign between two times.
+        """Return the sign change of the determinant between two times.
 
         None where it does so through infinity.
         """

@@ -123,7 +123,7 @@ def stands(problem: MotionProblem) -> bool:
 
 
 def _moved(problem: MotionProblem, settings: Mapping[str, str]) -> MotionProblem | None:
-    """Return the motion for other settings; None if its programs or start fail."""
+    """Return the motion for other settings, or None if its programs or start fail."""
     from .initial_state import at_values
 
     if not problem.parameters:

@@ -64,7 +64,7 @@ class EnergyBalance:
 
     @property
     def inner_states(self) -> int:
-        """How many states `works` needs within an interval."""
+        """Number of states that `works` needs within an interval."""
         return 0 if self.conservative else round(POINTS_PER_DIGIT * self._precision.digits)
 
     @cached_property
@@ -158,7 +158,7 @@ class EnergyBalance:
         return np.array([self._precision.number(repr(float(value))) for value in values])
 
     def _without_power(self, size: int) -> bool:
-        """Constraints at rest do no work; whether anything else does shows at any state."""
+        """Return True if no force or constraint does work at probe states."""
         states = self._numbers(np.outer(np.arange(1, size + 1), PROBES).ravel() % 1).reshape(size, -1)
         times = self._numbers(np.array(PROBES))
         return not any(self._output("power", times, states, None))

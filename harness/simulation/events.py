@@ -127,7 +127,7 @@ class Events(SignedFunctions):
         return None
 
     def _sizes_in(self, step: Step) -> Numbers:
-        """Return how large expressions are in a step."""
+        """Return the sizes of expressions in a step."""
         _, values = self._samples(step, NODES)
         return np.max(np.abs(np.where(np.isfinite(values), values, 0.0)), axis=1)
 

@@ -65,7 +65,7 @@ SOON = 1e-9  # of the time span: how far ahead the sign of a function of the tim
 
 
 class EventOutcome(StrEnum):
-    """How a motion passes a surface."""
+    """The outcome of an event at a switching surface."""
 
     CROSSED = "crossed"
     SLIDING = "sliding"
@@ -83,7 +83,7 @@ class Switching(NamedTuple):
 
 
 class ModeInterval(NamedTuple):
-    """A mode at work from a time on."""
+    """A mode, and the time from which it is active."""
 
     start: Any
     mode: Mode
@@ -135,7 +135,7 @@ class HybridMotion:
 
     @property
     def mode(self) -> Mode:
-        """The mode at work."""
+        """The active mode."""
         return self.intervals[-1].mode
 
     @property
@@ -166,7 +166,7 @@ class HybridMotion:
 
     @property
     def segments(self) -> list[EngineSegment]:
-        """Which engine followed the motion from when to when."""
+        """Engines and the time intervals in which they integrated the motion."""
         ends = [*(float(interval.start) for interval in self.intervals[1:]), float(self.time)]
         found: list[EngineSegment] = []
         for interval, end in zip(self.intervals, ends, strict=True):
@@ -274,7 +274,7 @@ class HybridMotion:
     # ---- releases ----
 
     def _first_release(self, step: Step) -> Crossing | None:
-        """Return where within a step the first condition of a release crosses zero."""
+        """Return the first zero crossing of a release condition within a step."""
         released, mode = self.problem.released, step.mode
         if not released:
             return None
@@ -333,7 +333,7 @@ class HybridMotion:
         self.switchings += [Switching(float(t), self._signs[name].of, outcome) for name in names]
 
     def _sign_behind(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers, to: int | None = None) -> int | str:
-        """Return the sign with which a motion goes on from a surface of the state.
+        """Return the sign of a motion after a switching surface.
 
         None for `to` where it starts on it.
         """
@@ -387,7 +387,7 @@ class HybridMotion:
         return self._functions[what]
 
     def _passed(self, before: Mode, after: Mode, sign: Sign, t: Any, state: Numbers) -> Numbers:
-        """Return the state behind a time of switching."""
+        """Return the state after a switching time."""
         floats, n = as_floats(state), len(state) // 2
         old, new = before.matrices(float(t), floats), after.matrices(float(t), floats)
         left = residuals(new, floats, np.zeros(n), self.nominal)["position"]
@@ -456,7 +456,7 @@ class HybridMotion:
     # ---- numbers at a given time ----
 
     def _output(self, name: str, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> float:
-        """Value of a `switching_function`, which is compiled when it is first asked for."""
+        """Return the value of a `switching_function`, compiled at its first use."""
         return float(self._function(name, sign, pattern)[0](self._inputs(t, state))[0])
 
     def _vanishes(self, name: str, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> bool:
@@ -501,7 +501,7 @@ class HybridMotion:
 
 
 def _knots_of(problem: MotionProblem, precision: Precision) -> list[tuple[Any, Fraction]]:
-    """Return the knots of the tables behind the start, the last first."""
+    """Return the knots of the tables after the initial time, in reverse order."""
     behind = precision.number(problem.start["t"])
     knots = [(precision.ratio(knot), knot) for knot, _ in groupby(merge(*(table.knots for table in problem.tables)))]
     return [(t, knot) for t, knot in reversed(knots) if t > behind]

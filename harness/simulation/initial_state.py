@@ -396,7 +396,7 @@ def started(problem: MotionProblem, values: Mapping[str, Fraction], state: Numbe
 
 
 def with_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionProblem:
-    """Return the motion with values of its open parameters and the same start.
+    """Return the motion with values of its open parameters and its initial state.
 
     Parameters
     ----------
@@ -464,7 +464,7 @@ def _regular(matrix: Numbers, right: Numbers) -> Numbers:
 
 
 def _least(matrix: Numbers, right: Numbers, redundant: bool) -> Numbers:
-    """Return the solution of least squares; nan if it must be unique and is not."""
+    """Return the least-squares solution, nan if it must be unique and is not."""
     if not (np.isfinite(matrix).all() and np.isfinite(right).all()):
         return np.full(matrix.shape[1], np.nan)
     found, _, rank, _ = np.linalg.lstsq(matrix, right, rcond=None)

@@ -23,7 +23,7 @@ RESIDUALS = "residual", "residual_rate"
 
 
 class ConstraintVariation:
-    """How f and df/dt move with the state and the directions.
+    """Derivatives of f and df/dt by the state and the directions.
 
     Parameters
     ----------

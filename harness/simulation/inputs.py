@@ -83,7 +83,7 @@ class Inputs:
         values: Numbers | None = None,
         accelerations: Numbers | None = None,
     ) -> Numbers:
-        """Return the inputs at one state or at k of them.
+        """Return the inputs at one state or at k states.
 
         Parameters
         ----------

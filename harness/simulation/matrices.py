@@ -69,7 +69,7 @@ class MotionMatrices:
 
     @cached_property
     def nominal(self) -> Nominal:
-        """Found when they are first asked for."""
+        """The nominal sizes, computed at their first use."""
         return nominal_of(self._problem)
 
     def __call__(self, t: float | Vector, state: Vector) -> Matrices:
@@ -89,7 +89,7 @@ class MotionMatrices:
         return self._layout.matrices_at_each(self._evaluate(self._inputs(t, state.T)).T)
 
     def independent(self, t: float, state: Vector) -> Matrices:
-        """Evaluate the matrices of the constraints that do not follow from others.
+        """Evaluate the matrices of the independent constraints.
 
         Parameters
         ----------

@@ -329,7 +329,7 @@ class Mode:
 
 
 def _require_values(what: str, program: Program, times: Numbers, found: Numbers) -> None:
-    """Reject values, shape (outputs, k), if one of them is not a finite number."""
+    """Raise if one of the values, shape (outputs, k), is not a finite number."""
     missing = np.argwhere(~np.isfinite(as_floats(found)).T)
     if len(missing):
         point, place = missing[0]

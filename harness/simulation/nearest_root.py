@@ -102,7 +102,7 @@ class NearestRoots:
     def _following(
         self, trial: Numbers, at: Linearized, elements: NDArray[np.int64], some: NDArray[np.int64]
     ) -> Numbers:
-        """Return the corrections at other points with the same matrices."""
+        """Return the corrections at other points with unchanged matrices."""
         residual = self._linearize(trial, elements[some]).residual
         return self._correct(Linearized(residual, at.jacobian[..., some], at.mass[..., some]))
 

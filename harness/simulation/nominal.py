@@ -28,7 +28,7 @@ Matrix = NDArray[np.float64]
 
 
 class Nominal(NamedTuple):
-    """The sizes of a motion's quantities; of k motions, with a last axis more."""
+    """The sizes of a motion's quantities, with a further axis for k motions."""
 
     time: float | Vector
     state: Vector  # shape (2n,): of coordinates, then of velocities
@@ -295,5 +295,5 @@ class _Start:
         return float(farthest)
 
     def _at(self, output: str) -> Vector:
-        """Return an output of the program at the times; zero where it is so by structure."""
+        """Return an output of the program at the times, zero if it is so by structure."""
         return self._values.get(output, np.zeros(TIMES))

@@ -269,7 +269,7 @@ def _heading(name: str) -> str:
 
 @contextmanager
 def _npz(file: BinaryIO) -> Iterator[Write]:
-    """Provide all samples of a quantity are one array: they are kept until the end."""
+    """Collect all samples, and write each quantity as one array at the end."""
     kept: list[Columns] = []
     yield kept.append
     with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:  # as NumPy does, of names that it reserves, too

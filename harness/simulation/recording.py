@@ -47,7 +47,7 @@ class SampleBlock(NamedTuple):
 
 
 class Interval(NamedTuple):
-    """A part of a step, up to a time that is wanted or to the step's end."""
+    """A part of a step, up to an output time or to the step's end."""
 
     start: Any
     end: Any
@@ -94,7 +94,7 @@ class Recording:
         self.largest_work = 0.0
 
     def begin(self, time: Any, state: Numbers) -> None:
-        """Record the first state if it is wanted.
+        """Record the first state if its time is an output time.
 
         Parameters
         ----------
@@ -134,7 +134,7 @@ class Recording:
         self._intervals += map(Interval, starts, ends, at_ends, impulses)
 
     def _settle(self) -> None:
-        """Keep the states that are wanted, with the work done until then."""
+        """Record the states at output times, with the work until then."""
         if not self._intervals:
             return
         intervals, inside = self._intervals, self._inside

@@ -28,7 +28,7 @@ Samples = Mapping[str, NDArray[Any]]
 
 @dataclass(frozen=True)
 class Report:
-    """The end of a motion, and how well it was followed to there.
+    """The end of a motion, and its accuracy.
 
     Numbers of the motion are floats in double precision, heyoka's own beyond.
 
@@ -118,7 +118,7 @@ class Report:
 
 @dataclass(frozen=True, repr=False)
 class Sampled:
-    """Samples of a motion, all or some that follow one another."""
+    """Consecutive samples of a motion."""
 
     times: NDArray[Any]  # shape (k,)
     # coordinates, velocities, multipliers, constraint_forces, controls: shape (k,): at the times; empty where the
@@ -163,7 +163,7 @@ class Sampled:
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class Simulation(Sampled, Shown):
-    """A motion followed from its start to its end, with its samples."""
+    """A simulated motion with its samples."""
 
     scene: str
     title: str
@@ -254,7 +254,7 @@ class Simulation(Sampled, Shown):
 
 
 def joined(parts: Sequence[Sampled]) -> Sampled:
-    """Return samples that follow one another as one.
+    """Join consecutive samples.
 
     Parameters
     ----------

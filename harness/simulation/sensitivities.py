@@ -165,7 +165,7 @@ class _ModeVariation:
         return found | dict(zip(names, rows, strict=True))
 
     def delays(self, zero: "_Zero", t: float, state: Numbers, moves: Numbers) -> Numbers:
-        """Return how the time of a zero moves, shape (p,)."""
+        """Return the derivatives of the time of a zero, shape (p,)."""
         times, states, along_it = self._along_motion(t, state, moves)
         derivatives, multipliers = self.derivatives(times, states, along_it, TIME), self.problem.multipliers
         along_it = np.concatenate([along_it, *(derivatives[name][None] for name in multipliers)])
@@ -195,7 +195,7 @@ class _ModeVariation:
 
 
 class Sensitivities:
-    """The derivatives of one motion, followed beside it.
+    """The derivatives of one motion, integrated with it.
 
     Parameters
     ----------
@@ -235,7 +235,7 @@ class Sensitivities:
         self._pieces: list[_Piece] = []
 
     def take(self, step: Step) -> None:
-        """Take a step of the motion; integrate the derivatives block by block.
+        """Take a step of the motion. Integrate the derivatives block by block.
 
         Parameters
         ----------

@@ -152,7 +152,7 @@ def end_of(problem: MotionProblem, request: SimulationRequest) -> tuple[Any, End
 
 
 def parametrized_problem(problem: MotionProblem, request: SimulationRequest) -> MotionProblem:
-    """Return the motion with open parameters if possible, else with values put in.
+    """Return the motion with open parameters if possible, else with their values.
 
     Engines of double precision take open parameters, with projection or without stabilization. They are compiled once
     for all values.
@@ -293,7 +293,7 @@ class _Simulation:
         return (self.start + (self.end - self.start) * i / (self.samples - 1) for i in inner)
 
     def _take(self, progress: Progress | None, watch: TakeStep | None) -> TakeStep | None:
-        """Receiver of each step; None if there is none."""
+        """Receiver of each step, or None."""
         nothing_to_integrate = not self.problem.signs and self.begun.balance.conservative and self.steps is None
         if (
             self.samples == FINAL_STATE_ALONE

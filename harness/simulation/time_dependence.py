@@ -264,7 +264,7 @@ class _Scan:
         return error, ((error > np.where(np.isfinite(allowed), allowed, 0.0)) | hidden).any(axis=0)
 
     def _values(self, starts: Vector, lengths: Vector, cells: Vector) -> np.ndarray:
-        """At the same places in each part, shape (expressions, parts, cells)."""
+        """Return values at equal places of each part, shape (expressions, parts, cells)."""
         return self._function(starts[:, None] + lengths[:, None] * cells)
 
     def _look_at(self, starts: Vector, error: np.ndarray) -> None:

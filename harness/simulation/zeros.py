@@ -68,7 +68,7 @@ class SignedFunctions(ABC):
         """
 
     def first_crossing(self, step: Step, left: Sequence[str]) -> Crossing | None:
-        """Return where the motion first leaves its pattern within a step.
+        """Return the time within a step at which the motion first leaves its pattern.
 
         Parameters
         ----------
@@ -101,7 +101,7 @@ class SignedFunctions(ABC):
                 yield part, places, values
 
     def _cut(self, step: Step, count: int) -> list[Step]:
-        """Return a step in parts of the same length."""
+        """Return a step in parts of equal length."""
         if count <= 1:
             return [step]
         numbers = np.array([self._precision.ratio(Fraction(place, count)) for place in range(count)])

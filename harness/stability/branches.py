@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class Branches(Shown):
-    """Equilibria that were found for some values of a control; there may be others.
+    """Equilibria that were found for some values of a control, perhaps not all.
 
     Attributes
     ----------

@@ -83,7 +83,7 @@ class Equilibrium:
 
 @dataclass(frozen=True, repr=False)
 class Equilibria(Shown):
-    """Equilibria that were found; there may be others.
+    """Equilibria that were found, perhaps not all.
 
     Attributes
     ----------
@@ -118,7 +118,7 @@ class Equilibria(Shown):
     turns: tuple[str, ...]
 
     def __getitem__(self, name: str) -> Equilibrium:
-        """Return the equilibrium of a name; raise `HolonomError` if there is none."""
+        """Return the equilibrium of a name, or raise `HolonomError`."""
         for each in self.found:
             if each.name == name:
                 return each

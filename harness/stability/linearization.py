@@ -124,7 +124,7 @@ class Linearization(Shown):
 
     @property
     def damping(self) -> Vector:
-        """Damping ratios, ``-Re/|eigenvalue|``, shape (2m,); zero where an eigenvalue is."""
+        """Damping ratios, ``-Re/|eigenvalue|``, shape (2m,), zero for zero eigenvalues."""
         sizes = np.abs(self.eigenvalues)
         return -self.eigenvalues.real / np.where(sizes > 0, sizes, 1.0) + 0.0
 

@@ -72,7 +72,7 @@ class Listed:
 
     @property
     def count(self) -> int:
-        """How many there are."""
+        """Number of values."""
         return len(self.numbers)
 
     def at(self, places: NDArray[np.intp]) -> NDArray[np.float64]:
@@ -142,7 +142,7 @@ class Axes:
 
     @property
     def rows(self) -> int:
-        """How many rows there are."""
+        """Number of rows."""
         return self.size * math.prod(axis.count for axis in self.values)
 
     def numbers(self, first: int, last: int) -> NDArray[np.float64]:

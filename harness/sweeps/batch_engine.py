@@ -44,7 +44,7 @@ Look = Callable[[list[Steps]], Floats]
 
 
 class BatchResult(NamedTuple):
-    """Motions as far as they were followed."""
+    """Result of a batch of motions."""
 
     states: Floats  # shape (stops, 2n, k): at each time asked for; the last is the end
     arrived: NDArray[np.bool_]  # shape (k,): where the states mean something, and the polynomials along the motion
@@ -56,7 +56,7 @@ class BatchResult(NamedTuple):
 
 
 class _Batch(NamedTuple):
-    """A batch of m motions as far as they were followed."""
+    """The state of a batch of m motions."""
 
     reached: Floats  # shape (stops, 2n + 2, m)
     well: NDArray[np.bool_]  # shape (m,)
@@ -175,7 +175,7 @@ class BatchEngine:
         return self._energy(np.concatenate([np.full((1, k), times), states, np.zeros((self._unused, k)), values]))[0]
 
     def _on_constraints(self, states: Floats, values: Floats, stops: Stops, arrived: NDArray[np.bool_]) -> Floats:
-        """States at the stops, projected; an element that strayed has not arrived."""
+        """Return the projected states at the stops, without elements that strayed."""
         if self._nearest is None or not arrived.any():
             return states
         for place, stop in enumerate(stops):
@@ -209,7 +209,7 @@ class BatchEngine:
             chosen[np.isin(chosen, failed)] = np.flatnonzero(followed)[0]
 
     def _run(self, starts: Floats, pars: Floats, stops: Stops) -> tuple[NDArray[np.bool_] | None, _Batch | None]:
-        """Integrate a full batch through all stops; return failed elements or the result."""
+        """Integrate a full batch through all stops. Return failed elements or the result."""
         integrator, along, options = self._integrator, self._looking, {}
         if along is not None:
             along.clear()

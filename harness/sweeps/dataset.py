@@ -154,7 +154,7 @@ class SweepFolder:
         append_line(self.path / MANIFEST, json.dumps(chunk.entry(content)))
 
     def _listed(self) -> dict[str, dict[str, Any]]:
-        """Return the last entry of the manifest for each file; skip unreadable lines."""
+        """Return the last entry of the manifest for each file, without unreadable lines."""
         listed: dict[str, dict[str, Any]] = {}
         with suppress(FileNotFoundError):
             for line in (self.path / MANIFEST).read_bytes().splitlines():

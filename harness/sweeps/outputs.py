@@ -63,7 +63,7 @@ WHOLE = {kind.value: kind for kind in (Kind.FINAL, Kind.FREE, Kind.RADIUS, Kind.
 
 @dataclass(frozen=True)
 class OutputQuantity:
-    """One thing that is kept."""
+    """A quantity that a sweep records."""
 
     text: str  # as it was asked for, without blanks: the name of its column
     kind: Kind

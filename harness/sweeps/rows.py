@@ -51,7 +51,7 @@ Floats = NDArray[np.float64]
 
 
 class Status(StrEnum):
-    """How a row came about."""
+    """The status of a row."""
 
     OK = "ok"
     UNDEFINED = "undefined"  # something that is kept has no finite value
@@ -108,7 +108,7 @@ class RowMaker:
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Names of the columns that are kept, in order."""
+        """Names of the output columns, in order."""
         names = [self._problem.state if kept.kind is Kind.FINAL else (kept.text,) for kept in self.plan.kept]
         return tuple(dict.fromkeys(name for group in names for name in group if name != Kind.RESIDUAL))
 
@@ -208,7 +208,7 @@ class RowMaker:
         return there[~well]
 
     def _ends(self, states: Floats, values: Floats) -> tuple[Floats, NDArray[np.bool_]]:
-        """When motions end, at an event or with their time, and of which that is known."""
+        """Return the end times of motions, and True for each that is known."""
         k = states.shape[1]
         if not self._problem.until:
             return np.full(k, self._end), np.ones(k, dtype=bool)
@@ -292,7 +292,7 @@ class RowMaker:
                 return _mean(along)
 
     def _time(self, kept: OutputQuantity) -> float:
-        """When to look at a quantity.
+        """Return the time at which to evaluate a quantity.
 
         Raises
         ------
@@ -306,7 +306,7 @@ class RowMaker:
         return time
 
     def _at(self, times: Floats, states: Floats, values: Floats) -> Floats:
-        """Return the quantities kept at times, shape (quantities, k)."""
+        """Return the quantities recorded at times, shape (quantities, k)."""
         if not self._points:
             return np.empty((0, states.shape[1]))
         return self._evaluate(np.concatenate([times[None], states, values]))
@@ -404,7 +404,7 @@ class _Rows:
         self.statuses, self.notes = np.zeros(k, dtype=np.int8), np.full(k, None, dtype=object)
 
     def keep(self, name: str, rows: NDArray, numbers: Floats, there_is: bool | NDArray[np.bool_]) -> None:
-        """Record finite values of an output; mark rows that lack one they should have."""
+        """Record finite values of an output, and mark rows that lack one."""
         finite = np.isfinite(numbers)
         self.kept[name][rows] = np.where(finite & there_is, numbers, np.nan)
         self.mark(rows[~finite & there_is], Status.UNDEFINED, f"{name} has no finite value")

@@ -35,7 +35,7 @@ Progress = Callable[[int], None]
 
 @dataclass(frozen=True)
 class Sweep:
-    """A sweep in its folder; rows are read when they are asked for.
+    """A sweep in its folder. Rows are read at their first use.
 
     Attributes
     ----------
@@ -54,14 +54,14 @@ class Sweep:
 
     @property
     def dataset(self) -> "Dataset":
-        """The rows as a dataset of pyarrow, nothing of which is read yet."""
+        """The rows as a dataset of pyarrow, which is read lazily."""
         import pyarrow.dataset
 
         return pyarrow.dataset.dataset([self.path / chunk.name for chunk in chunks_of(self.document)], format="parquet")
 
     @property
     def statuses(self) -> dict[str, int]:
-        """How many rows came about how."""
+        """Number of rows by status."""
         counts: dict[str, int] = {}
         for batch in self.dataset.to_batches(columns=["status"]):
             for entry in batch.column(0).value_counts().to_pylist():

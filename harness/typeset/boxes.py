@@ -45,7 +45,7 @@ CROSS = Box(r"\times", OPERATOR)
 
 
 def word(latex: str, letters: int) -> Box:
-    """Return letters, or a command that prints that number of letters.
+    """Return a box of letters, or of a command that prints letters.
 
     Parameters
     ----------
@@ -167,7 +167,7 @@ def above(base: Box, exponent: Box) -> Box:
 
 
 def dotted(letter: Box, dots: int) -> Box:
-    """Return a letter under up to three dots.
+    """Return a symbol under up to three dots.
 
     Parameters
     ----------

@@ -208,7 +208,7 @@ def sum_lines(tree: Tree, room: float) -> list[Box]:
 
 
 def signed_terms(tree: Tree) -> list[SignedTerm]:
-    """Return the terms of a sum with their signs; anything else is its own only term.
+    """Return the terms of a sum with their signs, or the expression as one term.
 
     Parameters
     ----------
@@ -246,7 +246,7 @@ def _summand(term: Tree) -> list[SignedTerm]:
 
 
 def _sign(term: SignedTerm, place: int) -> Box:
-    """Return the sign of a term; a leading plus sign is left out."""
+    """Return the sign of a term, without a leading plus sign."""
     mark = SIGNS[term.sign] if place else PREFIX_MINUS if term.sign == "-" else NOTHING
     return coloured(mark, term.sign_colour) if term.sign_colour else mark
 
@@ -270,7 +270,7 @@ def _term_lines(term: SignedTerm, place: int, room: float) -> list[Box]:
 
 
 def _around_brackets(term: Tree) -> tuple[Tree, Tree | None, list[Tree]]:
-    """Return the parts of a term before, between and behind its longest brackets.
+    """Return the parts of a term before, inside and after its longest brackets.
 
     The brackets are those of the longest sum among its factors.
     """
@@ -498,7 +498,7 @@ def _under_dots(dots: int, inner: Tree) -> Box:
 
 
 def _partial(_: float, quantity: Tree, *variables: Tree) -> Box:
-    """Return a partial derivative; equal adjacent variables become a power."""
+    """Return a partial derivative, with powers for equal adjacent variables."""
     orders = [(formula_box(variable), len(list(same))) for variable, same in groupby(variables)]
     divisor = [part for variable, order in orders for part in (PARTIAL, _to_the(order, variable))]
     return over(beside(_to_the(len(variables), PARTIAL), _tight(quantity)), beside(*divisor))

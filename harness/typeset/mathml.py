@@ -48,7 +48,7 @@ def mathml(latex: str, alt: str = "") -> str:
 
 
 def inline_mathml(latex: str, alt: str = "") -> str:
-    """Return a formula within a line of text; otherwise like `mathml`.
+    """Return a formula within a line of text, otherwise like `mathml`.
 
     Parameters
     ----------
@@ -97,14 +97,14 @@ def _to_core(element: Element) -> None:
 
 
 def _bind_signs(row: Element) -> None:
-    """Join a sign behind an equals sign or a bracket to the term after it."""
+    """Join a sign after an equals sign or a bracket to the term after it."""
     for before, sign in pairwise(row):
         if sign.text in SIGNS and before.text in BEFORE_A_PREFIX:
             sign.set("form", "prefix")
 
 
 def _style_cells(table: Element) -> None:
-    """Align the columns; those of an aligned equation touch each other."""
+    """Align the columns, without gaps in an aligned equation."""
     padding = "0.3em 0" if table.get("columnspacing") == "0em" else "0.3em 0.4em"
     for cell in table.iterfind(f"{{{NAMESPACE}}}mtr/{{{NAMESPACE}}}mtd"):
         cell.set("style", f"text-align: {cell.get('columnalign', 'center')}; padding: {padding}")

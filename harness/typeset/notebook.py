@@ -22,7 +22,7 @@ class TypesetSymbol(Symbol):
     """
 
     def __new__(cls, name: str) -> "TypesetSymbol":
-        """Return the symbol of that name; equal names share one object."""
+        """Return the one symbol of that name."""
         return Symbol.__new__(cls, name, real=True)
 
     def __getnewargs_ex__(self) -> tuple[tuple[str], dict[str, Any]]:
@@ -53,7 +53,7 @@ def in_letters(expression: Expr) -> Expr:
 
 
 def typeset_symbols(names: Iterable[str]) -> Mapping[str, TypesetSymbol]:
-    """Return each name with its letter.
+    """Return each name with its typeset symbol.
 
     Parameters
     ----------

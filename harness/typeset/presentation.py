@@ -67,7 +67,7 @@ def _signed(expression: Expr) -> tuple[int, Tree]:
 
 
 def _signed_quotient(numerator: Expr, denominator: Expr) -> tuple[int, Tree]:
-    """Return a quotient, with a sum of the numerator behind the fraction.
+    """Return a quotient, with a sum of the numerator after the fraction.
 
     This applies only if there are other factors for the fraction.
     """

@@ -76,7 +76,7 @@ def _letter_and_number(stem: str) -> tuple[str, str]:
 
 
 def letter_box(letter: str) -> Box:
-    """Return a letter, Latin or Greek, or a word.
+    """Return a box of a Latin or Greek letter, or of a word.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def letter_box(letter: str) -> Box:
 
 
 def spelled_out(letter: str) -> str:
-    """Return the name of a Greek letter; any other text unchanged.
+    """Return the name of a Greek letter, or the text unchanged.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def _index(part: str) -> Box:
 
 
 def _christoffel(first: Box, second: Box, third: Box) -> Box:
-    """Return the symbol [k, m; s] of the first kind."""
+    """Return the Christoffel symbol of the first kind, km over s."""
     return bracketed(beside(first, COMMA, second, SEMICOLON, third), "[", "]")
 
 

@@ -44,7 +44,7 @@ class Result:
 
 @dataclass(frozen=True)
 class Sweep:
-    """Digits kept as the case becomes harder.
+    """Correct digits as a case becomes harder.
 
     Attributes
     ----------

@@ -172,7 +172,7 @@ def baseline_motion(motion: MotionProblem, until: float) -> Vector:
 
 
 def bordered_accelerations(A: Matrix, h: Vector, J: Matrix, c: Vector) -> Vector:
-    """Return the accelerations from [A -J^T; J 0] (a, lambda) = (h, -c).
+    """Return the accelerations from A a - J^T lambda = h and J a = -c.
 
     Parameters
     ----------

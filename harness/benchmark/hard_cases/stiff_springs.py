@@ -1,4 +1,4 @@
-"""Stiff springs: one that rings beside a soft one, and those of the car axis.
+"""Stiff springs: a stiff spring next to a soft one, and those of the car axis.
 
 With a rod of controlled length u between bodies 1 and 2 of a rail, the deviations p = x1 and s = x3 - u - r obey
 

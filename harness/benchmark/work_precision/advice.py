@@ -19,7 +19,7 @@ FEWEST = 3  # points that a slope is drawn through
 
 @dataclass(frozen=True)
 class Advice:
-    """The cheapest way to a number of digits; None where no method gets there."""
+    """The cheapest method for a number of digits, or None."""
 
     digits: int
     cheapest: Measurement | None
@@ -99,7 +99,7 @@ def line_of(measurements: Sequence[Measurement]) -> tuple[list[float], float]:
 
 
 def _falling(measurements: Sequence[Measurement]) -> list[Measurement]:
-    """Return those whose error is smaller than that of any before."""
+    """Return measurements with a smaller error than all before them."""
     kept: list[Measurement] = []
     for m in measurements:
         if 0 < m.error < (kept[-1].error if kept else math.inf):

@@ -181,7 +181,7 @@ class Repeated:
         self.work = 0
 
     def __call__(self) -> Any:
-        """Integrate the motion once; return the state at its end."""
+        """Integrate the motion once. Return the final state."""
         before = self._counted()
         self._motion.restart(self._begin, self._start)
         self._motion.advance(self._last)
@@ -207,7 +207,7 @@ def operations_of_a_step(problem: MotionProblem, tol: float) -> int:
 
 
 def state_of(numbers: Precision, values: Any) -> State:
-    """Return a state in numbers of a precision, with all their digits.
+    """Return a state as numbers of a precision, with all digits.
 
     Parameters
     ----------

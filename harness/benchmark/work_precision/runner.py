@@ -91,7 +91,7 @@ def measure(candidates: Iterable[Candidate], reference: Reference, advance: Call
 
 
 def times_in_turns(batches: Mapping[Key, Batch]) -> dict[Key, float]:
-    """Measure short runs: the shortest of several passes over all of them.
+    """Measure short runs: the shortest time of several passes over all runs.
 
     Parameters
     ----------

@@ -65,7 +65,7 @@ class Plan:
 
     @property
     def steps(self) -> int:
-        """How many candidates there are, at most."""
+        """Largest number of candidates."""
         ladders = sum(map(len, self.tolerances.values()))
         solvers = (len(SOLVERS) + 1) * len(self.solver_tolerances)  # the one is the Runge-Kutta engine
         return len(self.orders) + ladders + solvers + len(Stabilization) + len(Solve)
@@ -193,7 +193,7 @@ def _expansion(problem: MotionProblem, until: Fraction) -> tuple[Expansion | Non
 def _series(
     source: Source, request: Request, expansion: Expansion | None, plan: Plan, reference: Reference
 ) -> tuple[list[Measurement], list[Omission]]:
-    """Maxima's series, as far as there are any."""
+    """Measure the series that Maxima finds, if any."""
     measurements, omissions = [], []
     for digits in (EXACT, plan.series_digits) if expansion else ():
         try:

@@ -1,4 +1,4 @@
-"""The chapters that compute, one a module, named like its template; and the examples that they take their systems from.
+"""Chapters with computations, one per module, and the examples that they use.
 
 Each has a function `runs(root)`, the runs that it needs, of those in `holonom.companion.runs` or of any function of a
 module, and a function `page(root, results)`, which makes the page's content, figures and sources of their results. The

@@ -1,4 +1,4 @@
-"""Effects: the named parts of a system, what each costs and what it does, and what is not called for."""
+"""Chapter on effects: the named terms of a system, and their costs."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -24,7 +24,7 @@ SAMPLES = 1801
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs.
+    """Return the runs of the chapter.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
 
 
 def _costs(file: Path, scene: str) -> MeasuredCosts:
-    """Return what a scene pays for, as `holonom effects` says it."""
+    """Return the costs of the effects of a scene, as `holonom effects` reports them."""
     return scene_costs(file, Request(scene), Limits())
 
 
@@ -104,7 +104,7 @@ def _rate_of_the_frame(record: Record) -> Any:
 
 
 def turning_point(motion: Simulation) -> tuple[float, float]:
-    """Return the last turning time on the side where the bob began, and its angle from the start.
+    """Return the last turning time on the initial side, and the angle from the start.
 
     Parameters
     ----------

@@ -23,7 +23,7 @@ NUMBERS = ("2", "3a", "3", "4", "5", "6", "7", "8", "9")
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs.
+    """Return the runs of the chapter.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def momentum(motion: Simulation) -> NDArray[np.float64]:
 
 
 def _panels(motion: Simulation) -> list[Panel]:
-    """Return what changes as the string is drawn in, and what does not."""
+    """Return the panels of quantities that change and of quantities that do not."""
     shown = {
         gettext("length r"): motion.coordinates["r"],
         gettext("angular velocity φ̇"): motion.velocities["dot(phi)"],

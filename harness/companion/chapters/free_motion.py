@@ -26,7 +26,7 @@ UNPUSHED = "Lagrange's equations on a free motion"
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs.
+    """Return the runs of the chapter.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
 
 
 def _example(paper: Derived, found: FreeMotion) -> dict[str, Expr]:
-    """Return the multiplier of the example in S = q1 + q2, and S and q3 on a free motion under the first law."""
+    """Return the multiplier of the example in S = q1 + q2, and a free motion."""
     law = scene_named(paper, FREE_SCENE).control_law
     sum_of_free = simplify(found.trajectory.motion["q1"] + found.trajectory.motion["q2"])
     return {
@@ -108,7 +108,7 @@ def _example(paper: Derived, found: FreeMotion) -> dict[str, Expr]:
 
 
 def _panels(unpushed: Simulation, pushed: Simulation, balance: EnergyBalance) -> list[Panel]:
-    """Return the multiplier under both laws, and where the energy goes under the second."""
+    """Return panels of the multiplier under both laws, and of the energy."""
     multipliers = {"u = u₀ exp(t)": unpushed, "u = u₀ + t": pushed}
     work = {
         gettext("kinetic energy gained"): balance.gained,

@@ -12,7 +12,7 @@ EXHIBITS = table("gallery")["exhibit"]
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs.
+    """Return the runs of the chapter.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Hard cases: motions on which a plain method loses its digits, and what to do about each."""
+"""Chapter on hard cases: motions on which a simple method loses digits."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -11,7 +11,7 @@ from ..runs import drawn
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs.
+    """Return the runs of the chapter.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Initial motion: the state at the first time, the accelerations there, and the series that begins with them."""
+"""Chapter on the initial motion: state, accelerations and power series."""
 
 from collections.abc import Mapping
 from fractions import Fraction
@@ -26,7 +26,7 @@ SHOWN = "q1"  # the coordinate that is drawn
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs.
+    """Return the runs of the chapter.
 
     Parameters
     ----------
@@ -83,14 +83,14 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
 
 
 def _numeric_values(equation: Equation, scene: Scene) -> dict[str, Expr]:
-    """Return right sides of a scene's equation at its start and parameters, by their left sides."""
+    """Return the right sides of an equation at the initial state, by left sides."""
     values = {f"{name}_0": value for name, value in scene.initial_state.items()} | dict(scene.parameter_values)
     numbers = {Symbol(name, real=True): value for name, value in values.items()}
     return {str(each.left): each.right.subs(numbers) for each in equation.relations}
 
 
 def _compared(expanded: MotionSeries) -> list[tuple[str, mpmath.mpf, mpmath.mpf]]:
-    """Name of each coordinate, its series at the time cut off at the low order, and at the high order."""
+    """Return for each coordinate its name and partial sums of low and high order."""
     with mpmath.workdps(expanded.digits):
         step = mpmath.mpf(TIME.numerator) / TIME.denominator - number(expanded.t0)
         return [
@@ -100,12 +100,12 @@ def _compared(expanded: MotionSeries) -> list[tuple[str, mpmath.mpf, mpmath.mpf]
 
 
 def _partial_sum(coefficients: NumberTexts, step: mpmath.mpf) -> mpmath.mpf:
-    """Return the sum of a power series as far as its coefficients go."""
+    """Return the sum of the known terms of a power series."""
     return mpmath.polyval(numbers(coefficients)[::-1], step)
 
 
 def beginning(expanded: MotionSeries) -> Panel:
-    """Return the first times of a coordinate: the motion, and what the lowest orders make of it.
+    """Return the beginning of a coordinate: its motion and its lowest partial sums.
 
     Parameters
     ----------

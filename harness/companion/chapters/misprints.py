@@ -20,7 +20,7 @@ EXAMPLE, FIRST_OF_EXAMPLE = "worked-example", "14"
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs.
+    """Return the runs of the chapter.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def _before_the_example(each: PrintedEquation) -> bool:
 
 
 def _pages(general: Iterable[PrintedEquation]) -> Iterator[str]:
-    """Yield the page of each general equation; one without a number is on that of the equation before it."""
+    """Yield the page of each general equation."""
     page_of = {number: page for page, numbers in PAGES.items() for number in numbers}
     page = ""
     for each in general:

@@ -19,7 +19,7 @@ UNTIL, SAMPLES = Fraction(2), 201
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs.
+    """Return the runs of the chapter.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
 
 
 def _panels(results: Mapping[str, Simulation]) -> list[Panel]:
-    """Return what is prescribed, and what the winch does."""
+    """Return panels of the prescribed reaction and of the winch."""
     motions = {name: results[f"{name} motion"] for name in SCENES[1:]}
     labels = {name: gettext("steady") if name == SCENES[1] else gettext("growing") for name in motions}
     return [

@@ -1,4 +1,4 @@
-"""How far a power series holds: its radius of convergence, what sets it, and the motion beyond."""
+"""Chapter on the radius of convergence of a power series."""
 
 from collections.abc import Mapping
 from fractions import Fraction
@@ -28,7 +28,7 @@ SWING = "swing_scene"
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs.
+    """Return the runs of the chapter.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
 
 
 def denominator(paper: Derived) -> Expr:
-    """Return what the accelerations (11) are divided by.
+    """Return the denominator of the accelerations (11).
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def denominator(paper: Derived) -> Expr:
 
 
 def _singular_times(paper: Derived, name: str) -> list[Expr]:
-    """Complex times at which the denominator of (11) vanishes in a scene, with its parameters put in."""
+    """Return complex times at which the denominator of (11) vanishes in a scene."""
     scene = scene_named(paper, name)
     values = {Symbol(parameter, real=True): value for parameter, value in scene.parameter_values.items()}
     law = {Symbol(control, real=True): value.subs(values) for control, value in scene.control_law.items()}
@@ -125,7 +125,7 @@ def _partial_sums(expanded: MotionSeries, motion: Simulation) -> str:
 
 
 def confronted(expanded: MotionSeries, motion: Simulation) -> dict[float, list[float]]:
-    """Errors of the partial sums at a given time within the radius and at one beyond it, order by order.
+    """Return errors of the partial sums within the radius and beyond it, by order.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The system and its words: what is described, and in which terms."""
+"""Chapter on the description of a system and its terms."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -13,7 +13,7 @@ from . import FREE_SCENE, LINKAGE, PAPER, PENDULUM
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs.
+    """Return the runs of the chapter.
 
     Parameters
     ----------

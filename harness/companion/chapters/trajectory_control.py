@@ -1,4 +1,4 @@
-"""The control for one trajectory: a constraint that goes where the free system goes."""
+"""Chapter on the control for one trajectory."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -26,7 +26,7 @@ SCENES = {"paper": INITIAL_SCENE}  # of other files, the last
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs.
+    """Return the runs of the chapter.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Turn the knob: a page on which the reader sets the law, and a script follows the motion.
+"""Page on which the reader sets the law and a script integrates the motion.
 
 The script is made of motion programs of Maxima, written out as JavaScript: the motion, the constraints, the laws, the
 drawing, and for each law what the accelerations are divided by, at complex times a + i b.
@@ -40,7 +40,7 @@ UNDAMPED = (("c", "1"),)  # a damping other than the paper's
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs.
+    """Return the runs of the chapter.
 
     Parameters
     ----------
@@ -176,7 +176,7 @@ def script(found: Derived, models: Mapping[str, Model], drawing: tuple[tuple[str
 
 
 def _require_free_law(found: Derived) -> None:
-    """Require that the multiplier vanishes under u0 exp(kappa t) with kappa^2 = k, c = 2 kappa."""
+    """Raise unless the multiplier vanishes under u0 exp(kappa t), kappa^2 = k."""
     multiplier = named_equations(found)["multipliers"].relations[0].right
     kappa, k, c, u, rate, second = (Symbol(name, real=True) for name in ("kappa", "k", "c", "u", "dot(u)", "ddot(u)"))
     free = {second: kappa**2 * u, rate: kappa * u, k: kappa**2, c: 2 * kappa}
@@ -185,7 +185,7 @@ def _require_free_law(found: Derived) -> None:
 
 
 def _singular(found: Derived, name: str) -> Program:
-    """Real and imaginary part, at the time a + i b, of what the accelerations are divided by under a law."""
+    """Return real and imaginary part of the denominator of (11) at time a + i b."""
     scene: Scene = scene_named(found, name)
     a, b, t = (Symbol(letter, real=True) for letter in ("a", "b", "t"))
     law = {Symbol(control, real=True): value.subs(t, a + I * b) for control, value in scene.control_law.items()}

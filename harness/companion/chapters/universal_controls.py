@@ -1,4 +1,4 @@
-"""Which controls make every motion free: the question that the paper's equation (15) answers for one example."""
+"""Chapter on controls that make every motion free, eq. (15) of the paper."""
 
 from collections.abc import Mapping
 from fractions import Fraction
@@ -21,7 +21,7 @@ SCENES = {"paper": INITIAL_SCENE}  # of other files, the last
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs.
+    """Return the runs of the chapter.
 
     Parameters
     ----------

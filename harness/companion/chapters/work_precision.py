@@ -1,4 +1,4 @@
-"""What accuracy costs in time, and what keeps a motion on its constraints."""
+"""Chapter on accuracy and run time, and on constraint stabilization."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -33,7 +33,7 @@ SWING, TOLERANCE, UNTIL, SAMPLES = "swing_scene", 1e-6, Fraction(100), 401
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs.
+    """Return the runs of the chapter.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def _short_study(file: Path, scene: str) -> Study:
 
 
 def drifting(file: Path, scene: str) -> dict[Stabilization, Simulation]:
-    """Return a motion at a coarse tolerance, under each cure of drift.
+    """Return a motion at a coarse tolerance, with each stabilization method.
 
     Parameters
     ----------

@@ -31,7 +31,7 @@ RATES = ("{}".format, "dot({})".format, "ddot({})".format)  # names of a quantit
 
 @dataclass(frozen=True)
 class Counterpart:
-    """What stands in the record against a printed equation of the example."""
+    """The derived counterpart of a printed equation of the example."""
 
     equation: str  # the record's name for it
     place: int = 0  # which of its relations
@@ -66,7 +66,7 @@ SECTIONS = {
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs.
+    """Return the runs of the chapter.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
 
 
 def in_sum(expression: Expr) -> Expr:
-    """Return an expression of the example in S = q1 + q2, where it depends on q1 and q2 by their sum alone.
+    """Return an expression of the example in terms of S = q1 + q2.
 
     Parameters
     ----------
@@ -155,7 +155,7 @@ def in_sum(expression: Expr) -> Expr:
 
 
 def multiplier_at_start(paper: Derived, pushed: Simulation) -> dict[str, Any]:
-    """Return the multiplier at the start of the second task, by its formula in S and as integrated.
+    """Return the initial multiplier of the second task, by formula and by integration.
 
     Parameters
     ----------
@@ -184,7 +184,7 @@ def multiplier_at_start(paper: Derived, pushed: Simulation) -> dict[str, Any]:
 
 
 def _printed_and_derived(paper: Derived, printed: Expr, pushed: Simulation) -> Panel:
-    """Return the multiplier along the second task's motion, as derived and by the formula in print."""
+    """Return the multiplier of the second task, as derived and as printed."""
     values = values_along(printed, scene_named(paper, INITIAL_SCENE), pushed)
     shown = {gettext("as derived"): pushed.multipliers["lambda1"], gettext("by the formula in print"): values}
     return Panel(gettext("multiplier λ₁ (dimensionless)"), {name: (pushed.times, each) for name, each in shown.items()})
@@ -218,7 +218,7 @@ def _derived(each: PrintedEquation, paper: Derived, laws: tuple, root: Path) -> 
 
 
 def _law(laws: tuple, paper: Derived) -> Instance:
-    """Return the law found, with the verdict that it leaves nothing of the condition (10)."""
+    """Return the law that was found, with its verdict on the condition (10)."""
     relations = tuple(Relation(control, from_sympy(value)) for law in laws for control, value in law.controls.items())
     condition = named_equations(paper, FREE_SCENE)["free_motion_residual"]
     verdicts = verdicts_on(paper, condition, FREE_SCENE)

@@ -1,4 +1,4 @@
-"""How to do it with a system of your own."""
+"""Chapter on describing a system of one's own."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -18,7 +18,7 @@ FITTING, CONTRADICTING = "y = -cos(%pi/13)", "y = -1"
 
 
 def runs(root: Path) -> dict[str, Run]:
-    """Return what the chapter needs.
+    """Return the runs of the chapter.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
 
 
 def _refusal_of_the_change(file: Path, given: str, changed: str) -> str:
-    """Return what Holonom says to a scene file in which one entry is changed."""
+    """Return the error for a scene file with one changed entry."""
     text = file.read_text(encoding="utf-8").replace(given, changed)
     with private_directory() as directory:
         copy = directory / file.name
@@ -79,6 +79,6 @@ def _refusal_of_the_change(file: Path, given: str, changed: str) -> str:
 
 
 def _loading_the_library(text: str) -> str:
-    """Return the text with the library loaded by its name, for the file is not where it was."""
+    """Return the text with the library loaded by its name, for any folder."""
     load = next(line for line in text.splitlines() if line.startswith("load("))
     return text.replace(load, 'load("holonom.mac")$')

@@ -160,14 +160,14 @@ def _body(lines: Iterable[str], parameters: str) -> str:
 
 
 def _places(model: Model, item: str, time: str) -> list[str]:
-    """Return where the inputs of the model's programs stand, in their order."""
+    """Return the places of the inputs of the model's programs, in order."""
     lengths = {"q": len(model.coordinates), "v": len(model.coordinates), "u": 3 * len(model.controls)}
     lengths["p"] = len(model.parameters)
     return [time, *(item.format(array=array, index=i) for array, length in lengths.items() for i in range(length))]
 
 
 def _results(model: Model, item: str) -> list[str]:
-    """Return where the outputs of the motion program go, in their order."""
+    """Return the places of the outputs of the motion program, in order."""
     lengths = {"a": len(model.coordinates), "lambda": len(model.multipliers)}
     return [item.format(array=array, index=i) for array, length in lengths.items() for i in range(length)]
 

@@ -78,7 +78,7 @@ def platform_folder() -> tuple[str, str]:
 
 
 def model_description(model: Model, name: str, token: str) -> ElementTree.Element:
-    """Return modelDescription.xml; its value references are those of fmi3.c.
+    """Return modelDescription.xml, with the value references of fmi3.c.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ def _variables(model: Model) -> Iterator[dict[str, str]]:
 
 
 def _inputs_at_start(model: Model) -> list[str]:
-    """Return the control law's values at the start; 0 for a control without a law."""
+    """Return the initial values of the controls, 0 for a control without a law."""
     values = {}
     if model.law is not None:
         from ..numpy_function import NumpyFunction

@@ -126,7 +126,7 @@ def dependent_constraints(weighted: WeightedConstraints, rank: int) -> tuple[int
 
 
 def rank_of(singular_values: Vector, negligible: float = DEPENDENT) -> int:
-    """Return how many of the constraints are independent, rounding apart.
+    """Return the number of constraints that are independent up to rounding.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ def rank_of(singular_values: Vector, negligible: float = DEPENDENT) -> int:
 
 
 def _cholesky(metric: Matrix) -> tuple[Matrix, Matrix] | None:
-    """Return L, lower triangular, and its inverse; None if the metric is singular.
+    """Return L, lower triangular, and its inverse, or None if the metric is singular.
 
     The diagonal of the metric is scaled to one. The last pivot alone does not decide, because the pivots before it can
     first amplify rounding errors.

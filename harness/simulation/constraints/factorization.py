@@ -215,7 +215,7 @@ class IndependentConstraints(FactoredConstraints):
         return self._refined(force, curvature)[1]
 
     def _factored(self, mass: Matrix, roots: Matrix, directions: Matrix) -> Any:
-        """Return SuperLU's factors of the system of k states; None if it is singular."""
+        """Return SuperLU's factors of the system of k states, or None if it is singular."""
         (k, g, n), size = directions.shape, sum(directions.shape[1:])
         s, r = np.nonzero((mass != 0).any(axis=0))
         beta, q = np.nonzero((directions != 0).any(axis=0))
@@ -254,7 +254,7 @@ class IndependentConstraints(FactoredConstraints):
         return accelerations, multipliers
 
     def _solved(self, force: Vector, curvature: Vector) -> tuple[Vector, Vector]:
-        """Accelerations and multipliers; no numbers where the system is singular."""
+        """Return accelerations and multipliers, nan if the system is singular."""
         if self._factors is None:
             return np.full_like(force, np.nan), np.full_like(curvature, np.nan)
         sides = np.concatenate([ALPHA * force / self._roots, -self._scale * curvature], axis=-1)
@@ -303,7 +303,7 @@ class DependentConstraints(FactoredConstraints):
         return np.abs(self._weighted.scale * residual)
 
     def accelerations(self, force: Vector, curvature: Vector) -> Vector:
-        """Return those across Q by the forces, those along Q by the constraints.
+        """Return accelerations, across Q by the forces and along Q by the constraints.
 
         Parameters
         ----------
@@ -363,7 +363,7 @@ class DependentConstraints(FactoredConstraints):
 
 
 class DependentConstraintsAtEach:
-    """The same at several states; arguments as for `factored_constraints`."""
+    """`DependentConstraints` at several states, as of `factored_constraints`."""
 
     def __init__(self, mass: Matrix, jacobian: Matrix, rank: int) -> None:
         self._each = [DependentConstraints(*at, rank) for at in zip(mass, jacobian, strict=True)]

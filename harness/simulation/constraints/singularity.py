@@ -105,7 +105,7 @@ def extrapolated_zero(before: float, last: float, now: float, least: float) -> f
 
 
 def least_of(singular_values: Vector, rank: int) -> float:
-    """Return the least singular value that counts; without constraints, one.
+    """Return the smallest relevant singular value, one without constraints.
 
     Parameters
     ----------
@@ -158,7 +158,7 @@ class Watch:
         self._least = 1.0
 
     def begin(self, t: float, state: Numbers) -> None:
-        """Record the state from which the watch goes on.
+        """Record the state from which the search continues.
 
         Parameters
         ----------

@@ -1,1 +1,1 @@
-"""The engines that follow a motion, behind one protocol."""
+"""Engines that integrate a motion, with one protocol."""

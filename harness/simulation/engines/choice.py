@@ -19,7 +19,7 @@ TRIAL = 64  # steps of the Taylor engine
 
 @dataclass(frozen=True)
 class Choice:
-    """Why one engine was taken and not the other."""
+    """The choice of an engine, and its reason."""
 
     engine: EngineName
     steps: int  # that the Taylor engine has ahead, estimated from its first ones

@@ -1,4 +1,4 @@
-"""How heyoka compiles an integrator, and when better code is worthwhile.
+"""Options of heyoka's compiler, and the choice between them.
 
 Measured at tolerance 1e-15 on the pendulum of controlled length to t = 100, the chain with N = 8 and Andrews' squeezer
 to the end of their time spans; 16, 212 and 438 operations:

@@ -70,7 +70,7 @@ class Solutions(NamedTuple):
 
 
 class Obstacle(HolonomError):
-    """Why an engine stopped, where another one may lead on.
+    """The reason for which an engine stopped, if another one may continue.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ class Obstacle(HolonomError):
 
 
 class Task(NamedTuple):
-    """A motion that an engine is to follow."""
+    """The task of an engine: a motion and its request."""
 
     problem: MotionProblem
     request: SimulationRequest

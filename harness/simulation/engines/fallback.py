@@ -26,7 +26,7 @@ FINE = 1e-13  # tolerance of the robust engine between two segments of a Taylor 
 
 
 class EngineSegment(NamedTuple):
-    """A part of the motion that one engine follows."""
+    """A part of the motion that one engine integrates."""
 
     engine: EngineName
     start: float
@@ -36,7 +36,7 @@ class EngineSegment(NamedTuple):
 
 
 class FallbackEngine:
-    """The engines that a request allows, at work as one; see `Engine`.
+    """Engine that falls back to another one if the first fails (see `Engine`).
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ class FallbackEngine:
 
     @property
     def code(self) -> str:
-        """How heyoka compiled the engine that began."""
+        """The options with which heyoka compiled the first engine."""
         return self._first.code
 
     @property
@@ -199,7 +199,7 @@ class FallbackEngine:
             return first
 
     def _fallback(self) -> Engine:
-        """Return the engine that goes on where the first one cannot."""
+        """Return the engine that continues if the first one fails."""
         if self._second is None:
             problem, request, _, _, matrices = self._task
             self._second = engine_class(FALLBACK)(problem, FINE if request.tol is None else request.tol, matrices)
@@ -211,11 +211,11 @@ class FallbackEngine:
 
     @property
     def _set_up(self) -> list[Engine]:
-        """The engines that have been called for so far."""
+        """The engines that were used so far."""
         return [self._first] if self._second is None else [self._first, self._second]
 
     def _by(self, engine: Engine, times: Numbers) -> Numbers:
-        """Return which of the times an engine has followed the motion to."""
+        """Return True for each time that an engine integrates over."""
         segments = [segment for segment in self.segments if segment.engine is engine.name]
         spans = [(segment.start, segment.end) for segment in segments]
         if engine is self._current:
@@ -258,13 +258,13 @@ class FallbackEngine:
 
     @property
     def _why_first(self) -> tuple[Difficulty | None, str]:
-        """Why the engine that began is the robust one, where it was not asked for."""
+        """The reason for an automatic choice of the robust engine."""
         if self._task.problem.obstacle is None:
             return None, ""
         return self._first.case, self._task.problem.obstacle
 
     def _add_segment(self, segment: EngineSegment) -> None:
-        """Add a segment; join it to the last one if engine and reason are the same."""
+        """Add a segment, or extend the last one if engine and reason are equal."""
         if self.segments and self.segments[-1]._replace(start=segment.start, end=segment.end) == segment:
             segment = segment._replace(start=self.segments.pop().start)
         self.segments.append(segment)

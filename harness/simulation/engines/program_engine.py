@@ -53,7 +53,7 @@ class Integrator(Protocol):
     tol: Any
 
     def propagate_until(self, until: Any, max_steps: int) -> tuple[Any, ...]:
-        """Take steps to a time, or a number of them, or until one fails.
+        """Take steps to a time, up to a number of steps, or to a failure.
 
         A step that is cut at the last time counts neither as the shortest nor as the longest.
 
@@ -72,7 +72,7 @@ class Integrator(Protocol):
 
 
 class ProgramEngine:
-    """An engine on the motion program; see `Engine`.
+    """An engine on the motion program (see `Engine`).
 
     A subclass provides the integrator and the work between the blocks.
 
@@ -204,13 +204,13 @@ class ProgramEngine:
         return Solutions(found[:n], found[n : n + g], found[n + g :])
 
     def close(self) -> None:
-        """Nothing is held outside of Python."""
+        """Release nothing: all memory is Python's."""
 
     def _begin(self) -> None:
         self._length = self._first_block
 
     def _keep_constraints(self) -> None:
-        """Project the state; nothing where the integrator does so."""
+        """Project the state, unless the integrator does so."""
 
     def _prepare_next(self, until: Any) -> None:
         """Prepare the next block."""

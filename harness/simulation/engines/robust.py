@@ -50,7 +50,7 @@ FIRST_ARCS = 1.0 / 2.0 ** np.arange(12)  # lengths of arcs away from a singular 
 
 
 class RobustEngine:
-    """A motion followed with pivots, in double precision; see `Engine`.
+    """The engine with pivoted solves, in double precision (see `Engine`).
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ class RobustEngine:
 
     @property
     def case(self) -> Difficulty:
-        """Why no other engine begins the motion."""
+        """The reason for which no other engine can begin the motion."""
         return Difficulty.REDUNDANT if self.rank < len(self._multipliers) else Difficulty.SINGULAR_CONFIGURATION
 
     def restart(self, time_point: float, state: Vector) -> None:
@@ -173,7 +173,7 @@ class RobustEngine:
             require_reach(self.steps - steps, self.time - begun, until - self.time)
 
     def close(self) -> None:
-        """Nothing is held outside of Python."""
+        """Release nothing: all memory is Python's."""
 
     @property
     def near_singularity(self) -> bool:
@@ -428,7 +428,7 @@ class RobustEngine:
         return self._kept(times, states)[1]
 
     def _along_arc(self, until: float) -> Step:
-        """Along the arc, to its end or to the time asked for."""
+        """Take a step along the arc, to its end or to a time."""
         start, arc = self.time, self._arc
         if until < arc.end:
             self.time, self.state = until, arc(np.array([until]))[:, 0]

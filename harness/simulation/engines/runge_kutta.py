@@ -60,7 +60,7 @@ Floats = NDArray[np.float64]
 
 
 class RungeKuttaEngine(ProgramEngine):
-    """The Dormand-Prince engine in double precision; see `Engine`.
+    """The Dormand-Prince engine in double precision (see `Engine`).
 
     Parameters
     ----------
@@ -199,7 +199,7 @@ class RungeKuttaEngine(ProgramEngine):
 
     @property
     def evaluations(self) -> int:
-        """How often the motion program has been evaluated so far."""
+        """Number of evaluations of the motion program so far."""
         return self._integrator.evaluations
 
 
@@ -278,11 +278,11 @@ class DormandPrince(ctypes.Structure):
 
     @property
     def evaluations(self) -> int:
-        """How often the accelerations have been evaluated."""
+        """Number of evaluations of the accelerations."""
         return self._evaluations.value
 
     def propagate_until(self, until: float, max_steps: int) -> tuple[bool, float, float, int]:
-        """Take steps: to a time, or a number of them, or until one fails.
+        """Take steps to a time, up to a number of steps, or to a failure.
 
         Parameters
         ----------
@@ -354,7 +354,7 @@ def _source(problem: MotionProblem, stabilization: Stabilization, decay: float) 
 
 
 def _keeping(stabilization: Stabilization, decay: float) -> Iterator[str]:
-    """Yield how the constraints are kept."""
+    """Yield C code of the constraint stabilization."""
     if stabilization is Stabilization.PROJECTION:
         yield f"#define PROJECTED {PROJECTED}"
     else:

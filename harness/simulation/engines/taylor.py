@@ -38,7 +38,7 @@ FEW = 16  # steps whose polynomials are evaluated here in less time than heyoka 
 
 
 class TaylorEngine(ProgramEngine):
-    """A motion followed by heyoka; see `Engine`.
+    """The Taylor engine of heyoka (see `Engine`).
 
     Parameters
     ----------
