@@ -145,7 +145,7 @@ def read(each: Field, value: Any) -> Any:
         return () if kind is tuple else None
     if choices := choices_of(each):
         if str(value) not in choices:
-            raise HolonomError(ErrorKind.NOT_A_CHOICE, detail=f"{value}; there are {', '.join(choices)}")
+            raise HolonomError(ErrorKind.NOT_A_CHOICE, detail=f"'{value}': expected {', '.join(choices)}")
         return kind(str(value))
     if kind is Fraction:
         return read_time(value)

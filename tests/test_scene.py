@@ -200,7 +200,7 @@ def test_a_setting_that_is_no_number_is_refused(value):
 
 @pytest.mark.parametrize("choice", [{"engine": "warp"}, {"stabilization": "tape"}, {"solve": "guess"}])
 def test_what_is_no_choice_is_told_the_choices(released, choice):
-    with pytest.raises(holonom.HolonomError, match="there is no (warp|tape|guess); there are "):
+    with failing(ErrorKind.NOT_A_CHOICE, *choice.values()):
         released.simulate(**choice)
 
 
@@ -274,9 +274,9 @@ def test_the_text_of_a_system_is_removed_with_its_last_scene():
 
 
 def test_in_python_advice_names_arguments_and_no_options(released):
-    with pytest.raises(holonom.HolonomError, match="Give a later one with until"):
+    with pytest.raises(holonom.HolonomError, match="with until"):
         released.simulate(until=-1)
-    with pytest.raises(holonom.HolonomError, match="Ask for less, or raise limits"):
+    with pytest.raises(holonom.HolonomError, match="or raise limits"):
         holonom.load(released.file, limits=holonom.Limits(seconds=1e-3)).free()
 
 

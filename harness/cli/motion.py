@@ -51,7 +51,7 @@ def series(
     from ..series.power_series import series_document, values_at
 
     if sum([exact, digits is not None, options["precision"] is not None]) > 1:
-        raise click.UsageError("--exact, --digits and --precision exclude one another")
+        raise click.UsageError("--exact, --digits and --precision exclude each other")
     wanted = EXACT if exact else digits or AUTOMATIC
     asked = SeriesRequest(scene=request.scene, digits=wanted, settings=request.settings, **options)
     motion = compute_series(scene_file, asked, limits)

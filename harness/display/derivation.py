@@ -16,6 +16,7 @@ from ..language import gettext, ngettext, translatable, translated
 from ..notation import scene_text
 from ..record import LARGEST_SIZE
 from .condition import condition_lines
+from .heading import heading
 from .text import PlainConsole, counted, styled
 
 if TYPE_CHECKING:
@@ -44,7 +45,7 @@ def show_record(console: Console, record: "Record") -> None:
         _show_equations(console, derivation.equations)
         _show_left_out(console, derivation.left_out)
     for scene in record.scenes:
-        console.print(f"\n{visible_line(f'{scene.name}: {scene.title}')}", style="bold")
+        console.print(f"\n{heading(scene.name, scene.title)}", style="bold")
         _show_equations(console, scene.equations)
         _show_left_out(console, scene.left_out)
 

@@ -7,6 +7,7 @@ from rich.console import Console
 
 from ..notation import scene_text
 from ..trees import Tree
+from .heading import heading
 
 if TYPE_CHECKING:
     from ..described import System
@@ -29,7 +30,7 @@ def show_description(console: Console, description: "Description") -> None:
         console.print(system.source, style="dim")
     _show(console, _entries_of_system(system))
     for scene in description.scenes:
-        console.print(f"\n{scene.name}: {scene.title}", style="bold")
+        console.print(f"\n{heading(scene.name, scene.title)}", style="bold")
         _show(console, _entries_of_scene(scene))
     for place, table in enumerate(description.tables):
         (first, _), (last, _) = table.points[0], table.points[-1]

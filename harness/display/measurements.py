@@ -9,6 +9,7 @@ from rich.text import Text
 
 from ..benchmark.work_precision.measurement import Group
 from ..hidden import visible_line
+from .heading import heading
 from .text import counted, styled
 
 if TYPE_CHECKING:
@@ -84,7 +85,7 @@ def show_study(console: Console, study: "Study") -> None:
     study : Study
         Errors and seconds of each method.
     """
-    console.print(visible_line(f"{study.scene}: {study.title}"), soft_wrap=True)
+    console.print(heading(study.scene, study.title), soft_wrap=True)
     for group, title in TITLES.items():
         rows = [m for m in study.measurements if m.group is group]
         if not rows:

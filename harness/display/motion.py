@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import mpmath
 
 from ..hidden import visible_line
+from .heading import heading
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -39,9 +40,7 @@ def show_series(console: "Console", motion: "MotionSeries", values: "Values | No
 
     from ..series.radius import described
 
-    table = Table(
-        "order", title=f"{visible_line(f'{motion.scene}: {motion.title}')}, about t = {motion.t0}", title_justify="left"
-    )
+    table = Table("order", title=f"{heading(motion.scene, motion.title)}, about t = {motion.t0}", title_justify="left")
     columns = dict(motion.all_series())
     for name in columns:
         table.add_column(name)
@@ -132,7 +131,7 @@ def show_report(console: "Console", scene: str, title: str, report: "Report") ->
     from ..simulation.output import report_document
 
     document = report_document(report)
-    console.print(f"{visible_line(f'{scene}: {title}')}, at t = {document['t']}", soft_wrap=True)
+    console.print(f"{heading(scene, title)}, at t = {document['t']}", soft_wrap=True)
     table = Table("", "", show_header=False)
     for group in ("coordinates", "velocities", "multipliers", "controls", "outputs", "sensitivities"):
         for name, value in document[group].items():

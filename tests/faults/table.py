@@ -120,8 +120,8 @@ OPTIONS = [
     Fault("an unknown stabilization", "simulate scene.mac --stabilization hope", "--stabilization"),
     Fault("an unknown solve", "program scene.mac --solve luck", "--solve"),
     Fault("an unknown form", "program scene.mac --to cobol", "--to"),
-    Fault("trusted and needs_sandbox in", "derive scene.mac --trust --sandbox", "exclude one another"),
-    Fault("exact and in digits", "series scene.mac --order 4 --exact --digits 9", "exclude one another"),
+    Fault("trusted and needs_sandbox in", "derive scene.mac --trust --sandbox", "exclude each other"),
+    Fault("exact and in digits", "series scene.mac --order 4 --exact --digits 9", "exclude each other"),
     *(
         Fault(f"{text} as a setting", f"derive scene.mac --set {text}", "invalid setting")
         for text in ("m", "m=", "m=x", "=1", "m=1e", "m=system(1)", "m=1;quit()")
@@ -245,7 +245,7 @@ SCENES = [
     Fault(
         "a mass that no double holds",
         "simulate mass.mac --until 1",
-        "larger than a double",
+        "exceeds the range of double precision",
         prepare=holding("mass.mac", PARTICLE.replace("m = 2", "m = 10^1000")),
     ),
     Fault(

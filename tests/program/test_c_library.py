@@ -1,7 +1,6 @@
 """A scene as a library in C11: clean, linkable, and with the numbers that the closed forms have."""
 
 import ctypes
-import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -208,19 +207,19 @@ def test_names_that_c_does_not_know_stay_apart():
 
 
 @pytest.mark.parametrize(
-    ("options", "sentence"),
+    ("options", "fact"),
     [
-        (["--to", "c"], "Say where it goes: -o DIR"),
-        (["--to", "c", "--name", "a-b", "-o", "lib"], "a-b cannot name a function"),
-        (["--to", "c", "--parameters", "m,k", "-o", "lib"], "'k' cannot stay open; .* the scene, which has m, g, l0"),
-        (["--to", "c", "--parameters", "m;", "-o", "lib"], "'m;' cannot name a parameter"),
-        (["--to", "python", "--name", "bob"], "Leave --name and --parameters out"),
+        (["--to", "c"], "-o DIR"),
+        (["--to", "c", "--name", "a-b", "-o", "lib"], "a-b"),
+        (["--to", "c", "--parameters", "m,k", "-o", "lib"], "'k'"),
+        (["--to", "c", "--parameters", "m;", "-o", "lib"], "'m;'"),
+        (["--to", "python", "--name", "bob"], "--name"),
     ],
 )
-def test_what_cannot_be_written_is_one_sentence_and_nothing_is_written(tmp_path, monkeypatch, options, sentence):
+def test_what_cannot_be_written_is_an_error_and_nothing_is_written(tmp_path, monkeypatch, options, fact):
     monkeypatch.chdir(tmp_path)
     scene = str(EXAMPLES / "pendulum.mac")
     result = CliRunner().invoke(holonom, ["program", scene, *options], standalone_mode=False)
-    said = result.output + str(result.exception or "")
-    assert re.search(sentence, said)
+    assert result.return_value == 2
+    assert fact in result.output
     assert list(tmp_path.iterdir()) == []

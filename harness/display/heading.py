@@ -1,0 +1,21 @@
+"""The heading of a scene on the console."""
+
+from ..hidden import visible_line
+
+UNTITLED = "Untitled scene"  # title of a scene without one
+
+
+def heading(scene: str, title: str) -> str:
+    """Return the heading of a scene: its name, and its title if it has one.
+
+    Parameters
+    ----------
+    scene, title : str
+        Name and title of the scene.
+
+    Returns
+    -------
+    str
+        One line without control characters.
+    """
+    return visible_line(scene if title == UNTITLED else f"{scene}: {title}")
