@@ -95,6 +95,10 @@ pictures: setup ## Draw the README's pictures and run the notebooks again
 	$(BIN)/holonom errata --force --svg examples/paper/errata.svg > /dev/null
 	$(BIN)/python tests/benchmarks/radius.py examples/paper/radius.svg
 	$(BIN)/holonom stability --force --plot examples/hard/stability.svg > /dev/null
+	$(BIN)/holonom -q simulate examples/overhead_crane.mac --samples 61 --force --film examples/gallery/overhead_crane.svg
+	$(BIN)/holonom -q simulate examples/arm.mac --scene circle_scene --samples 61 --force --film examples/gallery/arm.svg
+	$(BIN)/holonom -q simulate examples/linkage.mac --until 3 --samples 121 --force --film examples/gallery/linkage.svg
+	$(BIN)/holonom -q simulate examples/stewart_platform.mac --samples 61 --force --film examples/gallery/stewart_platform.svg
 	$(BIN)/jupyter execute --inplace examples/notebooks/*.ipynb
 
 clean: ## Remove all that make made
