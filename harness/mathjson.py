@@ -21,9 +21,7 @@ CONSTANT_NAMES = {constant: name for name, constant in CONSTANTS.items()}
 NOT_NUMBERS = (S.ComplexInfinity, S.Infinity, S.NegativeInfinity, S.NaN)
 
 CLASSES = {each: getattr(elliptic if hasattr(elliptic, each.in_sympy) else sympy, each.in_sympy) for each in FUNCTIONS}
-POLYGAMMA = "PolyGamma"
 HEADS = {function: each.head for each, function in CLASSES.items() if each.head != "Sqrt"} | {
-    sympy.polygamma: POLYGAMMA,
     sympy.Add: "Add",
     sympy.Mul: "Multiply",
     sympy.Pow: "Power",
@@ -40,7 +38,6 @@ BINARY: dict[str, Callable[..., Expr]] = {
     "Divide": truediv,
     "Subtract": sub,
     **_of_arity(2),
-    POLYGAMMA: sympy.polygamma,
 }
 VARIADIC: dict[str, Callable[..., Expr]] = {"Add": sympy.Add, "Multiply": sympy.Mul}
 

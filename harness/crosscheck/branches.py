@@ -14,7 +14,10 @@ from dataclasses import dataclass
 import sympy as sp
 from mpmath import mp
 
-CHANGING = (sp.exp, sp.sinh, sp.cosh, sp.tanh, sp.sech, sp.csch, sp.coth, sp.erf, sp.erfc, sp.atan)
+from ..functions import Behaviour
+from ..mathjson import CLASSES
+
+CHANGING = tuple(function for each, function in CLASSES.items() if each.behaviour is Behaviour.CHANGING)
 """Functions that change in a range of their argument alone."""
 
 RANGE = 2

@@ -18,39 +18,37 @@ VANISHED = 2 * DIGITS // 3  # digits by which a difference shrinks in twice the 
 Parts = Iterator[tuple[str, ComparedValue]]  # each value with the part of the programs that makes it
 
 
-def first_differences(compared: Callable[[int], Parts], attempt: int) -> tuple[dict[str, str], bool]:
-    """Return the first wrong value of each part at a state, and True if it is regular.
-
-    Each is confirmed in twice the digits.
+def first_differences(compared: Callable[[], Parts], digits: int = DIGITS) -> tuple[dict[str, str], bool]:
+    """Return the first wrong value of each part at a state, and True if the state is regular.
 
     Parameters
     ----------
     compared : callable
-        Function from the number of an attempt to values, each with its part of the programs.
-    attempt : int
-        Number of the state.
+        Function that makes the values in the working precision, each with its part of the programs.
+    digits : int
+        Digits in which given and expected numbers have to agree.
 
     Returns
     -------
     differences : dict of str to str
-        Message for each part with a wrong value.
+        Message for each part with a wrong value, which is confirmed in twice the digits.
     regular : bool
         True if all of them are numbers.
     """
     with mp.workdps(WORKING_DIGITS):
-        made, regular = _made(compared(attempt))
-        suspected = {place: abs(each.given - each.true) for place, (_, each) in enumerate(made) if _differs(each)}
+        made, regular = _made(compared())
+        suspected = {i: abs(each.given - each.true) for i, (_, each) in enumerate(made) if _differs(each, digits)}
     if not suspected:
         return {}, regular
     found: dict[str, str] = {}
     with mp.workdps(2 * WORKING_DIGITS):
-        again, still = _made(compared(attempt))
+        again, still = _made(compared())
         for place, before in suspected.items():
             if place >= len(again) and not still:
                 continue  # rounding hid that a value is missing at this state
             part, value = again[place] if place < len(again) else made[place]
             rounding = abs(value.given - value.true) <= before * mp.mpf(10) ** -VANISHED
-            if _differs(value) and not rounding:
+            if _differs(value, digits) and not rounding:
                 found.setdefault(part, _told(value))
     return found, regular and still
 
@@ -68,21 +66,16 @@ def differing(compared: Callable[[], Iterator[ComparedValue]], digits: int = DIG
     Returns
     -------
     str
+
+    Raises
+    ------
+    IrregularPoint
+        A value is missing, and none before it is wrong.
     """
-    with mp.workdps(WORKING_DIGITS):
-        suspected = {
-            place: abs(each.given - each.true) for place, each in enumerate(compared()) if _differs(each, digits)
-        }
-    if not suspected:
-        return ""
-    with mp.workdps(2 * WORKING_DIGITS):
-        for place, value in enumerate(compared()):
-            before = suspected.get(place)
-            if before is None or abs(value.given - value.true) <= before * mp.mpf(10) ** -VANISHED:
-                continue
-            if _differs(value, digits):
-                return _told(value)
-    return ""
+    found, regular = first_differences(lambda: (("", each) for each in compared()), digits)
+    if not (found or regular):
+        raise IrregularPoint
+    return found.get("", "")
 
 
 def _made(compared: Parts) -> tuple[list[tuple[str, ComparedValue]], bool]:
@@ -99,7 +92,7 @@ def _made(compared: Parts) -> tuple[list[tuple[str, ComparedValue]], bool]:
     return made, True
 
 
-def _differs(value: ComparedValue, digits: int = DIGITS) -> bool:
+def _differs(value: ComparedValue, digits: int) -> bool:
     size = max(value.size, abs(value.given), abs(value.true))
     return abs(value.given - value.true) > mp.mpf(10) ** -digits * size
 

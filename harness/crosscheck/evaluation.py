@@ -13,6 +13,8 @@ from typing import NamedTuple
 import sympy as sp
 from mpmath import mp
 
+from ..functions import Behaviour
+from ..mathjson import CLASSES
 from .irregular_point import IrregularPoint
 from .points import FUNCTIONS
 
@@ -23,22 +25,21 @@ Values = Mapping[sp.Symbol, Number | None]
 LARGEST_EXPONENT = 10**8
 """Largest exponent of which a power is formed."""
 
-LARGEST_ANGLE = 10**12
-"""Largest argument of a periodic or special function."""
-
+LARGEST = {
+    Behaviour.CHANGING: LARGEST_EXPONENT,
+    Behaviour.PERIODIC: 10**12,
+}
 LARGEST_SPECIAL = 10**2
-"""Largest argument of a function that mpmath takes a series for: it needs a term or more for each unit."""
+"""Largest arguments of functions: by behaviour, and that of functions that mpmath takes a series for."""
+
+LIMITS = {
+    function: LARGEST_SPECIAL if each.special else LARGEST.get(each.behaviour) for each, function in CLASSES.items()
+}
 
 REMEMBERED = 2**12
 """Values of such functions that are kept: several expressions contain them at the same point."""
 
 FAILURES = (ZeroDivisionError, OverflowError, ValueError, TypeError, mp.NoConvergence)
-
-GROWING = (sp.exp, sp.sinh, sp.cosh, sp.sech, sp.csch)
-
-PERIODIC = (sp.sin, sp.cos, sp.tan, sp.sec, sp.csc, sp.cot)
-REAL_ALONE = (sp.sign, sp.atan2, sp.DiracDelta)
-CHEAP = (sp.log, sp.Abs, sp.sign, sp.atan, sp.asinh, sp.tanh, sp.coth, sp.DiracDelta, sp.asin, sp.acos, sp.atan2)
 
 
 class Step(NamedTuple):
@@ -179,11 +180,9 @@ def _power(base: Number, exponent: Number) -> Number | None:
 
 
 def _applied(kind: type, *arguments: Number) -> Number | None:
-    if kind in REAL_ALONE and any(mp.im(argument) for argument in arguments):
-        return None
-    if kind in CHEAP:
+    largest = LIMITS.get(kind)
+    if largest is None:
         return FUNCTIONS[kind](*arguments)
-    largest = LARGEST_EXPONENT if kind in GROWING else LARGEST_ANGLE if kind in PERIODIC else LARGEST_SPECIAL
     if any(abs(argument) > largest for argument in arguments):
         return None
     return _remembered(kind, mp.prec, *arguments)

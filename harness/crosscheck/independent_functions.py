@@ -15,15 +15,14 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from ..functions import Behaviour
+from ..mathjson import CLASSES
 from .linear import LinearEquations
 
 if TYPE_CHECKING:
     from .verdict import Comparison
 
-INDEPENDENT = (
-    *(sp.exp, sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc),
-    *(sp.sinh, sp.cosh, sp.tanh, sp.coth, sp.sech, sp.csch, sp.erf, sp.erfc, sp.atan),
-)
+INDEPENDENT = tuple(function for each, function in CLASSES.items() if each.behaviour is not Behaviour.MODERATE)
 """Functions that are taken for independent of their argument."""
 
 LARGEST_ARGUMENT = 200

@@ -12,9 +12,10 @@ from mpmath import mp
 
 from .evaluation import Steps
 from .irregular_point import IrregularPoint
+from .ranks import Row, least_solution
 
-SPARE_DIGITS = 10
-"""Of those that are carried, digits to which residuals need not vanish."""
+SPARE_DIGITS = 15
+"""Of those that are carried, digits to which the last step need not vanish."""
 
 NEWTON_STEPS = 60
 """Steps of Newton's method towards the manifold; quadratic convergence needs a dozen from nearby."""
@@ -22,36 +23,99 @@ NEWTON_STEPS = 60
 State = dict[sp.Symbol, mp.mpf]
 
 
-def moved_onto(state: State, unknowns: Sequence[sp.Symbol], residuals: Steps, jacobian: Steps) -> None:
-    """Move the unknowns of a state, by shortest steps, to a zero of the residuals.
+class Gradients:
+    """Derivatives of expressions by some symbols, as sparse rows."""
+
+    def __init__(self, expressions: Sequence[sp.Expr], symbols: Sequence[sp.Symbol]) -> None:
+        rows = [
+            {k: expression.diff(x) for k, x in enumerate(symbols) if x in expression.free_symbols}
+            for expression in expressions
+        ]
+        self.symbols = symbols
+        self._places = [(i, k) for i, row in enumerate(rows) for k in row]
+        self._steps = Steps([entry for row in rows for entry in row.values()])
+        self._length = len(rows)
+
+    def at(self, state: State) -> list[Row]:
+        """Return one row for each expression.
+
+        Parameters
+        ----------
+        state : dict of Symbol to mpf
+            Values of all symbols in the expressions.
+
+        Returns
+        -------
+        list of Row
+
+        Raises
+        ------
+        IrregularPoint
+            A derivative has no real value.
+        """
+        rows: list[Row] = [{} for _ in range(self._length)]
+        for (i, k), value in zip(self._places, self._steps.real_at(state), strict=True):
+            if value:
+                rows[i][k] = value
+        return rows
+
+
+def moved_onto(state: State, residuals: Steps, gradients: Gradients) -> None:
+    """Move the symbols of the gradients, by shortest steps, to a zero of the residuals.
 
     Parameters
     ----------
     state : dict of Symbol to mpf
         Changed in place.
-    unknowns : sequence of Symbol, shape (n,)
-        Symbols of the state to move.
     residuals : Steps
         Of g expressions.
-    jacobian : Steps
-        Of g rows of n expressions: derivatives of the residuals with respect to the unknowns.
+    gradients : Gradients
+        Of the residuals.
 
     Raises
     ------
     IrregularPoint
         Newton's method does not get there, or a value is not real.
-    ZeroDivisionError
-        The residuals' gradients are dependent on the way.
     """
-    n = len(unknowns)
     for _ in range(NEWTON_STEPS):
-        right = residuals.real_at(state)
-        size = max(abs(number) for number in state.values())
-        if max(map(abs, right), default=mp.zero) <= mp.mpf(10) ** (SPARE_DIGITS - mp.dps) * max(1, size):
+        step = least_solution(gradients.at(state), residuals.real_at(state))
+        for place, by in step.items():
+            state[gradients.symbols[place]] -= by
+        if max(map(abs, step.values()), default=mp.zero) <= mp.mpf(10) ** (SPARE_DIGITS - mp.dps) * _size(
+            state, gradients
+        ):
+            if left_over(state, residuals, gradients):
+                break
             return
-        entries = jacobian.real_at(state)
-        rows = mp.matrix([entries[k : k + n] for k in range(0, len(entries), n)])
-        move = rows.T * mp.lu_solve(rows * rows.T, mp.matrix(right))
-        for unknown, by in zip(unknowns, move, strict=True):
-            state[unknown] -= by
     raise IrregularPoint
+
+
+def left_over(state: State, residuals: Steps, gradients: Gradients) -> set[int]:
+    """Return the places of the residuals that do not vanish to half of the digits carried.
+
+    Parameters
+    ----------
+    state : dict of Symbol to mpf
+        Values of all symbols.
+    residuals : Steps
+        Of g expressions.
+    gradients : Gradients
+        Of the residuals.
+
+    Returns
+    -------
+    set of int
+
+    Raises
+    ------
+    IrregularPoint
+        A value is not real.
+    """
+    tolerance = mp.mpf(10) ** -(mp.dps // 2) * _size(state, gradients)
+    slopes = [1 + max(map(abs, row.values()), default=mp.zero) for row in gradients.at(state)]
+    values = residuals.real_at(state)
+    return {i for i, (value, slope) in enumerate(zip(values, slopes, strict=True)) if abs(value) > tolerance * slope}
+
+
+def _size(state: State, gradients: Gradients) -> mp.mpf:
+    return 1 + max((abs(state[x]) for x in gradients.symbols), default=mp.zero)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 from mpmath import mp
 
@@ -335,7 +336,7 @@ def _judged(scene: str | None, parts: list[str], compared: Callable[[int], Parts
     for attempt in range(ATTEMPTS * POINTS):
         if points == POINTS or len(wrong) == len(parts):
             break
-        told, regular = first_differences(compared, attempt)
+        told, regular = first_differences(partial(compared, attempt))
         wrong = told | wrong
         points += regular
     few = f"only {points} regular states were found among {ATTEMPTS * POINTS}"

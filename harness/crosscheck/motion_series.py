@@ -156,7 +156,7 @@ def _digits(series: MotionSeries) -> int:
 def _judged(compared: Callable[[], Iterator[ComparedValue]], digits: int) -> CheckResult:
     try:
         wrong = differing(compared, digits)
-    except (IrregularPoint, ZeroDivisionError):
+    except IrregularPoint:
         return CheckResult(Verdict.NOTHING, None, None, "the equations of motion have no power series at the start")
     return CheckResult(Verdict.DISAGREES if wrong else Verdict.AGREES, digits, 1, wrong)
 

@@ -19,7 +19,7 @@ from ..program.motion_problem import MotionProblem
 from .described_motion import DescribedMotion
 from .irregular_point import IrregularPoint
 from .program_values import Values, letters_of_tables, run, with_signs
-from .sparse import solved
+from .ranks import solved
 from .taylor import Taylor
 
 STATE, SECOND = Taylor(0), Taylor(2)

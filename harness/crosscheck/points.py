@@ -8,24 +8,14 @@ from collections.abc import Iterable
 import sympy as sp
 from mpmath import mp
 
-from ..elliptic import JacobiCn, JacobiDn, JacobiSn
 from ..mathjson import CLASSES
 
 PARTS = 1_000_003
 """Coordinates of a random point are multiples of its inverse, up to two: small, rarely special, too many to foresee."""
 
-OTHERWISE = {
-    sp.Abs: abs,
-    sp.airyaiprime: lambda x: mp.airyai(x, derivative=1),
-    sp.airybiprime: lambda x: mp.airybi(x, derivative=1),
-    JacobiSn: lambda u, m: mp.ellipfun("sn", u, m=m),
-    JacobiCn: lambda u, m: mp.ellipfun("cn", u, m=m),
-    JacobiDn: lambda u, m: mp.ellipfun("dn", u, m=m),
-    sp.polygamma: mp.polygamma,
-    sp.DiracDelta: lambda x, order=0: mp.zero if x else mp.inf,
-}
-FUNCTIONS = {function: getattr(mp, each.in_sympy, None) for each, function in CLASSES.items()} | OTHERWISE
-"""Values of SymPy's functions, by mpmath's of the same names but for some."""
+FUNCTIONS = {function: each.of(mp) for each, function in CLASSES.items()}
+FUNCTIONS |= {sp.DiracDelta: lambda x, order=0: None if mp.im(x) else mp.zero if x else mp.inf}
+"""SymPy's functions by mpmath."""
 
 
 def random_point(names: Iterable[str], attempt: int, seed: str) -> dict[sp.Symbol, sp.Rational]:

@@ -12,10 +12,10 @@ from ..description import DescribedScene, Description
 from ..documents import Question, ask_all
 from ..failures import HolonomError
 from ..formats import Document
+from ..functions import FUNCTIONS
 from ..program.request import Solve
 from ..source import Source
 from .digits import WORKING_DIGITS
-from .taylor import SPECIAL
 
 ORDER = 7  # of power series
 EXACT_UP_TO = 12  # coordinates: exact coefficients of a ring of 21 take five times as long as rounded ones
@@ -72,7 +72,7 @@ def holds_special_functions(description: Description) -> bool:
     -------
     bool
     """
-    return any(f'"{head}"' in description.text for head in SPECIAL)
+    return any(f'"{each.head}"' in description.text for each in FUNCTIONS if each.special)
 
 
 def is_closed(description: Description, scene: DescribedScene | None) -> bool:

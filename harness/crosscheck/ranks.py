@@ -8,11 +8,13 @@ from heapq import heapify, heappop, heappush
 
 from mpmath import mp
 
+from .irregular_point import IrregularPoint
+
 Row = dict[int, mp.mpf]
 """Entries of a row by their columns; what is not there is zero."""
 
-SMALLEST = 30
-"""Digits below the largest entry of its row at which what is left of an entry is rounding."""
+LOST = 40
+"""Digits of those carried that an entry may lose: what is below the others, relative to its row, is rounding."""
 
 SPARSE_RATIO = 1000
 """A pivot is at least the largest entry of its row over this: three digits lost for sparse rows."""
@@ -67,7 +69,7 @@ class Elimination:
                 scale = max(scale, _subtract(left, factor, pivot_row))
                 del left[column]
                 right -= factor * pivot_right
-        left = {k: value for k, value in left.items() if abs(value) > mp.mpf(10) ** -SMALLEST * scale}
+        left = {k: value for k, value in left.items() if abs(value) > mp.mpf(10) ** (LOST - mp.dps) * scale}
         if left:
             pivot = self._pivot(left)
             self._pivots[pivot], self._order[pivot] = (left, right), len(self._order)
@@ -79,6 +81,33 @@ class Elimination:
         """
         least = max(map(abs, left.values())) / SPARSE_RATIO
         return min((k for k, value in left.items() if abs(value) >= least), key=lambda k: self._uses[k])
+
+
+def solved(rows: Sequence[Row], right: Sequence[mp.mpf]) -> list[mp.mpf]:
+    """Solve as many equations as there are unknowns.
+
+    Parameters
+    ----------
+    rows : sequence of Row
+        Rows of the matrix.
+    right : sequence of mpf
+        Right side, one number for each row.
+
+    Returns
+    -------
+    list of mpf
+        Value of each unknown.
+
+    Raises
+    ------
+    IrregularPoint
+        The matrix is singular.
+    """
+    elimination = Elimination(rows, right)
+    if elimination.rank < len(rows):
+        raise IrregularPoint
+    found = elimination.solution()
+    return [found[k] for k in range(len(rows))]
 
 
 def least_solution(rows: Sequence[Row], right: Sequence[mp.mpf]) -> Row:

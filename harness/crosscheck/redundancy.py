@@ -16,9 +16,11 @@ from mpmath import mp
 
 from .digits import DIGITS, WORKING_DIGITS
 from .draws import Point
-from .evaluation import Number, Steps
+from .evaluation import Steps
+from .irregular_point import IrregularPoint
+from .manifold import Gradients, State, left_over, moved_onto
 from .points import random_point
-from .ranks import Elimination, Row, least_solution
+from .ranks import Elimination
 from .report import CheckResult, Verdict
 from .system import MechanicalSystem, gradient
 
@@ -30,14 +32,6 @@ CONFIGURATIONS = 3
 
 DRAWS = 60
 """Configurations from which one on the manifold is looked for."""
-
-NEWTON_STEPS = 40
-"""Steps of Newton's method towards the manifold."""
-
-SPARE_DIGITS = 15
-"""Of those that are carried, digits to which constraints need not vanish."""
-
-State = dict[sp.Symbol, Number | None]
 
 
 class Ranks(NamedTuple):
@@ -109,78 +103,26 @@ class _Manifold:
 
     def __init__(self, system: MechanicalSystem, kept: Sequence[str]) -> None:
         q, v = system.coordinates, system.velocities
-        self._coordinates = q
-        self._kept = [i for i, multiplier in enumerate(system.multipliers) if multiplier.name in kept]
-        self._constraints = Steps(system.constraints)
-        self._jacobian = _Sparse([_entries(f, q) for f in system.constraints])
-        self._mass = _Sparse([_entries(momentum, v) for momentum in gradient(system.kinetic_energy, v)])
+        own = [f for f, name in zip(system.constraints, system.multipliers, strict=True) if name.name in kept]
+        self._kept = Steps(own), Gradients(own, q)
+        self._every = Steps(system.constraints), Gradients(system.constraints, q)
+        self._mass = Gradients(gradient(system.kinetic_energy, v), v)
         symbols = set().union(*(f.free_symbols for f in (*system.constraints, system.kinetic_energy)))
         self.names = sorted({x.name for x in symbols | {*q}} - {x.name for x in v})
-
         self.held_alone = 0  # configurations where the constraints that are kept hold, and not all others
 
     def ranks_near(self, point: Point) -> Ranks | None:
         """Return ranks at a configuration of the manifold near a point, or None."""
         state: State = {x: mp.mpf(number.p) / number.q for x, number in point.items()}
-        if not self._brought_onto(state):
-            return None
-        every, mass = self._jacobian.at(state), self._mass.at(state)
-        if every is None or mass is None:
-            return None
-        kept = [every[i] for i in self._kept]
-        return Ranks(Elimination(mass).rank, Elimination(every).rank, Elimination(kept).rank)
-
-    def _brought_onto(self, state: State) -> bool:
-        """Return True if Newton's method finds a state that satisfies all constraints.
-
-        It iterates on the independent constraints.
-        """
-        for _ in range(NEWTON_STEPS):
-            values, rows = self._constraints.at(state), self._jacobian.at(state)
-            if rows is None or any(value is None or mp.im(value) for value in values):
-                return False
-            step = least_solution([rows[i] for i in self._kept], [values[i] for i in self._kept])
-            for place, by in step.items():
-                state[self._coordinates[place]] -= by
-            size = 1 + max((abs(state[q]) for q in self._coordinates), default=mp.zero)
-            if max(map(abs, step.values()), default=mp.zero) <= mp.mpf(10) ** (SPARE_DIGITS - mp.dps) * size:
-                return self._all_hold(state)
-        return False
-
-    def _all_hold(self, state: State) -> bool:
-        values, rows = self._constraints.at(state), self._jacobian.at(state)
-        if rows is None or None in values:
-            return False
-        size = 1 + max((abs(state[q]) for q in self._coordinates), default=mp.zero)
-        slopes = [1 + max(map(abs, row.values()), default=mp.zero) for row in rows]
-        tolerance = mp.mpf(10) ** -(mp.dps // 2) * size
-        left = [i for i, value in enumerate(values) if abs(value) > tolerance * slopes[i]]
-        self.held_alone += bool(left) and not set(left) & set(self._kept)
-        return not left
-
-
-class _Sparse:
-    """A matrix of few entries, evaluated at configurations."""
-
-    def __init__(self, rows: Sequence[Mapping[int, sp.Expr]]) -> None:
-        self._places = [(i, k) for i, row in enumerate(rows) for k in row]
-        self._steps = Steps([value for row in rows for value in row.values()])
-        self._length = len(rows)
-
-    def at(self, state: State) -> list[Row] | None:
-        """Return the rows of the matrix, or None if an entry has no real value."""
-        rows: list[Row] = [{} for _ in range(self._length)]
-        for (i, k), value in zip(self._places, self._steps.at(state), strict=True):
-            if value is None or mp.im(value):
+        try:
+            moved_onto(state, *self._kept)
+            if left_over(state, *self._every):
+                self.held_alone += 1
                 return None
-            if value:
-                rows[i][k] = mp.re(value)
-        return rows
-
-
-def _entries(expression: sp.Expr, symbols: Sequence[sp.Symbol]) -> dict[int, sp.Expr]:
-    present = expression.free_symbols
-    return {k: expression.diff(x) for k, x in enumerate(symbols) if x in present}
+            matrices = self._mass.at(state), self._every[1].at(state), self._kept[1].at(state)
+        except IrregularPoint:
+            return None
+        return Ranks(*(Elimination(rows).rank for rows in matrices))
 
 
 def _configurations(

@@ -9,16 +9,19 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Mapping, Sequence
 from fractions import Fraction
-from functools import partial
+from functools import lru_cache, partial
 from heapq import heapify, heappop, heappush
 
 from mpmath import mp
 
+from ..functions import FUNCTIONS
 from ..trees import Tree, converted, integer, refusal
 from .irregular_point import IrregularPoint
-from .taylor import COEFFICIENTS, ELLIPTIC, OF_A_NUMBER, Coefficients, Polynomial, Taylor, differentiated
+from .taylor import Polynomial, Taylor
 
 CONSTANTS = {"Pi": lambda: +mp.pi, "ExponentialE": lambda: +mp.e, "EulerGamma": lambda: +mp.euler}
+OF_THE_TABLE = {each.head: each for each in FUNCTIONS if each.slope}
+REMEMBERED = 2**12  # Taylor coefficients of functions at numbers
 RELATIONS = {"Greater": 1, "GreaterEqual": 1, "Less": -1, "LessEqual": -1}
 
 Operation = tuple[str, tuple[int, ...]]
@@ -268,40 +271,81 @@ def value_of(taylor: Taylor, head: str, x: Sequence[Polynomial]) -> Polynomial:
         case "Power", [a, b] if len(b) == 1:
             return taylor.power(a, b[0])
         case "Power", [a, b]:
-            return taylor.compose(COEFFICIENTS["Exp"], taylor.multiply(b, taylor.compose(COEFFICIENTS["Ln"], a)))
+            return value_of(taylor, "Exp", [taylor.multiply(b, value_of(taylor, "Ln", [a]))])
         case "Sqrt", [a]:
             return taylor.power(a, mp.mpf(1) / 2)
         case "Abs", [a]:
             return taylor.scale(_sign(a), a)
         case "Arctan2", [a, b]:
             return _angle(taylor, a, b)
-        case _ if (coefficients := coefficients_of(head, x)) is not None:
-            return taylor.compose(coefficients, x[0 if head in ELLIPTIC else -1])
+        case _ if head in OF_THE_TABLE:
+            return _composed(taylor, head, x)
         case _:
             return _decided(taylor, head, x)
 
 
-def coefficients_of(head: str, x: Sequence[Polynomial]) -> Coefficients | None:
-    """Return the Taylor coefficients of a function for its arguments.
+def _composed(taylor: Taylor, head: str, x: Sequence[Polynomial]) -> Polynomial:
+    """Return the value of a function of the table; but for one, its arguments are constants."""
+    names = OF_THE_TABLE[head].arguments
+    numbers = [each[0] if name == "x" else _constant(each) for name, each in zip(names, x, strict=True)]
+    inner = x[names.index("x")]
+    return taylor.compose(coefficients(head, mp.prec, 0 if len(inner) == 1 else taylor.order, *numbers), inner)
+
+
+@lru_cache(REMEMBERED)
+def coefficients(head: str, precision: int, order: int, *numbers: mp.mpf) -> Polynomial:
+    """Return the Taylor coefficients of a function at a number, by its differential equation.
 
     Parameters
     ----------
     head : str
         Head of the function's tree.
-    x : sequence of Polynomial
-        Its arguments; those of special functions include a constant.
+    precision : int
+        The working precision, in bits.
+    order : int
+        Highest order.
+    *numbers : mpf
+        Arguments of the function.
 
     Returns
     -------
-    Coefficients or None
-        None if the function is unknown.
+    Polynomial
+
+    Raises
+    ------
+    IrregularPoint
+        The function has no finite real value.
     """
-    if head in OF_A_NUMBER:
-        return differentiated(partial(OF_A_NUMBER[head], _constant(x[0])))
-    if head in ELLIPTIC:
-        modulus = _constant(x[1])
-        return differentiated(lambda u: mp.ellipfun(ELLIPTIC[head], u, m=modulus))
-    return COEFFICIENTS.get(head)
+    function = OF_THE_TABLE[head]
+    first = function.of(mp)(*numbers)
+    if not (isinstance(first, mp.mpf) and mp.isfinite(first)):
+        raise IrregularPoint
+    found: Polynomial = (first,)
+    arguments = [(x, mp.one) if name == "x" else (x,) for name, x in zip(function.arguments, numbers, strict=True)]
+    for k in range(1 if _contains(function.slope, "y") else max(order, 1), order + 1):
+        found = Taylor(k).integral(_slope(Taylor(k - 1), head, arguments, found), first)
+    return found
+
+
+def _contains(tree: Tree, name: str) -> bool:
+    return tree == name or (isinstance(tree, list) and any(_contains(each, name) for each in tree[1:]))
+
+
+def _slope(taylor: Taylor, head: str, x: Sequence[Polynomial], y: Polynomial) -> Polynomial:
+    """Return the derivative of a function of the table by its argument x; y is its value."""
+    function = OF_THE_TABLE[head]
+    known = {**dict(zip(function.arguments, x, strict=True)), "y": y}
+
+    def value(tree: Tree) -> Polynomial:
+        match tree:
+            case str():
+                return _quantity(tree, known)
+            case int():
+                return (mp.mpf(tree),)
+            case [part, *arguments]:
+                return value_of(taylor, part, list(map(value, arguments)))
+
+    return value(function.slope)
 
 
 def _constant(x: Polynomial) -> mp.mpf:
@@ -408,16 +452,10 @@ def _shares(
             return [adjoint if each is values[place] else None for each in x]
         case "Which":
             return [adjoint if k == _chosen(x) else None for k in range(len(x))]
-    coefficients = coefficients_of(head, x)
-    if coefficients is None:
+    if head not in OF_THE_TABLE:
         raise refusal([head])
-    own = 0 if head in ELLIPTIC else len(x) - 1
-    slope = taylor.compose(_derived(coefficients), x[own])
-    return [taylor.multiply(adjoint, slope) if each == own else None for each in range(len(x))]
-
-
-def _derived(coefficients: Coefficients) -> Coefficients:
-    return lambda x, order: [k * c for k, c in enumerate(coefficients(x, order + 1))][1:]
+    share = taylor.multiply(adjoint, _slope(taylor, head, x, values[place]))
+    return [share if name == "x" else None for name in OF_THE_TABLE[head].arguments]
 
 
 def _shares_of_product(taylor: Taylor, x: Sequence[Polynomial], adjoint: Polynomial) -> list[Polynomial | None]:
@@ -439,5 +477,5 @@ def _shares_of_power(
         slope = taylor.scale(exponent[0], taylor.power(base, exponent[0] - 1)) if exponent[0] else (mp.zero,)
         return [taylor.multiply(adjoint, slope), None]
     share = taylor.multiply(adjoint, value)
-    logarithm = taylor.compose(COEFFICIENTS["Ln"], base)
+    logarithm = value_of(taylor, "Ln", [base])
     return [taylor.divide(taylor.multiply(share, exponent), base), taylor.multiply(share, logarithm)]

@@ -20,7 +20,7 @@ from .evaluation import Steps
 from .independent import IndependentEquations
 from .irregular_point import IrregularPoint
 from .linear import LinearEquations
-from .manifold import moved_onto
+from .manifold import Gradients, moved_onto
 from .points import random_point
 from .report import CheckResult, Verdict
 from .seed import fresh_seed
@@ -117,18 +117,18 @@ class _MovedByLaw:
         def under_law(expressions: Sequence[sp.Expr]) -> tuple[sp.Expr, ...]:
             return tuple(expression.xreplace(history).xreplace(values) for expression in expressions)
 
-        self.coordinates, self.velocities = system.coordinates, system.velocities
         constraints, rates = under_law(system.constraints), under_law(equations.constraint_rates)
         positive = under_law(law.positive)
         laws = tuple(expression.xreplace(values) for expression in law.controls.values())
         self.multipliers = system.multipliers
         self.motion = LinearEquations(equations.bordered.unknowns, under_law(equations.bordered.residuals))
         self.constraints, self.rates = Steps(constraints), Steps(rates)
-        self.jacobian = Steps([f.diff(q) for f in constraints for q in self.coordinates])
+        self.positions = Gradients(constraints, system.coordinates)
+        self.speeds = Gradients(rates, system.velocities)
         self.positive, self.law = Steps(positive), Steps(laws)
         everything = (*constraints, *rates, *self.motion.residuals, *positive, *laws)
         symbols = set().union(*(expression.free_symbols for expression in everything))
-        state = {*self.coordinates, *self.velocities}
+        state = {*system.coordinates, *system.velocities}
         self.names = sorted(symbol.name for symbol in (symbols | state) - {*self.motion.unknowns})
 
     def residual(self, point: Mapping[sp.Symbol, sp.Rational]) -> str:
@@ -137,8 +137,8 @@ class _MovedByLaw:
         if any(value <= 0 for value in self.positive.real_at(state)):
             raise IrregularPoint
         self.law.real_at(state)  # irregular if it is not real, though its square may be
-        moved_onto(state, self.coordinates, self.constraints, self.jacobian)
-        moved_onto(state, self.velocities, self.rates, self.jacobian)
+        moved_onto(state, self.constraints, self.positions)
+        moved_onto(state, self.rates, self.speeds)
         found = self.motion.solution(state, real=True)
         if None in found.values():
             raise IrregularPoint

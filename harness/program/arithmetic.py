@@ -8,14 +8,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Generic, TypeVar
 
-from ..functions import FUNCTIONS
 from . import infix
-from .motion_program import Atom, Call, Constant, Expression, Name, Operation, Program
+from .motion_program import CALLED, Atom, Call, Constant, Expression, Name, Operation, Program
 
 Value = TypeVar("Value")
 
-ELEMENTARY = {Operation(each.head): each.program for each in FUNCTIONS if each.program}
-"""Functions that C, Python, NumPy, JavaScript and heyoka call by the same names."""
+ELEMENTARY = {Operation(each.head): each.program for each in CALLED}
+"""Functions that C, Python, NumPy, JavaScript and heyoka, or most of them, call by the same names."""
 
 
 INFIX = {

@@ -17,10 +17,10 @@ from textwrap import indent
 from . import infix
 from .arithmetic import ELEMENTARY, INFIX, Arithmetic
 from .infix import Formula
-from .motion_program import Constant, Operation, Program, names_used
+from .motion_program import BINARY, Constant, Operation, Program, names_used
 from .templates import filled, template
 
-FUNCTIONS = ELEMENTARY | {Operation.ABS: "fabs", Operation.SIGN: "sign"}
+FUNCTIONS = ELEMENTARY | {Operation.ABS: "fabs"}
 
 HELPERS = """\
 static inline double square(double x) { return x*x; }
@@ -203,7 +203,7 @@ def batch_support(text: str) -> str:
     str
         Definitions in C.
     """
-    arities = {name: 2 if name in ("pow", "atan2") else 1 for name in (*FUNCTIONS.values(), "pow")}
+    arities = {name: 2 if operation in BINARY else 1 for operation, name in FUNCTIONS.items()} | {"pow": 2}
     called = set(re.findall(r"\blanes_(\w+)\(", text))
     return template("lanes.h") + "".join(
         LANE_FUNCTIONS[arity].format(name) + "\n" for name, arity in arities.items() if name in called

@@ -6,10 +6,22 @@ Forward differentiation, assignment by assignment (Griewank & Walther, Evaluatin
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from functools import partial
 
 from .arithmetic import Arithmetic, run_program
 from .folding import ONE, ZERO, folded
-from .motion_program import Atom, Call, Constant, Expression, Name, Operation, Program, count_operations
+from .motion_program import (
+    CALLED,
+    Atom,
+    Call,
+    Constant,
+    Expression,
+    Name,
+    Operation,
+    Program,
+    count_operations,
+    expression_of,
+)
 
 Seeds = Mapping[str, Mapping[str, Atom]]
 TWO = Fraction(2)
@@ -108,43 +120,10 @@ class _Tape:
             return base if exponent else ONE
         return self(Operation.POWER, base, exponent)
 
-    def one_plus(self, sign: int, x: Atom) -> Atom:
-        """Return 1 + x^2 or 1 - x^2."""
-        return self(Operation.ADD if sign > 0 else Operation.SUBTRACT, ONE, self.power(x, TWO))
 
-
-def _root(tape: _Tape, x: Atom) -> Atom:
-    return tape.quotient(ONE, tape(Operation.SQRT, x))
-
-
-def _bell(tape: _Tape, x: Atom) -> Atom:
-    gauss = tape(Operation.EXP, tape(Operation.NEGATE, tape.power(x, TWO)))
-    return tape.product(TWO, _root(tape, Constant.PI), gauss)
-
-
-Slope = Callable[[_Tape, Atom, Atom], Atom]
-SLOPES: Mapping[Operation, Slope] = {
-    Operation.NEGATE: lambda tape, x, y: -ONE,
-    Operation.SQRT: lambda tape, x, y: tape.quotient(ONE, tape.product(TWO, y)),
-    Operation.EXP: lambda tape, x, y: y,
-    Operation.LN: lambda tape, x, y: tape.quotient(ONE, x),
-    Operation.ABS: lambda tape, x, y: tape(Operation.SIGN, x),
-    Operation.SIGN: lambda tape, x, y: ZERO,
-    Operation.SIN: lambda tape, x, y: tape(Operation.COS, x),
-    Operation.COS: lambda tape, x, y: tape(Operation.NEGATE, tape(Operation.SIN, x)),
-    Operation.TAN: lambda tape, x, y: tape.one_plus(1, y),
-    Operation.SINH: lambda tape, x, y: tape(Operation.COSH, x),
-    Operation.COSH: lambda tape, x, y: tape(Operation.SINH, x),
-    Operation.TANH: lambda tape, x, y: tape.one_plus(-1, y),
-    Operation.ARCSIN: lambda tape, x, y: _root(tape, tape.one_plus(-1, x)),
-    Operation.ARCCOS: lambda tape, x, y: tape(Operation.NEGATE, _root(tape, tape.one_plus(-1, x))),
-    Operation.ARCTAN: lambda tape, x, y: tape.quotient(ONE, tape.one_plus(1, x)),
-    Operation.ARSINH: lambda tape, x, y: _root(tape, tape.one_plus(1, x)),
-    Operation.ARCOSH: lambda tape, x, y: _root(tape, tape(Operation.SUBTRACT, tape.power(x, TWO), ONE)),
-    Operation.ARTANH: lambda tape, x, y: tape.quotient(ONE, tape.one_plus(-1, x)),
-    Operation.ERF: lambda tape, x, y: _bell(tape, x),
-}
-"""Derivatives of functions of one argument, of x and of the value y."""
+SLOPES = {Operation(each.head): expression_of(each.slope) for each in CALLED if each.slope is not None}
+SLOPES |= {Operation.NEGATE: -ONE}
+"""Derivatives of functions of one argument, of the argument x and of the value y."""
 
 
 def _duals(tape: _Tape) -> Arithmetic[_Dual]:
@@ -170,10 +149,17 @@ def _on(tape: _Tape, rule: Callable[..., _Dual]) -> Callable[..., _Dual]:
     return lambda *arguments: rule(tape, *arguments)
 
 
-def _function(tape: _Tape, operation: Operation, slope: Slope) -> Callable[[_Dual], _Dual]:
+def _function(tape: _Tape, operation: Operation, slope: Expression) -> Callable[[_Dual], _Dual]:
+    atoms = Arithmetic(
+        number=lambda number: number,
+        constants={each: each for each in Constant},
+        power=tape.power,
+        operations={each: partial(tape, each) for each in Operation},
+    )
+
     def dual(x: _Dual) -> _Dual:
         value = tape(operation, x.value)
-        return _Dual(value, _scaled(tape, x, lambda: slope(tape, x.value, value)))
+        return _Dual(value, _scaled(tape, x, lambda: atoms.value(slope, {"x": x.value, "y": value})))
 
     return dual
 

@@ -164,20 +164,20 @@ def _arithmetic(heyoka: ModuleType, number: Callable[[Fraction], object]) -> Ari
     def absolute(x: expression) -> expression:
         return heyoka.select(heyoka.lt(x, constant(Fraction(0))), -x, x)
 
+    own = {Operation.ABS: absolute, Operation.SIGN: sign}
     return Arithmetic(
         number=constant,
         constants={Constant.PI: heyoka.pi, Constant.E: heyoka.exp(constant(Fraction(1)))},
         power=power,
         operations={
-            **{operation: getattr(heyoka, function) for operation, function in ELEMENTARY.items()},
+            **{operation: getattr(heyoka, name) for operation, name in ELEMENTARY.items() if operation not in own},
+            **own,
             Operation.ADD: lambda *terms: heyoka.sum(list(terms)),
             Operation.MULTIPLY: lambda *factors: heyoka.prod(list(factors)),
             Operation.SUBTRACT: lambda a, b: a - b,
             Operation.DIVIDE: lambda a, b: a / b,
             Operation.NEGATE: lambda a: -a,
             Operation.POWER: lambda base, exponent: base**exponent,
-            Operation.ABS: absolute,
-            Operation.SIGN: sign,
         },
     )
 

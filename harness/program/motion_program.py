@@ -20,6 +20,7 @@ from typing import Any
 
 from ..failures import ErrorKind, HolonomError
 from ..formats import Document, read, require
+from ..functions import FUNCTIONS
 from ..structs import structured
 from .request import Solve
 
@@ -29,39 +30,18 @@ SHOWN = 60  # characters of a refused fragment that its refusal shows
 DECIMAL = re.compile(r"-?\d+(\.\d*)?([eE][+-]?\d{1,4})?")
 
 
-class Operation(StrEnum):
-    """The operations of a program, by the head of the MathJSON tree."""
-
-    ADD = "Add"
-    MULTIPLY = "Multiply"
-    SUBTRACT = "Subtract"
-    DIVIDE = "Divide"
-    POWER = "Power"
-    NEGATE = "Negate"
-    SQRT = "Sqrt"
-    EXP = "Exp"
-    LN = "Ln"
-    ABS = "Abs"
-    SIGN = "Sign"
-    SIN = "Sin"
-    COS = "Cos"
-    TAN = "Tan"
-    SINH = "Sinh"
-    COSH = "Cosh"
-    TANH = "Tanh"
-    ARCSIN = "Arcsin"
-    ARCCOS = "Arccos"
-    ARCTAN = "Arctan"
-    ARCTAN2 = "Arctan2"
-    ARSINH = "Arsinh"
-    ARCOSH = "Arcosh"
-    ARTANH = "Artanh"
-    ERF = "Erf"
-
+ARITHMETIC = ("Add", "Multiply", "Subtract", "Divide", "Power", "Negate")
+CALLED = tuple(each for each in FUNCTIONS if each.program)
+Operation = StrEnum(
+    "Operation", {head.upper(): head for head in (*ARITHMETIC, *(each.head for each in CALLED))}, module=__name__
+)
+"""The operations of a program; the value is the head of the MathJSON tree."""
 
 OPERATIONS = frozenset(Operation)
 VARIADIC = frozenset({Operation.ADD, Operation.MULTIPLY})
-BINARY = frozenset({Operation.SUBTRACT, Operation.DIVIDE, Operation.POWER, Operation.ARCTAN2})
+BINARY = frozenset({Operation.SUBTRACT, Operation.DIVIDE, Operation.POWER}) | {
+    Operation(each.head) for each in CALLED if each.arity == 2
+}
 
 
 class Constant(StrEnum):
@@ -151,7 +131,7 @@ def read_program(text: str) -> Program:
 
 
 def _checked(document: Mapping[str, Any]) -> Program:
-    assignments = tuple((name, _expression(tree, DEEPEST)) for name, tree in document["assignments"])
+    assignments = tuple((name, expression_of(tree)) for name, tree in document["assignments"])
     outputs = {name: _atom(tree) for name, tree in document["outputs"].items()}
     program = structured(Program, document, assignments=assignments, outputs=outputs)
     _require_straight_line(program)
@@ -247,12 +227,30 @@ def calls_in(expression: Expression) -> Iterator[Call]:
             yield from calls_in(argument)
 
 
-def _expression(tree: object, levels: int) -> Expression:
+def expression_of(tree: object, levels: int = DEEPEST) -> Expression:
+    """Read an expression.
+
+    Parameters
+    ----------
+    tree : object
+        A MathJSON tree.
+    levels : int
+        Levels that it has at most.
+
+    Returns
+    -------
+    Expression
+
+    Raises
+    ------
+    HolonomError
+        It is not an expression that a program can hold.
+    """
     match tree:
         case ["Rational", *_]:
             return _atom(tree)
         case [str(head), *arguments] if levels and _takes(head, len(arguments)):
-            return Call(Operation(head), tuple(_expression(argument, levels - 1) for argument in arguments))
+            return Call(Operation(head), tuple(expression_of(argument, levels - 1) for argument in arguments))
         case _:
             return _atom(tree)
 

@@ -23,10 +23,7 @@ BLOCK = 4096  # points carried through the program at a time; the fastest of 256
 PLACE = {"lineno": 1, "col_offset": 0}  # each node is to have one; to fill them in takes longer than all else
 
 OF_SCIPY = {Operation.ERF: ELEMENTARY[Operation.ERF]}  # ufuncs of scipy.special, loaded where a program calls one
-UFUNCS = {operation: getattr(np, name) for operation, name in ELEMENTARY.items() if operation not in OF_SCIPY} | {
-    Operation.ABS: np.abs,
-    Operation.SIGN: np.sign,
-}
+UFUNCS = {operation: getattr(np, name) for operation, name in ELEMENTARY.items() if operation not in OF_SCIPY}
 UFUNC_NAMES = {ufunc.__name__: ufunc for ufunc in (*UFUNCS.values(), np.square, np.power)}
 
 

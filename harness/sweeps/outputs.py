@@ -24,9 +24,8 @@ from fractions import Fraction
 from math import isfinite
 
 from ..failures import ErrorKind, HolonomError
-from ..functions import FUNCTIONS
 from ..options import within_reach
-from ..program.motion_program import Call, Constant, Expression, Name, Operation
+from ..program.motion_program import CALLED, Call, Constant, Expression, Name, Operation
 
 LONGEST = 500  # characters of an item
 OPERATORS = {
@@ -36,8 +35,7 @@ OPERATORS = {
     ast.Div: Operation.DIVIDE,
     ast.Pow: Operation.POWER,
 }
-CALLS = {each.scene: Operation(each.head) for each in FUNCTIONS if each.program and each.arity == 1}
-CALLS |= {"abs": Operation.ABS}
+CALLS = {each.scene: Operation(each.head) for each in CALLED if each.arity == 1}
 DERIVATIVES = ("dot", "ddot")
 
 

@@ -12,21 +12,21 @@ from holonom.crosscheck.motion_states import ComparedValue
 def test_rounding_beside_a_value_that_is_missing_is_no_difference():
     """A program that divides by what cancels has a value in 70 digits, and none in 140."""
 
-    def compared(attempt):
+    def compared():
         if mp.dps > WORKING_DIGITS:
             raise IrregularPoint
         yield "program", ComparedValue("a", mp.mpf(10) ** -72, mp.zero, mp.mpf(10) ** -72)
 
-    assert first_differences(compared, 0) == ({}, False)
+    assert first_differences(compared) == ({}, False)
 
 
 @pytest.mark.parametrize("missing", [False, True])
 def test_difference_is_found_though_a_later_value_is_missing(missing):
-    def compared(attempt):
+    def compared():
         yield "program", ComparedValue("a", mp.one, mp.zero, mp.one)
         if missing:
             raise IrregularPoint
 
-    found, regular = first_differences(compared, 0)
+    found, regular = first_differences(compared)
     assert list(found) == ["program"]
     assert regular is not missing

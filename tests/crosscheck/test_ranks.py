@@ -5,12 +5,13 @@ import random
 import pytest
 from mpmath import mp
 
+from holonom.crosscheck.digits import WORKING_DIGITS
 from holonom.crosscheck.ranks import Elimination, least_solution
 
 
 @pytest.fixture(autouse=True)
-def fifty_digits():
-    with mp.workdps(50):
+def working_digits():
+    with mp.workdps(WORKING_DIGITS):
         yield
 
 
@@ -27,7 +28,7 @@ def test_rank_of_a_product_of_random_factors(seed):
 
 
 def test_a_small_entry_is_no_pivot_however_sparse_its_column():
-    """As a pivot 1e-25 would cost 25 of 50 digits."""
+    """As a pivot 1e-25 would cost 25 of the digits."""
     matrix, right = [["1e-25", 1, 1], [0, 1, 2], [1, 0, 3]], (1, 2, 5)
     solution = Elimination(as_rows(matrix), [mp.mpf(each) for each in right]).solution()
     for row, side in zip(matrix, right, strict=True):

@@ -12,7 +12,7 @@ from functools import partial
 from mpmath import mp, mpf
 
 from holonom.program.arithmetic import Arithmetic, run_program
-from holonom.program.motion_program import Constant, Operation, Program
+from holonom.program.motion_program import CALLED, Constant, Operation, Program
 
 DIGITS = 50
 ULP = mpf(2) ** -53
@@ -21,30 +21,11 @@ TRUSTED = mpf("1e-6")  # relative errors beyond it are outside of an analysis to
 LARGEST = mpf("1e300")  # beyond are no doubles
 FIRST_ORDER = 2  # what the neglected orders may add
 
-FUNCTIONS = {
+FUNCTIONS = {Operation(each.head): each.of(mp) for each in CALLED} | {
     Operation.SUBTRACT: lambda a, b: a - b,
     Operation.DIVIDE: lambda a, b: a / b,
     Operation.NEGATE: lambda a: -a,
     Operation.POWER: mp.power,
-    Operation.SQRT: mp.sqrt,
-    Operation.EXP: mp.exp,
-    Operation.LN: mp.log,
-    Operation.ABS: abs,
-    Operation.SIGN: mp.sign,
-    Operation.SIN: mp.sin,
-    Operation.COS: mp.cos,
-    Operation.TAN: mp.tan,
-    Operation.SINH: mp.sinh,
-    Operation.COSH: mp.cosh,
-    Operation.TANH: mp.tanh,
-    Operation.ARCSIN: mp.asin,
-    Operation.ARCCOS: mp.acos,
-    Operation.ARCTAN: mp.atan,
-    Operation.ARCTAN2: mp.atan2,
-    Operation.ARSINH: mp.asinh,
-    Operation.ARCOSH: mp.acosh,
-    Operation.ARTANH: mp.atanh,
-    Operation.ERF: mp.erf,
 }
 
 

@@ -6,9 +6,9 @@ from random import Random
 import mpmath
 import pytest
 
-from holonom.program.arithmetic import ELEMENTARY, Arithmetic, run_program
+from holonom.program.arithmetic import Arithmetic, run_program
 from holonom.program.differentiation import along, derivative_name, differentiated
-from holonom.program.motion_program import Call, Constant, Name, Operation, Program, count_operations
+from holonom.program.motion_program import CALLED, Call, Constant, Name, Operation, Program, count_operations
 
 POINT = {"x": Fraction(3, 7), "y": Fraction(5, 9), "t": Fraction(1, 3)}
 ABOVE_ONE = {Operation.ARCOSH}
@@ -16,7 +16,7 @@ NUMBERS = Arithmetic(
     number=lambda number: mpmath.mpf(number.numerator) / number.denominator,
     constants={Constant.PI: mpmath.pi, Constant.E: mpmath.e},
     power=lambda base, exponent: base ** (mpmath.mpf(exponent.numerator) / exponent.denominator),
-    operations={operation: getattr(mpmath, name) for operation, name in ELEMENTARY.items()}
+    operations={Operation(each.head): each.of(mpmath.mp) for each in CALLED}
     | {
         Operation.ADD: lambda *terms: mpmath.fsum(terms),
         Operation.MULTIPLY: lambda *factors: mpmath.fprod(factors),
@@ -24,8 +24,6 @@ NUMBERS = Arithmetic(
         Operation.DIVIDE: lambda a, b: a / b,
         Operation.NEGATE: lambda a: -a,
         Operation.POWER: lambda a, b: a**b,
-        Operation.ABS: abs,
-        Operation.SIGN: mpmath.sign,
     },
 )
 

@@ -15,10 +15,8 @@ from ..infix import Formula, Rank
 from ..motion_program import Constant, Operation, Program
 from ..templates import filled
 
-FUNCTIONS = {operation: f"functions.{name}" for operation, name in ELEMENTARY.items()} | {
-    Operation.ABS: "abs",
-    Operation.SIGN: "sign",
-}
+BUILT_IN = {Operation.ABS: "abs", Operation.SIGN: "sign"}
+FUNCTIONS = {operation: f"functions.{name}" for operation, name in ELEMENTARY.items()} | BUILT_IN
 
 
 def write(program: Program) -> str:
