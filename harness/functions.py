@@ -1,4 +1,4 @@
-"""The functions of expressions: names in every notation, derivatives and behaviour."""
+"""The functions of expressions: names in all notations, derivatives and behaviour."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -93,7 +93,7 @@ def _real(name: str) -> Callable[..., Any]:
 
 
 def _bessel(letter: str, before: int, after: int) -> Function:
-    """Return a Bessel function: its derivative is half the sum of its neighbours, each with its sign."""
+    """Return a Bessel function, given the signs of its neighbours in the derivative."""
     head = f"Bessel{letter}"
     neighbours = (_times(before, [head, ["Add", "n", -1], "x"]), _times(after, [head, ["Add", "n", 1], "x"]))
     slope, name = ["Divide", ["Add", *neighbours], 2], letter.lower()
@@ -113,7 +113,7 @@ def _airy(letter: str) -> tuple[Function, Function]:
 
 
 def _jacobi(name: str, factor: Any, *others: str) -> Function:
-    """Return one of Jacobi's functions of (u, m), whose derivative by u has the two others as factors."""
+    """Return one of Jacobi's functions, given the factors of its derivative."""
     slope = _times(factor, *([f"Jacobi{each}", "x", "m"] for each in others))
     return Function(
         f"Jacobi{name}", f"jacobi_{name.lower()}", name.lower(), "", slope, f"Jacobi{name}", 2, special=True,

@@ -19,7 +19,7 @@ Parts = Iterator[tuple[str, ComparedValue]]  # each value with the part of the p
 
 
 def first_differences(compared: Callable[[], Parts], digits: int = DIGITS) -> tuple[dict[str, str], bool]:
-    """Return the first wrong value of each part at a state, and True if the state is regular.
+    """Return the first wrong value of each part at a state, and whether it is regular.
 
     Parameters
     ----------

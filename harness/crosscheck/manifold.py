@@ -61,7 +61,7 @@ class Gradients:
 
 
 def moved_onto(state: State, residuals: Steps, gradients: Gradients) -> None:
-    """Move the symbols of the gradients, by shortest steps, to a zero of the residuals.
+    """Move a state, by shortest steps, to a zero of the residuals.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def moved_onto(state: State, residuals: Steps, gradients: Gradients) -> None:
     residuals : Steps
         Of g expressions.
     gradients : Gradients
-        Of the residuals.
+        Of the residuals, by the symbols to move.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def moved_onto(state: State, residuals: Steps, gradients: Gradients) -> None:
 
 
 def left_over(state: State, residuals: Steps, gradients: Gradients) -> set[int]:
-    """Return the places of the residuals that do not vanish to half of the digits carried.
+    """Return places of residuals that do not vanish to half of the digits carried.
 
     Parameters
     ----------

@@ -285,7 +285,7 @@ def value_of(taylor: Taylor, head: str, x: Sequence[Polynomial]) -> Polynomial:
 
 
 def _composed(taylor: Taylor, head: str, x: Sequence[Polynomial]) -> Polynomial:
-    """Return the value of a function of the table; but for one, its arguments are constants."""
+    """Return the value of a function of the table; all arguments but x are constant."""
     names = OF_THE_TABLE[head].arguments
     numbers = [each[0] if name == "x" else _constant(each) for name, each in zip(names, x, strict=True)]
     inner = x[names.index("x")]
@@ -294,7 +294,7 @@ def _composed(taylor: Taylor, head: str, x: Sequence[Polynomial]) -> Polynomial:
 
 @lru_cache(REMEMBERED)
 def coefficients(head: str, precision: int, order: int, *numbers: mp.mpf) -> Polynomial:
-    """Return the Taylor coefficients of a function at a number, by its differential equation.
+    """Solve the differential equation of a function for its Taylor coefficients.
 
     Parameters
     ----------
@@ -332,7 +332,7 @@ def _contains(tree: Tree, name: str) -> bool:
 
 
 def _slope(taylor: Taylor, head: str, x: Sequence[Polynomial], y: Polynomial) -> Polynomial:
-    """Return the derivative of a function of the table by its argument x; y is its value."""
+    """Return the derivative by x of a function with the value y."""
     function = OF_THE_TABLE[head]
     known = {**dict(zip(function.arguments, x, strict=True)), "y": y}
 
