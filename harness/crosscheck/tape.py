@@ -285,7 +285,7 @@ def value_of(taylor: Taylor, head: str, x: Sequence[Polynomial]) -> Polynomial:
 
 
 def _composed(taylor: Taylor, head: str, x: Sequence[Polynomial]) -> Polynomial:
-    """Return the value of a function of the table; all arguments but x are constant."""
+    """Compose a function of the table with its argument x, the others being constant."""
     names = OF_THE_TABLE[head].arguments
     numbers = [each[0] if name == "x" else _constant(each) for name, each in zip(names, x, strict=True)]
     inner = x[names.index("x")]
