@@ -25,9 +25,9 @@ class PrintedEquation:
     name: str  # what the equation is
     agrees: bool  # whether the printed equation is the derived one
     printed: str  # the equation as printed
-    # left side less right side as printed, less the same as derived; None where the print agrees
+    # left side less right side as printed, less the same as derived; None where the paper agrees
     difference: str | None
-    corrected: str | None  # the printed equation, mended; None where the print agrees
+    corrected: str | None  # the printed equation, mended; None where the paper agrees
     note: str | None  # what there is to say about the transcription
     # printed_tree, difference_tree, corrected_tree: the same equations as trees that `holonom.typeset` sets in type, in
     # their own order; None where there is none

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from .simulation.engines.fallback import EngineSegment
     from .simulation.result import Report
 
-LISTED = 3  # segments of the robust engine that are told one by one
+LISTED = 3  # segments of the robust engine that are listed one by one
 ADVICE = {
     Difficulty.NEARLY_DEPENDENT: translatable(
         "The constraints are nearly dependent: take the orthogonal solve, which keeps the accelerations, "

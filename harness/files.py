@@ -291,7 +291,7 @@ def _target(path: Path) -> Path:
         if not link.is_symlink():
             break
         if link.lstat().st_uid not in (0, os.geteuid()):
-            raise PermissionError(None, f"{link} is a link that somebody else made")
+            raise PermissionError(None, f"{link} is a link of another user")
         link = link.parent / link.readlink()
     return path.resolve()
 

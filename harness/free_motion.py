@@ -52,7 +52,7 @@ class MotionVerdict:
     verdict: FreeMotionVerdict  # free only where that is proved
     # ``all states``, where every motion under the scene's law is free, or ``this state``
     states: str = key("for")
-    evidence: str  # what shows it, or what is in the way of a proof: one sentence
+    evidence: str  # evidence, or what is missing for a proof
     # where undecided, the order to which all coefficients of the multipliers vanish; None where there are none
     order: int | None
     first: FirstCoefficient | None  # what shows that the motion is not free

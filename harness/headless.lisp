@@ -1,10 +1,10 @@
 ;;; Headless Maxima: one file, one call, no prompts, one outcome
 ;;;
-;;; Maxima in batch mode leaves with status 0 whatever happened, goes on after a Lisp error and repeats a
+;;; Maxima in batch mode leaves with status 0 in every case, continues after a Lisp error and repeats a
 ;;; question for ever without an answer. A job loads this file first and then calls one of
 ;;;
 ;;;   RUN-FILE         reads a file statement by statement, as batchload does, remembering where each one starts, and
-;;;                    evaluates a closing call, for instance write_record("record.json");
+;;;                    evaluates a closing call, for example write_record("record.json");
 ;;;   RUN-SCENE        reads the file likewise and writes down what it described, if it loaded the library;
 ;;;   RUN-DESCRIPTION  reads no file but such a description, and evaluates calls, each of which has its own outcome.
 ;;;

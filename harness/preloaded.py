@@ -95,7 +95,7 @@ def quoted(text: str | Path) -> str:
 
 def _own_folder() -> Path:
     """Return the folder of the images, or raise if others may write to it."""
-    given = Path(os.environ.get("XDG_CACHE_HOME", ""))  # a relative one is ignored, as its standard says
+    given = Path(os.environ.get("XDG_CACHE_HOME", ""))  # a relative one is ignored, as its standard requires
     folder = Path(given if given.is_absolute() else Path.home() / ".cache", "holonom")
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     found = folder.lstat()

@@ -46,13 +46,13 @@ class Relation:
 class Equation:
     """One item of the derivation."""
 
-    id: str  # what programs know it by, ``multipliers`` for instance
+    id: str  # what programs know it by, ``multipliers`` for example
     number: str  # the number that the paper gives it; several items may share one
     name: str  # what it is, for people
     relations: tuple[Relation, ...]  # its components
 
 
-LARGEST_SIZE = 10**300  # predicted sizes beyond are said to be this
+LARGEST_SIZE = 10**300  # larger predicted sizes are replaced by this
 
 
 class LeftOut(NamedTuple):

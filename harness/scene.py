@@ -443,7 +443,7 @@ class Scene:
         ----------
         {options}
         **parameters : number
-            Values in the place of the scene's; one that is named like an argument goes through `with_settings`. The
+            Values in place of the scene's; one that is named like an argument goes through `with_settings`. The
             next call with other values of the same ones derives and compiles nothing again.
 
         Returns

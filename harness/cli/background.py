@@ -44,5 +44,5 @@ def run_in_background(file: Path, limits: Limits, work: Callable[[], None]) -> I
 
 
 def _done_quietly(work: Callable[[], None]) -> None:
-    with suppress(Exception):  # what cannot be imported is told where it is needed
+    with suppress(Exception):  # errors of imports are reported where the module is needed
         work()

@@ -166,7 +166,7 @@ def run() -> int:
     warnings.showwarning = _show_warning
     try:
         status = holonom(standalone_mode=False, obj=OWN_PROCESS) or 0
-        with suppress(OSError) if status == MACHINE_AT_FAULT else nullcontext():  # that is told already
+        with suppress(OSError) if status == MACHINE_AT_FAULT else nullcontext():  # reported already
             sys.stdout.flush()
         return status
     except click.ClickException as error:

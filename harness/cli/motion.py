@@ -187,7 +187,7 @@ def _digits_of(precision: str) -> int:
 
 def _import_what_follows(own_process: bool) -> None:
     """Import the modules needed next."""
-    with suppress(ImportError, HolonomError):  # what is missing is told when it is needed
+    with suppress(ImportError, HolonomError):  # missing modules are reported when they are needed
         import jsonschema_rs  # noqa: F401
 
         if own_process:

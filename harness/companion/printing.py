@@ -1,7 +1,7 @@
 """The whole book as one PDF: its chapters in one document, which Chromium prints.
 
-Each chapter is a named page of its own, so that its title can stand at the head of its sheets. The numbers of the
-sheets are known only when they are printed: the document is printed twice, the second time with the numbers that the
+Each chapter is a named page of its own, so that its title is at the head of its pages. The numbers of the
+pages are known only when they are printed: the document is printed twice, the second time with the numbers that the
 first one gave to the places that the contents and the index name.
 """
 

@@ -35,7 +35,7 @@ from .chapter import Run
 WORKERS = 2
 Settings = tuple[tuple[str, str], ...]
 NO_SETTINGS: Settings = ()
-OWN_ORDER = 40  # of the series of somebody's own scenes
+OWN_ORDER = 40  # of the series of a reader's scenes
 DEFAULT_LIMITS = Limits()
 
 

@@ -149,7 +149,7 @@ class Law:
 
 
 def _with_names(tree: Tree) -> Tree:
-    """Return the tree with a quantity in the place of each table."""
+    """Return the tree with a quantity in place of each table."""
     match tree:
         case ["Table", int(k), "t"]:
             return f"table {k}"

@@ -29,7 +29,7 @@ SceneAndSolve = tuple[str | None, Solve]
 class Answers(NamedTuple):
     """Documents, or the reasons why there are none."""
 
-    programs: Mapping[SceneAndSolve, Answer]  # empty where none are asked for
+    programs: Mapping[SceneAndSolve, Answer]  # empty where none are requested
     series: Mapping[str, Answer]
 
 

@@ -92,7 +92,7 @@ def judge_redundancy(
 
 def _contradiction(found: Ranks, kept: int, coordinates: int, regular: bool) -> str:
     if found.every != kept or found.kept != kept:
-        return f"{found.every} constraints are independent, and {found.kept} of the {kept} that are said to be"
+        return f"{found.every} constraints are independent, and {found.kept} of the {kept} listed as such"
     if (found.mass == coordinates) != regular:
         return f"the mass matrix has the rank {found.mass} of {coordinates}"
     return ""

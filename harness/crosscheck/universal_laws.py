@@ -47,7 +47,7 @@ def judge_law(
 ) -> CheckResult:
     """Return the verdict on a law, by the multipliers in random states.
 
-    The verdict is undecided if too few regular states are found, for instance because the law is not real there.
+    The verdict is undecided if too few regular states are found, for example because the law is not real there.
 
     Parameters
     ----------

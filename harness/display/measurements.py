@@ -142,7 +142,7 @@ def show_stability(console: Console, reports: Sequence["CaseReport"]) -> None:
     from ..explanations import advice
 
     table = Table("case", "method", "quantity", "digits", "outcome")
-    table.title, table.title_justify = "Digits kept in hard cases", "left"
+    table.title, table.title_justify = "Correct digits in hard cases", "left"
     table.columns[3].justify = "right"
     for report in reports:
         table.add_section()

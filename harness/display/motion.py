@@ -96,7 +96,7 @@ def _rounded(value: mpmath.mpf) -> str:
     return mpmath.nstr(value, SHOWN_DIGITS)
 
 
-LISTED = 3  # times that are told one by one
+LISTED = 3  # times that are listed one by one
 
 
 def show_simulation(console: "Console", simulation: "Simulation") -> None:

@@ -75,7 +75,7 @@ def show_equilibria(console: "Console", equilibria: "Equilibria") -> None:
     if equilibria.more:
         console.print(f"{equilibria.more} more belong to the families of those that are not isolated.")
     if equilibria.singular:
-        console.print(f"{equilibria.singular} starts led to singular configurations, of which nothing is said.")
+        console.print(f"{equilibria.singular} starts led to singular configurations, which are not classified.")
     if equilibria.turns:
         console.print(f"Whole turns of {', '.join(equilibria.turns)} are left out.")
 

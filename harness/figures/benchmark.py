@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 STUDY = 11.0, 16.0  # inches
-FEW_DIGITS = 20  # as far as numbers of the hardware reach, and a little beyond
+FEW_DIGITS = 20  # digits of the hardware numbers, and a few more
 SECONDS, OPERATIONS = translatable("time / s"), translatable("operations")
 
 
@@ -96,7 +96,7 @@ def _draw_panel(axes: "Axes", measurements: Sequence[Measurement], quantity: str
         axes.semilogy(
             [digits_of(m) for m in rows], work, color=colour, marker=marker, linestyle=line, label=translated(method)
         )
-    axes.set(xlabel=gettext("digits kept"), ylabel=translated(quantity))
+    axes.set(xlabel=gettext("correct digits"), ylabel=translated(quantity))
     if measurements:
         axes.legend(fontsize="small", loc="upper left", bbox_to_anchor=(0.0, -0.2), ncols=2)
 
@@ -161,7 +161,7 @@ def _draw_digits(axes: "Axes", rows: Sequence[Result | str]) -> None:
     axes.tick_params(axis="y", length=0)
     axes.grid(False, axis="y")
     axes.set(xlim=(0, MOST_DIGITS), xticks=range(0, 17, 2), ylim=(len(rows) - 0.5, -0.5))
-    axes.set_xlabel(gettext("decimal digits kept: a dot has those asked for, a cross has not"))
+    axes.set_xlabel(gettext("correct decimal digits: a dot has the required ones, a cross has not"))
 
 
 def _draw_sweep(axes: "Axes", sweep: Sweep) -> None:

@@ -79,7 +79,7 @@ class Program:
 
     scene: str | None  # name of the scene it was written for; None for a system alone
     solve: Solve
-    method: str  # which factorisation the solve uses, for instance ``bordered`` or ``schur``
+    method: str  # which factorisation the solve uses, for example ``bordered`` or ``schur``
     operations: int  # what it costs, as Maxima counted
     inputs: tuple[str, ...]
     assignments: tuple[tuple[str, Expression], ...]  # in the order in which they can be computed

@@ -28,7 +28,7 @@ class Precision:
     highest_order: int  # of an expansion: its tolerance, exp(-2*order), is one of the numbers
     number: Callable[[str], Any]  # from decimal digits to a number
     text: Callable[[Any], str]  # from a number to decimal digits
-    options: Mapping[str, Any]  # what heyoka's integrators are told about the numbers
+    options: Mapping[str, Any]  # options of heyoka's integrators for the numbers
 
     @property
     def rounding(self) -> Any:

@@ -30,7 +30,7 @@ class Package:
     """The package that a module computes with."""
 
     module: str  # that has the functions
-    usage: str  # sentences for the description
+    usage: str  # lines of the description
     support: str  # ``_points`` and ``_stacked``
     imports: str  # what the support needs
     elsewhere: Mapping[str, str] = field(default_factory=dict)  # functions that another module has

@@ -34,7 +34,7 @@ class EntryText:
     example: str
     refused: tuple[Refusal, ...]
     also: tuple[str, ...] = ()  # entries that the example needs beside it
-    system: tuple[str, ...] = ()  # entries of the system that the example needs in the place of those of the same names
+    system: tuple[str, ...] = ()  # entries of the system that the example needs in place of those of the same names
 
 
 @dataclass(frozen=True)

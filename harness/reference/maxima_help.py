@@ -113,7 +113,7 @@ def _part(part: PartText) -> str:
 
 def _refused(refusals: Sequence[Refusal]) -> str:
     refused = "".join(_filled(f"{refusal.given}: {refusal.message}", 10, 14) for refusal in refusals)
-    return f"\n{_filled('What is refused, and words of the sentence that says why:')}\n{refused}"
+    return f"\n{_filled('Errors, and words of their messages:')}\n{refused}"
 
 
 def _filled(text: str, first: int = 5, later: int = 5) -> str:

@@ -77,8 +77,8 @@ NEARER = 0.9  # of the estimate: where a weak singularity may hide
 
 POLYNOMIAL = Radius(None, None, (), translatable("infinite: the motion is a polynomial of the time"))
 UNPROVED = Radius(None, None, (), translatable("unknown: no higher powers occur, and that none follow is not proved"))
-ENTIRE = Radius(None, None, (), translatable("infinite: the motion is entire, as far as its coefficients show"))
-UNDECIDED = Radius(None, None, (), translatable("unknown: these orders do not tell how far the series holds"))
+ENTIRE = Radius(None, None, (), translatable("infinite: the coefficients are those of an entire motion"))
+UNDECIDED = Radius(None, None, (), translatable("unknown: these orders do not determine it"))
 TOO_FEW = Radius(
     None, None, (), translatable("unknown: it takes %(count)s coefficients that are not zero", count=FEWEST)
 )
@@ -334,7 +334,7 @@ def _root_tests(n: NDArray[np.int64], logarithms: Floats, stride: int, scale: Fl
     with_power = _slopes(n, logarithms, lambda n: [n, np.log(n)])
     error = np.maximum(ROOT_TEST_ERROR / n[-1], SAFETY * np.abs(slope - with_power)) / stride
     estimate = np.exp(-slope / stride) * scale
-    note = "by the root test: the orders do not tell the nearest singularities apart"
+    note = "by the root test: the orders do not separate the nearest singularities"
     return [
         Radius(r, u, (), note) for r, u in zip(estimate.tolist(), (estimate * np.expm1(error)).tolist(), strict=True)
     ]

@@ -80,7 +80,7 @@ def decided(radius: Radius, series: Sequence[Sequence[mpmath.mpf]], program: Pro
 
 
 def _at_most(bound: float, radius: Radius) -> Radius:
-    note = f"unknown, {bound:.8g} at most, where the equations of motion are singular; these orders do not tell more"
+    note = f"unknown, {bound:.8g} at most, where the equations of motion are singular; these orders do not show more"
     return replace(radius, note=note)
 
 

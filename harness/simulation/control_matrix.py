@@ -18,7 +18,7 @@ from .zeros import BETWEEN, TO_COEFFICIENTS, SignedFunctions, minima
 TOUCHED = 1e-9  # of a determinant's largest size nearby: a minimum that is a zero
 ZERO = 1e-14  # of the same: a zero at a sample
 LOST = 1e-3  # of the least singular value nearby: rank is lost
-BEHIND = 1e-9  # of the part that is looked at: how far behind a zero of the determinant alone to go on
+BEHIND = 1e-9  # of the part that is looked at: how far behind a zero of the determinant alone to continue
 
 
 def controls_may_fail(problem: MotionProblem) -> bool:

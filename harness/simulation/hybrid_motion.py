@@ -100,7 +100,7 @@ class HybridMotion:
     Raises
     ------
     HolonomError
-        As `FallbackEngine`; the motion starts where the equations leave open how it goes on.
+        As `FallbackEngine`; the motion starts where the equations leave open how it continues.
     """
 
     def __init__(self, problem: MotionProblem, request: SimulationRequest, precision: Precision, end: Any) -> None:

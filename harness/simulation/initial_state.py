@@ -79,7 +79,7 @@ class InitialStates:
         Returns
         -------
         FoundStates
-            What comes out for one column of values does not hang on the others.
+            The result of one column of values does not depend on the others.
         """
         states, found = self._evaluate(values), np.ones(values.shape[1], dtype=bool)
         with np.errstate(all="ignore"):

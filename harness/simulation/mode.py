@@ -293,7 +293,7 @@ class Mode:
         Parameters
         ----------
         until : number
-            Last time that is asked for.
+            Last time that is requested.
 
         Raises
         ------

@@ -336,7 +336,7 @@ def simulation_document(simulation: Simulation) -> dict[str, Any]:
 def report_document(report: Report) -> dict[str, Any]:
     """Return the report as a document.
 
-    It contains ``trusted``, and the sentences ``engine`` and ``notes`` next to segments and cases.
+    It contains ``trusted``, and the texts ``engine`` and ``notes`` next to segments and cases.
 
     Parameters
     ----------

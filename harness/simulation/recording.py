@@ -14,7 +14,7 @@ from .evaluation import Numbers, as_floats
 from .mode import Mode
 
 BLOCK = 2**14
-"""Samples that are handed on together: enough for arrays to pay, little beside what a process takes anyway."""
+"""Samples that are processed together: enough for arrays to be efficient, with little memory."""
 
 PORTION = 2**10
 """Samples that are looked up together in one step; the work until each is a sum over ten states."""

@@ -58,7 +58,7 @@ class Report:
     switchings : tuple of Switching
         Times at which the motion is not analytic, and how it passed them.
     violations : tuple of AccuracyViolation
-        What is out of proportion to the tolerance; a motion with any is no result.
+        Errors that are too large for the tolerance. A motion with any is rejected.
     ending : Ending or None
         Whether an event ended the motion; None where the scene names none.
     undetermined : tuple of str
@@ -70,7 +70,7 @@ class Report:
     outputs : mapping of str to number
         What the scene observes under names of its own.
     choice : Choice or None
-        Why the engine that began was taken; None where one was asked for, or is the only one.
+        Why the engine that began was taken; None where one was requested, or is the only one.
     relative_degrees : tuple of int
         Of each output that servo-constraints prescribe: which of its rates the controls are in.
     sensitivities : mapping of str to float

@@ -97,7 +97,7 @@ class Equilibria(Shown):
     more : int
         Further solutions of these families.
     singular : int
-        Solutions in singular configurations, or next to one: nothing is said about them.
+        Solutions in or near singular configurations, which are not classified.
     turns : tuple of str
         Coordinates that may be changed by whole turns.
 

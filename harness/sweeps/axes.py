@@ -44,7 +44,7 @@ class Grid:
     first: float
     last: float
     count: int
-    text: str  # how they were asked for
+    text: str  # how they were requested
 
     def at(self, places: NDArray[np.intp]) -> NDArray[np.float64]:
         """Return the numbers at some places, from zero.
@@ -68,7 +68,7 @@ class Listed:
 
     name: str
     numbers: tuple[float, ...]
-    text: str  # how they were asked for
+    text: str  # how they were requested
 
     @property
     def count(self) -> int:
@@ -101,7 +101,7 @@ class Sample:
     distribution: Distribution
     first: float
     second: float
-    text: str  # how they were asked for
+    text: str  # how they were requested
 
     def draw(self, generator: np.random.Generator, count: int) -> NDArray[np.float64]:
         """Draw random numbers from the distribution.

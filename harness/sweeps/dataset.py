@@ -23,7 +23,7 @@ from ..formats import Publication, published, require
 if TYPE_CHECKING:
     import pyarrow
 
-DOCUMENT = "_sweep.json"  # readers of datasets pass over names that begin so
+DOCUMENT = "_sweep.json"  # readers of datasets skip names that begin so
 LOCK = "_sweep.lock"
 MANIFEST = "_parts.jsonl"
 UNCOMPARED = ("file",)  # what a sweep may be called from and is still the same

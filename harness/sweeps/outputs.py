@@ -63,7 +63,7 @@ WHOLE = {kind.value: kind for kind in (Kind.FINAL, Kind.FREE, Kind.RADIUS, Kind.
 class OutputQuantity:
     """A quantity that a sweep records."""
 
-    text: str  # as it was asked for, without blanks: the name of its column
+    text: str  # as it was requested, without blanks: the name of its column
     kind: Kind
     quantity: Expression | None = None  # None where the whole motion is meant
     time: Fraction | None = None  # of `Kind.AT`; None for the end

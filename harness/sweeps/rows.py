@@ -42,7 +42,7 @@ from .time_watch import TimeWatch
 if TYPE_CHECKING:
     import pyarrow
 
-KINKED = frozenset({Operation.ABS, Operation.SIGN, Operation.ARCTAN2})  # with kinks, or jumps
+KINKED = frozenset({Operation.ABS, Operation.SIGN, Operation.ARCTAN2})  # with corners, or jumps
 GROUP = 10_000  # rows that are held in memory at a time, whatever the chunk
 
 OWN = ("row", str(Kind.RESIDUAL), "status", "note")  # columns of every sweep

@@ -83,7 +83,7 @@ def latex_marked(tree: Tree, other: Tree, colour: str = MISPRINT, width: float =
     Parameters
     ----------
     tree, other : int, str, dict or list
-        Two equations of much the same form, for instance as printed and as corrected.
+        Two equations of much the same form, for example as printed and as corrected.
     colour : str
         Name of the colour, which a document defines: MISPRINT or CORRECTION.
     width : float

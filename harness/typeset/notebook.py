@@ -38,7 +38,7 @@ class TypesetSymbol(Symbol):
 
 
 def in_letters(expression: Expr) -> Expr:
-    """Return an expression with `TypesetSymbol` in the place of every symbol.
+    """Return an expression with `TypesetSymbol` in place of every symbol.
 
     Parameters
     ----------

@@ -272,7 +272,7 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
 (defun float-of (number) (float number 1d0))
 
 ;; In floating point a residual whose terms all vanish, as y where y = 0, may stay: a caller with a point that no
-;; correction changes any more goes on from there with more digits.
+;; correction changes any more continues from there with more digits.
 (defun newton-iteration (point &optional damped)
   (let ((last-size nil))
     (dotimes (attempt *most-corrections* nil)

@@ -1,6 +1,6 @@
 ;;; A table in a CSV file: two numbers a line, t and u
 ;;;
-;;; Empty lines and those that begin with # are passed over, and so is a first line without any number. A number, which
+;;; Empty lines and those that begin with # are skipped, and so is a first line without any number. A number, which
 ;;; may stand in quotes, is read as the fraction that its decimal digits say.
 
 (in-package :maxima)

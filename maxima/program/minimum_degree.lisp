@@ -2,7 +2,7 @@
 ;;;
 ;;; Of the unknowns that wait for nothing the one with fewest neighbours is eliminated, of several the first; its
 ;;; neighbours become neighbours of each other. An unknown is put into a heap whenever its number of neighbours changes,
-;;; and what is true of it no more is passed over when it comes up.
+;;; and what is true of it no more is skipped when it comes up.
 
 (in-package :maxima)
 

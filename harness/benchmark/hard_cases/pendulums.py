@@ -148,7 +148,7 @@ def dead_centres(extent: Extent) -> Findings:
     """Yield digits of the first tip's place after many revolutions, and of the energy.
 
     Twice a revolution all rods are in line. There the parallelogram may turn into an antiparallelogram; the motion
-    goes on as the pendulum it has been.
+    continues as the pendulum it has been.
 
     Parameters
     ----------

@@ -101,7 +101,7 @@ class Candidate:
     """A method at a setting."""
 
     group: Group
-    # method, setting: for instance ``Taylor, double`` and ``tol 1e-12``
+    # method, setting: for example ``Taylor, double`` and ``tol 1e-12``
     method: str
     setting: str
     time: Fraction  # to which the motion is followed

@@ -46,7 +46,7 @@ def without_caches() -> Iterator[None]:
         state.set_diskcache_enabled(enabled)
 
 
-PATIENCE = 2.0  # seconds of a run after which a method is asked for no more
+PATIENCE = 2.0  # seconds of a run after which a method is not tried again
 REPEATED = 0.02  # seconds of a run up to which it is repeated: what disturbs a longer one matters less
 PASSES = 3
 
@@ -91,7 +91,7 @@ def measure(candidates: Iterable[Candidate], reference: Reference, advance: Call
 
 
 def times_in_turns(batches: Mapping[Key, Batch]) -> dict[Key, float]:
-    """Measure short runs: the shortest time of several passes over all runs.
+    """Measure short runs: the shortest time of several passes.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def _first_run(candidate: Candidate, reference: Reference) -> tuple[Result, Prep
     error = relative_error(prepared.state(outcome), reference.states[candidate.time])
     if not reference.can_tell(error):
         return _omission(
-            candidate, translatable("its error, %(error).1g, is none that the reference can tell", error=error)
+            candidate, translatable("its error, %(error).1g, is smaller than that of the reference", error=error)
         ), None
     return (
         Measurement(

@@ -206,7 +206,7 @@ def _series(
                 measurements.append(m)
             else:
                 omissions.append(
-                    Omission(m.method, m.setting, translatable("its error is less than the reference can tell"))
+                    Omission(m.method, m.setting, translatable("its error is smaller than that of the reference"))
                 )
         omissions += [
             Omission(

@@ -113,7 +113,7 @@ def _panels(unpushed: Simulation, pushed: Simulation, balance: EnergyBalance) ->
     work = {
         gettext("kinetic energy gained"): balance.gained,
         gettext("work of spring and damping"): balance.by_forces,
-        gettext("work at the knob"): balance.by_knob,
+        gettext("work of the control"): balance.by_knob,
     }
     return [
         Panel(

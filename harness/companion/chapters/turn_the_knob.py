@@ -103,7 +103,7 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
             "knob": draw_curves(
                 [
                     Panel(gettext("multiplier λ₁\n(dimensionless)"), multipliers),
-                    Panel(gettext("power at the knob\n(dimensionless)"), powers),
+                    Panel(gettext("power of the control\n(dimensionless)"), powers),
                 ],
                 gettext("t (dimensionless)"),
             )

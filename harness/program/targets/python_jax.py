@@ -18,7 +18,7 @@ def _array(values):
 
 """
 PURE = (
-    "They are pure, and take jit, vmap and grad. They compute with double precision, which JAX is to be told first: "
+    "They are pure, and take jit, vmap and grad. They compute with double precision, which JAX has to enable first: "
     "jax.config.update('jax_enable_x64', True), or JAX_ENABLE_X64=1 in the environment. A sign counts as constant."
 )
 JAX = Package(

@@ -25,7 +25,7 @@ class InconsistentConstraints(HolonomError):
     Parameters
     ----------
     residual : float
-        The smallest residual that was found: the distance from the constraint that is missed most, in the mass
+        The smallest residual that was found: the distance from the constraint that is violated most, in the mass
         metric and to first order.
     """
 

@@ -62,7 +62,7 @@ def probed(matrices: MotionMatrices, t: float, state: Vector) -> tuple[int, floa
     int
         The rank of J on the constraints.
     float
-        Time until the least singular value that counts vanishes, if it goes on so; infinite where it grows, zero so
+        Time until the least singular value that counts vanishes, if it continues so; infinite where it grows, zero so
         near a singular configuration that the state stands for one.
     """
     n, nominal = len(state) // 2, matrices.nominal

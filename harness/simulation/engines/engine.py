@@ -110,7 +110,7 @@ class Engine(Protocol):
     tol: float  # tolerance of a step
     code: str  # how heyoka compiled it; empty where it did not
     compile_seconds: float
-    near_singularity: bool  # whether a singular configuration is so near that only this engine can go on
+    near_singularity: bool  # whether a singular configuration is so near that only this engine can continue
 
     @classmethod
     def for_motion(cls, task: Task) -> "Engine":

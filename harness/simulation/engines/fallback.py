@@ -22,7 +22,7 @@ from .engine import Engine, Obstacle, Solutions, Step, Task
 from .registry import DEFAULT, FALLBACK, compared_engines, engine_class
 
 UNCOMPILED = (ErrorKind.COMPILER_UNUSABLE, ErrorKind.COMPILER_REFUSED)
-FINE = 1e-13  # tolerance of the robust engine between two segments of a Taylor engine, where none is asked for
+FINE = 1e-13  # tolerance of the robust engine between two segments of a Taylor engine, where none is requested
 
 
 class EngineSegment(NamedTuple):
@@ -31,7 +31,7 @@ class EngineSegment(NamedTuple):
     engine: EngineName
     start: float
     end: float
-    case: Difficulty | None = None  # why the robust engine went on; None where it did not
+    case: Difficulty | None = None  # why the robust engine continued; None where it did not
     reason: str = ""  # why it was called, a clause
 
 
@@ -42,7 +42,7 @@ class FallbackEngine:
     ----------
     task : Task
     between : OutputCounts or None
-        What is wanted between the steps; None where the motion goes on after this one, so that engines cannot be
+        What is wanted between the steps; None where the motion continues after this one, so that engines cannot be
         weighed by what is ahead.
 
     Attributes
@@ -179,7 +179,7 @@ class FallbackEngine:
         obstacle, request = self._task.problem.obstacle, self._task.request
         chosen = request.engine if not self._automatic else DEFAULT if obstacle is None else FALLBACK
         if self._task.problem.reacting and (obstacle is not None or chosen == FALLBACK):
-            raise HolonomError(ErrorKind.REACTING, detail=f"and the robust engine is called for: {obstacle or chosen}")
+            raise HolonomError(ErrorKind.REACTING, detail=f"and the robust engine is needed: {obstacle or chosen}")
         if obstacle is not None and engine_class(chosen).fixed_pivots:
             raise HolonomError(ErrorKind.NO_PIVOTS, detail=obstacle)
         first = engine_class(chosen).for_motion(self._task)

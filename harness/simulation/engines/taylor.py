@@ -97,7 +97,7 @@ class TaylorEngine(ProgramEngine):
         longest = FINE_BLOCK if self.tol <= FINE else FIRST_BLOCK
         self._first_block = min(longest, max(SHORT, OPERATIONS // max(1, self._program.operations)))
         self._longest_block = LONGEST_BLOCK
-        if self._integrator.order > HIGH_ORDER:  # one step is long enough to tell of
+        if self._integrator.order > HIGH_ORDER:  # one step is long enough to report
             self._first_block = self._longest_block = 1
         self._allowed = max(DRIFT * 10.0**-self.precision.sure_digits, self.tol)
 
@@ -253,7 +253,7 @@ class TaylorEngine(ProgramEngine):
 
     @property
     def _is_finite(self) -> bool:
-        return self._keeper is None or super()._is_finite  # heyoka says itself where a step does not end in numbers
+        return self._keeper is None or super()._is_finite  # heyoka reports steps that do not end in finite numbers
 
     def _keep_constraints(self) -> None:
         if self._keeper is not None:
