@@ -33,7 +33,7 @@ def test_the_chinese_readme_says_the_same_to_the_machine():
     """Its commands, scenes and outputs are those that are compared with runs here."""
     text = (ROOT / "README.zh.md").read_text(encoding="utf-8")
     found = snippets_of(ROOT / "README.zh.md")
-    lines = [line.partition("#")[0].split() for kind, block in found if kind == "sh" for line in block.splitlines()]
+    lines = [shlex.split(line, comments=True) for kind, block in found if kind == "sh" for line in block.splitlines()]
     assert [line for line in lines if line not in commands()] == []
     assert [block for block in found if block[0] in ("maxima", "text")] == [
         block for block in BLOCKS if block[0] in ("maxima", "text")
