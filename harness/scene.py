@@ -56,28 +56,28 @@ def load(path: str | Path, scene: str | None = None, limits: Limits | None = Non
     ----------
     path : str or Path
         A Maxima file that describes one system and any number of scenes, or a description that `holonom describe`
-        wrote; ``examples/...`` is found anywhere.
+        wrote. ``examples/...`` is found from any folder.
     scene : str or None
-        The name that the scene is assigned to; None for the last one in the file.
+        Name of the scene. Default: the last one in the file.
     limits : Limits or None
-        What each run of Maxima may take; None for two minutes and 4 GiB.
+        Limits of each run of Maxima. Default: 120 s and 4 GiB.
     **settings : int, float, Fraction, Decimal or str
-        Numbers for what the file leaves open and for parameters; a float counts as the decimal that prints it.
+        Values of parameters, and of variables of the file. A float counts as the decimal that prints it.
 
     Returns
     -------
     Scene
-        The scene; the file runs at the first use of a result.
+        The scene. The file runs at the first use of a result.
 
     Raises
     ------
     HolonomError
-        There is no such file; a setting is no number; a required sandbox is missing.
+        If the file does not exist, a setting is not a number, or a required sandbox is missing.
 
     Warns
     -----
     UserWarning
-        This machine has no sandbox, and the limits do not trust the file.
+        If this machine has no sandbox, and the limits do not trust the file.
 
     Examples
     --------
@@ -97,19 +97,19 @@ def system(text: str, scene: str | None = None, limits: Limits | None = None, **
     Parameters
     ----------
     text : str
-        What a scene file holds; ``load("holonom.mac")`` may be left out.
+        Text of a scene file, also without ``load("holonom.mac")``.
     scene, limits, **settings
         As for `load`.
 
     Returns
     -------
     Scene
-        The scene; the file runs at the first use of a result.
+        The scene. The file runs at the first use of a result.
 
     Raises
     ------
     HolonomError
-        A setting is no number.
+        If a setting is not a number.
 
     Examples
     --------
@@ -151,40 +151,47 @@ def sweep(
     *,
     options: dict[str, Any],
 ) -> "Sweep":
-    """Follow a motion for many values of its parameters.
+    """Integrate a motion for many values of its parameters.
 
     Parameters
     ----------
     scene : Scene, str or Path
         A scene, or the path of its file.
     grid : mapping of str to (first, last, count)
-        Equidistant values.
+        Equally spaced values.
     values : mapping of str to sequence
-        These values.
+        Lists of values.
     sample : mapping of str to str
-        ``normal(MEAN,DEVIATION)``, ``uniform(LEAST,GREATEST)`` or ``loguniform(LEAST,GREATEST)``.
+        Distributions: ``normal(MEAN,DEVIATION)``, ``uniform(MIN,MAX)`` or ``loguniform(MIN,MAX)``.
     keep : sequence of str
-        As for ``holonom sweep --keep``.
+        Outputs, such as ``final``, ``max(x)``, ``at(x,2)``, as for ``holonom sweep --keep``.
     output : str, Path or None
-        The folder of its files; None for one that is removed with the result.
+        Folder of the results. Default: a temporary one, removed with the result.
     size, seed : int or None
-        Of the sample.
+        Size of the sample, and seed of its random numbers.
     {options}
 
     Returns
     -------
     Sweep
-        ``sweep.dataset`` is lazy, ``sweep.to_pandas()`` all of it, ``sweep.plot()`` a map or a curve.
+        Lazy rows ``sweep.dataset``, all rows ``sweep.to_pandas()``, and a map or a curve ``sweep.plot()``.
 
     Raises
     ------
     HolonomError
-        The request cannot be met, or the folder holds something else.
+        If the request cannot be met, or the folder contains something else.
 
     Notes
     -----
-    A program that asks for more than one process must guard its main part by ``if __name__ == "__main__"``, since each
-    of them imports it.
+    A program that uses more than one process must guard its main part by ``if __name__ == "__main__"``, because each
+    process imports it.
+
+    Examples
+    --------
+    >>> import holonom
+    >>> found = holonom.sweep("examples/crane.mac", values={"m": [100, 200]}, keep=["max(abs(lambda1))"], until=1)
+    >>> found.statuses
+    {'ok': 2}
     """
     from .sweeps import axes
     from .sweeps.outputs import read_quantities
@@ -205,7 +212,7 @@ def sweep(
 class Scene:
     """A system with control law, parameter values and initial state, from a file.
 
-    Results are computed at first use, and kept. A scene does not change. In the examples of the methods `scene` is
+    Results are computed at first use and stored. A scene does not change. In the examples of the methods `scene` is
     ``holonom.load("examples/pendulum.mac")``.
 
     Examples
@@ -228,19 +235,19 @@ class Scene:
         Parameters
         ----------
         settings : mapping of str to number or None
-            Values of parameters and of names that the file leaves open.
+            Values of parameters, and of variables of the file.
         **more : number
             Values by name, which take precedence over `settings`.
 
         Returns
         -------
         Scene
-            A new scene; this one does not change.
+            A new scene.
 
         Raises
         ------
         HolonomError
-            A setting is no number.
+            If a setting is not a number.
 
         Examples
         --------
@@ -343,7 +350,7 @@ class Scene:
         Raises
         ------
         HolonomError
-            The file cannot be derived.
+            If the file cannot be derived.
 
         Examples
         --------
@@ -369,7 +376,7 @@ class Scene:
         Raises
         ------
         HolonomError
-            The file cannot be derived.
+            If the file cannot be derived.
 
         Examples
         --------
@@ -392,7 +399,7 @@ class Scene:
         Raises
         ------
         HolonomError
-            The file cannot be derived.
+            If the file cannot be derived.
 
         Examples
         --------
@@ -422,7 +429,7 @@ class Scene:
         Raises
         ------
         HolonomError
-            The control law is not analytic at t0, G is singular there, or the digits cannot be had.
+            If the control law is not analytic at t0, G is singular there, or the digits cannot be reached.
 
         Examples
         --------
@@ -443,19 +450,19 @@ class Scene:
         ----------
         {options}
         **parameters : number
-            Values in place of the scene's; one that is named like an argument goes through `with_settings`. The
-            next call with other values of the same ones derives and compiles nothing again.
+            Values of parameters, in place of the scene's. Use `with_settings` for a parameter with the name of an
+            argument. Calls with other values of the same parameters derive and compile nothing again.
 
         Returns
         -------
         Simulation
-            ``motion["x"]`` is a series of samples, ``motion["d(x, m)"]`` its derivative where ``sensitivities=["m"]``
-            asks for it, ``motion.to_pandas()`` all of them.
+            Samples ``motion["x"]``, derivatives ``motion["d(x, m)"]`` with ``sensitivities=["m"]``, and
+            ``motion.to_pandas()``.
 
         Raises
         ------
         HolonomError
-            The request cannot be met, or the motion cannot be continued so far.
+            If the request cannot be met, or the motion cannot be continued so far.
 
         Examples
         --------
@@ -485,13 +492,13 @@ class Scene:
         Returns
         -------
         Linearization
-            ``lin.A``, ``lin.eigenvalues``, ``lin.modes``, ``lin.state_space("ddot")``.
+            Matrices ``lin.A``, ``lin.eigenvalues``, ``lin.modes``, ``lin.state_space("ddot")``.
 
         Raises
         ------
         HolonomError
-            A control has no law, a parameter no value; the motion is not analytic or cannot be continued so far; the
-            constraints lose rank there.
+            If a control has no law or a parameter no value, if the motion is not analytic or cannot be continued so
+            far, or if the constraints lose rank there.
 
         Examples
         --------
@@ -510,25 +517,25 @@ class Scene:
     @naming_the_extra()
     @takes_options(*options_of(EquilibriaRequest))
     def equilibria(self, options: dict[str, Any], **controls: float) -> "Equilibria":
-        """Look for states at rest for constant controls.
+        """Search for states at rest for constant controls.
 
-        Others than those found may exist.
+        The search is random and may miss equilibria.
 
         Parameters
         ----------
         {options}
         **controls : float
-            Values of controls; the others have those of their law at the first time.
+            Values of controls. Default: the initial values of their laws.
 
         Returns
         -------
         Equilibria
-            ``found["e1"].stability``, ``found["e1"].linearization``.
+            Equilibria by name, with ``found["e1"].stability`` and ``found["e1"].linearization``.
 
         Raises
         ------
         HolonomError
-            The equations contain the time; a control or a parameter has no value; the motion is not analytic.
+            If the equations contain the time, a control or a parameter has no value, or the motion is not analytic.
 
         Examples
         --------
@@ -543,16 +550,16 @@ class Scene:
     @naming_the_extra()
     @takes_options(*options_of(EquilibriaRequest))
     def branches(self, control: str, values: Sequence[float], options: dict[str, Any], **controls: float) -> "Branches":
-        """Look for states at rest over the values of a control.
+        """Search for states at rest over the values of a control.
 
-        Others than those found may exist.
+        The search is random and may miss equilibria.
 
         Parameters
         ----------
         control : str
             Name of the control that varies.
         values : sequence of float
-            At least one. The states found at one value are starts at the next.
+            Values of the control. States found at one value are initial guesses at the next.
         {options}
         **controls : float
             Constant values of the other controls, as for `equilibria`.
@@ -560,7 +567,7 @@ class Scene:
         Returns
         -------
         Branches
-            ``found.to_pandas()``, ``found.plot()``.
+            Table ``found.to_pandas()`` and diagram ``found.plot()``.
 
         Raises
         ------
@@ -595,7 +602,7 @@ class Scene:
         Raises
         ------
         HolonomError
-            A control has no law, a parameter no value; the motion is not analytic.
+            If a control has no law or a parameter no value, or if the motion is not analytic.
 
         Examples
         --------
@@ -612,8 +619,8 @@ class Scene:
     def rhs(self, options: dict[str, Any]) -> "RightHandSide":
         """Return the equations of motion as y' = f(t, y) for any integrator.
 
-        y holds the coordinates, then the velocities. The control law and the parameters are put in. The constraints
-        are kept by the accelerations only.
+        y contains the coordinates, then the velocities. The control law and the values of the parameters are
+        substituted. Only the accelerations satisfy the constraints: a solver may drift from them.
 
         Parameters
         ----------
@@ -627,8 +634,8 @@ class Scene:
         Raises
         ------
         HolonomError
-            No order of pivots solves the equations of motion, as where constraints are redundant; the motion is not
-            analytic everywhere.
+            If no order of pivots solves the equations of motion, for example with redundant constraints, or if the
+            motion is not analytic everywhere.
 
         Examples
         --------

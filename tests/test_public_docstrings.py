@@ -11,7 +11,6 @@ import holonom
 METHODS = {f"Scene.{name}": value for name, value in inspect.getmembers(holonom.Scene) if not name.startswith("_")}
 PUBLIC = {name: getattr(holonom, name) for name in holonom.__all__} | METHODS
 CALLED = {name: value for name, value in PUBLIC.items() if inspect.isfunction(value)}
-WITHOUT_EXAMPLE = {"sweep"}  # writes a folder; `tests/sweeps` has its examples
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +37,7 @@ def test_a_public_summary_is_one_short_line(name):
     assert "\n" not in summary
 
 
-@pytest.mark.parametrize("name", sorted(PUBLIC.keys() - WITHOUT_EXAMPLE))
+@pytest.mark.parametrize("name", sorted(PUBLIC))
 def test_a_public_example_prints_what_it_shows(name, scene):
     text = inspect.getdoc(PUBLIC[name])
     test = doctest.DocTestParser().get_doctest(text, {"scene": scene}, name, None, 0)
