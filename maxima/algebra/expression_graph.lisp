@@ -54,6 +54,10 @@
           (push (cons description node) (gethash hash nodes))
           node))))
 
+(defun table-of-nodes (value)
+  "The value for each node there is, by its number."
+  (make-array (1+ (expression-graph-size $expression_graph)) :initial-element value))
+
 ;; Lisps hash a list by its first items at most, which are the same for all sums 1 - x, 1 - y, ...
 (defun hash-of (description)
   (let ((hash 0))

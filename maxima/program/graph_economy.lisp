@@ -32,7 +32,7 @@
 
 (defstruct census
   nodes                                    ; all live nodes, in order of birth
-  (uses (make-hash-table)))                ; node number -> how many parts it is
+  (uses (table-of-nodes 0)))               ; how many parts each is
 
 (defun census-of (roots)
   "The nodes that the given terms need, and how often each is used."
@@ -47,19 +47,24 @@
     census))
 
 (defun in-order-of-birth (nodes)
-  (let ((places (make-array (1+ (expression-graph-size $expression_graph)) :initial-element nil)))
+  (let ((places (table-of-nodes nil)))
     (dolist (node nodes) (setf (aref places (node-number node)) node))
     (delete nil (coerce places 'list))))
 
-(defun first-use-p (node census) (eql 1 (incf (gethash (node-number node) (census-uses census) 0))))
-(defun uses-of (node census) (gethash (node-number (unheld node)) (census-uses census) 0))
+(defun first-use-p (node census) (eql 1 (incf (aref (census-uses census) (node-number node)))))
+
+(defun uses-of (node census)
+  "None, of a node that is younger than the census."
+  (let ((number (node-number (unheld node))) (uses (census-uses census)))
+    (if (< number (length uses)) (aref uses number) 0)))
+
 (defun shared-p (node census) (> (uses-of node census) 1))
 
 ;;; ---- rewriting a graph -------------------------------------------------------------------
 
 (defstruct rewriting
-  (done (make-hash-table))                 ; node number -> term it has become
-  (parts (make-hash-table))                ; node number -> its parts regrouped, where they are
+  (done (table-of-nodes nil))              ; the term that each has become
+  (parts (table-of-nodes nil))             ; its parts regrouped, where they are
   sum-rule)                                ; (node, its terms rewritten) -> term; nil for their sum
 
 (defun rewritten-terms (terms rewriting nodes)
@@ -71,9 +76,9 @@
   (scaled-term (term-coefficient term) (rewritten-node (term-node term) rewriting)))
 
 (defun rewritten-node (node rewriting)
-  (or (gethash (node-number node) (rewriting-done rewriting))
-      (setf (gethash (node-number node) (rewriting-done rewriting))
-            (let ((parts (gethash (node-number node) (rewriting-parts rewriting))))
+  (or (aref (rewriting-done rewriting) (node-number node))
+      (setf (aref (rewriting-done rewriting) (node-number node))
+            (let ((parts (aref (rewriting-parts rewriting) (node-number node))))
               (cond (parts (node-again node parts rewriting))
                     ((and (unruled-p node rewriting) (parts-as-they-were-p node rewriting))
                      (node-term node))
@@ -170,14 +175,13 @@
 
 (defun share-pairs (roots kind)
   (let* ((census (census-of roots))
-         (bags (bags-of kind census))
-         (rewriting (make-rewriting)))
+         (bags (bags-of kind census)))
     (do () ((not (share-once bags kind census))))
-    (dolist (bag bags)
-      (if (bag-changed bag)
-          (setf (gethash (node-number (bag-node bag)) (rewriting-parts rewriting))
-                (parts-of-bag bag kind))))
-    (rewritten-terms roots rewriting (census-nodes census))))
+    (let ((rewriting (make-rewriting)))
+      (dolist (bag bags)
+        (if (bag-changed bag)
+            (setf (aref (rewriting-parts rewriting) (node-number (bag-node bag))) (parts-of-bag bag kind))))
+      (rewritten-terms roots rewriting (census-nodes census)))))
 
 (defun bags-of (kind census)
   (let ((bags nil))
@@ -215,10 +219,11 @@
 ;;; A standing is where a pair was found: the bags, and the two members in the first of them.
 
 (defstruct standing bags first second)
+(defvar *most-nodes* (expt 2 30))
 
 (defun repeated-pairs (bags census)
   "The standings of all pairs found in two bags or more, the commonest first, among equals the one found last."
-  (let ((known (make-hash-table :test 'equal)) (found nil))
+  (let ((known (make-hash-table)) (found nil))
     (dolist (bag bags)
       (do ((rest (members-worth-pairing bag census) (cdr rest)))
           ((null rest))
@@ -238,8 +243,12 @@
     (if (<= (length common) *largest-bag-to-pair*) common)))
 
 (defun standing-of (a b known)
-  (let ((key (list (node-number (cdr a)) (node-number (cdr b)) (/ (car b) (car a)))))
-    (or (gethash key known) (setf (gethash key known) (make-standing :first a :second b)))))
+  "Known by one number for both nodes, and by the ratio of the multipliers."
+  (let* ((nodes (+ (* (node-number (cdr a)) *most-nodes*) (node-number (cdr b))))
+         (ratio (/ (car b) (car a)))
+         (standing (cdr (assoc ratio (gethash nodes known)))))
+    (or standing
+        (cdar (push (cons ratio (make-standing :first a :second b)) (gethash nodes known))))))
 
 (defun share-pair (standing kind)
   (let* ((a (standing-first standing)) (b (standing-second standing))

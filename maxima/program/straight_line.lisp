@@ -14,15 +14,15 @@
 ;;; standing alone: an output -x, an argument -x, a sum -x - y that has nothing to start with.
 
 (defstruct signs
-  (turned (make-hash-table))               ; number of a sum -> true if its negative is written
-  (users (make-hash-table))                ; node number -> the nodes it is part of
-  (roots (make-hash-table)))               ; node number -> the outputs it is, as terms
+  (turned (table-of-nodes nil))            ; of a sum, whether its negative is written
+  (users (table-of-nodes nil))             ; the nodes that each is part of
+  (roots (table-of-nodes nil)))            ; the outputs that each is, as terms
 
 (defun sign-of (node signs)
   "1, or -1 if the negative of the node is what is written."
   (case (node-kind node)
     (held (sign-of (node-parts node) signs))
-    (sum (if (gethash (node-number node) (signs-turned signs)) -1 1))
+    (sum (if (aref (signs-turned signs) (node-number node)) -1 1))
     (product (let ((sign 1))
                (dolist (factor (node-parts node) sign)
                  (if (oddp (factor-exponent factor))
@@ -45,15 +45,15 @@
 (defun chosen-signs (roots census)
   "Signs for all live nodes: sums are turned, one after the other, where that leaves fewer minus signs alone."
   (let ((signs (make-signs)))
-    (dolist (root roots) (push root (gethash (node-number (unheld (term-node root))) (signs-roots signs))))
+    (dolist (root roots) (push root (aref (signs-roots signs) (node-number (unheld (term-node root))))))
     (dolist (node (census-nodes census))
-      (dolist (part (nodes-in node)) (push node (gethash (node-number part) (signs-users signs)))))
+      (dolist (part (nodes-in node)) (push node (aref (signs-users signs) (node-number part)))))
     (dolist (node (census-nodes census) signs) (if (eq (node-kind node) 'sum) (turn-to-save node signs)))))
 
 (defun turn-to-save (sum signs)
   (let ((places (remove-duplicates (cons sum (places-above sum signs)))) (turned (signs-turned signs)))
     (flet ((minuses () (sum-of-all (mapcar #'(lambda (place) (lone-minuses place signs)) places)))
-           (turn () (setf (gethash (node-number sum) turned) (not (gethash (node-number sum) turned)))))
+           (turn () (setf (aref turned (node-number sum)) (not (aref turned (node-number sum))))))
       (let ((before (minuses)))
         (when (plusp before)
           (turn)
@@ -61,10 +61,10 @@
 
 (defun places-above (node signs)
   "The sums, calls and outputs whose terms change sign with the node."
-  (append (gethash (node-number node) (signs-roots signs))
+  (append (aref (signs-roots signs) (node-number node))
           (mapcan #'(lambda (user)
                       (if (member (node-kind user) '(sum call)) (list user) (places-above user signs)))
-                  (gethash (node-number node) (signs-users signs)))))
+                  (aref (signs-users signs) (node-number node)))))
 
 ;;; ---- the program under way -------------------------------------------------------------------
 
@@ -72,7 +72,7 @@
   (length 0)
   (assignments nil)                        ; the last one first
   (operations 0)                           ; in all assignments
-  (writings (make-hash-table)))            ; node number -> how it is written
+  (writings (table-of-nodes nil)))         ; how each is written
 
 (defstruct writing expression (operations 0))
 
@@ -112,8 +112,8 @@
 
 (defun writing-of (node program)
   "How a node, with the sign chosen for it, is written."
-  (or (gethash (node-number node) (program-writings program))
-      (setf (gethash (node-number node) (program-writings program))
+  (or (aref (program-writings program) (node-number node))
+      (setf (aref (program-writings program) (node-number node))
             (let ((writing (new-writing node program)))
               (if (or (named-p node program)
                       (> (writing-operations writing) *longest-inline-writing*))
