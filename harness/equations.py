@@ -1,4 +1,4 @@
-"""Equations of a scene, by their place, the paper's number or their id."""
+"""Equations of a scene, by their place, the equation number or their id."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, overload
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 class Equations(Sequence["Equation"]):
     """Equations in the paper's order, which a notebook typesets.
 
-    ``equations[0]`` is the first; ``equations["8"]`` are those with the paper's number (8), and
+    ``equations[0]`` is the first; ``equations["8"]`` are those with the number (8), and
     ``equations["multipliers"]`` the one with that id.
 
     Examples

@@ -21,7 +21,7 @@ class PrintedEquation:
     The print is that of our copy. Equations are Maxima text, on one line.
     """
 
-    number: str  # the paper's number, without brackets; empty for an equation that has none
+    number: str  # the equation number, without brackets; empty for an equation that has none
     name: str  # what the equation is
     agrees: bool  # whether the printed equation is the derived one
     printed: str  # the equation as printed

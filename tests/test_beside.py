@@ -36,7 +36,7 @@ def test_errors_are_raised_here():
     )
 
 
-def test_child_that_is_ended_is_told():
+def test_child_that_is_ended_is_reported():
     with beside(ended) as child:
         child.send(None)
         with pytest.raises(HolonomError) as error:

@@ -14,7 +14,7 @@ WORDS, WIDTH = 22, 120  # an entry
 def test_an_entry_is_one_short_line():
     assert ENTRIES
     assert [line for line in ENTRIES if len(line) > WIDTH or len(line.split()) > WORDS] == []
-    assert re.findall(r"^ +\S.*", TEXT, re.MULTILINE) == []  # no entry goes on below
+    assert re.findall(r"^ +\S.*", TEXT, re.MULTILINE) == []  # an entry has no second line
 
 
 @pytest.mark.parametrize("release", [each for each in RELEASES if "### " in each], ids=lambda each: each.split()[0])

@@ -163,7 +163,7 @@ def test_a_reader_who_leaves_early_is_no_error(particle_scene):
         (["series", "examples/pendulum.mac", "--ordr", "3"], "--order"),
     ],
 )
-def test_a_name_that_is_nearly_right_is_told_the_right_one(arguments, meant):
+def test_a_name_that_is_nearly_right_gets_the_right_one(arguments, meant):
     done = holonom(*arguments, cwd=Path(__file__).parents[1])
     assert done.returncode == 2
     assert meant in done.stderr
@@ -176,13 +176,13 @@ def test_a_scene_may_stand_on_standard_input(particle_scene):
     assert json.loads(done.stdout) == json.loads(holonom("derive", particle_scene, "--json", "-").stdout)
 
 
-def test_check_told_a_temporary_file_for_what_stands_on_standard_input(particle_scene):
+def test_check_named_a_temporary_file_for_what_stands_on_standard_input(particle_scene):
     text = particle_scene.read_text()
     assert json.loads(holonom("check", "-", "--json", "-", input=text).stdout)["scene"] == "-"
     assert holonom("check", "-", input=text).stdout.startswith("-\n")
 
 
-def test_what_is_wrong_on_standard_input_is_told_of_standard_input():
+def test_what_is_wrong_on_standard_input_is_reported_of_standard_input():
     done = holonom("derive", "-", input="a : 1$\nb : $\n")
     assert done.returncode == 2
     assert "standard input:2: " in done.stderr

@@ -113,7 +113,7 @@ def test_a_check_that_fails_is_made_again(make):
     assert not (make.house / "build/check.json").exists()
 
 
-def test_without_root_rights_all_that_is_missing_is_told_at_once_and_make_goes_on(make):
+def test_without_root_rights_all_that_is_missing_is_reported_at_once_and_make_goes_on(make):
     (make.house / "calls").touch()
     done = make("setup", present=("cc",), id="echo 1000")
     assert done.returncode == 0
@@ -128,14 +128,14 @@ def test_with_root_rights_what_is_missing_is_installed_and_nothing_else(make):
     assert (make.house / "asked").read_text() == "update -qq\ninstall -qq bubblewrap\n"
 
 
-def test_a_package_that_cannot_be_installed_is_told(make):
+def test_a_package_that_cannot_be_installed_is_reported(make):
     done = make("setup", present=("maxima", "cc"), id="echo 0", **{"apt-get": "exit 100"})
     assert done.returncode == 0
     assert "apt-get install bubblewrap" in done.stderr
 
 
 def test_no_python_that_is_new_enough_is_one_sentence(make):
-    """There is nothing to go on with."""
+    """There is nothing to continue with."""
     newer = (make.house / "pyproject.toml").stat().st_mtime + 5
     os.utime(make.house / "pyproject.toml", (newer, newer))
     refusing = "exit 1"

@@ -199,7 +199,7 @@ def test_a_setting_that_is_no_number_is_refused(value):
 
 
 @pytest.mark.parametrize("choice", [{"engine": "warp"}, {"stabilization": "tape"}, {"solve": "guess"}])
-def test_what_is_no_choice_is_told_the_choices(released, choice):
+def test_what_is_no_choice_is_reported_the_choices(released, choice):
     with failing(ErrorKind.NOT_A_CHOICE, *choice.values()):
         released.simulate(**choice)
 

@@ -118,7 +118,7 @@ def test_a_missing_package_is_one_sentence_with_the_command_that_installs_it(pac
     assert "Traceback" not in done.stderr
 
 
-def test_free_motion_is_told_by_the_core_alone_where_it_broke_off_after_two_lines():
+def test_free_motion_is_reported_by_the_core_alone_where_it_broke_off_after_two_lines():
     hidden = "import sys; sys.modules['numpy'] = None; from holonom.cli import main; main()"
     done = run(sys.executable, "-c", hidden, "free", "examples/pendulum.mac", cwd=ROOT)
     assert done.returncode == 0, done.stderr

@@ -36,11 +36,27 @@ REPLACED = {
     r"twins?": "partner, private symbol, translated page",
     r"knobs?": "control input",
     r"(?:un)?walled": "sandboxed",
+    r"digits[ _]kept": "correct digits",
+    r"in_numbers": "numeric, with values",
+    r"law_of_controls": "control law",
+    r"for instance": "for example",
+    r"hangs? on": "depends on",
+    r"go(?:es)? on|going on|went on": "continue",
+    r"in the place of": "in place of",
+    r"paper's numbers?": "equation number",
+    r"pass(?:es|ed)? over|stepp?(?:s|ed)? over": "miss, skip",
+    r"told_apart|_said|said_|_told": "distinguished, reported",
+    r"stretch(?:es)?": "sample block",
+    r"by hand of|as far as known|none but": "plain words",
 }
 # Files in which a word has another meaning, with the reason.
 ALLOWED = {
     r"nobody|whoever": {"harness/sandbox.py": "the user nobody of Unix"},
     r"knobs?": {"tests/": "the file of the chapter with this title"},
+    r"go(?:es)? on|going on|went on": {
+        "tests/test_sandbox.py": "text that a scene prints",
+        "tests/test_maxima.py": "text that a scene prints",
+    },
     r"lanes?": {"harness/program/": "SIMD lanes of a vector in C", "tests/program/": "the same"},
 }
 SKIPPED = (

@@ -28,7 +28,7 @@ class Card:
     """The content of the card of one equation."""
 
     anchor: str  # where the card is, on its page
-    # number, name: the paper's number and what the equation is
+    # number, name: the equation number and what the equation is
     number: str
     name: str
     # of the equation in a record; empty where only the paper has it. Its plain words are under it in a template.

@@ -27,7 +27,7 @@ def session_text(root: Path, slug: str) -> str:
     """
     known = table("sessions")[slug]
     head = gettext(
-        "%(title)s: a session of Maxima, after `make install`, for instance by  maxima -b %(slug)s.mac",
+        "%(title)s: a session of Maxima, after `make install`, for example by  maxima -b %(slug)s.mac",
         title=slug,
         slug=slug,
     )

@@ -83,7 +83,7 @@ class _Check:
     def verdicts(self) -> Iterator[EquationVerdict]:
         """Return verdicts on the whole record, in its order."""
         record = self._record
-        yield from map(_said_otherwise, differences(record, self._premises))
+        yield from map(_as_verdict, differences(record, self._premises))
         checked = list(map(self._checked, record.derivations))
         scenes = list(self._scenes(checked))
         for place, (derived, each) in enumerate(zip(record.derivations, checked, strict=True)):
@@ -214,7 +214,7 @@ class _Check:
             yield _refused(place, Item("left_out", "", "what is left out"), detail)
 
 
-def _said_otherwise(difference: Difference) -> EquationVerdict:
+def _as_verdict(difference: Difference) -> EquationVerdict:
     place = Place(0, difference.scene)
     return _refused(place, Item("description", "", difference.what), difference.detail, held=False)
 

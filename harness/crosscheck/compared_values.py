@@ -49,7 +49,7 @@ def first_differences(compared: Callable[[], Parts], digits: int = DIGITS) -> tu
             part, value = again[place] if place < len(again) else made[place]
             rounding = abs(value.given - value.true) <= before * mp.mpf(10) ** -VANISHED
             if _differs(value, digits) and not rounding:
-                found.setdefault(part, _told(value))
+                found.setdefault(part, _described(value))
     return found, regular and still
 
 
@@ -97,5 +97,5 @@ def _differs(value: ComparedValue, digits: int) -> bool:
     return abs(value.given - value.true) > mp.mpf(10) ** -digits * size
 
 
-def _told(value: ComparedValue) -> str:
+def _described(value: ComparedValue) -> str:
     return f"{value.quantity}: {mp.nstr(value.given, 12)} where {mp.nstr(value.true, 12)} is so"

@@ -78,7 +78,7 @@ def motion_verdicts(
         found = judged(lambda each=each: judge_programs(description, [each], seed), each.scene)
         found += judged(lambda each=each, series=series: judge_series(description, series, [each]), each.scene)
         found += judged(lambda each=each, series=series: judge_servo(description, [each], series), each.scene)
-        yield from map(_told, found)
+        yield from map(_as_equation_verdict, found)
 
 
 def verdicts_out_of_time(description: Description) -> list[EquationVerdict]:
@@ -94,7 +94,7 @@ def verdicts_out_of_time(description: Description) -> list[EquationVerdict]:
     list of EquationVerdict
         One for each scene, undecided.
     """
-    return [_told(_out_of_time(scene and scene.name)) for scene in description.scenes or (None,)]
+    return [_as_equation_verdict(_out_of_time(scene and scene.name)) for scene in description.scenes or (None,)]
 
 
 def _out_of_time(scene: str | None) -> ProgramVerdict:
@@ -102,5 +102,5 @@ def _out_of_time(scene: str | None) -> ProgramVerdict:
     return ProgramVerdict(scene, "motion", over)
 
 
-def _told(verdict: ProgramVerdict) -> EquationVerdict:
+def _as_equation_verdict(verdict: ProgramVerdict) -> EquationVerdict:
     return verdict_on(Place(0, verdict.scene), Item("motion", "", verdict.part), verdict.found)

@@ -42,7 +42,7 @@ class CheckResult(NamedTuple):
 
 
 class Item(NamedTuple):
-    """An equation: its id, the paper's number and its name."""
+    """An equation: its id, the equation number and its name."""
 
     id: str
     number: str

@@ -48,7 +48,7 @@ ATTEMPTS = 25
 
 
 MOST_AGAIN = 8
-"""Numbers of digits tried in the place of the first where a rounding of zero is zero."""
+"""Numbers of digits tried in place of the first where a rounding of zero is zero."""
 
 Sides = tuple[list[Number | None], list[Number | None]]
 """Values of all derived expressions, and of what they are compared with."""
@@ -178,9 +178,9 @@ class _Judge:
                 if found is Found.EQUAL:
                     self.equal[i] += 1
                 elif found in (Found.DIFFERENT, Found.UNDERIVED) and self._is_in_domain(i, point):
-                    return self._told(i, found, left, right, point)
+                    return self._describe(i, found, left, right, point)
                 elif found is Found.UNSTABLE:
-                    self.lost[i] = self._told(i, found, left, right, point)
+                    self.lost[i] = self._describe(i, found, left, right, point)
             if enough and (min(self.equal) >= self.points or (drawn > HOPELESS and not max(self.equal))):
                 break
         return ""
@@ -192,9 +192,9 @@ class _Judge:
         terms = [term for term in self.comparison.domain if term.free_symbols <= known]
         return all(each is not None and _is_real(each, each) for each in self.evaluation.values_of(terms, point))
 
-    def _told(self, i: int, found: Found, left: Number | None, right: Number, point: Point) -> str:
+    def _describe(self, i: int, found: Found, left: Number | None, right: Number, point: Point) -> str:
         if found is Found.DIFFERENT:
-            derived, known = _told_apart(mp.re(left), mp.re(right))
+            derived, known = _distinguished(mp.re(left), mp.re(right))
         else:
             derived, known = "no real value", mp.nstr(mp.re(right), SHOWN)
         return (
@@ -402,7 +402,7 @@ def confirmed(difference: Callable[[], str]) -> str:
         return difference()
 
 
-def _told_apart(left: Number, right: Number) -> tuple[str, str]:
+def _distinguished(left: Number, right: Number) -> tuple[str, str]:
     """Return two numbers with enough digits to distinguish them."""
     with mp.workdps(CONFIRMING_DIGITS):
         for digits in range(SHOWN, CONFIRMING_DIGITS):

@@ -28,7 +28,7 @@ HELD_IN_MEMORY = 10**12  # terms of closed forms: some bytes each, more than any
 
 
 def show_record(console: Console, record: "Record") -> None:
-    """Print a derivation, equation by equation, under the paper's numbers.
+    """Print a derivation, equation by equation, under the equation numbers.
 
     Parameters
     ----------

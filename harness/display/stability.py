@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 ROUNDING = 1e-9  # share of a size that is shown as zero
 SHOWN_COORDINATES = 8  # columns for which there is room
-MOVING = "The motion goes on from here: these eigenvalues belong to this time and say nothing about stability."
+MOVING = "The motion continues from here: these eigenvalues are those of this time and do not determine stability."
 
 
 def show_linearization(console: "Console", found: "Linearization") -> None:

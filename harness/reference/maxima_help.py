@@ -46,7 +46,7 @@ def _info_with_index() -> tuple[str, str]:
     first = function_texts()[0].name
     text = f"This is {INFO}: how a system and its scenes are described.\n\n"
     text += NODE.format(info=INFO, node="Top", links=f"Next: {DEFINITIONS},  Up: (dir)")
-    text += f"* Menu:\n\n* {DEFINITIONS}::  for instance {first}\n\n"
+    text += f"* Menu:\n\n* {DEFINITIONS}::  for example {first}\n\n"
     text += NODE.format(info=INFO, node=DEFINITIONS, links="Prev: Top,  Up: Top")
     start, places = len(text), []
     for topic, explained in _topics():
@@ -84,7 +84,7 @@ def _function(function: FunctionText) -> str:
     entries = "".join(_filled(f"{entry.name}: {entry.type}", 10, 14) for entry in function.entries)
     return (
         f" -- Function: {function.name}\n{_filled(function.summary)}\n{_shown(function.call)}\n"
-        f"{_filled('For instance:')}\n{_shown(_assignment(function))}\n"
+        f"{_filled('Example:')}\n{_shown(_assignment(function))}\n"
         f"{_filled('Its entries, in any order; each has a topic of its own:')}\n{entries}"
     )
 
@@ -94,7 +94,7 @@ def _entry(entry: EntryText) -> str:
     text = (
         f" -- Entry of {entry.function}: {entry.name}\n{_filled(entry.text)}\n"
         f"{_filled(f'What it is: {entry.type}.')}{_filled(f'Without it: {entry.default}.')}\n"
-        f"{_filled('For instance:')}\n{_shown(example)}"
+        f"{_filled('Example:')}\n{_shown(example)}"
     )
     if entry.system:
         system = ",\n".join(entry.system)
@@ -106,7 +106,7 @@ def _part(part: PartText) -> str:
     example = "\n".join([*part.context, f"{part.example};"])
     gives = f"\n{_filled('which gives')}\n{_shown(part.gives)}" if part.gives else ""
     return (
-        f" -- Function: {part.call}\n{_filled(part.text)}\n{_filled('For instance:')}\n{_shown(example)}{gives}"
+        f" -- Function: {part.call}\n{_filled(part.text)}\n{_filled('Example:')}\n{_shown(example)}{gives}"
         f"{_refused(part.refused)}"
     )
 

@@ -298,7 +298,7 @@ class HybridMotion:
     # ---- switching ----
 
     def _cross(self, crossing: Crossing, state: Numbers) -> None:
-        """Go on from a surface of the state, or of the time."""
+        """Continue from a switching surface of the state, or from a time event."""
         t, name, before = crossing.t, crossing.name, self.mode.pattern
         if name == UNIQUE:
             self._refuse(t, NOT_UNIQUE)
@@ -342,7 +342,7 @@ class HybridMotion:
         if driven(self.problem, sign.name):
             return self._decided(sign, pattern, t, state)
         if to is None:
-            self._refuse(t, f"{sign.of} is zero, and not in forces alone, which leaves open how the motion goes on")
+            self._refuse(t, f"{sign.of} is zero, and not in forces alone, which leaves open how the motion continues")
         return to
 
     def _decided(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> int | str:
@@ -410,7 +410,7 @@ class HybridMotion:
         if sign.by is not DependsOn.TIME:
             jump = abs(float(after.energy_at(t, state) - before.energy_at(t, state)))
             if not continuous:
-                self._refuse(t, f"an impact decides how the motion goes on as {sign.of} changes its sign")
+                self._refuse(t, f"an impact decides how the motion continues as {sign.of} changes its sign")
             if jump > CONTINUOUS * max(self.nominal.energy(old.mass), abs(float(before.energy_at(t, state)))):
                 self._refuse(t, f"the energy jumps as {sign.of} changes its sign")
         return moved

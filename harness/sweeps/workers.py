@@ -171,7 +171,7 @@ def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
     }
     with (
         dask.config.set(settings),
-        _told_when_lost(),
+        _loss_reported(),
         _cluster(workers) if scheduler is None else nullcontext(scheduler) as place,
         _connected(place) as client,
     ):
@@ -208,7 +208,7 @@ def _cluster(workers: int) -> "LocalCluster":
 
 
 @contextmanager
-def _told_when_lost() -> Iterator[None]:
+def _loss_reported() -> Iterator[None]:
     """Raise an error if the workers are lost inside the block."""
     from asyncio import CancelledError
 

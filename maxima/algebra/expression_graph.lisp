@@ -416,7 +416,7 @@
 
 (defstruct direction
   (seeds (make-hash-table))                ; symbol -> term
-  (rates (make-hash-table)))               ; node number -> term, as far as known
+  (rates (make-hash-table)))               ; node number -> term, if known
 
 (defun $graph_direction (equations)
   "The direction in which symbols change at the rates given by  symbol = rate."

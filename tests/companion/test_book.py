@@ -141,7 +141,7 @@ def test_no_verdict_disagrees(companion):
 
 
 def test_no_card_without_a_formula_has_a_verdict(companion):
-    """What stands in the place of a formula was not compared with anything."""
+    """What stands in place of a formula was not compared with anything."""
     assert [page.name for page in pages.pages(companion) if pages.verdicts_without_a_formula(page)] == []
 
 

@@ -26,7 +26,7 @@ def test_links_resolve_and_pages_are_sound(own):
 
 
 def test_no_card_without_a_formula_has_a_verdict(own):
-    """What stands in the place of a formula was not compared with anything."""
+    """What stands in place of a formula was not compared with anything."""
     assert [page.name for page in pages.pages(own) if pages.verdicts_without_a_formula(page)] == []
 
 

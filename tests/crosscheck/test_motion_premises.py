@@ -114,7 +114,7 @@ def test_laws_are_compared_on_each_piece_and_beside_each_switch(asked):
     assert [round(float(each), 9) for each in times] == pytest.approx([0.75, 1.499997, 1.500003, 2.25], abs=1e-5)
 
 
-def test_only_a_nearer_start_is_told(asked):
+def test_only_a_nearer_start_is_reported(asked):
     description, programs, _ = asked
     motion = DescribedMotion(description, description.scenes[0])
     with mp.workdps(WORKING_DIGITS):

@@ -43,7 +43,7 @@ def test_a_constraint_that_does_not_follow_from_the_others_is_found(record, scen
     assert found["constraint_forces"] is Verdict.DISAGREES
 
 
-def test_a_constraint_that_follows_and_is_not_said_to_is_found(record, scene):
+def test_a_constraint_that_follows_and_is_not_listed_is_found(record, scene):
     claimed = dataclasses.replace(record.derivations[0], redundant=())
     found = verdicts_of(dataclasses.replace(record, derivations=(claimed,)), scene)
     assert found["redundant_constraints"] in (Verdict.DISAGREES, Verdict.UNDECIDED)

@@ -46,7 +46,7 @@ def test_the_multiplier_is_the_spring_force(record):
     assert [str(relation.right) for relation in solved.relations] == ["k*z"]
 
 
-def test_a_singular_mass_matrix_that_is_said_to_be_regular_is_found(record, source):
+def test_a_singular_mass_matrix_that_is_stated_to_be_regular_is_found(record, source):
     claimed = dataclasses.replace(record.derivations[0], mass_matrix="regular")
     report = check_record(dataclasses.replace(record, derivations=(claimed,)), source.description())
     disagreeing = {found.id for found in report.verdicts if found.verdict is Verdict.DISAGREES}

@@ -85,7 +85,7 @@ class TestEquations:
         false = dataclasses.replace(every_term_record, derivations=(), scenes=())
         assert disagreeing(false, every_term_description)
 
-    def test_what_is_said_besides_the_equations_is_found(self, every_term_record, every_term_description):
+    def test_what_is_stated_besides_the_equations_is_found(self, every_term_record, every_term_description):
         true = every_term_record
         (whole, part) = true.scenes
         system = dataclasses.replace(true.system, velocities=true.system.velocities[::-1])

@@ -401,7 +401,7 @@ def test_no_image_is_taken_from_the_working_directory(tmp_path, monkeypatch):
     assert os.listdir(tmp_path) == ["home"]
 
 
-def test_every_signal_that_ends_a_command_is_told():
+def test_every_signal_that_ends_a_command_is_reported():
     from holonom.supervisor import CRASHED, _ending_of
 
     realtime = [number for number in range(1, signal.NSIG) if number not in [*signal.Signals]]

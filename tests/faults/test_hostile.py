@@ -43,7 +43,7 @@ def told(tmp_path: Path, command: str) -> str:
     return json.loads(ask(Document.RECORD, file))["system"]["title"]
 
 
-def test_what_a_program_says_can_be_told(tmp_path):
+def test_what_a_program_says_can_be_known(tmp_path):
     assert told(tmp_path, "echo hello") == "hello"
 
 

@@ -2,7 +2,7 @@
 
 A seed draws functions of the sources, in each a kind of change, and a change of that kind. The nearest tests of each
 mutant run in a copy of the sources. It is killed when one of them fails or takes too long; at the end these tests have
-to pass without a mutant. A run that was broken off goes on from its JSON file; survivors meet changed tests again.
+to pass without a mutant. A run that was interrupted continues from its JSON file; survivors meet changed tests again.
 
     python tests/mutants/run.py build/mutants.json [--seed SEED] [--count COUNT] [--jobs JOBS]
 """
@@ -171,7 +171,7 @@ def main() -> None:
     """Run what has not been run."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("results", type=Path)
-    parser.add_argument("--seed", help="the clock chooses it unless a run goes on")
+    parser.add_argument("--seed", help="the clock chooses it unless a run continues")
     parser.add_argument("--count", type=int, default=300)
     parser.add_argument("--jobs", type=int, default=1)
     given = parser.parse_args()

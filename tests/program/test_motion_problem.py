@@ -37,7 +37,7 @@ def test_part_of_a_program_gives_the_numbers_of_the_whole(paper):
     assert part.operations < paper.motion.operations + len(paper.motion.assignments)
 
 
-def test_a_constraint_given_twice_is_told_and_its_multiplier_is_zero(write_scene):
+def test_a_constraint_given_twice_is_reported_and_its_multiplier_is_zero(write_scene):
     file = write_scene("""load("holonom.mac")$
 system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2, constraints = [x - y, x - y])$
 slide : holonomic_scene(system, initial_state = [x = 0, dot(x) = 1])$""")

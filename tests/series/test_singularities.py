@@ -71,7 +71,7 @@ def test_removable_zero_of_a_divisor_is_no_singularity():
     assert not found.located
 
 
-def test_pole_of_the_motion_alone_is_estimated_and_said_to_be():
+def test_pole_of_the_motion_alone_is_estimated_and_marked():
     found = radius(ONE.format(force="6*x^2", x=1, v=2))
     assert not found.located
     assert found.coefficients == 41

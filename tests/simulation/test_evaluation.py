@@ -87,7 +87,7 @@ def test_projection_moves_to_the_nearest_state_and_tells_the_way(problem, states
 
 
 def test_what_is_kept_for_all_values_of_a_parameter_is_compiled_at_once(tmp_path):
-    """Else the last digits of a motion would hang on how many were followed before."""
+    """Else the last digits of a motion would depend on how many were integrated before."""
     file = tmp_path / "oscillator.mac"
     file.write_text(
         """load("holonom.mac")$

@@ -1,4 +1,4 @@
-"""Joints that are released: constraints end, the state goes on, and what follows has a closed form."""
+"""Joints that are released: constraints end, the state continues, and what follows has a closed form."""
 
 import json
 from fractions import Fraction

@@ -141,7 +141,7 @@ def test_a_linkage_keeps_its_branch_through_its_dead_centres():
     assert abs(report.energy_error) < 1e-10
 
 
-def test_a_hand_over_is_told_in_one_line_each():
+def test_a_hand_over_is_reported_in_one_line_each():
     report = final(problem("linkage.mac"), until=Fraction(1))
     taylor, robust, last = report.segments
     assert (taylor.engine, robust.engine, last.engine) == (EngineName.TAYLOR, EngineName.ROBUST, EngineName.TAYLOR)
@@ -236,7 +236,7 @@ def test_forces_beyond_all_numbers_were_warnings_of_numpy_and_a_free_motion(writ
     assert Difficulty.FREE_CANCELLATION not in report.cases
 
 
-def test_redundant_constraints_are_told_and_followed():
+def test_redundant_constraints_are_reported_and_followed():
     """Truth: a constraint given twice changes nothing but its own multiplier, by every engine."""
     engines = (EngineName.TAYLOR, EngineName.ROBUST)
     reports = [final(problem("hard/repeated_constraint.mac"), engine=each) for each in engines]

@@ -29,7 +29,7 @@ def lengthening() -> MotionProblem:
 
 
 @pytest.fixture
-def short_stretches(monkeypatch: pytest.MonkeyPatch) -> None:
+def short_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(recording, "BLOCK", 7)
     monkeypatch.setattr(recording, "PORTION", 3)
 
@@ -41,7 +41,7 @@ def followed(asked: MotionProblem, **wanted) -> list[Sampled]:
 
 
 @pytest.mark.parametrize("wanted", [{"samples": SAMPLES}, {"max_step": 0.05}], ids=["samples", "steps"])
-def test_stretches_are_the_motion_and_none_is_longer_than_it_may_be(lengthening, short_stretches, wanted):
+def test_blocks_are_the_motion_and_none_is_longer_than_it_may_be(lengthening, short_blocks, wanted):
     parts = followed(lengthening, **wanted)
     together = np.concatenate([part.times for part in parts])
     assert max(len(part.times) for part in parts) <= recording.BLOCK < len(together)
@@ -52,7 +52,7 @@ def test_stretches_are_the_motion_and_none_is_longer_than_it_may_be(lengthening,
         assert together == pytest.approx(np.linspace(0, 3, SAMPLES), abs=1e-15)
 
 
-def test_the_report_does_not_depend_on_the_stretches(lengthening, monkeypatch):
+def test_the_report_does_not_depend_on_the_blocks(lengthening, monkeypatch):
     whole = simulate(lengthening, SimulationRequest(until=3, samples=SAMPLES))
     monkeypatch.setattr(recording, "BLOCK", 7)
     monkeypatch.setattr(recording, "PORTION", 3)
@@ -64,7 +64,7 @@ def test_the_report_does_not_depend_on_the_stretches(lengthening, monkeypatch):
 
 
 @pytest.mark.parametrize("suffix", [".csv", ".parquet"])
-def test_a_file_written_in_parts_holds_what_one_written_at_once_does(lengthening, short_stretches, tmp_path, suffix):
+def test_a_file_written_in_parts_holds_what_one_written_at_once_does(lengthening, short_blocks, tmp_path, suffix):
     parts = followed(lengthening, samples=SAMPLES)
     with sample_file(tmp_path / f"parts{suffix}", 17) as take:
         for part in parts:
@@ -96,7 +96,7 @@ def test_more_than_the_disk_holds_is_refused_before_the_motion(lengthening, tmp_
 
 
 @pytest.mark.parametrize("suffix", output.BYTES_ON_DISK)
-def test_a_sample_takes_no_more_of_the_disk_than_is_said(lengthening, tmp_path, suffix):
+def test_a_sample_takes_no_more_of_the_disk_than_is_stated(lengthening, tmp_path, suffix):
     simulation = simulate(lengthening, SimulationRequest(until=3, samples=3000))
     file = tmp_path / f"swing{suffix}"
     write_samples(simulation, file)

@@ -295,7 +295,7 @@ def test_no_step_is_longer_than_asked_for():
     assert max(later - earlier for earlier, later in zip(motion.times, motion.times[1:], strict=False)) < 0.0101
 
 
-def test_who_follows_one_analytic_motion_alone_is_told_where_it_ends():
+def test_a_motion_of_one_analytic_part_ends_with_its_time():
     with pytest.raises(HolonomError) as refused:
         TaylorEngine(pendulum(potential=" + 20*abs(x)"))
     assert (refused.value.kind, refused.value.detail) == (ErrorKind.NOT_ANALYTIC, "x")

@@ -103,7 +103,7 @@ def test_steps_end_at_every_point_and_on_the_number_nearest_to_it(driven):
 
 
 def test_a_motion_may_start_at_a_point(driven):
-    """The spline is not analytic there; the motion goes on from it all the same."""
+    """The spline is not analytic there; the motion continues from it all the same."""
     motion = driven(f"table({points()})", span="1.3, 4").simulate(samples=5)
     assert motion["x"] == pytest.approx(truth(motion.times, start=1.3), rel=1e-14, abs=1e-14)
 

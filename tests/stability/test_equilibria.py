@@ -115,7 +115,7 @@ def test_a_family_is_one_equilibrium():
     assert found.more == 19
 
 
-def test_families_are_told_apart_from_each_other_and_from_what_is_isolated():
+def test_families_are_distinguished_from_each_other_and_from_what_is_isolated():
     """V = F(r^2) with F' = (r^2 - 1)(r^2 - 4): two circles and the place between."""
     found = of_particle("potential_energy = (x^2 + y^2)^3/3 - 5*(x^2 + y^2)^2/2 + 4*(x^2 + y^2)").equilibria()
     radii = [np.hypot(each.coordinates["x"], each.coordinates["y"]) for each in found]

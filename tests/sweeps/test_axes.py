@@ -52,7 +52,7 @@ def test_samples_have_the_moments_of_their_distributions():
         (["m=0:1:999999999", "c=0:1:999999999"], [], [], None, "at most"),
     ],
 )
-def test_what_is_no_axis_is_told_in_one_sentence(grids, lists, samples, size, told):
+def test_what_is_no_axis_is_reported_in_one_sentence(grids, lists, samples, size, told):
     with pytest.raises(HolonomError, match=told) as refused:
         read_axes(grids, lists, samples, size, None)
     assert "\n" not in str(refused.value)

@@ -1,4 +1,4 @@
-"""The command sweep: its folder, what it refuses, and how it goes on."""
+"""The command sweep: its folder, what it refuses, and how it continues."""
 
 import json
 import os
@@ -121,7 +121,7 @@ def exchange_lines(folder: Path) -> None:
         (lambda folder: (folder / "_parts.jsonl").write_bytes(b"\xff\n[]\n{}\n3\n"), [0, 1, 2, 3]),
     ],
 )
-def test_parts_that_are_not_as_they_were_written_are_computed_again_and_said(swept, tmp_path, tamper, parts):
+def test_parts_that_are_not_as_they_were_written_are_computed_again_and_reported(swept, tmp_path, tamper, parts):
     whole, folder = rows(swept / "runs"), tmp_path / "runs"
     shutil.copytree(swept / "runs", folder)
     tamper(folder)
@@ -133,7 +133,7 @@ def test_parts_that_are_not_as_they_were_written_are_computed_again_and_said(swe
     assert sweep(*ASKED, "-o", folder) == (0, "")
 
 
-def test_a_sweep_of_standard_input_told_a_temporary_file(swept):
+def test_a_sweep_of_standard_input_named_a_temporary_file(swept):
     done = sweep("-", *ASKED[1:], "-o", swept / "runs", "--json", swept / "again.json", text=CRANE.read_text())
     assert (done.returncode, done.stderr) == (0, "")
     assert json.loads((swept / "again.json").read_text())["scene"]["file"] == "-"
@@ -178,7 +178,7 @@ def test_another_sweep_in_the_same_folder_is_refused(swept, change, told):
         ),
     ],
 )
-def test_bad_options_are_told_in_one_sentence(tmp_path, monkeypatch, options, told):
+def test_bad_options_are_reported_in_one_sentence(tmp_path, monkeypatch, options, told):
     monkeypatch.chdir(tmp_path)
     refused = sweep(CRANE, *options, "-o", tmp_path / "runs")
     assert refused.returncode == 2

@@ -9,7 +9,7 @@ from holonom.program.motion_program import Call, Name, Operation
 from holonom.sweeps.outputs import Kind, read_quantities
 
 
-def test_items_are_told_apart_by_commas_outside_of_brackets():
+def test_items_are_distinguished_by_commas_outside_of_brackets():
     kept = read_quantities(["final, at(x, 5/2)", "max(abs(lambda1)),zero( dot(y) )", "final"])
     assert [(item.text, item.kind) for item in kept] == [
         ("final", Kind.FINAL),

@@ -84,7 +84,7 @@ def test_a_killed_command_leaves_whole_parts_and_the_same_command_the_rest(undis
     assert rows(tmp_path / "runs").equals(rows(undisturbed))
 
 
-def test_a_running_scheduler_is_used_and_its_end_told(undisturbed, tmp_path):
+def test_a_running_scheduler_is_used_and_its_end_reported(undisturbed, tmp_path):
     file = tmp_path / "scheduler.json"
     dask = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--scheduler-file", str(file), "--no-dashboard"]
     work = [sys.executable, "-m", "distributed.cli.dask_worker", "--scheduler-file", str(file), "--nthreads", "1"]

@@ -79,7 +79,7 @@ def test_advice_is_one_sentence_for_each_kind(kind):
     assert ". " not in sentence
 
 
-def test_results_and_sweep_of_a_case_are_told_apart():
+def test_results_and_sweep_of_a_case_are_distinguished():
     assert examined(FAILED, Extent.SHORT).sweep is None
     report = examined(HELD, Extent.SHORT)
     assert len(report.results) == 3

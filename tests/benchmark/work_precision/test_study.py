@@ -155,7 +155,7 @@ def test_precisions_whose_reference_would_take_too_long_are_left_out_with_the_re
 
 
 def test_a_scene_that_ends_by_an_event_is_asked_for_a_time(tmp_path):
-    # its until was passed over in silence
+    # its until was missed in silence
     file = tmp_path / "falling.mac"
     file.write_text("""load("holonom.mac")$
 system : holonomic_system(coordinates = [y], kinetic_energy = dot(y)^2/2, potential_energy = 10*y)$

@@ -80,7 +80,7 @@ def test_assistive_technology_can_announce_everything_by_a_name(seen):
     assert told(seen, "nameless") == []
 
 
-def test_assistive_technology_is_told_headings_in_order(seen):
+def test_assistive_technology_gets_headings_in_order(seen):
     for each in seen:
         assert each.headings[0] == 1, each.page.name
         assert all(below - above <= 1 for above, below in pairwise(each.headings)), each.page.name

@@ -55,7 +55,7 @@ def nodes(tree, path=()):
 
 
 def put(holder, key, path, new):
-    """Put a tree in the place of another."""
+    """Put a tree in place of another."""
     if not path:
         holder[key] = new
         return
@@ -177,7 +177,7 @@ def _(record, draw):
     return record
 
 
-@of_class("rate in the place of its coordinate", algebra=True)
+@of_class("rate in place of its coordinate", algebra=True)
 def _(record, draw):
     system = record["system"]
     rates = dict(zip(system["coordinates"], system["velocities"], strict=True))

@@ -156,7 +156,7 @@ def test_the_factors_of_a_row_of_loops_grow_like_the_row():
     assert entries(80) < 2.2 * entries(40)
 
 
-def test_constraints_that_are_singular_against_what_is_said_have_no_accelerations():
+def test_constraints_that_are_singular_against_what_is_stated_have_no_accelerations():
     factored = factored_constraints(np.eye(2), np.array([[1.0, 0.0], [2.0, 0.0]]), 2)
     assert not np.isfinite(factored.accelerations(np.ones(2), np.zeros(2))).any()
 

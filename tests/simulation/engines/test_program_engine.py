@@ -1,4 +1,4 @@
-"""What the engines that take the motion program have in common: going on, pieces, obstacles and ends."""
+"""What the engines that take the motion program have in common: continuing, pieces, obstacles and ends."""
 
 from fractions import Fraction
 from itertools import pairwise
