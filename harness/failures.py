@@ -265,6 +265,10 @@ class ErrorKind(Enum):
         "choose another time",
     )
     METHOD_GAVE_UP = ("{detail}", "use a larger tolerance", "use another method")
+    NOT_LINEARIZED_ALONG = (
+        "small deviations change too fast to be followed: their error is estimated as {detail}",
+        "choose an earlier end with {--until}",
+    )
     MASS_INDEFINITE = (
         "the kinetic energy is negative for some velocities, so it does not measure distances from the constraints",
         "correct a mass of the wrong sign",

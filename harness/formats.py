@@ -55,6 +55,7 @@ class Publication(StrEnum):
     DOCTOR = "doctor"
     SWEEP = "sweep"
     LINEARIZED = "linearized"
+    LINEARIZED_ALONG = "linearized-along"
     EQUILIBRIA = "equilibria"
     COSTS = "costs"
     HARD_CASES = "hard-cases"

@@ -23,7 +23,7 @@ from .series.request import SeriesRequest
 from .simulation.derivations import Derivations
 from .simulation.request import SimulationRequest
 from .source import Source
-from .stability.request import EquilibriaRequest, LinearizationRequest
+from .stability.request import AlongRequest, EquilibriaRequest, LinearizationRequest
 from .sweeps.request import SweepRequest
 from .temporary import KeptDirectory
 
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from .record import Record
     from .series.power_series import MotionSeries
     from .simulation.result import Simulation
+    from .stability.along import LinearizedMotion
     from .stability.branches import Branches
     from .stability.equilibria import Equilibria
     from .stability.linear_equations import LinearEquations
@@ -513,6 +514,35 @@ class Scene:
                 raise HolonomError(ErrorKind.TWO_STATES)
             return self.equilibria()[name].linearization
         return linearize(self._problem("direct", DOUBLE_DIGITS), self._linear_equations, options["at"])
+
+    @naming_the_extra()
+    @takes_options(*options_of(AlongRequest))
+    def linearize_along(self, options: dict[str, Any]) -> "LinearizedMotion":
+        """Linearise along the whole motion, on the constraint manifold.
+
+        Parameters
+        ----------
+        {options}
+
+        Returns
+        -------
+        LinearizedMotion
+            ``along.A``, ``along.transition``, ``along.floquet``, ``along.free``; ``along[k]`` is a `Linearization`.
+
+        Raises
+        ------
+        HolonomError
+            As `linearize`; small deviations change too fast.
+
+        Examples
+        --------
+        >>> scene.linearize_along(until=1, samples=3).transition.shape
+        (3, 2, 2)
+        """
+        from .program.motion_problem import DOUBLE_DIGITS
+        from .stability.along import linearize_along
+
+        return linearize_along(self._problem("direct", DOUBLE_DIGITS), self._linear_equations, AlongRequest(**options))
 
     @naming_the_extra()
     @takes_options(*options_of(EquilibriaRequest))

@@ -1,4 +1,4 @@
-"""The commands about equilibria and linearised motions: equilibria, linearize."""
+"""The commands about equilibria and linearised motions: equilibria, linearize, linearize-along."""
 
 from fractions import Fraction
 from pathlib import Path
@@ -9,7 +9,7 @@ import click
 from ..options import options_of
 from ..program.request import Request
 from ..sandbox import Limits
-from ..stability.request import EquilibriaRequest, LinearizationRequest
+from ..stability.request import AlongRequest, EquilibriaRequest, LinearizationRequest
 from .group import holonom
 from .options import asks_one_scene, present, runs_scenes, takes, writes_json
 from .outputs import OutputFile
@@ -33,6 +33,28 @@ def linearize(
 
     found = Scene(scene_file, request.scene, request.settings, limits).linearize(**options)
     present(published(Publication.LINEARIZED, found.document()), json_file, show_linearization, found)
+    return 0
+
+
+@holonom.command(examples=["linearize-along examples/pendulum.mac --until 2 --samples 21"])
+@asks_one_scene()
+@takes(*options_of(AlongRequest))
+@writes_json
+@runs_scenes
+def linearize_along(
+    scene_file: Path, request: Request, options: dict[str, Any], json_file: Path | None, limits: Limits
+) -> int:
+    """Linearise along the motion of a SCENE.
+
+    The result holds the state space and the state-transition matrix at times. Of a periodic motion it has the
+    characteristic multipliers, of a free motion the multipliers of small deviations.
+    """
+    from ..display.stability import show_linearized_motion
+    from ..formats import Publication, published
+    from ..scene import Scene
+
+    found = Scene(scene_file, request.scene, request.settings, limits).linearize_along(**options)
+    present(published(Publication.LINEARIZED_ALONG, found.document()), json_file, show_linearized_motion, found)
     return 0
 
 

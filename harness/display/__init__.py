@@ -29,6 +29,8 @@ def show(console: "Console", result: Shown) -> None:
             from .free_motion import show_free_motion as table
         case "Linearization":
             from .stability import show_linearization as table
+        case "LinearizedMotion":
+            from .stability import show_linearized_motion as table
         case "MeasuredCosts":
             from .measurements import show_costs as table
         case "MotionSeries":

@@ -11,6 +11,7 @@ from .text import counted, styled
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from ..stability.along import LinearizedMotion
     from ..stability.branches import Branches
     from ..stability.equilibria import Equilibria
     from ..stability.linearization import Linearization
@@ -50,6 +51,39 @@ def show_linearization(console: "Console", found: "Linearization") -> None:
         console.print(f"The controls reach {found.controllable_rank} of {2 * m} directions of the state.")
     if not found.at_rest:
         console.print(MOVING)
+
+
+def show_linearized_motion(console: "Console", along: "LinearizedMotion") -> None:
+    """Print the growth of deviations, and verdicts on periodic and on free motions.
+
+    Parameters
+    ----------
+    console : Console
+        Console to print on.
+    along : LinearizedMotion
+        Linear system along a motion.
+    """
+    from rich.table import Table
+
+    table = Table("t", "growth", title=visible_line(along.scene), title_justify="left")
+    columns = [along.growth]
+    if along.free is not None:
+        table.add_column("multipliers")
+        columns.append(along.free.sizes)
+    for t, *row in zip(along.times, *columns, strict=True):
+        table.add_row(f"{t:.10g}", *(f"{number:.6g}" for number in row))
+    console.print(table)
+    console.print("Growth: the longest deviation of all that have length one at the start, in the mass metric.")
+    states = len(along.transition[0])
+    if (free := along.free) is not None:
+        console.print(f"The motion is free. {free.staying} of {states} small deviations stay free to first order.")
+        if free.stability is not None:
+            console.print(Text("Multipliers of the others: ") + styled(free.stability) + Text(", to first order."))
+    if along.floquet is not None:
+        largest = max(map(abs, along.floquet.multipliers), default=0.0)
+        console.print(Text("The motion is periodic: ") + styled(along.floquet.stability) + Text("."))
+        multipliers = ", ".join(_number(_rounded(value, largest)) for value in along.floquet.multipliers)
+        console.print(f"Characteristic multipliers: {multipliers or 'none'}.")
 
 
 def show_equilibria(console: "Console", equilibria: "Equilibria") -> None:

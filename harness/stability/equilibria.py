@@ -12,7 +12,7 @@ points. More solutions may exist. Stability follows from two theorems:
 Otherwise the stability is undecided.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
@@ -420,19 +420,30 @@ def _stability(found: _Solution, A: Matrix, forced: bool) -> Stability:
         values = np.linalg.eigvalsh((found.stiffness + found.stiffness.T) / 2)
         if np.all(values > LEAST_STIFFNESS * np.max(np.abs(values), initial=0.0)):
             return Stability.STABLE
-    parts, certain = _certain_real_parts(A, PERTURBED if found.isolated else PERTURBED_FAMILY)
+    parts, certain = certain_distances(A, PERTURBED if found.isolated else PERTURBED_FAMILY, np.real)
     if np.any(certain & (parts > 0)):
         return Stability.UNSTABLE
     return Stability.ASYMPTOTIC if np.all(certain & (parts < 0)) else Stability.UNDECIDED
 
 
-def _certain_real_parts(A: Matrix, error: float) -> tuple[Vector, np.ndarray]:
-    """Return real parts of the eigenvalues, and True for those with a certain sign.
+def certain_distances(A: Matrix, error: float, distance: Callable[[Vector], Vector]) -> tuple[Vector, np.ndarray]:
+    """Return distances of the eigenvalues from a line or a circle, and True for those with a certain sign.
 
-    The sign is certain if it holds under a relative error of A.
+    The sign is certain if it holds under a relative error of A. An eigenvalue moves by its condition number 1/|y^H x|
+    times the perturbation, to first order (Golub & Van Loan, section 7.2).
 
-    An eigenvalue moves by its condition number 1/|y^H x| times the perturbation, to first order (Golub & Van Loan,
-    section 7.2).
+    Parameters
+    ----------
+    A : ndarray, shape (s, s)
+    error : float
+        Relative.
+    distance : callable
+        Of the eigenvalues, complex, shape (s,); with a slope of at most one.
+
+    Returns
+    -------
+    distances : ndarray, shape (s,)
+    certain : ndarray of bool, shape (s,)
     """
     if not A.size:
         return np.empty(0), np.empty(0, dtype=bool)
@@ -441,4 +452,5 @@ def _certain_real_parts(A: Matrix, error: float) -> tuple[Vector, np.ndarray]:
     with np.errstate(divide="ignore"):
         conditions = 1 / np.abs(np.einsum("ij,ij->j", left.conj(), right))
     moved = error * np.linalg.norm(balanced, 2) * conditions
-    return values.real, (np.abs(values.real) > moved) & (conditions < NEARLY_DEFECTIVE)
+    distances = distance(values)
+    return distances, (np.abs(distances) > moved) & (conditions < NEARLY_DEFECTIVE)

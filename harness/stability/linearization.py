@@ -31,6 +31,7 @@ from ..simulation.constraints.directions import or_one
 from ..simulation.matrices import Matrix, Vector, start_of
 from ..simulation.nominal import nominal_of
 from ..simulation.request import FINAL_STATE_ALONE, SimulationRequest
+from ..simulation.result import Simulation
 from ..simulation.simulate import simulate
 from .linear_equations import LinearEquations, Point
 from .tangent import Tangent
@@ -157,6 +158,25 @@ class Linearization(Shown):
         """
         return _reachable(self.A.T, self.C[self._rows(outputs)].T)
 
+    def output_row(self, output: str) -> Vector:
+        """Return the deviation of an output by the state.
+
+        Parameters
+        ----------
+        output : str
+            Its name.
+
+        Returns
+        -------
+        ndarray, shape (2m,)
+
+        Raises
+        ------
+        ValueError
+            There is no such output.
+        """
+        return self.C[self._rows([output])[0]]
+
     def state_space(self, input: str = "u", outputs: Sequence[str] | None = None) -> tuple[Matrix, ...]:
         """Return A, B, C, D as `scipy.signal.StateSpace` and python-control take them.
 
@@ -278,11 +298,60 @@ def linearized(
     HolonomError
         The constraints are singular there.
     """
-    names, kept = equations.coordinates, problem.independent
+    return linearization_of(problem, equations, point, at, *tangent_at(problem, equations, point))
+
+
+def tangent_at(
+    problem: MotionProblem, equations: LinearEquations, point: Point
+) -> tuple[Mapping[str, Matrix], Tangent]:
+    """Evaluate the linearised equations at a point, and choose a basis of the tangent space.
+
+    Parameters
+    ----------
+    problem, equations, point : MotionProblem, LinearEquations, Point
+        As for `linearized`.
+
+    Returns
+    -------
+    here : mapping of str to ndarray
+        As `LinearEquations.at`.
+    tangent : Tangent
+
+    Raises
+    ------
+    HolonomError
+        The constraints are singular there.
+    """
+    kept = problem.independent
     here = equations.at(point, kept)
     tangent = Tangent(here["equation_by_a"], here["constraint_by_q"])
     if tangent.rank < len(kept) and problem.obstacle is None:
         raise HolonomError(ErrorKind.NOT_LINEARIZED, time=point.t)
+    return here, tangent
+
+
+def linearization_of(
+    problem: MotionProblem,
+    equations: LinearEquations,
+    point: Point,
+    at: float | None,
+    here: Mapping[str, Matrix],
+    tangent: Tangent,
+) -> Linearization:
+    """Return the linear system in a basis of the tangent space.
+
+    Parameters
+    ----------
+    problem, equations, point, at : MotionProblem, LinearEquations, Point, float or None
+        As for `linearized`.
+    here, tangent : mapping of str to ndarray, Tangent
+        As of `tangent_at`.
+
+    Returns
+    -------
+    Linearization
+    """
+    names = equations.coordinates
     nominal, velocities = nominal_of(problem), point.state[len(names) :]
     moving = np.abs([velocities, point.accelerations]) > AT_REST * np.array([nominal.velocities, nominal.accelerations])
     return Linearization(
@@ -292,7 +361,7 @@ def linearized(
         names,
         tuple(names[place] for place in tangent.leading),
         equations.controls,
-        (*problem.state, *(equations.multipliers[beta] for beta in kept), *equations.outputs),
+        (*problem.state, *(equations.multipliers[beta] for beta in problem.independent), *equations.outputs),
         here["equation_by_a"],
         tangent.basis,
         *_state_space(here, tangent),
@@ -323,12 +392,36 @@ def state_at(problem: MotionProblem, at: Fraction | None) -> tuple[float, Vector
     start = start_of(problem)
     if at is None or at == start[0]:
         return start
-    report = simulate(problem, SimulationRequest(until=at, samples=FINAL_STATE_ALONE)).report
-    if report.ending is not None and report.t < at:
-        raise HolonomError(ErrorKind.NOT_REACHED, time=float(at), detail=f"it ends at t = {report.t:.10g}")
-    if report.violations:
-        raise HolonomError(ErrorKind.NOT_REACHED, time=float(at), detail=report.violations[0].reason)
+    report = simulated(problem, SimulationRequest(until=at, samples=FINAL_STATE_ALONE)).report
     return float(report.t), np.array([*report.coordinates.values(), *report.velocities.values()])
+
+
+def simulated(problem: MotionProblem, request: SimulationRequest) -> Simulation:
+    """Integrate a motion to its last time.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    request : SimulationRequest
+        Its end and samples.
+
+    Returns
+    -------
+    Simulation
+
+    Raises
+    ------
+    HolonomError
+        The motion ends before the requested time, or misses something out of proportion to the tolerance.
+    """
+    motion = simulate(problem, request)
+    report = motion.report
+    if report.ending is not None and request.until is not None and report.t < request.until:
+        raise HolonomError(ErrorKind.NOT_REACHED, time=float(request.until), detail=f"it ends at t = {report.t:.10g}")
+    if report.violations:
+        raise HolonomError(ErrorKind.NOT_REACHED, time=float(report.t), detail=report.violations[0].reason)
+    return motion
 
 
 def motion_at(problem: MotionProblem, equations: LinearEquations, t: float, state: Vector) -> Point:

@@ -15,6 +15,14 @@ class LinearizationRequest:
 
 
 @dataclass(frozen=True)
+class AlongRequest:
+    """A request for a linearisation along a motion."""
+
+    until: Fraction | None = option(None, "The last time, in place of the scene's.", metavar="T")
+    samples: int = option(11, "Equidistant times.", metavar="N", least=2)
+
+
+@dataclass(frozen=True)
 class EquilibriaRequest:
     """A request for equilibria."""
 

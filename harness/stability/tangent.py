@@ -3,6 +3,7 @@
 Its coordinates are orthonormal in the mass metric.
 """
 
+from copy import copy
 from functools import cached_property
 
 import numpy as np
@@ -64,6 +65,22 @@ class Tangent:
         left, _, right = np.linalg.svd((roots * free)[list(self.leading)])
         self.basis = free @ (left @ right).T
 
+    def next_to(self, basis: Matrix) -> "Tangent":
+        """Return the same tangent space with the basis nearest to another one in the mass metric.
+
+        Parameters
+        ----------
+        basis : ndarray, shape (n, m)
+
+        Returns
+        -------
+        Tangent
+        """
+        turned = copy(self)
+        left, _, right = np.linalg.svd(self.basis.T @ self._mass @ basis)
+        turned.basis = self.basis @ (left @ right)
+        return turned
+
     def solve(self, force: Matrix, constrained: Matrix) -> tuple[Matrix, Matrix]:
         """Return x and mu of A x - J^T mu = F, J x = b.
 
@@ -84,6 +101,23 @@ class Tangent:
         x = self._inverse @ constrained
         x = x + self.basis @ (self.basis.T @ (force - self._mass @ x))
         return x, self._inverse.T @ (self._mass @ x - force)
+
+    def sizes_of_multipliers(self, force: Matrix, constrained: Matrix) -> Matrix:
+        """Return the sizes of the terms that mu of `solve` is the sum of.
+
+        Parameters
+        ----------
+        force : ndarray, shape (n, ...)
+            Sizes of the terms of F, not negative.
+        constrained : ndarray, shape (g, ...)
+            Sizes of the terms of b, not negative.
+
+        Returns
+        -------
+        ndarray, shape (g, ...)
+        """
+        inverse = np.abs(self._inverse)
+        return inverse.T @ (np.abs(self._mass) @ (inverse @ constrained) + force)
 
     @cached_property
     def _inverse(self) -> Matrix:

@@ -1,0 +1,419 @@
+"""Linearisation along a whole motion.
+
+The basis N of the tangent space moves along by
+
+    N' = H N,      H = R - N N^T A'/2,      J R = -J',    N^T A R = 0,
+
+which keeps N^T A N = 1 and turns N as little as the mass metric allows. H depends on the space alone, not on the basis.
+The deviations x' = A(t) x have the state-transition matrix Phi(t), x(t) = Phi(t) x(t0). Both equations are linear.
+Collocation at nine equidistant nodes of a block solves them, of order ten (Hairer, Norsett & Wanner, Solving Ordinary
+Differential Equations I, section II.7). The error is estimated by every second node, of order six.
+
+If the motion and its equations have the period T, the eigenvalues of Phi(T) are the characteristic multipliers: the
+motion is asymptotically stable if all lie inside the unit circle, and unstable if one lies outside (Floquet; Lyapunov;
+Merkin, Introduction to the Theory of Stability, chapter 7). Otherwise its stability is undecided.
+
+Of a free motion, C_lambda Phi are the multipliers of small initial deviations to first order: the variational equation
+of the multipliers. Its kernel over all times are the deviations that stay free.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+import scipy.linalg
+from numpy.polynomial import legendre
+
+from ..failures import ErrorKind, HolonomError
+from ..program.motion_problem import MotionProblem, require_analytic
+from ..shown import Shown
+from ..simulation.constraints.directions import or_one
+from ..simulation.matrices import Matrix, Vector
+from ..simulation.nominal import nominal_of
+from ..simulation.request import SimulationRequest
+from .equilibria import Stability, certain_distances
+from .linear_equations import LinearEquations, Point
+from .linearization import Linearization, linearization_of, motion_at, simulated, tangent_at
+from .request import AlongRequest
+from .tangent import Tangent
+
+NODES = 8  # steps of a block, whose nodes a polynomial of this degree goes through
+BLOCKS = (2, 4, 8, 16, 32, 64, 128, 256, 512, 1024)
+CLOSE = 1e-8  # relative error of Phi that is good enough; with all nodes it is far less
+RETURNED = 1e-8  # of the sizes: differences of two states, or of two equations, that are the same
+VANISHING = 1e-9  # multipliers relative to the terms that they are the sum of
+PERTURBED = 1e-7  # relative error of Phi against which characteristic multipliers are certain
+
+
+@dataclass(frozen=True)
+class Floquet:
+    """Characteristic multipliers of a periodic motion.
+
+    Attributes
+    ----------
+    period : float
+    multipliers : ndarray, shape (2m,)
+        Eigenvalues of the monodromy matrix, complex, the largest first.
+    stability : Stability
+        Of the motion, by Lyapunov's theorem; undecided if a multiplier lies on the unit circle, as one always does if
+        neither the equations nor the controls contain the time.
+    """
+
+    period: float
+    multipliers: Vector
+    stability: Stability
+
+    @property
+    def exponents(self) -> Vector:
+        """Characteristic exponents, log(multiplier)/period, shape (2m,)."""
+        return np.log(self.multipliers.astype(complex)) / self.period
+
+
+@dataclass(frozen=True)
+class FreeDeviations:
+    """Small deviations from a free motion, to first order.
+
+    Attributes
+    ----------
+    staying : int
+        Dimension of the initial deviations that stay free at all nodes, of 2m.
+    sizes : ndarray, shape (k,)
+        The longest vector of multipliers of all initial deviations of length one, at each time.
+    basis : ndarray, shape (2m, staying)
+        Of the initial deviations that stay free.
+    stability : Stability or None
+        Of the multipliers, if the motion is periodic; None otherwise.
+    """
+
+    staying: int
+    sizes: Vector
+    basis: Matrix
+    stability: Stability | None
+
+
+@dataclass(frozen=True, repr=False)
+class LinearizedMotion(Shown):
+    """A linear system x' = A(t) x + B_u(t) du + B_du(t) du' + B_ddu(t) du'' along a motion.
+
+    Attributes
+    ----------
+    scene : str
+    at : tuple of Linearization
+        At each of k times, with a basis that moves along continuously.
+    transition : ndarray, shape (k, 2m, 2m)
+        Phi: deviations are x(t) = Phi(t) x(t0).
+    error : float
+        Estimated relative error of Phi at the end; an upper bound in most cases.
+    floquet : Floquet or None
+        None if the motion, or its equations, do not have its duration as a period.
+    free : FreeDeviations or None
+        None if the motion is not free, or has no constraints.
+
+    Examples
+    --------
+    >>> import holonom
+    >>> along = holonom.load("examples/pendulum.mac").linearize_along(until=1, samples=3)
+    >>> along.times.tolist(), along.A.shape
+    ([0.0, 0.5, 1.0], (3, 2, 2))
+    """
+
+    scene: str
+    at: tuple[Linearization, ...]
+    transition: Matrix
+    error: float
+    floquet: Floquet | None
+    free: FreeDeviations | None
+
+    def __len__(self) -> int:
+        return len(self.at)
+
+    def __getitem__(self, k: int) -> Linearization:
+        """Return the linear system at the k-th time."""
+        return self.at[k]
+
+    @property
+    def times(self) -> Vector:
+        """Times, shape (k,)."""
+        return np.array([each.at for each in self.at])
+
+    @property
+    def A(self) -> Matrix:
+        """The matrices A, shape (k, 2m, 2m)."""
+        return np.array([each.A for each in self.at])
+
+    @property
+    def growth(self) -> Vector:
+        """The longest deviation of all that have length one at the start, shape (k,)."""
+        return np.array([np.linalg.norm(each, 2) for each in self.transition])
+
+    def response(self, output: str) -> Matrix:
+        """Return the deviations of an output, by the initial deviations.
+
+        Parameters
+        ----------
+        output : str
+            A coordinate, velocity, multiplier or output of the scene.
+
+        Returns
+        -------
+        ndarray, shape (k, 2m)
+
+        Raises
+        ------
+        ValueError
+            There is no such output.
+        """
+        return np.array([each.output_row(output) @ phi for each, phi in zip(self.at, self.transition, strict=True)])
+
+    def document(self) -> dict[str, Any]:
+        """Return the content of ``holonom linearize-along --json`` without format and version.
+
+        Returns
+        -------
+        dict
+        """
+        floquet, free = self.floquet, self.free
+        return {
+            "scene": self.scene,
+            "times": self.times.tolist(),
+            **{name: list(getattr(self.at[0], name)) for name in ("coordinates", "controls", "outputs")},
+            **{name: [getattr(each, name).tolist() for each in self.at] for name in ("basis", "A", "C")},
+            **{
+                name: {rate: [getattr(each, name)[rate].tolist() for each in self.at] for rate in self.at[0].B}
+                for name in ("B", "D")
+            },
+            "transition": self.transition.tolist(),
+            "error": self.error,
+            "floquet": floquet
+            and {
+                "period": floquet.period,
+                "multipliers": np.stack([floquet.multipliers.real, floquet.multipliers.imag], axis=-1).tolist(),
+                "stability": str(floquet.stability),
+            },
+            "free": free
+            and {
+                "staying": free.staying,
+                "sizes": free.sizes.tolist(),
+                "basis": free.basis.tolist(),
+                "stability": free.stability and str(free.stability),
+            },
+        }
+
+
+def linearize_along(problem: MotionProblem, equations: LinearEquations, request: AlongRequest) -> LinearizedMotion:
+    """Linearise along a motion.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    equations : LinearEquations
+        Of the same scene.
+    request : AlongRequest
+        Its end, and the number of times.
+
+    Returns
+    -------
+    LinearizedMotion
+
+    Raises
+    ------
+    HolonomError
+        The motion is not analytic or cannot be followed so far; the constraints are singular on the way; the deviations
+        change too fast for the error to be small.
+    """
+    require_analytic(problem)
+    intervals = request.samples - 1
+    for blocks in BLOCKS:
+        nodes = _Nodes(problem, equations, request, NODES * intervals * -(-blocks // intervals))
+        if nodes.error <= CLOSE:
+            break
+    else:
+        raise HolonomError(ErrorKind.NOT_LINEARIZED_ALONG, detail=f"{nodes.error:.2g}")
+    stride = (len(nodes.points) - 1) // intervals
+    shown = slice(None, None, stride)
+    floquet = _floquet(problem, nodes)
+    return LinearizedMotion(
+        problem.scene,
+        tuple(nodes.linear[shown]),
+        nodes.transition[shown],
+        nodes.error,
+        floquet,
+        _free(problem, nodes, floquet, shown),
+    )
+
+
+class _Node(NamedTuple):
+    point: Point
+    here: Mapping[str, Matrix]
+    tangent: Tangent
+
+    @property
+    def turning(self) -> Matrix:
+        """H of N' = H N, shape (n, n)."""
+        rate, N = self.here["rate_by_q"], self.tangent.basis
+        R = self.tangent.solve(np.zeros_like(self.here["A_rate"]), -rate)[0]
+        return R - N @ (N.T @ self.here["A_rate"]) / 2
+
+    def is_free(self, nominal: Vector, kept: Sequence[int]) -> bool:
+        """Return True if the multipliers vanish beside those that accelerations of nominal sizes take."""
+        accelerations = np.maximum(np.abs(self.point.accelerations), nominal)
+        forces = np.abs(self.here["equation_by_a"]) @ accelerations
+        sizes = self.tangent.sizes_of_multipliers(forces, np.zeros(len(kept)))
+        return bool(np.all(np.abs(self.point.multipliers[kept]) <= VANISHING * sizes))
+
+    def reaction_deviations(self, linear: Linearization) -> tuple[Matrix, Matrix]:
+        """Return the multipliers by the state's deviations, and the sizes of their terms, shape (g, 2m) each."""
+        n, g = len(linear.coordinates), len(self.here["constraint"])
+        q, v = linear.C[:n], linear.C[n : 2 * n]
+        force, constrained = (
+            np.abs(self.here[f"{row}_by_q"]) @ np.abs(q) + np.abs(self.here[f"{row}_by_v"]) @ np.abs(v)
+            for row in ("equation", "acceleration")
+        )
+        return linear.C[2 * n : 2 * n + g], self.tangent.sizes_of_multipliers(force, constrained)
+
+
+class _Nodes:
+    """A motion at equidistant nodes, blocks of eight steps, with bases that move along."""
+
+    def __init__(self, problem: MotionProblem, equations: LinearEquations, request: AlongRequest, steps: int) -> None:
+        self._problem, self._equations = problem, equations
+        coordinates_alone = replace(problem, observe=("trajectory",), outputs=None, controls=None)
+        motion = simulated(coordinates_alone, SimulationRequest(until=request.until, samples=steps + 1))
+        states = np.array([*motion.coordinates.values(), *motion.velocities.values()])
+        self.times = np.asarray(motion.times, dtype=float)
+        self.points = [motion_at(problem, equations, t, state) for t, state in zip(self.times, states.T, strict=True)]
+        nodes = [_Node(point, *tangent_at(problem, equations, point)) for point in self.points]
+        bases = _propagated(np.array([node.turning for node in nodes]), self.duration, nodes[0].tangent.basis)
+        self.nodes = [
+            node._replace(tangent=node.tangent.next_to(basis)) for node, basis in zip(nodes, bases, strict=True)
+        ]
+        self.linear = [
+            linearization_of(problem, equations, node.point, float(t), node.here, node.tangent)
+            for t, node in zip(self.times, self.nodes, strict=True)
+        ]
+
+    @property
+    def duration(self) -> float:
+        return float(self.times[-1] - self.times[0])
+
+    @cached_property
+    def transition(self) -> Matrix:
+        """Phi at the nodes, shape (k, 2m, 2m)."""
+        return self._transition(1)
+
+    @cached_property
+    def error(self) -> float:
+        """Relative difference of Phi at the end if every second node is left out."""
+        coarse = self._transition(2)[-1]
+        return float(np.linalg.norm(coarse - self.transition[-1]) / or_one(np.linalg.norm(self.transition[-1])))
+
+    def _transition(self, stride: int) -> Matrix:
+        rates = np.array([each.A for each in self.linear[::stride]])
+        return _propagated(rates, self.duration, np.eye(rates.shape[1]), NODES // stride)
+
+    def repeats(self) -> bool:
+        """Return True if the state returns, and the equations are the same one duration later."""
+        first, last = self.points[0], self.points[-1]
+        nominal = nominal_of(self._problem)
+        if np.any(
+            np.abs(last.state - first.state) > RETURNED * np.concatenate([nominal.coordinates, nominal.velocities])
+        ):
+            return False
+        return all(self._same_later(node) for node in self.nodes)
+
+    def _same_later(self, node: _Node) -> bool:
+        t = node.point.t + self.duration
+        later = node.point._replace(t=t, controls=self._equations.controls_at(t))
+        there = self._equations.at(later, self._problem.independent)
+        return all(np.allclose(here, there[name], rtol=RETURNED, atol=RETURNED) for name, here in node.here.items())
+
+
+def _propagated(rates: Matrix, duration: float, start: Matrix, nodes: int = NODES) -> Matrix:
+    """Return the solution of X' = G(t) X at equidistant nodes.
+
+    Parameters
+    ----------
+    rates : ndarray, shape (k, s, s)
+        G at the nodes, k - 1 a multiple of the nodes of a block.
+    duration : float
+        Time from the first to the last node.
+    start : ndarray, shape (s, p)
+        X at the first node.
+    nodes : int
+        Steps of a block.
+
+    Returns
+    -------
+    ndarray, shape (k, s, p)
+    """
+    size, blocks = len(start), (len(rates) - 1) // nodes
+    weights = _collocation(nodes) * duration / max(blocks, 1)
+    solution = np.empty((len(rates), *start.shape))
+    solution[0] = start
+    for first in range(0, blocks * nodes, nodes):
+        block = np.einsum("jk,kab->jakb", weights, rates[first : first + nodes + 1])
+        matrix = np.eye(nodes * size) - block[:, :, 1:].reshape(nodes * size, nodes * size)
+        right = np.tile(solution[first], (nodes, 1)) + (block[:, :, 0] @ solution[first]).reshape(nodes * size, -1)
+        solution[first + 1 : first + nodes + 1] = np.linalg.solve(matrix, right).reshape(nodes, *start.shape)
+    return solution
+
+
+def _collocation(nodes: int) -> Matrix:
+    """Return integrals from 0 to c_j of the polynomial that is 1 at c_k and 0 at the others, c = 0, 1/nodes, ..., 1."""
+    places = np.linspace(-1, 1, nodes + 1)
+    polynomials = np.linalg.inv(legendre.legvander(places, nodes))
+    return legendre.legval(places[1:], legendre.legint(polynomials, lbnd=-1)).T / 2
+
+
+def _floquet(problem: MotionProblem, nodes: _Nodes) -> Floquet | None:
+    if not nodes.duration or not nodes.repeats():
+        return None
+    monodromy = _monodromy(nodes)
+    values = np.linalg.eigvals(monodromy)
+    return Floquet(nodes.duration, values[np.argsort(-np.abs(values), kind="stable")], _stability_of(monodromy))
+
+
+def _monodromy(nodes: _Nodes) -> Matrix:
+    """Return Phi(T) in the basis of the start."""
+    first, last = nodes.linear[0], nodes.linear[-1]
+    turned = first.basis.T @ first.mass @ last.basis
+    return scipy.linalg.block_diag(turned, turned) @ nodes.transition[-1]
+
+
+def _stability_of(monodromy: Matrix) -> Stability:
+    """Decide by Lyapunov's theorem on multipliers of certain place."""
+    outside, certain = certain_distances(monodromy, PERTURBED, lambda values: np.abs(values) - 1)
+    if np.any(certain & (outside > 0)):
+        return Stability.UNSTABLE
+    return Stability.ASYMPTOTIC if np.all(certain & (outside < 0)) else Stability.UNDECIDED
+
+
+def _free(problem: MotionProblem, nodes: _Nodes, floquet: Floquet | None, shown: slice) -> FreeDeviations | None:
+    if not len(nodes.nodes[0].here["constraint"]):
+        return None
+    accelerations, kept = nominal_of(problem).accelerations, list(problem.independent)
+    if not all(node.is_free(accelerations, kept) for node in nodes.nodes):
+        return None
+    parts = [node.reaction_deviations(linear) for node, linear in zip(nodes.nodes, nodes.linear, strict=True)]
+    rows = [np.where(np.abs(C) > VANISHING * terms, C, 0.0) for C, terms in parts]
+    responses = np.array([C @ phi for C, phi in zip(rows, nodes.transition, strict=True)])
+    scales = or_one(
+        np.array(
+            [
+                np.linalg.norm(terms) * np.linalg.norm(phi)
+                for (_, terms), phi in zip(parts, nodes.transition, strict=True)
+            ]
+        )
+    )
+    stacked = (responses / scales[:, None, None]).reshape(-1, responses.shape[-1])
+    _, values, right = np.linalg.svd(stacked, full_matrices=True)
+    rank = int(np.count_nonzero(values > VANISHING * np.sqrt(len(stacked))))
+    stability = None
+    if floquet is not None:
+        moving = right[:rank]
+        stability = _stability_of(moving @ _monodromy(nodes) @ moving.T) if rank else Stability.STABLE
+    sizes = np.array([np.linalg.norm(each, 2) for each in responses[shown]])
+    return FreeDeviations(right.shape[0] - rank, sizes, right[rank:].T, stability)

@@ -1,0 +1,195 @@
+"""Linearisation along motions: Hill's equation, disturbed motions, and deviations from free motions in closed form."""
+
+import json
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import holonom
+from holonom.failures import ErrorKind, HolonomError
+from holonom.formats import Publication, require
+from holonom.stability.equilibria import Stability
+
+# ---- periodic motions --------------------------------------------------------------------------------------------
+
+KAPITZA = """system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [a, c],
+  kinetic_energy = (dot(x)^2 + (dot(y) + dot(u))^2)/2, potential_energy = [gravity = y],
+  forces = [damping = [-c*dot(x), -c*dot(y)]], constraints = [x^2 + y^2 - 1])$
+upright : holonomic_scene(system, parameter_values = [a = 1/4, c = 0], control_law = [u = a*cos(2*%pi*t)],
+  initial_state = [x = 0, y = 1, dot(x) = 0, dot(y) = 0], time_span = [0, 1])$
+"""
+
+
+def hill(a, c):
+    """Monodromy matrix of phi'' + c phi' = (1 + ddot u) phi, the upright pendulum of length 1 on a shaken support."""
+
+    def rate(t, y):
+        return [y[1], (1 - 4 * np.pi**2 * a * np.cos(2 * np.pi * t)) * y[0] - c * y[1]]
+
+    columns = [solve_ivp(rate, (0, 1), start, rtol=1e-12, atol=1e-14).y[:, -1] for start in ([1, 0], [0, 1])]
+    return np.array(columns).T
+
+
+@pytest.mark.parametrize(
+    ("a", "c", "stability"),
+    [
+        (0.2, 0, Stability.UNSTABLE),  # a w < sqrt(2 g l), Kapitza's limit
+        (0.25, 0, Stability.UNDECIDED),
+        (0.25, 0.1, Stability.ASYMPTOTIC),
+        (0.6, 0, Stability.UNSTABLE),  # parametric resonance: a multiplier below -1
+    ],
+)
+def test_pendulum_on_a_shaken_support_has_the_multipliers_of_hills_equation(a, c, stability):
+    along = holonom.system(KAPITZA).with_settings(a=a, c=c).linearize_along(samples=3)
+    truth = np.linalg.eigvals(hill(a, c))
+    assert along.floquet.period == 1
+    assert np.sort_complex(along.floquet.multipliers) == pytest.approx(np.sort_complex(truth), rel=1e-9)
+    assert along.floquet.stability is stability
+    assert along.free is None
+    assert np.exp(along.floquet.exponents) == pytest.approx(along.floquet.multipliers)
+
+
+@pytest.mark.parametrize("law", ["t^3/4", "cos(2*%pi*t) + t^3*(1 - t)^3"])
+def test_motion_without_a_period_has_no_multipliers(law):
+    """Of the second law, both ends agree and the next interval differs."""
+    text = KAPITZA.replace("a*cos(2*%pi*t)", f"a*({law})")
+    assert holonom.system(text).linearize_along(samples=2).floquet is None
+
+
+# ---- motions that are followed -------------------------------------------------------------------------------------
+
+CURVED = """system : holonomic_system(coordinates = [x, y, z], controls = [u], parameters = [e],
+  kinetic_energy = (1 + x^2)*(dot(x)^2 + dot(y)^2 + dot(z)^2)/2 + dot(u)*dot(x)/5,
+  potential_energy = [gravity = 5*y, spring = x^2*z], forces = [drag = [-dot(x)/5, u*dot(u)/7, -dot(z)]],
+  constraints = [x^2 + y^2 + z^2*u - u^2])$
+s : holonomic_scene(system, control_law = [u = 1 + t/4], time_span = [0, 1], parameter_values = [e = 0],
+  initial_state = [x = 3/5 + e/3, dot(x) = 1 - e, z = e, dot(z) = e/2], initial_guess = [y = -4/5, dot(y) = 0],
+  observe = [trajectory, multipliers])$
+"""
+
+
+def disturbed(scene, samples):
+    """Derivatives by e of coordinates, velocities and multipliers, shape (samples, 7)."""
+
+    def numbers(e):
+        motion = scene.simulate(samples=samples, tol=1e-15, e=e)
+        return np.array([*motion.coordinates.values(), *motion.velocities.values(), *motion.multipliers.values()]).T
+
+    def derivative(h):
+        return (numbers(h) - numbers(-h)) / (2 * h)
+
+    return (4 * derivative(1e-4) - derivative(2e-4)) / 3
+
+
+def test_disturbed_motion_follows_the_transition_matrix():
+    scene = holonom.system(CURVED)
+    along, truth = scene.linearize_along(samples=5), disturbed(scene, 5)
+    for k, deviation in enumerate(truth):
+        here = along[k]
+        assert here.basis.T @ here.mass @ here.basis == pytest.approx(np.eye(2), abs=1e-12)
+        start, now = (
+            np.concatenate([each.basis.T @ each.mass @ part[rows] for rows in (slice(3), slice(3, 6))])
+            for each, part in ((along[0], truth[0]), (here, deviation))
+        )
+        assert along.transition[k] @ start == pytest.approx(now, abs=1e-8)
+        for name, value in zip(("x", "y", "z", "dot(x)", "dot(y)", "dot(z)", "lambda1"), deviation, strict=True):
+            assert along.response(name)[k] @ start == pytest.approx(value, abs=1e-7)
+    assert along.error < 1e-8
+
+
+def test_matrices_belong_to_a_basis_that_moves_along():
+    """The rate of the transition matrix is A Phi, by differences."""
+    along = holonom.system(CURVED).linearize_along(until="1/100", samples=5)
+    stencil = np.array([1, -8, 0, 8, -1]) / 12 / 0.0025
+    rate = np.einsum("k,kab->ab", stencil, along.transition)
+    assert rate == pytest.approx(along.A[2] @ along.transition[2], abs=1e-7)
+
+
+# ---- free motions --------------------------------------------------------------------------------------------------
+
+THROWN = """system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [g],
+  kinetic_energy = (dot(x)^2 + dot(y)^2)/2, potential_energy = [gravity = g*y], constraints = [x^2 + y^2 - u^2])$
+s : holonomic_scene(system, parameter_values = [g = 1], control_law = [u = sqrt((1 + t)^2 + (1 - g*t^2/2)^2)],
+  initial_state = [x = 1, y = 1, dot(x) = 1, dot(y) = 0], time_span = [0, 2])$
+"""
+
+
+def test_body_in_free_flight_at_a_string_stays_free_if_it_is_turned_about_the_support():
+    """Without gravity, one of two deviations is a turn, which changes no length."""
+    along = holonom.system(THROWN).with_settings(g=0).linearize_along(samples=5)
+    assert along.free.staying == 1
+    turned = np.concatenate([along[0].basis.T @ each for each in ([-1, 1], [0, 1])])  # about the origin, of q and v
+    assert abs(along.free.basis[:, 0] @ turned) == pytest.approx(np.linalg.norm(turned), rel=1e-9)
+    assert along.free.stability is None
+
+
+def test_multipliers_of_a_disturbed_flight_against_polar_coordinates():
+    """r is u(t); 2 u lambda = ddot u - u dot(phi)^2 + g sin(phi), and r phi deviates by its own equation."""
+    along = holonom.system(THROWN).linearize_along(samples=5)
+    assert along.free.staying == 0
+
+    def flight(t):
+        x, y, vy = 1 + t, 1 - t**2 / 2, -t
+        r2 = x**2 + y**2
+        return np.arctan2(y, x), (x * vy - y) / r2, np.sqrt(r2), (x + y * vy) / np.sqrt(r2)
+
+    def rate(t, d):
+        phi, turning, r, out = flight(t)
+        return [d[1], np.sin(phi) * d[0] / r - 2 * out * d[1] / r]
+
+    columns = [
+        solve_ivp(rate, (0, 2), start, t_eval=along.times, rtol=1e-12, atol=1e-14).y for start in ([1, 0], [0, 1])
+    ]
+    for k, t in enumerate(along.times):
+        phi, turning, r, _ = flight(t)
+        by_angles = np.array([(np.cos(phi) * c[0, k] - 2 * r * turning * c[1, k]) / (2 * r) for c in columns])
+        # xi = r delta phi, eta the tangential part of d/dt (r delta phi e_phi), up to the sign of the basis
+        r0, out0 = flight(0)[2:]
+        sign = np.sign(along[0].basis[:, 0] @ [-1, 1])
+        truth = by_angles @ np.linalg.inv(np.array([[r0, 0], [out0, r0]])) * sign
+        assert along.response("lambda1")[k] == pytest.approx(truth, abs=1e-9)
+    assert along.free.sizes == pytest.approx(np.linalg.norm(along.response("lambda1"), axis=1), rel=1e-9)
+
+
+def test_law_that_frees_every_motion_keeps_every_deviation_free():
+    scene = holonom.load("examples/paper/paper.mac", scene="free_motion_scene")
+    assert scene.linearize_along(until=1, samples=2).free.staying == 4
+
+
+SHAKEN_FREE = """system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [c],
+  kinetic_energy = (dot(x)^2 + dot(y)^2)/2, potential_energy = [spring = 2*%pi^2*y^2, side = x^2*{side}/2],
+  forces = [damping = [-c*dot(x), 0]], constraints = [y - u - x/2])$
+s : holonomic_scene(system, parameter_values = [c = 0], control_law = [u = cos(2*%pi*t)],
+  initial_state = [x = 0, dot(x) = 0], initial_guess = [y = 1, dot(y) = 0], time_span = [0, 1])$
+"""
+
+
+@pytest.mark.parametrize(
+    ("side", "c", "stability"),
+    [(1, 1, Stability.ASYMPTOTIC), (-60, 0, Stability.UNSTABLE), (1, 0, Stability.UNDECIDED)],
+)
+def test_multipliers_of_deviations_from_a_periodic_free_motion_decay_or_grow(side, c, stability):
+    """The spring alone moves y as the law does. Of x: 5/4 ddot(z) + c dot(z) + (side + pi^2) z = 0, z the deviation."""
+    free = holonom.system(SHAKEN_FREE.format(side=side)).with_settings(c=c).linearize_along(samples=2).free
+    assert (free.staying, free.stability) == (0, stability)
+
+
+# ---- refusals, and the command -------------------------------------------------------------------------------------
+
+
+def test_deviations_that_change_too_fast_are_refused(monkeypatch):
+    monkeypatch.setattr("holonom.stability.along.BLOCKS", (1,))
+    with pytest.raises(HolonomError) as refused:
+        holonom.system(KAPITZA).linearize_along(samples=2)
+    assert refused.value.kind is ErrorKind.NOT_LINEARIZED_ALONG
+
+
+def test_the_command(holonom_here, write_scene):
+    answer = holonom_here("linearize-along", write_scene(f"load(holonom)$\n{KAPITZA}"), "--samples", "3", "--json", "-")
+    document = json.loads(answer.stdout)
+    require(Publication.LINEARIZED_ALONG, document)
+    assert document["times"] == [0, 0.5, 1]
+    assert document["floquet"]["stability"] == str(Stability.UNDECIDED)
+    table = holonom_here("linearize-along", write_scene(f"load(holonom)$\n{THROWN}"), "--samples", "3")
+    assert "0 of 2" in table.stdout
