@@ -1,4 +1,4 @@
-"""The commands about equilibria and linearised motions: equilibria, linearize, linearize-along."""
+"""The commands about equilibria and linearised motions."""
 
 from fractions import Fraction
 from pathlib import Path

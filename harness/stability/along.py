@@ -95,7 +95,9 @@ class FreeDeviations:
 
 @dataclass(frozen=True, repr=False)
 class LinearizedMotion(Shown):
-    """A linear system x' = A(t) x + B_u(t) du + B_du(t) du' + B_ddu(t) du'' along a motion.
+    """A linear system along a motion.
+
+    x' = A(t) x + B_u(t) du + B_du(t) du' + B_ddu(t) du''.
 
     Attributes
     ----------
@@ -168,7 +170,7 @@ class LinearizedMotion(Shown):
         return np.array([each.output_row(output) @ phi for each, phi in zip(self.at, self.transition, strict=True)])
 
     def document(self) -> dict[str, Any]:
-        """Return the content of ``holonom linearize-along --json`` without format and version.
+        """Return the content of the JSON document without format and version.
 
         Returns
         -------
@@ -258,14 +260,20 @@ class _Node(NamedTuple):
         return R - N @ (N.T @ self.here["A_rate"]) / 2
 
     def is_free(self, nominal: Vector, kept: Sequence[int]) -> bool:
-        """Return True if the multipliers vanish beside those that accelerations of nominal sizes take."""
+        """Return True if the multipliers vanish.
+
+        They are small beside those that accelerations of nominal sizes need.
+        """
         accelerations = np.maximum(np.abs(self.point.accelerations), nominal)
         forces = np.abs(self.here["equation_by_a"]) @ accelerations
         sizes = self.tangent.sizes_of_multipliers(forces, np.zeros(len(kept)))
         return bool(np.all(np.abs(self.point.multipliers[kept]) <= VANISHING * sizes))
 
     def reaction_deviations(self, linear: Linearization) -> tuple[Matrix, Matrix]:
-        """Return the multipliers by the state's deviations, and the sizes of their terms, shape (g, 2m) each."""
+        """Return the derivatives of the multipliers, and the sizes of their terms.
+
+        Both have the shape (g, 2m).
+        """
         n, g = len(linear.coordinates), len(self.here["constraint"])
         q, v = linear.C[:n], linear.C[n : 2 * n]
         force, constrained = (
@@ -276,7 +284,7 @@ class _Node(NamedTuple):
 
 
 class _Nodes:
-    """A motion at equidistant nodes, blocks of eight steps, with bases that move along."""
+    """A motion at equidistant nodes in blocks, with bases that move along."""
 
     def __init__(self, problem: MotionProblem, equations: LinearEquations, request: AlongRequest, steps: int) -> None:
         self._problem, self._equations = problem, equations
@@ -315,7 +323,7 @@ class _Nodes:
         return _propagated(rates, self.duration, np.eye(rates.shape[1]), NODES // stride)
 
     def repeats(self) -> bool:
-        """Return True if the state returns, and the equations are the same one duration later."""
+        """Return True if the state returns and the equations repeat."""
         first, last = self.points[0], self.points[-1]
         nominal = nominal_of(self._problem)
         if np.any(
@@ -362,7 +370,10 @@ def _propagated(rates: Matrix, duration: float, start: Matrix, nodes: int = NODE
 
 
 def _collocation(nodes: int) -> Matrix:
-    """Return integrals from 0 to c_j of the polynomial that is 1 at c_k and 0 at the others, c = 0, 1/nodes, ..., 1."""
+    """Return integrals from 0 to c_j of Lagrange's polynomials at equidistant nodes.
+
+    The polynomial k is 1 at c_k = k/nodes and 0 at the others; shape (nodes, nodes + 1).
+    """
     places = np.linspace(-1, 1, nodes + 1)
     polynomials = np.linalg.inv(legendre.legvander(places, nodes))
     return legendre.legval(places[1:], legendre.legint(polynomials, lbnd=-1)).T / 2

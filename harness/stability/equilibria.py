@@ -427,10 +427,11 @@ def _stability(found: _Solution, A: Matrix, forced: bool) -> Stability:
 
 
 def certain_distances(A: Matrix, error: float, distance: Callable[[Vector], Vector]) -> tuple[Vector, np.ndarray]:
-    """Return distances of the eigenvalues from a line or a circle, and True for those with a certain sign.
+    """Return signed distances of eigenvalues, and True for those with certain signs.
 
-    The sign is certain if it holds under a relative error of A. An eigenvalue moves by its condition number 1/|y^H x|
-    times the perturbation, to first order (Golub & Van Loan, section 7.2).
+    They are distances from a line or a circle. The sign is certain if it holds under a relative error of A. An
+    eigenvalue moves by its condition number 1/|y^H x| times the perturbation, to first order (Golub & Van Loan,
+    section 7.2).
 
     Parameters
     ----------

@@ -304,7 +304,7 @@ def linearized(
 def tangent_at(
     problem: MotionProblem, equations: LinearEquations, point: Point
 ) -> tuple[Mapping[str, Matrix], Tangent]:
-    """Evaluate the linearised equations at a point, and choose a basis of the tangent space.
+    """Evaluate the linearised equations, and choose a basis of the tangent space.
 
     Parameters
     ----------

@@ -66,7 +66,9 @@ class Tangent:
         self.basis = free @ (left @ right).T
 
     def next_to(self, basis: Matrix) -> "Tangent":
-        """Return the same tangent space with the basis nearest to another one in the mass metric.
+        """Return the same tangent space with the basis nearest to another one.
+
+        Nearest in the mass metric.
 
         Parameters
         ----------
