@@ -66,7 +66,7 @@ class Tangent:
         self.basis = free @ (left @ right).T
 
     def next_to(self, basis: Matrix) -> "Tangent":
-        """Return the same tangent space with the basis nearest to another one.
+        """Return the tangent space with the basis nearest to a given basis.
 
         Nearest in the mass metric.
 
