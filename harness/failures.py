@@ -227,6 +227,10 @@ class ErrorKind(Enum):
         "{detail} is a special function, which programs approximate by a polynomial too coarse for a series",
         "use `holonom series` without {--precision}: Maxima expands it to any digits",
     )
+    SERIES_VARIED = (
+        "heyoka's power series have no derivatives by parameters",
+        "leave {--precision} or {--sensitivity} out",
+    )
     NO_PIVOTS = ("the motion program cannot be solved: {detail}", "use {--engine} auto or robust")
     RUNGE_KUTTA_IS_DOUBLE = (
         "the Runge-Kutta engine computes in double precision, not {detail}",

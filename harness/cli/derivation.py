@@ -12,7 +12,7 @@ from ..sandbox import Limits
 from ..supervisor import doing, time_to_limit
 from .background import run_in_background
 from .group import holonom
-from .options import DISAGREEMENT, present, publish, runs_scenes, takes_settings, writes_json
+from .options import DISAGREEMENT, limits_closed_forms, present, publish, runs_scenes, takes_settings, writes_json
 from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile, as_given
 
 if TYPE_CHECKING:
@@ -21,13 +21,6 @@ if TYPE_CHECKING:
     from ..source import Source
 
 TIME_TO_TELL = 1.0  # seconds that are kept for the verdicts found within a time limit
-
-limits_closed_forms = click.option(
-    "--closed-form-size",
-    metavar="N",
-    type=click.IntRange(min=1),
-    help="Largest closed form, in terms. Default: closed_form_size of the scene file, or 500.",
-)
 
 
 @holonom.command(examples=["describe examples/pendulum.mac", "describe examples/pendulum.mac --json pendulum.json"])

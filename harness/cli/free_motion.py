@@ -10,7 +10,7 @@ import click
 from ..sandbox import Limits
 from .background import run_in_background
 from .group import holonom
-from .options import DISAGREEMENT, asks_one_scene, present, runs_scenes, writes_json
+from .options import DISAGREEMENT, asks_one_scene, limits_closed_forms, present, runs_scenes, writes_json
 
 if TYPE_CHECKING:
     from ..free_motion import FreeMotion
@@ -25,12 +25,14 @@ if TYPE_CHECKING:
     type=click.IntRange(min=2),
     help="Order of the power series that tests whether the multipliers vanish. Default: 40.",
 )
+@limits_closed_forms
 @writes_json
 @runs_scenes
 def free(
     scene_file: Path,
     request: "Request",
     order: int | None,
+    closed_form_size: int | None,
     json_file: Path | None,
     limits: Limits,
 ) -> int:
@@ -43,7 +45,8 @@ def free(
     from ..formats import Document
 
     with run_in_background(scene_file, limits, _import_what_follows):
-        text = ask(Document.FREE_MOTION, scene_file, request.scene, order, settings=request.settings, limits=limits)
+        asked = request.scene, order, closed_form_size
+        text = ask(Document.FREE_MOTION, scene_file, *asked, settings=request.settings, limits=limits)
 
     from ..crosscheck.report import Verdict
     from ..display.free_motion import show_free_motion

@@ -26,7 +26,7 @@ from .outputs import STANDARD_OUTPUT, OutputFile
     examples=["series examples/pendulum.mac --order 40", "series examples/pendulum.mac --order 8 --exact --at 1/10"]
 )
 @asks_one_scene()
-@takes(*options_of(SeriesRequest, "order", "precision", "until"))
+@takes(*options_of(SeriesRequest, "order", "precision", "until", "sensitivities"))
 @click.option("--exact", is_flag=True, help="Use rational coefficients only. Default: exact if possible.")
 @click.option("--digits", metavar="D", type=click.IntRange(min=1), help="Significant digits of the coefficients.")
 @click.option("--at", metavar="T", callback=as_time, help="Also evaluate the series at time T.")

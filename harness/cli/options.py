@@ -136,6 +136,14 @@ def _click_option(each: Field) -> Callable[[Callable[..., int]], Callable[..., i
     )
 
 
+limits_closed_forms = click.option(
+    "--closed-form-size",
+    metavar="N",
+    type=click.IntRange(min=1),
+    help="Largest closed form, in terms. Default: closed_form_size of the scene file, or 500.",
+)
+
+
 def asks_one_scene(*taken: Field) -> Callable[[Callable[..., int]], Callable[..., int]]:
     """Give a command a scene file and the fields of a request about one scene.
 

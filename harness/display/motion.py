@@ -36,17 +36,15 @@ def show_series(console: "Console", motion: "MotionSeries", values: "Values | No
     values : Values or None
         Sums at one time.
     """
-    from rich.table import Table
-
     from ..series.radius import described
 
-    table = Table("order", title=f"{heading(motion.scene, motion.title)}, about t = {motion.t0}", title_justify="left")
-    columns = dict(motion.all_series())
-    for name in columns:
-        table.add_column(name)
-    for n, row in enumerate(zip(*columns.values(), strict=True)):
-        table.add_row(str(n), *map(short_number, row))
-    console.print(table)
+    columns = {**motion.coordinates, **motion.multipliers, **motion.constraint_forces}
+    title = f"{heading(motion.scene, motion.title)}, about t = {motion.t0}"
+    _show_coefficients(console, title, columns)
+    directions = dict.fromkeys(_direction(name) for name in motion.sensitivities)
+    for direction in directions:
+        derivatives = {name: row for name, row in motion.sensitivities.items() if _direction(name) == direction}
+        _show_coefficients(console, f"Derivatives by {visible_line(direction)}", derivatives)
     radius = motion.radius
     size = "" if radius.estimate is None else f"{radius.estimate:.8g}, {described(radius)}; "
     console.print(f"{motion.arithmetic} arithmetic; radius of convergence: {size}{radius.note}", soft_wrap=True)
@@ -60,6 +58,20 @@ def show_series(console: "Console", motion: "MotionSeries", values: "Values | No
             console.print(f"    {name} = {_rounded(value)}")
     if motion.continuation is not None:
         _show_continuation(console, motion.continuation)
+
+
+def _direction(name: str) -> str:
+    """Return m of ``d(x, m)``."""
+    return name[:-1].rpartition(", ")[2]
+
+
+def _show_coefficients(console: "Console", title: str, columns: Mapping[str, Sequence[str]]) -> None:
+    from rich.table import Table
+
+    table = Table("order", *columns, title=title, title_justify="left")
+    for n, row in enumerate(zip(*columns.values(), strict=True)):
+        table.add_row(str(n), *map(short_number, row))
+    console.print(table)
 
 
 def _show_continuation(console: "Console", continuation: "Continuation") -> None:

@@ -2,7 +2,8 @@
 
 from pathlib import Path
 
-from ..documents import ask
+from ..documents import Argument, ask
+from ..failures import ErrorKind, HolonomError
 from ..formats import Document
 from ..sandbox import Limits
 from ..source import Source
@@ -25,7 +26,8 @@ def compute_series(file: Source | Path, request: SeriesRequest, limits: Limits) 
     Returns
     -------
     MotionSeries
-        Coefficients about the initial time, and the continuation if the request has an end.
+        Coefficients about the initial time, and the continuation if the request has an end. Derivatives of the
+        coefficients have the names ``d(x, m)``.
 
     Raises
     ------
@@ -34,8 +36,16 @@ def compute_series(file: Source | Path, request: SeriesRequest, limits: Limits) 
         `holonom.series.heyoka_series.expand_by_heyoka`.
     """
     if request.precision is not None:
+        if request.sensitivities:
+            raise HolonomError(ErrorKind.SERIES_VARIED)
         from .heyoka_series import expand_by_heyoka
 
         return expand_by_heyoka(file, request, limits)
-    asked = (request.scene, request.order, request.digits, request.until)
+    directions = [_direction(name) for name in request.sensitivities]
+    asked = (request.scene, request.order, request.digits, request.until, directions)
     return read_series(ask(Document.MOTION_SERIES, file, *asked, settings=request.settings, limits=limits))
+
+
+def _direction(name: str) -> Argument:
+    """Return a name for Maxima; a velocity ``dot(x)`` as the names dot and x."""
+    return ["dot", name[4:-1]] if name.startswith("dot(") and name.endswith(")") else name

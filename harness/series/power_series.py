@@ -6,7 +6,7 @@ mpmath's numbers with as many digits.
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
@@ -47,6 +47,8 @@ class MotionSeries(Shown):
         ``exact``, ``bigfloat(D)``, ``double``, ``extended``, ``quadruple`` or ``heyoka(D)``.
     coordinates, multipliers, constraint_forces : mapping of str to tuple of str
         Coefficients of (t - t0)^0 ... (t - t0)^order, by name.
+    sensitivities : mapping of str to tuple of str
+        Derivatives of these coefficients by parameters and initial values, by names such as ``d(x, m)``.
     switch : str or None
         A function with whose sign the motion is another than the series; None where there is none.
     """
@@ -62,6 +64,7 @@ class MotionSeries(Shown):
     continuation: Continuation | None = None
     switch: str | None = None
     polynomial: bool = False  # whether the equations of motion are satisfied identically by the series as they end here
+    sensitivities: Mapping[str, NumberTexts] = field(default_factory=dict)
     program: Program | None = None  # of t, coordinates and velocities; None where it is not known
 
     @property
@@ -75,7 +78,7 @@ class MotionSeries(Shown):
         """Radius of convergence about t0."""
         from .singularities import decided
 
-        if self.polynomial:
+        if self.polynomial and not self.sensitivities:
             return replace(POLYNOMIAL, coefficients=self.order + 1)
         with mpmath.workdps(self.digits):
             found = estimate_radius([numbers(series) for _, series in self.all_series()])
@@ -94,7 +97,7 @@ class MotionSeries(Shown):
         -------
         MotionSeries
         """
-        groups = ("coordinates", "multipliers", "constraint_forces")
+        groups = ("coordinates", "multipliers", "constraint_forces", "sensitivities")
         kept = {group: {name: row[: order + 1] for name, row in getattr(self, group).items()} for group in groups}
         return replace(self, order=order, **kept)
 
@@ -104,11 +107,11 @@ class MotionSeries(Shown):
         Yields
         ------
         name : str
-            Coordinate, multiplier or constraint force.
+            Coordinate, multiplier or constraint force, then their derivatives.
         coefficients : tuple of str, shape (order + 1,)
             Those of (t - t0)^0, (t - t0)^1, and so on.
         """
-        for group in (self.coordinates, self.multipliers, self.constraint_forces):
+        for group in (self.coordinates, self.multipliers, self.constraint_forces, self.sensitivities):
             yield from group.items()
 
 
@@ -206,6 +209,7 @@ def series_document(motion: MotionSeries, values: Values | None = None) -> dict[
         "coordinates": _published_series(motion, motion.coordinates),
         "multipliers": _published_series(motion, motion.multipliers),
         "constraint_forces": _published_series(motion, motion.constraint_forces),
+        "sensitivities": _published_series(motion, motion.sensitivities),
         "radius_of_convergence": {
             "estimate": radius.estimate,
             "uncertainty": radius.uncertainty,

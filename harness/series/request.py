@@ -26,5 +26,11 @@ class SeriesRequest:
         metavar="double|extended|quadruple|DIGITS",
     )
     until: Fraction | None = option(None, "Also continue the motion to time T, beyond the radius.", metavar="T")
+    sensitivities: tuple[str, ...] = option(
+        (),
+        "Compute derivatives by these parameters and initial coordinates or velocities.",
+        metavar="NAME,...",
+        spelt=("--sensitivity",),
+    )
     # numbers for what the file leaves open and for parameters
     settings: Mapping[str, str] = field(default_factory=dict)

@@ -12,11 +12,12 @@ import pytest
 from paper_series import START, paper_by_hand
 from refusing import failing
 
+import holonom
 from holonom.failures import ErrorKind, HolonomError
 from holonom.sandbox import Limits
 from holonom.series.compute import compute_series
 from holonom.series.power_series import MotionSeries, number, numbers, read_series, values_at
-from holonom.series.radius import truncation_error
+from holonom.series.radius import POLYNOMIAL, truncation_error
 from holonom.series.request import SeriesRequest
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -279,3 +280,74 @@ def test_bad_requests_leave_with_two_and_one_sentence(arguments, holonom_here):
     assert done.returncode == 2
     assert done.stdout == ""
     assert "Traceback" not in done.stderr
+
+
+# ---- derivatives by parameters and initial values ---------------------------------------------------------------
+
+GUESSED = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [m, l, g],
+  kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2, potential_energy = m*g*y, forces = [-m*dot(x)*abs(dot(x)), 0],
+  constraints = [x^2 + y^2 - (l + u)^2])$
+scene : holonomic_scene(system, control_law = [u = a*t^2], parameter_values = [m = 2, l = 5, g = 10, a = 1/2],
+  initial_state = [x = 3*l/5, dot(x) = START], initial_guess = [y = -4, dot(y) = 3])$
+"""
+
+
+def varied(write_scene, start: str = "4", **settings: str) -> MotionSeries:
+    scene = write_scene(GUESSED.replace("START", start))
+    directions = ("l", "a", "m", "dot(x)")
+    return compute_series(scene, SeriesRequest(8, sensitivities=directions, settings=settings), Limits())
+
+
+def test_derivatives_are_the_limits_of_differences(write_scene):
+    """Of exact coefficients at values a step of 1e-12 apart, so that 24 digits are lost of none."""
+    step = Fraction(1, 10**12)
+    found = varied(write_scene)
+    for name, value in {"l": 5, "a": Fraction(1, 2), "dot(x)": 4}.items():
+        ahead, behind = (
+            varied(write_scene, str(value + way))
+            if name == "dot(x)"
+            else varied(write_scene, **{name: str(value + way)})
+            for way in (step, -step)
+        )
+        for x in ("x", "y", "lambda1"):
+            rows = (dict(each.all_series())[x] for each in (ahead, behind))
+            limits = [(Fraction(a) - Fraction(b)) / (2 * step) for a, b in zip(*rows, strict=True)]
+            exact = [Fraction(text) for text in found.sensitivities[f"d({x}, {name})"]]
+            assert exact == pytest.approx(limits, rel=1e-18, abs=1e-18), (name, x)
+
+
+def test_derivatives_by_the_mass_are_known(write_scene):
+    """All terms of T, V and Q have the factor m: the motion keeps still, and the multiplier grows with m."""
+    found = varied(write_scene)
+    assert {*found.sensitivities["d(x, m)"], *found.sensitivities["d(y, m)"]} == {"0"}
+    assert [2 * Fraction(a) for a in found.sensitivities["d(lambda1, m)"]] == [
+        Fraction(a) for a in found.multipliers["lambda1"]
+    ]
+
+
+def test_derivatives_of_rounded_series_are_those_of_the_motion_s_sensitivities():
+    """All of the start is given, of irrational numbers: an initial value moves others along the manifold."""
+    scene = holonom.load(PENDULUM)
+    names = ["x", "g", "dot(x)"]
+    found = values_at(scene.series(order=30, sensitivities=names), Fraction(1, 10)).values
+    followed = scene.simulate(until=0.1, sensitivities=names)
+    for name in (f"d({y}, {p})" for y in ("x", "y", "lambda1") for p in names):
+        assert float(found[name]) == pytest.approx(float(followed[name][-1]), rel=1e-12), name
+
+
+def test_derivatives_of_a_motion_at_rest_are_no_polynomials(write_scene):
+    """x = 0 is the motion, and d(x, x) = cosh(t)."""
+    scene = write_scene("""load("holonom.mac")$
+scene : holonomic_scene(holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [x]),
+  initial_state = [x = 0, dot(x) = 0])$
+""")
+    found = compute_series(scene, SeriesRequest(12, sensitivities=("x",)), Limits())
+    assert [Fraction(a) * math.factorial(k) for k, a in enumerate(found.sensitivities["d(x, x)"])] == [1, 0] * 6 + [1]
+    assert (found.polynomial, found.radius.note == POLYNOMIAL.note) == (True, False)
+
+
+def test_derivatives_by_heyoka_are_refused():
+    request = SeriesRequest(4, precision="double", sensitivities=("g",))
+    with failing(ErrorKind.SERIES_VARIED):
+        compute_series(PENDULUM, request, Limits())
