@@ -6,6 +6,7 @@ internal error, 130 when interrupted, 141 if the reader of the output has ended.
 
 import io
 import os
+import re
 import sys
 import warnings
 from collections.abc import Collection
@@ -21,6 +22,7 @@ from ..supervisor import supervise
 from .outputs import STANDARD_INPUT, Command
 
 MACHINE_AT_FAULT = 3
+INVALID = re.compile(r"^Invalid value for (?:'-\w' / )?'([^']+)': ")  # of Click, before the reason
 INTERNAL_ERROR = 70
 INTERRUPTED = 130
 PIPE_CLOSED = 141
@@ -170,7 +172,8 @@ def run() -> int:
             sys.stdout.flush()
         return status
     except click.ClickException as error:
-        return _report(f"{error.format_message().rstrip('.')}.", error.exit_code)
+        message = INVALID.sub(r"\1: ", error.format_message())
+        return _report(message if message.endswith(("?", ".")) else f"{message}.", error.exit_code)
     except (click.Abort, KeyboardInterrupt):
         return INTERRUPTED
     except (BrokenPipeError, SystemExit):  # with which rich and click leave where the reader is gone

@@ -266,4 +266,4 @@ def show_sweep(console: "Console", sweep: "Sweep", statuses: Mapping[str, int]) 
     for status, rows in statuses.items():
         table.add_row(status, str(rows))
     console.print(table)
-    console.print(f"kept in {sweep.path}: {', '.join(document['columns'])}", soft_wrap=True)
+    console.print(f"columns in {sweep.path}: {', '.join(document['columns'])}", soft_wrap=True)

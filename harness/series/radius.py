@@ -80,7 +80,7 @@ UNPROVED = Radius(None, None, (), translatable("unknown: no higher powers occur,
 ENTIRE = Radius(None, None, (), translatable("infinite: the coefficients are those of an entire motion"))
 UNDECIDED = Radius(None, None, (), translatable("unknown: these orders do not determine it"))
 TOO_FEW = Radius(
-    None, None, (), translatable("unknown: it takes %(count)s coefficients that are not zero", count=FEWEST)
+    None, None, (), translatable("unknown: at least %(count)s nonzero coefficients are needed", count=FEWEST)
 )
 
 

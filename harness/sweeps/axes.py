@@ -206,9 +206,9 @@ def make_axes(values: Sequence[Values], samples: Sequence[Sample], size: int | N
     values, samples : sequence
         One for each parameter.
     size : int or None
-        Members of the sample; there is one where there are samples.
+        Size of the sample, which samples need.
     seed : int or None
-        Of the sample; None for zero.
+        Seed of the sample. Default: 0.
 
     Returns
     -------
@@ -217,7 +217,7 @@ def make_axes(values: Sequence[Values], samples: Sequence[Sample], size: int | N
     Raises
     ------
     HolonomError
-        A parameter comes twice, none does; there are too many rows.
+        If a parameter is varied twice or none is, or if there are too many rows.
     """
     names = [axis.name for axis in chain(values, samples)]
     if not names:
@@ -225,7 +225,7 @@ def make_axes(values: Sequence[Values], samples: Sequence[Sample], size: int | N
     if twice := next((name for name in names if names.count(name) > 1), None):
         raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{twice} is varied twice")
     if bool(samples) != (size is not None):
-        missing = "a sample needs its --size" if samples else "--size is that of a --sample, and there is none"
+        missing = "a sample needs its --size" if samples else "--size needs a --sample"
         raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=missing)
     axes = Axes(tuple(values), tuple(samples), size or 1, seed or 0)
     if axes.rows > MOST_ROWS:
@@ -234,7 +234,7 @@ def make_axes(values: Sequence[Values], samples: Sequence[Sample], size: int | N
 
 
 def grid(name: str, first: Number, last: Number, count: int | str, text: str | None = None) -> Grid:
-    """Return equidistant numbers.
+    """Return equally spaced numbers.
 
     Parameters
     ----------
@@ -258,7 +258,7 @@ def grid(name: str, first: Number, last: Number, count: int | str, text: str | N
     """
     text = text or f"{name}={first}:{last}:{count}"
     if not str(count).isdecimal() or not 1 <= len(str(count)) <= 12 or int(count) < 1:
-        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{text} has no number of values")
+        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{text}: the count is not a positive integer")
     return Grid(_required_name(name, text), _number(first, text), _number(last, text), int(count), text)
 
 
@@ -311,16 +311,14 @@ def sample(name: str, drawn: str, text: str | None = None) -> Sample:
     text = text or f"{name}={drawn}"
     found = DRAWN.fullmatch(drawn.strip())
     if found is None or found[1] not in set(Distribution):
-        raise HolonomError(
-            ErrorKind.NOT_AN_AXIS, detail=f"{text} draws from none of {', '.join(Distribution)}(NUMBER,NUMBER)"
-        )
+        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{text}: expected {', '.join(Distribution)}(NUMBER,NUMBER)")
     kind, first, second = Distribution(found[1]), _number(found[2], text), _number(found[3], text)
     if kind is Distribution.NORMAL and not second > 0:
-        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{text} has no positive deviation")
+        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{text}: the deviation is not positive")
     if kind is not Distribution.NORMAL and not first < second:
-        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{text} has no least number below its greatest")
+        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{text}: the smallest value is not below the largest")
     if kind is Distribution.LOGUNIFORM and not first > 0:
-        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{text} has no logarithm")
+        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{text}: loguniform needs positive values")
     return Sample(_required_name(name, text), kind, first, second, text)
 
 
@@ -328,7 +326,7 @@ def _read_grid(text: str) -> Grid:
     name, rest = _named(text)
     parts = [part.strip() for part in rest.split(":")]
     if len(parts) != 3:
-        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{text} has not 3 parts")
+        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{text}: expected NAME=FIRST:LAST:COUNT")
     return grid(name, *parts, text)
 
 
@@ -344,15 +342,15 @@ def _named(text: str) -> tuple[str, str]:
 
 def _required_name(name: str, text: str) -> str:
     if not NAME.fullmatch(name.strip()):
-        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{text} names no parameter")
+        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{text}: the name of the parameter is missing")
     return name.strip()
 
 
 def _number(given: Number, whole: str) -> float:
     text = str(given).strip()
     if not re.fullmatch(NUMBER, text) or not within_reach(text.lstrip("+-")):
-        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{whole} holds what is no number, {text!r}")
+        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{whole}: expected a number, not {text!r}")
     try:
         return float(Fraction(text))
     except ZeroDivisionError:
-        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{whole} divides by zero") from None
+        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"{whole}: division by zero") from None

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from refusing import failing
 
-from holonom.failures import HolonomError
+from holonom.failures import ErrorKind
 from holonom.sweeps.axes import read_axes
 
 
@@ -32,27 +33,30 @@ def test_samples_have_the_moments_of_their_distributions():
 
 
 @pytest.mark.parametrize(
-    ("grids", "lists", "samples", "size", "told"),
+    ("grids", "lists", "samples", "size"),
     [
-        ([], [], [], None, "no parameter varies"),
-        (["m=1:2"], [], [], None, "has not 3 parts"),
-        (["m=1:2:0"], [], [], None, "no number of values"),
-        (["m=1:x:3"], [], [], None, "no number, 'x'"),
-        (["=1:2:3"], [], [], None, "names no parameter"),
-        (["m=1:2:3"], ["m=1,2"], [], None, "m is varied twice"),
-        (["m=1:1/0:3"], [], [], None, "divides by zero"),
-        (["m=0:1e999:3"], [], [], None, "no number"),
-        ([], ["m="], [], None, "no number"),
-        ([], [], ["m=cauchy(0,1)"], 10, "draws from none of normal"),
-        ([], [], ["m=normal(0,0)"], 10, "no positive deviation"),
-        ([], [], ["m=uniform(2,1)"], 10, "no least number"),
-        ([], [], ["m=loguniform(0,1)"], 10, "no logarithm"),
-        ([], [], ["m=normal(0,1)"], None, "needs its --size"),
-        (["m=1:2:3"], [], [], 10, "there is none"),
-        (["m=0:1:999999999", "c=0:1:999999999"], [], [], None, "at most"),
+        (["m=1:2"], [], [], None),
+        (["m=1:2:0"], [], [], None),
+        (["m=1:x:3"], [], [], None),
+        (["=1:2:3"], [], [], None),
+        (["m=1:2:3"], ["m=1,2"], [], None),
+        (["m=1:1/0:3"], [], [], None),
+        (["m=0:1e999:3"], [], [], None),
+        ([], ["m="], [], None),
+        ([], [], ["m=cauchy(0,1)"], 10),
+        ([], [], ["m=normal(0,0)"], 10),
+        ([], [], ["m=uniform(2,1)"], 10),
+        ([], [], ["m=loguniform(0,1)"], 10),
+        ([], [], ["m=normal(0,1)"], None),
+        (["m=1:2:3"], [], [], 10),
+        (["m=0:1:999999999", "c=0:1:999999999"], [], [], None),
     ],
 )
-def test_what_is_no_axis_is_reported_in_one_sentence(grids, lists, samples, size, told):
-    with pytest.raises(HolonomError, match=told) as refused:
+def test_invalid_axes_raise(grids, lists, samples, size):
+    with failing(ErrorKind.NOT_AN_AXIS):
         read_axes(grids, lists, samples, size, None)
-    assert "\n" not in str(refused.value)
+
+
+def test_no_axis_raises():
+    with failing(ErrorKind.NOTHING_VARIES):
+        read_axes([], [], [], None, None)

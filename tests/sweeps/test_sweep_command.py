@@ -165,7 +165,7 @@ def test_another_sweep_in_the_same_folder_is_refused(swept, change, told):
     ("options", "told"),
     [
         (("--keep", "final"), "no parameter varies"),
-        (("--grid", "m=1:2"), "has not 3 parts"),
+        (("--grid", "m=1:2"), "--grid"),
         (("--grid", "m=1:2:3", "--keep", "x.y"), "is made of something else"),
         (("--grid", "m=1:2:3", "--tol", "7"), "holds tolerances"),
         (("--grid", "m=1:2:3", "--grid", "c=1:2:3", "--grid", "g=1:2:3", "--plot", "p.svg"), "a curve takes one"),
