@@ -36,6 +36,7 @@ REASONS = (
     _("an equation for the controls could not be solved"),
     _("the initial state does not determine the initial values of the controls"),
     _("df/du is singular at the initial state: its rank is %(rank)s of %(size)s"),
+    _("df/du is singular at the initial state, for every choice of %(count)s of the controls"),
     _("there are fewer controls than constraints, %(controls)s and %(constraints)s"),
     _("the power series of %(multiplier)s begins at order %(order)s"),
     _("the power series of the multipliers vanish to order %(order)s"),

@@ -7,6 +7,7 @@ obsolete.
 
 import io
 import re
+import tomllib
 from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -35,7 +36,7 @@ IN_MAXIMA = re.compile(
     rf'|\b(?:then|else) "(inverse[^"]*)"'
     rf'|"((?:Compared|Holds|Printed|What is)[^"]*\.)"'  # notes on the print
 )
-IN_TOML = re.compile(rf"^(?:meaning|where|comment|heading|aim|drawing|curves) = {STRING}$", re.MULTILINE)
+SHOWN_IN_TOML = {"drawing", "curves", "words", "without_controls"}
 KEPT = {
     "placeholders": re.compile(r"%(?:\(\w+\)[.\d]*[a-z]|%)"),
     "marks": re.compile(r"<[^>]+>"),
@@ -43,7 +44,7 @@ KEPT = {
     "code": re.compile(r"(?:\{\w+\})?`[^`]+`"),
 }
 """What a translation has in common with its message."""
-TRANSLATED = ("book", "manual")  # folders of pages in other languages; the reference is in English
+TRANSLATED = ("book", "manual", "own")  # folders of pages in other languages; the reference is in English
 SHOWN = re.compile(r"^```\{show\}\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 VALUE = re.compile(r"\{value\}`([^`]+)`")
 ALIKE = re.compile(r"\$[^$]*\$|`[^`]*`|\{\w+\}`[^`]*`|\[\]\([^)]*\)|[^$`]*\\[^$`]*|Holonom", re.DOTALL)
@@ -171,7 +172,15 @@ def page_templates(folder: Path) -> dict[str, Catalog]:
     """The messages of the pages of the book and the manual, by the names of their catalogs."""
     package = PACKAGE / "companion"
     with patch_docutils(package), docutils_namespace():
-        Sphinx(package, package, folder, folder / "doctrees", "gettext", status=None).build()
+        Sphinx(
+            package,
+            package,
+            folder,
+            folder / "doctrees",
+            "gettext",
+            {"exclude_patterns": [], "suppress_warnings": ["toc.not_included"]},
+            status=None,
+        ).build()
     return {name: _to_translate(folder / f"{name}.pot") for name in TRANSLATED}
 
 
@@ -188,8 +197,13 @@ def _to_translate(file: Path) -> Catalog:
 
 def _in_toml(file: IO[bytes], keywords: Collection[str], tags: Collection[str], options: Mapping[str, Any]) -> Found:
     """What readers see of the data of the companion."""
-    for found in IN_TOML.finditer(file.read().decode()):
-        yield 0, "gettext", found[1].replace('\\"', '"'), []
+    parts = [tomllib.load(file)]
+    for part in parts:
+        parts += [each for each in part.values() if isinstance(each, dict)]
+        parts += [
+            each for found in part.values() if isinstance(found, list) for each in found if isinstance(each, dict)
+        ]
+        yield from ((0, "gettext", text, []) for key, text in part.items() if key in SHOWN_IN_TOML)
 
 
 if __name__ == "__main__":

@@ -1,17 +1,15 @@
-"""Cards of equations: printed and derived form, Maxima lines, verdict."""
+"""The card of an equation: as printed, as derived, with which verdict, and in plain words."""
 
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 from ..crosscheck.lagranges_method import OPINION
 from ..crosscheck.report import EquationVerdict, Verdict
 from ..errata import PrintedEquation
 from ..language import translatable
 from ..record import Equation, Scene
-from .excerpts import Excerpt, step
-from .runs import Derived
+from .runs import Derived, FileAnswers
 
 
 @dataclass(frozen=True)
@@ -36,14 +34,12 @@ class Card:
     controlled: bool  # whether its system has controls to speak of
     printed: tuple[PrintedEquation, ...]  # as the paper prints it; empty where there is no print to compare with
     instances: tuple[Instance, ...]  # as derived: the first is shown, the others on request
-    lines: tuple[Excerpt, ...]  # the Maxima lines that derive it
 
 
 def derivation_cards(
     numbers: Sequence[str],
     derivations: Sequence[Derived],
     printed: Iterable[PrintedEquation],
-    root: Path,
 ) -> list[Card]:
     """Cards of equations (1) to (11).
 
@@ -55,8 +51,6 @@ def derivation_cards(
         The first has the equations that are shown, the others those shown on request.
     printed : iterable of PrintedEquation
         Equations of the paper.
-    root : Path
-        The repository that the Maxima lines are taken from.
 
     Returns
     -------
@@ -64,14 +58,13 @@ def derivation_cards(
         Cards in the order of the first record.
     """
     instances = [_derivation_instances(each) for each in derivations]
-    return _cards(numbers, instances, tuple(printed), root, _is_controlled(derivations[0]))
+    return _cards(numbers, instances, tuple(printed), _is_controlled(derivations[0]))
 
 
 def scene_cards(
     numbers: Sequence[str],
     scenes: Sequence[tuple[Derived, str]],
     printed: Iterable[PrintedEquation],
-    root: Path,
     prefix: str = "",
 ) -> list[Card]:
     """Return the cards of equations (10) and (12) to (19) of scenes.
@@ -86,8 +79,6 @@ def scene_cards(
         Derivation and name of each scene.
     printed : iterable of PrintedEquation
         Equations of the paper.
-    root : Path
-        Root of the repository.
     prefix : str
         Beginning of the anchors.
 
@@ -97,7 +88,28 @@ def scene_cards(
         Cards in the order of the records.
     """
     instances = [_scene_instances(derived, name) for derived, name in scenes]
-    return _cards(numbers, instances, tuple(printed), root, _is_controlled(scenes[0][0]), prefix)
+    return _cards(numbers, instances, tuple(printed), _is_controlled(scenes[0][0]), prefix)
+
+
+def cards_of_scene(found: FileAnswers, numbers: Sequence[str], scene: str) -> list[Card]:
+    """Return cards of a scene's equations; none where it prescribes reactions and so is not in the record.
+
+    Parameters
+    ----------
+    found : FileAnswers
+        Answers about the scene's file.
+    numbers : sequence of str
+        Numbers of the equations.
+    scene : str
+        Name of the scene, which begins the anchors.
+
+    Returns
+    -------
+    list of Card
+        Cards in the order of the record.
+    """
+    known = scene in {each.name for each in found.record.scenes}
+    return scene_cards(numbers, [(found.derived, scene)], (), scene) if known else []
 
 
 def printed_card(printed: Iterable[PrintedEquation], name: str) -> Card:
@@ -116,7 +128,7 @@ def printed_card(printed: Iterable[PrintedEquation], name: str) -> Card:
         Card of the equation.
     """
     found = next(each for each in printed if each.name == name)
-    return Card(anchor("", found), found.number, found.name, "", True, (found,), (), ())
+    return Card(anchor("", found), found.number, found.name, "", True, (found,), ())
 
 
 def named_equations(derived: Derived, scene: str | None = None) -> dict[str, Equation]:
@@ -194,22 +206,6 @@ def missing(derived: Derived) -> list[EquationVerdict]:
     return [found for found in derived.report.verdicts if not found.held and found.verdict is Verdict.DISAGREES]
 
 
-def files_of(cards: Iterable[Card]) -> tuple[str, ...]:
-    """Return the Maxima files that the lines on some cards come from.
-
-    Parameters
-    ----------
-    cards : iterable of Card
-        Cards of equations.
-
-    Returns
-    -------
-    tuple of str
-        Files, relative to the root.
-    """
-    return tuple(each.file for card in cards for each in card.lines)
-
-
 def anchor(prefix: str, equation: Equation | PrintedEquation, taken: Iterable[str] = ()) -> str:
     """Return the anchor of an equation: its number if that is unique, else its name.
 
@@ -257,7 +253,6 @@ def _cards(
     numbers: Sequence[str],
     instances: Sequence[Sequence[Instance]],
     printed: tuple[PrintedEquation, ...],
-    root: Path,
     controlled: bool,
     prefix: str = "",
 ) -> list[Card]:
@@ -271,7 +266,6 @@ def _cards(
             controlled=controlled,
             printed=tuple(each for each in printed if _same(each, equation)),
             instances=tuple(each for group in instances for each in group if each.equation.id == equation.id),
-            lines=step(root, equation.id),
         )
         for place, equation in zip(anchors(equations, prefix), equations, strict=True)
     ]

@@ -15,12 +15,10 @@ class Run:
 
 @dataclass(frozen=True)
 class Page:
-    """Values for the templates of a page, and further files of the page."""
+    """What the pieces of a chapter's page are given beside the results, and the files that go beside the page."""
 
-    content: Mapping[str, Any]  # the template's variables
+    content: Mapping[str, Any] = field(default_factory=dict)  # the template's variables
     figures: Mapping[str, str] = field(default_factory=dict)  # text of each SVG file, by its name
-    # Maxima files that the page refers to, relative to the book's root; each becomes a page of its own
-    sources: tuple[str, ...] = ()
     files: Mapping[str, str] = field(default_factory=dict)  # text of other files beside the page, by name
 
 
@@ -28,5 +26,5 @@ class Page:
 class Chapter:
     """The computation of one page."""
 
-    runs: Mapping[str, Run]  # what it needs, by the name that `page` knows it by
-    page: Callable[[Mapping[str, Any]], Page]  # makes the page of the runs' results
+    runs: Mapping[str, Run]  # what it needs, by the names of the results
+    page: Callable[[Mapping[str, Any]], Page]  # makes the page of the results

@@ -11,7 +11,7 @@ extensions = [
     "holonom.companion.directives",
 ]
 root_doc = "index"
-exclude_patterns = ["chapters", "templates"]
+exclude_patterns = ["chapters", "templates", "own"]
 gettext_location = gettext_uuid = False
 myst_enable_extensions = ["dollarmath", "deflist", "attrs_inline", "attrs_block", "colon_fence", "fieldlist"]
 bibtex_bibfiles = ["book/works.bib"]

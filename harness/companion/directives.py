@@ -8,8 +8,6 @@ chapter, of which the first paragraph is the text for who cannot see it and the 
 """
 
 import logging
-import posixpath
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -26,20 +24,20 @@ from sphinx.writers.html5 import HTML5Translator
 
 from ..language import ENGLISH, LANGUAGES, catalog_file, gettext
 from ..typeset.mathml import inline_mathml, mathml
+from .chapter import Run
+from .chapters import EXAMPLES
 from .finish import EQUATION, with_columns, with_equations
 from .fonts import mathematics_font
 from .kept import digest_of_all
-from .pages import source_name, source_page
-from .paper import REPOSITORY, chapters_of_the_paper
+from .paper import chapters_of_the_paper
+from .sessions import answers_of
 from .shelf import Shelf
 
 GRADES = 3
+PROMPT = "holonom_prompt"  # the example and the statements of a page, among the data of the page that is read
 SHELF = "holonom_shelf"  # the chapters, among the data of the page that is read
 KEPT = ".kept"  # the folder of results that a later build takes
 FILES = "_runs"  # the folder of what runs made, beside the pages
-# where the folders are, from the root, that pieces of pages refer to
-FOLDERS = {"figures": FILES, "sessions": f"{FILES}/sessions", "source": "source"}
-Generated = tuple[str, dict[str, Any], str]  # name of a page, what its template is given, the template
 
 
 class shown(nodes.General, nodes.Element):
@@ -112,19 +110,36 @@ class Definition(SphinxRole):
         return [entry, nodes.target("", "", ids=[name]), nodes.emphasis("", self.text)], []
 
 
-class SessionOfMaxima(SphinxDirective):
-    """The chapter as a Maxima session: its questions and a file to download."""
+class Session(SphinxDirective):
+    """Statements at Maxima's prompt, one a line, with the answers; the sessions of a page continue each other."""
+
+    optional_arguments, has_content = 1, True
 
     def run(self) -> list[nodes.Node]:
-        """Return the questions and the link.
+        """Return statements and answers under their numbers.
 
         Returns
         -------
         list of docutils.nodes.Node
             Nodes of the page.
         """
-        slug, shelf = posixpath.basename(self.env.docname), self.env.temp_data[SHELF]
-        return [shown("", html=shelf.session(slug))] if shelf else []
+        shelf = self.env.temp_data[SHELF]
+        if shelf is None:
+            return []
+        example, known = self.env.temp_data.get(PROMPT, (None, ()))
+        example = EXAMPLES / self.arguments[0] if self.arguments else example
+        asked = (*known, *(each.rstrip(";$") for each in self.content))
+        self.env.temp_data[PROMPT] = example, asked
+        answers = shelf.result(Run(answers_of, (example, asked)))[len(known) :]
+        silent = [each.endswith("$") for each in self.content]
+        lines = [
+            f"(%i{place}) {statement}" + ("" if quiet else f"\n(%o{place}) {answer}")
+            for place, (statement, answer, quiet) in enumerate(
+                zip(self.content, answers, silent, strict=True), len(known) + 1
+            )
+        ]
+        text = "\n".join(lines)
+        return [nodes.literal_block(text, text, language="text", classes=["session"])]
 
 
 class When(SphinxDirective):
@@ -165,7 +180,7 @@ class RunFigure(SphinxDirective):
 
 
 class Exercise(SphinxDirective):
-    """A question, with its grade."""
+    """A question, with its grade and its answer."""
 
     required_arguments, has_content = 1, True
 
@@ -194,6 +209,19 @@ class Answer(SphinxDirective):
             Nodes of the page.
         """
         return [answer("", *self.parse_content_to_nodes())]
+
+
+def _put_answers_apart(app: Sphinx, tree: nodes.document) -> None:
+    """Collect the numbered answers of a page in a section at its end."""
+    answers = nodes.section("", nodes.title("", gettext("Answers")), ids=["answers"])
+    for number, question in enumerate(tree.findall(exercise), 1):
+        question["number"] = number
+        for found in list(question.findall(answer)):
+            found["number"] = number
+            found.parent.remove(found)
+            answers += found
+    if len(answers) > 1:
+        next(tree.findall(nodes.section)).append(answers)
 
 
 def _collecting(app: Sphinx) -> bool:
@@ -234,10 +262,7 @@ def _up(name: str) -> str:
 
 def _within(translator: HTML5Translator, html: str) -> str:
     """Return HTML with its links as they are from the page that is written."""
-    up = _up(translator.builder.current_docname)
-    for folder, place in FOLDERS.items():
-        html = html.replace(f'="{folder}/', f'="{up}{place}/')
-    return html
+    return html.replace('="figures/', f'="{_up(translator.builder.current_docname)}{FILES}/')
 
 
 def _visit_shown(translator: HTML5Translator, node: nodes.Element) -> None:
@@ -262,20 +287,26 @@ def _depart_run_figure(translator: HTML5Translator, node: nodes.Element) -> None
 
 def _visit_exercise(translator: HTML5Translator, node: nodes.Element) -> None:
     """Begin a question."""
-    grade = node["grade"]
+    number, grade = node["number"], node["grade"]
     label = [gettext("easy"), gettext("middling"), gettext("hard")][grade - 1]
     marks = "●" * grade + "○" * (GRADES - grade)
-    translator.body.append(f'<div class="exercise"><span class="grade" role="img" aria-label="{label}">{marks}</span>')
+    translator.body.append(
+        f'<div class="exercise" id="exercise-{number}"><a class="number" href="#answer-{number}">{number}</a> '
+        f'<span class="grade" role="img" aria-label="{label}">{marks}</span>'
+    )
+
+
+def _visit_answer(translator: HTML5Translator, node: nodes.Element) -> None:
+    """Begin an answer."""
+    number = node["number"]
+    translator.body.append(
+        f'<details id="answer-{number}"><summary>{gettext("Answer")} {number}</summary><div class="answer">'
+    )
 
 
 def _depart_exercise(translator: HTML5Translator, node: nodes.Element) -> None:
     """End a question."""
     translator.body.append("</div>\n")
-
-
-def _visit_answer(translator: HTML5Translator, node: nodes.Element) -> None:
-    """Begin an answer."""
-    translator.body.append(f'<details><summary>{gettext("Answer")}</summary><div class="answer">')
 
 
 def _depart_answer(translator: HTML5Translator, node: nodes.Element) -> None:
@@ -337,17 +368,6 @@ def _places_from(app: Sphinx, name: str) -> dict[str, str]:
     return places
 
 
-def _other_pages(app: Sphinx) -> Iterator[Generated]:
-    """Yield the pages of the Maxima files that the pages of this build refer to."""
-    pages = _shelf_of(app).pages.values()
-    for file in dict.fromkeys(file for page in pages for file in page.sources):
-        yield source_name(file).removesuffix(".html"), _context(file, source_page(REPOSITORY, file)), "page.html"
-
-
-def _context(title: str, body: str) -> dict[str, str]:
-    return {"title": title, "body": body}
-
-
 def _put_font(app: Sphinx) -> None:
     """Copy the font of formulas to the folder of the pages."""
     files = Path(app.outdir) / FILES
@@ -377,7 +397,7 @@ def _compile_catalogs(app: Sphinx, config: Config) -> None:
 DIRECTIVES = {
     "show": Show,
     "when": When,
-    "session": SessionOfMaxima,
+    "session": Session,
     "run-figure": RunFigure,
     "exercise": Exercise,
     "answer": Answer,
@@ -390,7 +410,6 @@ EVENTS = {
     "env-purge-doc": _purge,
     "source-read": _put_shelf,
     "html-page-context": _finish_page,
-    "html-collect-pages": _other_pages,
 }
 
 
@@ -419,4 +438,5 @@ def setup(app: Sphinx) -> dict[str, bool]:
     app.add_html_math_renderer("mathml", (_visit_math, None), (_visit_math_block, None))
     for event, function in EVENTS.items():
         app.connect(event, function)
+    app.connect("doctree-read", _put_answers_apart, priority=400)  # before the contents are collected
     return {"parallel_read_safe": False, "parallel_write_safe": True}

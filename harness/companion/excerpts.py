@@ -2,13 +2,10 @@
 
 import re
 from dataclasses import dataclass
-from pathlib import Path
 
 from ..failures import ErrorKind, HolonomError
+from ..files import shared
 from ..maxima import statement_ends
-from . import table
-
-STEPS = table("steps")
 
 
 @dataclass(frozen=True)
@@ -17,17 +14,14 @@ class Excerpt:
 
     file: str  # path of the file, relative to the root that it was asked of
     name: str  # what is defined
-    first_line: int  # line of the file that the excerpt starts in, from 1
     text: str
 
 
-def excerpt(root: Path, file: str, name: str) -> Excerpt:
-    """Find the definition of a Maxima function or variable in a file below a root.
+def excerpt(file: str, name: str) -> Excerpt:
+    """Find the definition of a Maxima function or variable in a file of the repository.
 
     Parameters
     ----------
-    root : Path
-        Root of the repository.
     file : str
         Maxima file, relative to the root.
     name : str
@@ -43,31 +37,14 @@ def excerpt(root: Path, file: str, name: str) -> Excerpt:
     HolonomError
         The file does not define it.
     """
-    text = (root / file).read_text(encoding="utf-8")
+    folder, _, rest = file.partition("/")
+    text = (shared(folder) / rest).read_text(encoding="utf-8")
     found = re.search(rf"^{re.escape(name)}\s*(\([^()]*\)\s*:=|:)", text, re.MULTILINE)
     if found is None:
         raise HolonomError(ErrorKind.DEFINITION_MISSING, file, name)
     start = _with_comment(text, found.start())
     end = next(statement_ends(text, found.start()), len(text))
-    return Excerpt(file, name, text.count("\n", 0, start) + 1, text[start:end])
-
-
-def step(root: Path, name: str) -> tuple[Excerpt, ...]:
-    """Return the Maxima lines that derive an equation, given its id.
-
-    Parameters
-    ----------
-    root : Path
-        Root of the repository.
-    name : str
-        Id of the equation.
-
-    Returns
-    -------
-    tuple of Excerpt
-        Lines with their places.
-    """
-    return tuple(excerpt(root, file, function) for file, functions in STEPS[name].items() for function in functions)
+    return Excerpt(file, name, text[start:end])
 
 
 def _with_comment(text: str, start: int) -> int:

@@ -12,14 +12,15 @@ from typing import Any
 
 from ..files import shared, write_whole
 from .chapter import Run
-from .runs import perform
 
 HARNESS = Path(__file__).parents[1]
 APART = {"cli", "companion", "display", "locale", "reference", "__pycache__"}  # folders that no result depends on
 SUFFIXES = {".py", ".mac", ".lisp", ".json", ".toml", ".c", ".h"}
 
+Compute = Callable[[list[Run]], dict[Run, Any]]
 
-def results_of(runs: Iterable[Run], directory: Path | None, done: Callable[[], None]) -> dict[Run, Any]:
+
+def results_of(runs: Iterable[Run], directory: Path | None, compute: Compute) -> dict[Run, Any]:
     """Return the results of runs from a directory, and store new ones there.
 
     Parameters
@@ -28,8 +29,8 @@ def results_of(runs: Iterable[Run], directory: Path | None, done: Callable[[], N
         Runs.
     directory : Path or None
         Folder of the results of earlier builds.
-    done : callable
-        Function that is called after each run.
+    compute : callable
+        Function that performs runs.
 
     Returns
     -------
@@ -39,7 +40,7 @@ def results_of(runs: Iterable[Run], directory: Path | None, done: Callable[[], N
     wanted = dict.fromkeys(runs)
     files = {run: directory / f"{_key(run)}.pickle" for run in wanted} if directory else {}
     found = {run: pickle.loads(file.read_bytes()) for run, file in files.items() if file.is_file()}
-    made = perform([run for run in wanted if run not in found], done)
+    made = compute([run for run in wanted if run not in found])
     for run, result in made.items():
         if directory:
             directory.mkdir(parents=True, exist_ok=True)
@@ -75,7 +76,7 @@ def _key(run: Run) -> str:
 @cache
 def _program() -> str:
     """Return the digest of all that computes."""
-    tools = [HARNESS / "companion" / name for name in ("runs.py", "motions.py")]
+    tools = [HARNESS / "companion" / name for name in ("runs.py", "motions.py", "sessions.py")]
     installed = [Path(found) for found in (shutil.which("maxima"), sys.executable) if found]
     return _digest([*_below(shared("maxima")), *_below(HARNESS), *tools, *installed])
 

@@ -3,7 +3,6 @@
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
-from pathlib import Path
 
 import jinja2
 from markupsafe import Markup, escape
@@ -15,55 +14,16 @@ from ..free_motion import UniversalLaw
 from ..language import ENGLISH, gettext, ngettext, spoken, translated
 from ..number_texts import number
 from ..record import Scene
-from . import TEMPLATES, mathematics
-from .excerpts import Excerpt
+from . import TEMPLATES, mathematics, table
+from .cards import Card, cards_of_scene, derivation_cards, missing, named_equations, scene_named
+from .excerpts import excerpt
 
 LONGEST_COEFFICIENT = 12  # characters of an exact number in a table
 NAMED_BY_MAXIMA = re.compile(r"(no control law makes every motion free: .* is )(.+)($)")
 CODE_IN_TEXT = re.compile(r"`([^`]+)`")
 NEGLIGIBLE = 1e-9  # of a complex number: a part of it that is rounding alone
-MACROS = ("words.html", "cards.html", "answers.html", "motions.html", "tables.html")
+MACROS = ("cards.html", "answers.html", "motions.html", "tables.html")
 WHITESPACE = {"trim_blocks": True, "lstrip_blocks": True, "keep_trailing_newline": True}
-
-
-def source_page(root: Path, file: str) -> str:
-    """Return a Maxima file with numbered lines.
-
-    Parameters
-    ----------
-    root : Path
-        Root of the repository.
-    file : str
-        Maxima file, relative to the root.
-
-    Returns
-    -------
-    str
-        HTML of the page.
-    """
-    lines = (root / file).read_text(encoding="utf-8").splitlines()
-    return environment(spoken()).get_template("source.html").render(file=file, lines=lines)
-
-
-def source_name(file: str) -> str:
-    """Name of the page of a Maxima file.
-
-    Parameters
-    ----------
-    file : str
-        Maxima file, relative to the root.
-
-    Returns
-    -------
-    str
-        Name of the page.
-    """
-    return f"source/{file.replace('/', '-')}.html"
-
-
-def _source_link(excerpt: Excerpt) -> str:
-    """Link to the first line of an excerpt."""
-    return f"{source_name(excerpt.file)}#L{excerpt.first_line}"
 
 
 @cache
@@ -95,8 +55,6 @@ def environment(language: str) -> jinja2.Environment:
         "as_printed": mathematics.as_printed,
         "as_corrected": mathematics.as_corrected,
         "expression": mathematics.expression,
-        "source_link": _source_link,
-        "source_page_link": source_name,
         "difference": mathematics.difference,
         "sentence": _sentence,
         "rounded": _rounded,
@@ -112,7 +70,6 @@ def environment(language: str) -> jinja2.Environment:
         "emphasized": _emphasized,
         "both": _both,
         "law_text": _law_text,
-        "signed": _signed,
         "advice": advice,
         "engine_text": engine_text,
         "notes": notes,
@@ -129,11 +86,27 @@ def environment(language: str) -> jinja2.Environment:
         "display": mathematics.display,
         "display_named": mathematics.display_named,
         "display_expression": mathematics.display_expression,
+        "description": mathematics.description,
+        "derivation_cards": derivation_cards,
+        "cards": cards_of_scene,
+        "missing": missing,
+        "named_equations": named_equations,
+        "scene_named": scene_named,
+        "excerpt": excerpt,
+        "words_of": _words_of,
     }
     for library in MACROS:
         macros = environment.get_template(library).module
         environment.globals |= {name: macro for name, macro in vars(macros).items() if not name.startswith("_")}
     return environment
+
+
+def _words_of(card: Card) -> Markup:
+    """Return the plain words for an equation."""
+    keys = (card.id, f"{card.number} {card.name}", card.number, card.name)
+    found = next((found for key in keys if (found := table("words").get(key))), {})
+    plain = found.get("words", "")
+    return mathematics.prose(translated(plain if card.controlled else found.get("without_controls", plain)))
 
 
 def _sentence(text: str) -> str:
@@ -188,11 +161,6 @@ def _law_text(law: UniversalLaw) -> Markup:
 
 def _rounded(value: float, digits: int = 6) -> str:
     return f"{float(f'{float(value):.{digits}g}'):.15g}"
-
-
-def _signed(value: float) -> str:
-    """Return a rounded number with its sign, or "under 1"."""
-    return f"{value:+.0f}" if round(value) else gettext("under 1")
 
 
 def _counted(message: str, count: int, none: str) -> str:

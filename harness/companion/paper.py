@@ -1,33 +1,20 @@
 """Chapters of the book and the manual with computations, by page name."""
 
-from functools import partial
 from importlib import import_module
-from pathlib import Path
 from pkgutil import iter_modules
 
-from ..files import shared
 from . import chapters
 from .chapter import Chapter
 
-REPOSITORY = shared("maxima").parent
 
-
-def chapters_of_the_paper(root: Path = REPOSITORY) -> dict[str, Chapter]:
-    """Return the chapters, with the examples and Maxima files of a repository.
-
-    Parameters
-    ----------
-    root : Path
-        Root of the repository.
+def chapters_of_the_paper() -> dict[str, Chapter]:
+    """Return the chapters.
 
     Returns
     -------
     dict of str to Chapter
         Chapters by page.
     """
-    return {module.name.replace("_", "-"): _chapter(root, module.name) for module in iter_modules(chapters.__path__)}
-
-
-def _chapter(root: Path, name: str) -> Chapter:
-    module = import_module(f".chapters.{name}", __package__)
-    return Chapter(module.runs(root), partial(module.page, root))
+    names = [module.name for module in iter_modules(chapters.__path__)]
+    modules = {name.replace("_", "-"): import_module(f".chapters.{name}", __package__) for name in names}
+    return {name: Chapter(module.RUNS, module.page) for name, module in modules.items()}

@@ -1,55 +1,42 @@
-"""Maxima sessions of the chapters: an example and its questions."""
+"""Statements at Maxima's prompt and its answers."""
 
 import re
 from pathlib import Path
 
-from ..language import gettext, translated
-from . import table
+from ..maxima import run_batch
+from ..temporary import private_directory
 
 LOADING = re.compile(r"^load\(.*\)\$$", re.MULTILINE)
-PRINTING = re.compile(r"^(print_derivation\(.*\)\$|if holonom_print then\n(.+\n)*?.*\)\)\$)$", re.MULTILINE)
+ANSWERED = "%answer : ({})$\n%answers : endcons(string(%answer), %answers)$\n"
+WRITER = """
+write_answers(%file) := block([%stream : openw(%file)],
+  for %each in %answers do printf(%stream, "~a~%", %each), close(%stream))$
+"""
 
 
-def session_text(root: Path, slug: str) -> str:
-    """Return the session of a chapter as a Maxima file, in the current language.
-
-    Parameters
-    ----------
-    root : Path
-        Root of the repository.
-    slug : str
-        Name of the chapter.
-
-    Returns
-    -------
-    str
-        Text of the file.
-    """
-    known = table("sessions")[slug]
-    head = gettext(
-        "%(title)s: a session of Maxima, after `make install`, for example by  maxima -b %(slug)s.mac",
-        title=slug,
-        slug=slug,
-    )
-    return f"/* {head} */\n\n{_example(root / known['file'])}/* {translated(known['comment'])} */\n{known['text']}"
-
-
-def questions(slug: str) -> str:
-    """Return the questions of the session of a chapter.
+def answers_of(example: Path | None, statements: tuple[str, ...]) -> tuple[str, ...]:
+    """Return Maxima's answers to statements, in one line each.
 
     Parameters
     ----------
-    slug : str
-        Name of the chapter.
+    example : Path or None
+        Scene file that is read first.
+    statements : tuple of str
+        Statements without their terminators.
 
     Returns
     -------
-    str
-        Maxima input.
+    tuple of str
+        Answers in the order of the statements.
+
+    Raises
+    ------
+    HolonomError
+        Maxima reports an error.
     """
-    return table("sessions")[slug]["text"]
-
-
-def _example(file: Path) -> str:
-    text = PRINTING.sub("", LOADING.sub("load(holonom)$", file.read_text(encoding="utf-8")))
-    return f"{text.rstrip()}\n"
+    begun = LOADING.sub("", example.read_text(encoding="utf-8")) if example else ""
+    asked = "".join(map(ANSWERED.format, statements))
+    with private_directory() as directory:
+        file = directory / "session.mac"
+        file.write_text(f'load("holonom.mac")$\n{begun}\n%answers : []$\n{asked}{WRITER}', encoding="utf-8")
+        return tuple(run_batch(file, "write_answers").replace("\\", "").splitlines())

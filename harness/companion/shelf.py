@@ -1,6 +1,7 @@
 """The chapters of one build: run, rendered and written."""
 
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -9,8 +10,7 @@ from ..language import speaking
 from .chapter import Chapter, Page, Run
 from .kept import results_of
 from .pages import environment
-from .paper import REPOSITORY
-from .sessions import questions, session_text
+from .runs import perform
 
 
 class Shelf:
@@ -54,7 +54,8 @@ class Shelf:
             Names of the pages.
         """
         wanted = [run for name in names if (chapter := self.chapter(name)) for run in chapter.runs.values()]
-        self.results.update(results_of((run for run in wanted if run not in self.results), self.kept, self.done))
+        missing = [run for run in wanted if run not in self.results]
+        self.results.update(results_of(missing, self.kept, partial(perform, done=self.done)))
 
     def chapter(self, name: str) -> Chapter | None:
         """Return the chapter of a page, where it has one.
@@ -107,24 +108,28 @@ class Shelf:
             HTML.
         """
         with speaking(self.language):
-            return str(environment(self.language).from_string(template).render(**self.page(name).content)).strip()
+            page, chapter = self.page(name), self.chapter(name)
+            known = {each: self.results[run] for each, run in chapter.runs.items()} if chapter else {}
+            return str(environment(self.language).from_string(template).render(known | dict(page.content))).strip()
 
-    def session(self, slug: str) -> str:
-        """Write the session file of a chapter. Return its questions with a link.
+    def result(self, run: Run) -> Any:
+        """Return the result of a run, performed in this process unless it is known.
 
         Parameters
         ----------
-        slug : str
-            Name of the chapter.
+        run : Run
+            Run that is not one of a chapter's.
 
         Returns
         -------
-        str
-            HTML.
+        Any
+            Its result.
         """
-        with speaking(self.language):
-            self._write(f"sessions/{slug}.mac", session_text(REPOSITORY, slug))
-            return str(environment(self.language).globals["session"](slug, questions(slug)))
+        if run not in self.results:
+            self.results |= results_of(
+                [run], self.kept, lambda runs: {each: each.compute(*each.arguments) for each in runs}
+            )
+        return self.results[run]
 
     def _write(self, name: str, text: str) -> None:
         (self.files / name).parent.mkdir(parents=True, exist_ok=True)
@@ -133,6 +138,6 @@ class Shelf:
     def _made(self, name: str) -> Page:
         chapter = self.chapter(name)
         if chapter is None:
-            return Page({})
+            return Page()
         with speaking(self.language):
             return chapter.page({each: self.results[run] for each, run in chapter.runs.items()})

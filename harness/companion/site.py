@@ -98,7 +98,11 @@ def build(scenes: Sequence[Path], directory: Path, shelf: Shelf, folders: Mappin
     """
     settings: dict[str, Any] = {"language": SPHINX[shelf.language], "html_context": {"folders": folders}}
     if scenes:
-        settings |= {"bibtex_bibfiles": [], "html_title": gettext("A companion to systems of your own")}
+        settings |= {
+            "bibtex_bibfiles": [],
+            "gettext_compact": "own",
+            "html_title": gettext("A companion to systems of your own"),
+        }
     try:
         sources = _texts_about(scenes, directory) if scenes else SOURCES
         translators.clear()  # Sphinx would add the messages of this build to those of the one before

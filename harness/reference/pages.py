@@ -20,6 +20,7 @@ from .entries import function_texts, part_texts, step_texts
 
 FOLDER = "reference/"
 SPECIAL = re.compile(r"`[^`]+`|([\\*_\[\]<>$|{}#~])")  # of Markdown; code, which keeps them
+COMMON = {"format": "Kind of the document.", "version": "Version of this kind of document."}  # of all schemas
 COMBINED = ("oneOf", "anyOf", "allOf")  # of schemas
 
 
@@ -125,7 +126,7 @@ def _fields(schema: Mapping[str, Any], path: str) -> Iterator[tuple[str, str, st
         for name, field in part.get("properties", {}).items():
             place = f"{path}{below}.{name}" if path + below else name
             stated = field if isinstance(field, dict) else {}  # true: anything
-            yield place, _kind(stated), stated.get("description", "")
+            yield place, _kind(stated), stated.get("description", COMMON.get(place, ""))
             yield from _fields(stated, place)
 
 

@@ -79,6 +79,8 @@ POLYNOMIAL = Radius(None, None, (), translatable("infinite: the motion is a poly
 UNPROVED = Radius(None, None, (), translatable("unknown: no higher powers occur, and that none follow is not proved"))
 ENTIRE = Radius(None, None, (), translatable("infinite: the coefficients are those of an entire motion"))
 UNDECIDED = Radius(None, None, (), translatable("unknown: these orders do not determine it"))
+COMPLEX_PAIR = translatable("the nearest singularity is a complex pair")
+REAL_TIME = translatable("the nearest singularity is a real time")
 TOO_FEW = Radius(
     None, None, (), translatable("unknown: at least %(count)s nonzero coefficients are needed", count=FEWEST)
 )
@@ -334,7 +336,7 @@ def _root_tests(n: NDArray[np.int64], logarithms: Floats, stride: int, scale: Fl
     with_power = _slopes(n, logarithms, lambda n: [n, np.log(n)])
     error = np.maximum(ROOT_TEST_ERROR / n[-1], SAFETY * np.abs(slope - with_power)) / stride
     estimate = np.exp(-slope / stride) * scale
-    note = "by the root test: the orders do not separate the nearest singularities"
+    note = translatable("by the root test: the orders do not separate the nearest singularities")
     return [
         Radius(r, u, (), note) for r, u in zip(estimate.tolist(), (estimate * np.expm1(error)).tolist(), strict=True)
     ]
@@ -390,8 +392,8 @@ def _compared_fits(balanced: Floats, lags: int) -> list[tuple[Floats, NDArray[np
 
 
 def _radius(estimate: float, spread: float, singularities: Sequence[complex]) -> Radius:
-    kind = "a complex pair" if any(abs(z.imag) > spread * abs(z) for z in singularities) else "a real time"
-    return Radius(estimate, estimate * spread, tuple(singularities), f"the nearest singularity is {kind}")
+    kind = COMPLEX_PAIR if any(abs(z.imag) > spread * abs(z) for z in singularities) else REAL_TIME
+    return Radius(estimate, estimate * spread, tuple(singularities), kind)
 
 
 def _recurrence_roots(balanced: Floats, lags: int, n: NDArray[np.int64], most: int) -> list[NDArray[np.complex128]]:

@@ -16,6 +16,7 @@ from typing import Any
 import mpmath
 import numpy as np
 
+from ..language import translatable
 from ..program.arithmetic import ELEMENTARY, Arithmetic, run_program
 from ..program.motion_problem import computing
 from ..program.motion_program import (
@@ -29,7 +30,7 @@ from ..program.motion_program import (
     names_in,
     names_used,
 )
-from .radius import TOO_FEW, UNDECIDED, Radius
+from .radius import COMPLEX_PAIR, REAL_TIME, TOO_FEW, UNDECIDED, Radius
 
 MOST_WORK = 40_000  # operations times critical functions beyond which nothing is looked for
 RADII, ANGLES = 36, 24  # of the points that Newton's method begins from
@@ -80,15 +81,18 @@ def decided(radius: Radius, series: Sequence[Sequence[mpmath.mpf]], program: Pro
 
 
 def _at_most(bound: float, radius: Radius) -> Radius:
-    note = f"unknown, {bound:.8g} at most, where the equations of motion are singular; these orders do not show more"
+    note = translatable(
+        "unknown, %(bound)s at most, where the equations of motion are singular; these orders do not show more",
+        bound=f"{bound:.8g}",
+    )
     return replace(radius, note=note)
 
 
 def _located(zero: complex, zeros: Sequence[complex]) -> Radius:
     """Return the radius of convergence, with all singularities at that distance."""
     as_far = [z for z in zeros if abs(abs(z) - abs(zero)) <= CLOSE * abs(zero)]
-    kind = "a real time" if abs(zero.imag) <= CLOSE * abs(zero) else "a complex pair"
-    note = f"the equations of motion are singular there; the nearest singularity is {kind}"
+    kind = REAL_TIME if abs(zero.imag) <= CLOSE * abs(zero) else COMPLEX_PAIR
+    note = translatable("the equations of motion are singular there; %(kind)s", kind=kind)
     return Radius(abs(zero), CONVERGED * abs(zero), tuple(as_far), note, located=True)
 
 

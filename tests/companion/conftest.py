@@ -4,10 +4,11 @@ from pathlib import Path
 
 import pytest
 from own_system import TEXTS, made
+from pages import REPOSITORY
 from shorter import SHORTER
 
 from holonom.companion.directives import FILES
-from holonom.companion.paper import REPOSITORY, chapters_of_the_paper
+from holonom.companion.paper import chapters_of_the_paper
 from holonom.companion.runs import perform
 from holonom.companion.shelf import Shelf
 from holonom.companion.site import build

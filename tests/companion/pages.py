@@ -7,6 +7,7 @@ from pathlib import Path
 from urllib.parse import urlsplit
 from xml.etree.ElementTree import Element, TreeBuilder
 
+REPOSITORY = Path(__file__).parents[2]
 HTML = MATHML = ""  # the name spaces, which HTML does not write
 VOID = {"area", "base", "br", "col", "hr", "img", "input", "link", "meta", "source", "track", "wbr"}
 MADE_BY_SPHINX = {"genindex.html", "search.html", "py-modindex.html"}

@@ -9,7 +9,7 @@ from holonom.companion import convergence
 from holonom.companion.chapter import Run
 from holonom.companion.chapters import INITIAL_SCENE, PAPER
 from holonom.companion.convergence import RadiiFound
-from holonom.companion.paper import REPOSITORY, chapters_of_the_paper
+from holonom.companion.paper import chapters_of_the_paper
 from holonom.program.request import Request
 from holonom.sandbox import Limits
 
@@ -28,7 +28,7 @@ def coarse_study() -> Study:
         solver_tolerances=(1e-4, 1e-8, 1e-12),
         orders=(10, 20, 40),
     )
-    return study(REPOSITORY / PAPER, Request(INITIAL_SCENE), Limits(), plan)
+    return study(PAPER, Request(INITIAL_SCENE), Limits(), plan)
 
 
 SHORTER = {

@@ -15,7 +15,7 @@ from holonom.companion.cards import named_equations, scene_named
 from holonom.companion.chapters import BEAD, INITIAL_SCENE, PAPER
 from holonom.companion.convergence import draw_radius
 from holonom.companion.directives import FILES
-from holonom.companion.paper import REPOSITORY, chapters_of_the_paper
+from holonom.companion.paper import chapters_of_the_paper
 from holonom.companion.runs import drawn
 from holonom.series.radius import ENTIRE
 
@@ -114,7 +114,7 @@ def test_every_chapter_that_computes_has_its_page(companion):
 
 
 def test_every_equation_of_the_paper_s_record_has_a_card(companion, results):
-    record = results[runs.derived(REPOSITORY / PAPER)].record
+    record = results[runs.derived(PAPER)].record
     derived = {each.number for part in (*record.derivations, *record.scenes) for each in part.equations}
     assert derived <= {number for numbers in CARDS.values() for number in numbers}
     for page, numbers in CARDS.items():
@@ -162,7 +162,7 @@ def test_one_letter_has_one_shape(companion):
 
 def test_sines_and_cosines_that_cancel_are_not_left_standing(results):
     """T of the bead is M v^2/2 + m(v^2 + r'^2 + r^2 w^2)/2 + ..., since sin^2 + cos^2 = 1."""
-    relations = named_equations(results[runs.derived(REPOSITORY / BEAD)])["kinetic_energy"].relations
+    relations = named_equations(results[runs.derived(BEAD)])["kinetic_energy"].relations
     m, w, r = (Symbol(name, real=True) for name in ("m", "w", "r"))
     found = {str(each.left): each.right for each in relations}
     assert found["A[2, 2]"] == m
@@ -187,21 +187,24 @@ def test_every_chapter_has_a_figure_that_tells_its_finding(companion):
             assert len(" ".join(each.find("figcaption").itertext()).split()) >= 5, page.name
 
 
-def test_exercises_are_graded_and_answered(companion):
-    assert len(chapters_with_exercises(companion)) >= 11
+def test_a_chapter_has_five_exercises_with_grades_and_answers_apart(companion):
+    assert len(chapters_with_exercises(companion)) >= 12
     for page in chapters_with_exercises(companion):
         questions = [each for each in pages.article(page).iter("div") if each.get("class") == "exercise"]
-        assert len(questions) >= 2, page.name
-        for each in questions:
+        assert len(questions) == 5, page.name
+        apart = next(each for each in pages.article(page).iter("section") if each.get("id") == "answers")
+        answers = {each.get("id"): each for each in apart.iter("details")}
+        for number, each in enumerate(questions, 1):
             assert len([part for part in each.iter() if part.get("class") == "grade"]) == 1
-            assert len(" ".join(each.find("details").itertext()).split()) > 10, page.name
+            assert next(each.iter("a")).get("href") == f"#answer-{number}"
+            assert len(" ".join(answers[f"answer-{number}"].itertext()).split()) > 5, page.name
 
 
 def test_numbers_that_exercises_need_are_on_their_page(companion, results):
     """Those of the scene that a chapter is about, before its exercises."""
     given = {"initial-motion": INITIAL_SCENE, "worked-example": INITIAL_SCENE, "radius-of-convergence": INITIAL_SCENE}
     for slug, name in given.items():
-        scene = scene_named(results[runs.derived(REPOSITORY / PAPER)], name)
+        scene = scene_named(results[runs.derived(PAPER)], name)
         page = pages.parsed(companion / "book" / f"{slug}.html")
         exercises = next(each for each in page.iter("section") if each.get("id") == "exercises")
         remarks = [each for each in exercises.iter("p") if each.get("class") == "remark"]

@@ -2,17 +2,27 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from holonom.companion.chapters.effects import STILL, TURNING, turning_point
+from holonom.companion.chapters.effects import STILL, TURNING
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
 from holonom.sandbox import Limits
 from holonom.simulation.request import SimulationRequest
+from holonom.simulation.result import Simulation
 from holonom.simulation.simulate import simulate
 
 FILE = Path(__file__).parents[2] / "examples" / "spherical_pendulum.mac"
 OMEGA, LENGTH, REACH = 1 / 20, 1, 3 / 5
+
+
+def turning_point(motion: Simulation) -> tuple[float, float]:
+    """The last turning time on the side where the bob began, and its angle from the start."""
+    x, y = motion.coordinates["x"], motion.coordinates["y"]
+    away = np.hypot(x, y)
+    turns = np.flatnonzero((away[1:-1] >= away[:-2]) & (away[1:-1] > away[2:]) & (x[1:-1] * x[0] > 0)) + 1
+    return float(motion.times[turns[-1]]), float(np.arctan2(y[turns[-1]], x[turns[-1]]) - np.arctan2(y[0], x[0]))
 
 
 def turned(scene: str) -> tuple[float, float]:

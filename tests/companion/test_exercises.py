@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from sympy import Symbol, simplify, sympify
+from sympy import Matrix, Symbol, exp, simplify, sympify
 
 import holonom
 
@@ -117,3 +117,83 @@ system : holonomic_system(coordinates = [q1, q2, q3], controls = [u], parameters
     s = Symbol("q1", real=True) + Symbol("q2", real=True)
     rest = {Symbol("dot(u)", real=True): 0}
     assert simplify(found.subs(rest) * (u**2 / m1 + u**2 / m2 + 1 / m3) - acceleration * s) == 0
+
+
+def test_the_reaction_of_chapter_10_vanishes_at_the_start_only():
+    motion = plane(v1="41/42").simulate(until=1, samples=2)  # dot(S) = 41/42 - 1/3 = 9/14
+    assert motion["lambda1"][0] == pytest.approx(0, abs=1e-14)
+    assert abs(motion["lambda1"][-1]) > 0.1
+    series = plane(v1="41/42").series(order=2)
+    assert float(sympify(series.multipliers["lambda1"][1])) * 1.18 == pytest.approx(-10.48, abs=5e-3)
+
+
+def test_every_motion_of_chapter_10_is_free_with_a_negative_kappa():
+    found = plane("[-(q1 + q2)/4, dot(q1) + dot(q2), 0]", "u0*exp(-t/2)").free().motion
+    assert (found.verdict, found.states) == ("free", "all states")
+
+
+def test_power_of_chapter_10_at_the_start():
+    multiplier = plane().simulate(until=1, samples=2)["lambda1"][0]
+    assert [multiplier, 3 * multiplier] == pytest.approx([-100 / 177, -100 / 59], abs=1e-12)
+
+
+def test_parallel_gradients_of_chapter_11_lose_digits():
+    alpha = 1e-3
+    jacobian = np.array([[1, 0], [math.cos(alpha), math.sin(alpha)]])
+    assert np.linalg.cond(jacobian @ jacobian.T) == pytest.approx(4e6, rel=1e-3)
+    assert np.linalg.cond(jacobian) == pytest.approx(2000, rel=1e-3)
+    assert [math.log10(4e6), math.log10(2000)] == pytest.approx([6.6, 3.3], abs=0.01)
+
+
+def test_two_rods_of_chapter_11_have_a_singular_matrix_at_zero():
+    found = holonom.system("""
+system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [l, g],
+  kinetic_energy = (dot(x)^2 + dot(y)^2)/2, potential_energy = [gravity = g*y],
+  constraints = [(x^2 + y^2 - l^2)/2, ((x - u)^2 + y^2 - l^2 - u^2)/2])$
+""").equations["lagrange_equations"][0]
+    names = [Symbol(f"lambda{k}", real=True) for k in (1, 2)]
+    x, y, u, length = (Symbol(name, real=True) for name in ("x", "y", "u", "l"))
+    columns = Matrix([[each.right.expand().coeff(name) for name in names] for each in found.relations])
+    determinant = (columns.T * columns).det().subs({x: 0, y: -length})
+    assert simplify(determinant - u**2 * length**2) == 0
+
+
+def test_steps_of_the_stiff_spring_of_chapter_11():
+    def growth(step: float) -> float:
+        z = 1j * step
+        return abs(1 + z + z**2 / 2 + z**3 / 6 + z**4 / 24)
+
+    assert growth(1e4 / 3536) <= 1 < growth(1e4 / 3535)
+
+
+def test_digits_of_chapter_11():
+    assert 1 - math.cos(1e-8) == 0
+    assert 2 * math.sin(1e-8 / 2) ** 2 == pytest.approx(5e-17, rel=1e-15)
+    assert math.log(1e14) / 2 == pytest.approx(16.1, abs=0.05)
+    assert 1e-2 * math.exp(-2 * 2 * math.log(1e14) / 2) == pytest.approx(1e-30, rel=1e-12)
+
+
+def test_costs_of_digits_of_chapter_12():
+    assert [round(10 ** (10 / p)) for p in (4, 5, 8)] == [316, 100, 18]
+    assert [math.ceil(digits * math.log(10) / 2) for digits in (16, 32)] == [19, 37]
+
+
+def test_drift_of_chapter_12_with_and_without_stabilization():
+    times = np.linspace(0, 1, 100_001)
+    assert max(1e-8 * times * np.exp(-10 * times)) == pytest.approx(3.7e-10, abs=5e-12)
+    t = Symbol("t")
+    stabilized = t * exp(-10 * t)
+    assert simplify(stabilized.diff(t, 2) + 20 * stabilized.diff(t) + 100 * stabilized) == 0
+
+
+def test_projected_velocity_of_chapter_12():
+    mass, jacobian, velocity = np.diag([1, 4]), np.array([[0.6, -0.8]]), np.array([1, 1])
+    bordered = np.block([[mass, jacobian.T], [jacobian, np.zeros((1, 1))]])
+    found = np.linalg.solve(bordered, [*(mass @ velocity), 0])[:2]
+    assert found == pytest.approx([16 / 13, 12 / 13])
+
+
+def test_best_step_of_chapter_12():
+    steps = np.linspace(1e-4, 1e-3, 100_001)
+    errors = steps**4 + 1e-16 / steps
+    assert [steps[errors.argmin()], errors.min()] == pytest.approx([4.8e-4, 2.6e-13], rel=0.01)

@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from holonom.companion.chapters.turn_the_knob import LAWS, runs
+from holonom.companion.chapters.turn_the_knob import LAWS, RUNS
 from holonom.companion.directives import FILES
-from holonom.companion.paper import REPOSITORY
 from holonom.program.numpy_function import NumpyFunction
 
 NODE = shutil.which("node")
@@ -27,7 +26,6 @@ SETTINGS = {
     "dot(q1)": 0.5,
     "dot(q2)": 1.0,
 }
-RUNS = runs(REPOSITORY)
 UNTIL, SAMPLES = 2.0, 21
 RUN = """
 const knob = require(process.argv[1]);

@@ -18,7 +18,7 @@ from holonom.companion import directives, site
 from holonom.companion import pages as companion_pages
 from holonom.companion.chapters import gallery
 from holonom.companion.directives import FILES
-from holonom.companion.paper import REPOSITORY, chapters_of_the_paper
+from holonom.companion.paper import chapters_of_the_paper
 from holonom.companion.shelf import Shelf
 from holonom.language import speaking
 from holonom.simulation.request import Stabilization
@@ -33,7 +33,7 @@ CODE = {"code", "pre", "math", "script", "style", "select"}
 def twins(tmp_path_factory):
     """Directory of a companion in Chinese and English; a build takes nothing of the one before."""
     directory = tmp_path_factory.mktemp("twins") / "pages"
-    cabin = REPOSITORY / "examples" / "weightless_cabin.mac"
+    cabin = pages.REPOSITORY / "examples" / "weightless_cabin.mac"
     arguments = ["companion", str(cabin), "-o", str(directory), "--language", "zh", "--language", "en"]
     assert CliRunner(mix_stderr=False).invoke(holonom, arguments, standalone_mode=False).return_value == 0
     return directory
@@ -128,7 +128,7 @@ def outside(text: str) -> str:
 
 def names() -> set[str]:
     """Words that are the same in every language: of authors, works, machines, effects and options."""
-    works = (REPOSITORY / "harness" / "companion" / "book" / "works.bib").read_text(encoding="utf-8")
+    works = (pages.REPOSITORY / "harness" / "companion" / "book" / "works.bib").read_text(encoding="utf-8")
     texts = [works, str(this_machine()), *Stabilization, "spring damping English DOI"]
     return {word for text in texts for word in WORD.findall(text)}
 

@@ -7,12 +7,11 @@ import pytest
 
 from holonom.companion.chapters.gallery import EXHIBITS
 from holonom.companion.directives import FILES
-from holonom.companion.paper import REPOSITORY
 
 
 def test_every_example_is_in_the_gallery():
     shown = {exhibit["file"] for exhibit in EXHIBITS}
-    examples = {str(file.relative_to(REPOSITORY)) for file in (REPOSITORY / "examples").rglob("*.mac")}
+    examples = {str(file.relative_to(pages.REPOSITORY)) for file in (pages.REPOSITORY / "examples").rglob("*.mac")}
     assert shown == examples - {"examples/paper/by_hand.mac", "examples/paper/printed.mac"}
 
 

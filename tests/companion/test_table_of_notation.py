@@ -4,9 +4,9 @@ import re
 from dataclasses import fields
 
 import pytest
+from pages import REPOSITORY
 
-from holonom.companion.excerpts import STEPS
-from holonom.companion.paper import REPOSITORY
+from holonom.companion import table
 from holonom.record import Scene, System
 
 PAGE = REPOSITORY / "harness" / "companion" / "book" / "notation.md"
@@ -16,6 +16,7 @@ SYMBOLS = [{"maxima": maxima, "python": python} for maxima, python in ROWS]
 RECORD = {
     name: {each.name for each in fields(kind)} | {*vars(kind)} for name, kind in (("system", System), ("scene", Scene))
 }
+WORDS = table("words")  # by the ids of equations
 LIBRARY = [path.read_text(encoding="utf-8") for path in sorted((REPOSITORY / "maxima").rglob("*.[ml]*"))]
 
 
@@ -27,7 +28,7 @@ def test_maxima_functions_are_defined(function):
 @pytest.mark.parametrize("path", [each["python"] for each in SYMBOLS])
 def test_python_names_are_in_the_record(path):
     if path.startswith("equations["):
-        assert path.split('"')[1] in STEPS
+        assert path.split('"')[1] in WORDS
     else:
         owner, name = path.split(".")
         assert name in RECORD[owner]

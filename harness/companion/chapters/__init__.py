@@ -1,19 +1,21 @@
-"""Chapters with computations, one per module, and the examples that they use.
+"""The chapters that compute, one a module, named like its page; and the examples that they take their systems from.
 
-Each has a function `runs(root)`, the runs that it needs, of those in `holonom.companion.runs` or of any function of a
-module, and a function `page(root, results)`, which makes the page's content, figures and sources of their results. The
-root is the repository. `contents.toml` gives the chapters their order.
+Each has `RUNS`, the runs that it needs by name, and a function `page(results)`, which computes from their results what
+the page shows beside them, and draws the figures.
 """
 
-PAPER = "examples/paper/paper.mac"
-BEAD = "examples/bead.mac"
-BOB = "examples/whirling_bob.mac"
-CABIN = "examples/weightless_cabin.mac"
-KNOB = "examples/paper/knob.mac"
-LINKAGE = "examples/linkage.mac"
-PENDULUM = "examples/pendulum.mac"
-PRESCRIBED_TENSION = "examples/prescribed_tension.mac"
-SPHERICAL_PENDULUM = "examples/spherical_pendulum.mac"
+from ...files import shared
+
+EXAMPLES = shared("examples")
+PAPER = EXAMPLES / "paper/paper.mac"
+BEAD = EXAMPLES / "bead.mac"
+BOB = EXAMPLES / "whirling_bob.mac"
+CABIN = EXAMPLES / "weightless_cabin.mac"
+KNOB = EXAMPLES / "paper/knob.mac"
+LINKAGE = EXAMPLES / "linkage.mac"
+PENDULUM = EXAMPLES / "pendulum.mac"
+PRESCRIBED_TENSION = EXAMPLES / "prescribed_tension.mac"
+SPHERICAL_PENDULUM = EXAMPLES / "spherical_pendulum.mac"
 
 FREE_SCENE = "free_motion_scene"
 INITIAL_SCENE = "initial_motion_scene"

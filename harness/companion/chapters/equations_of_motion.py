@@ -1,7 +1,6 @@
 """Equations of motion: from (2) to the constraint forces (9)."""
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,8 +10,8 @@ from sympy import Expr, Symbol, collect, expand
 from ...figures.curves import Panel, draw_curves
 from ...language import gettext
 from ...simulation.result import Simulation
-from ..cards import derivation_cards, files_of, missing, named_equations, printed_card
-from ..chapter import Page, Run
+from ..cards import derivation_cards, missing, named_equations, printed_card
+from ..chapter import Page
 from ..runs import Derived, derived, printed, simulation
 from . import BEAD, BOB, BOB_SCENE, PAPER, PENDULUM
 from .worked_example import in_sum
@@ -22,36 +21,21 @@ SAMPLES = 201
 NUMBERS = ("2", "3a", "3", "4", "5", "6", "7", "8", "9")
 
 
-def runs(root: Path) -> dict[str, Run]:
-    """Return the runs of the chapter.
-
-    Parameters
-    ----------
-    root : Path
-        Root of the repository.
-
-    Returns
-    -------
-    dict of str to Run
-        Runs by name.
-    """
-    return {
-        "paper": derived(root / PAPER),
-        "bob": derived(root / BOB),
-        "bead": derived(root / BEAD),
-        "pendulum": derived(root / PENDULUM),
-        "printed": printed(),
-        "motion": simulation(root / BOB, BOB_SCENE, None, SAMPLES),
-    }
+RUNS = {
+    "paper": derived(PAPER),
+    "bob": derived(BOB),
+    "bead": derived(BEAD),
+    "pendulum": derived(PENDULUM),
+    "printed": printed(),
+    "motion": simulation(BOB, BOB_SCENE, None, SAMPLES),
+}
 
 
-def page(root: Path, results: Mapping[str, Any]) -> Page:
+def page(results: Mapping[str, Any]) -> Page:
     """Return the page that results make.
 
     Parameters
     ----------
-    root : Path
-        Root of the repository.
     results : mapping
         Results of the runs by their names.
 
@@ -61,7 +45,7 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
         Content and files of the page.
     """
     paper = results["paper"]
-    cards = derivation_cards(NUMBERS, [results["bob"], paper], results["printed"], root)
+    cards = derivation_cards(NUMBERS, [results["bob"], paper], results["printed"])
     conditions = [printed_card(results["printed"], name) for name in CONDITIONS]
     return Page(
         {
@@ -76,7 +60,6 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
             "pendulum": named_equations(results["pendulum"]),
         },
         figures={"bob": draw_curves(_panels(results["motion"]), gettext("t (units of the scene)"))},
-        sources=files_of(cards),
     )
 
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 from sympy import Expr, Symbol, simplify
@@ -11,8 +10,8 @@ from ...figures.curves import Panel, draw_curves
 from ...free_motion import FreeMotion
 from ...language import gettext
 from ...simulation.result import Simulation
-from ..cards import derivation_cards, files_of, named_equations, printed_card, scene_cards, scene_named
-from ..chapter import Page, Run
+from ..cards import derivation_cards, named_equations, printed_card, scene_cards, scene_named
+from ..chapter import Page
 from ..expressions import under
 from ..power import EnergyBalance, energy_balance
 from ..runs import Derived, derived, free, printed, simulation
@@ -25,41 +24,26 @@ LIFT = "lift_scene"
 UNPUSHED = "Lagrange's equations on a free motion"
 
 
-def runs(root: Path) -> dict[str, Run]:
-    """Return the runs of the chapter.
-
-    Parameters
-    ----------
-    root : Path
-        Root of the repository.
-
-    Returns
-    -------
-    dict of str to Run
-        Runs by name.
-    """
-    return {
-        "paper": derived(root / PAPER),
-        "bob": derived(root / BOB),
-        "cabin": derived(root / CABIN),
-        "pendulum": derived(root / PENDULUM),
-        "printed": printed(),
-        "free_law": free(root / PAPER, FREE_SCENE),
-        "other_law": free(root / PAPER, INITIAL_SCENE),
-        "unpushed": simulation(root / PAPER, FREE_SCENE, UNTIL, SAMPLES),
-        "pushed": simulation(root / PAPER, INITIAL_SCENE, UNTIL, SAMPLES),
-        "flight": free(root / CABIN, PARABOLIC_FLIGHT),
-        "lift": free(root / CABIN, LIFT),
-    }
+RUNS = {
+    "paper": derived(PAPER),
+    "bob": derived(BOB),
+    "cabin": derived(CABIN),
+    "pendulum": derived(PENDULUM),
+    "printed": printed(),
+    "free_law": free(PAPER, FREE_SCENE),
+    "other_law": free(PAPER, INITIAL_SCENE),
+    "unpushed": simulation(PAPER, FREE_SCENE, UNTIL, SAMPLES),
+    "pushed": simulation(PAPER, INITIAL_SCENE, UNTIL, SAMPLES),
+    "flight": free(CABIN, PARABOLIC_FLIGHT),
+    "lift": free(CABIN, LIFT),
+}
 
 
-def page(root: Path, results: Mapping[str, Any]) -> Page:
+def page(results: Mapping[str, Any]) -> Page:
     """Return the page that results make.
 
     Parameters
     ----------
-    root : Path
-        Root of the repository.
     results : mapping
         Results of the runs by their names.
 
@@ -69,8 +53,8 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
         Content and files of the page.
     """
     paper, cabin = results["paper"], results["cabin"]
-    cards = derivation_cards(["10"], [paper, results["bob"]], results["printed"], root)
-    scenes = scene_cards(["10"], [(paper, FREE_SCENE), (paper, INITIAL_SCENE)], (), root, "law")
+    cards = derivation_cards(["10"], [paper, results["bob"]], results["printed"])
+    scenes = scene_cards(["10"], [(paper, FREE_SCENE), (paper, INITIAL_SCENE)], (), "law")
     return Page(
         {
             **_example(paper, results["other_law"]),
@@ -92,7 +76,6 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
         figures={
             "cost": draw_curves(_panels(results["unpushed"], results["pushed"], balance), gettext("t (dimensionless)"))
         },
-        sources=files_of(cards),
     )
 
 

@@ -1,7 +1,6 @@
 """Chapter on hard cases: motions on which a simple method loses digits."""
 
-from collections.abc import Mapping, Sequence
-from pathlib import Path
+from collections.abc import Mapping
 
 from ...benchmark.hard_cases.case import CaseReport, Extent, examined
 from ...benchmark.hard_cases.register import REGISTER
@@ -10,29 +9,11 @@ from ..chapter import Page, Run
 from ..runs import drawn
 
 
-def runs(root: Path) -> dict[str, Run]:
-    """Return the runs of the chapter.
-
-    Parameters
-    ----------
-    root : Path
-        Root of the repository.
-
-    Returns
-    -------
-    dict of str to Run
-        Runs by name.
-    """
-    return {case.name: Run(examined, (case, Extent.SHORT)) for case in REGISTER}
-
-
-def page(root: Path, results: Mapping[str, CaseReport]) -> Page:
+def page(results: Mapping[str, CaseReport]) -> Page:
     """Return the page that results make.
 
     Parameters
     ----------
-    root : Path
-        Root of the repository.
     results : mapping
         Results of the runs by their names.
 
@@ -45,17 +26,15 @@ def page(root: Path, results: Mapping[str, CaseReport]) -> Page:
     return Page(
         {
             "reports": reports,
-            "best": _best_gain(reports),
             "sweeps": [each for each in reports if each.sweep],
         },
         figures={"hard-cases": drawn(lambda file: draw_stability(reports, file))},
     )
 
 
-def _best_gain(reports: Sequence[CaseReport]) -> CaseReport:
-    """Return the case in which the best method keeps most digits more than the worst."""
-    return max(reports, key=lambda report: _spread([r.digits for r in report.results if r.digits is not None]))
+def _examined(name: str) -> CaseReport:
+    """Return the report on a case, in short; its name is what a kept result depends on."""
+    return examined(next(case for case in REGISTER if case.name == name), Extent.SHORT)
 
 
-def _spread(digits: Sequence[float]) -> float:
-    return max(digits, default=0.0) - min(digits, default=0.0)
+RUNS = {case.name: Run(_examined, (case.name,)) for case in REGISTER}

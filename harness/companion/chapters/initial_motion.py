@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 import mpmath
@@ -15,8 +14,8 @@ from ...language import gettext
 from ...number_texts import number, numbers
 from ...record import Equation, Scene
 from ...series.power_series import MotionSeries, NumberTexts
-from ..cards import derivation_cards, files_of, named_equations, scene_cards, scene_named
-from ..chapter import Page, Run
+from ..cards import derivation_cards, named_equations, scene_cards, scene_named
+from ..chapter import Page
 from ..runs import derived, printed, series
 from . import BOB, BOB_SCENE, INITIAL_SCENE, PAPER
 
@@ -25,34 +24,19 @@ TIME, LAST = Fraction(1, 10), Fraction(1, 2)
 SHOWN = "q1"  # the coordinate that is drawn
 
 
-def runs(root: Path) -> dict[str, Run]:
-    """Return the runs of the chapter.
-
-    Parameters
-    ----------
-    root : Path
-        Root of the repository.
-
-    Returns
-    -------
-    dict of str to Run
-        Runs by name.
-    """
-    return {
-        "paper": derived(root / PAPER),
-        "bob": derived(root / BOB),
-        "printed": printed(),
-        "expanded": series(root / PAPER, INITIAL_SCENE, HIGH_ORDER),
-    }
+RUNS = {
+    "paper": derived(PAPER),
+    "bob": derived(BOB),
+    "printed": printed(),
+    "expanded": series(PAPER, INITIAL_SCENE, HIGH_ORDER),
+}
 
 
-def page(root: Path, results: Mapping[str, Any]) -> Page:
+def page(results: Mapping[str, Any]) -> Page:
     """Return the page that results make.
 
     Parameters
     ----------
-    root : Path
-        Root of the repository.
     results : mapping
         Results of the runs by their names.
 
@@ -62,8 +46,8 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
         Content and files of the page.
     """
     paper, bob = results["paper"], results["bob"]
-    eliminated = derivation_cards(["11"], [paper, bob], results["printed"], root)
-    cards = scene_cards(["12", "19", "13", "18"], [(paper, INITIAL_SCENE), (bob, BOB_SCENE)], results["printed"], root)
+    eliminated = derivation_cards(["11"], [paper, bob], results["printed"])
+    cards = scene_cards(["12", "19", "13", "18"], [(paper, INITIAL_SCENE), (bob, BOB_SCENE)], results["printed"])
     bob_equations, bob_scene = named_equations(bob, BOB_SCENE), scene_named(bob, BOB_SCENE)
     return Page(
         {
@@ -78,7 +62,6 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
             "compared": _compared(results["expanded"]),
         },
         figures={"first-times": draw_curves([beginning(results["expanded"])], gettext("t (dimensionless)"))},
-        sources=files_of([*eliminated, *cards]),
     )
 
 

@@ -2,13 +2,12 @@
 
 from collections.abc import Mapping
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 from ...figures.curves import Panel, draw_curves
 from ...language import gettext
 from ...simulation.result import Simulation
-from ..chapter import Page, Run
+from ..chapter import Page
 from ..mathematics import description
 from ..runs import derived, free, series, simulation
 from . import PRESCRIBED_TENSION
@@ -18,35 +17,19 @@ ORDER = 40
 UNTIL, SAMPLES = Fraction(2), 201
 
 
-def runs(root: Path) -> dict[str, Run]:
-    """Return the runs of the chapter.
-
-    Parameters
-    ----------
-    root : Path
-        Root of the repository.
-
-    Returns
-    -------
-    dict of str to Run
-        Runs by name.
-    """
-    file = root / PRESCRIBED_TENSION
-    return (
-        {"tension": derived(file)}
-        | {f"{name} motion": simulation(file, name, UNTIL, SAMPLES) for name in SCENES[1:]}
-        | {f"{name} free": free(file, name) for name in SCENES}
-        | {f"{name} series": series(file, name, ORDER) for name in SCENES}
-    )
+RUNS = (
+    {"tension": derived(PRESCRIBED_TENSION)}
+    | {f"{name} motion": simulation(PRESCRIBED_TENSION, name, UNTIL, SAMPLES) for name in SCENES[1:]}
+    | {f"{name} free": free(PRESCRIBED_TENSION, name) for name in SCENES}
+    | {f"{name} series": series(PRESCRIBED_TENSION, name, ORDER) for name in SCENES}
+)
 
 
-def page(root: Path, results: Mapping[str, Any]) -> Page:
+def page(results: Mapping[str, Any]) -> Page:
     """Return the page that results make.
 
     Parameters
     ----------
-    root : Path
-        Root of the repository.
     results : mapping
         Results of the runs by their names.
 
@@ -64,7 +47,6 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
             "series": {name: results[f"{name} series"] for name in SCENES},
         },
         figures={"winch": draw_curves(_panels(results), gettext("t (units of the scene)"))},
-        sources=(PRESCRIBED_TENSION,),
     )
 
 

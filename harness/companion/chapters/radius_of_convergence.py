@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from fractions import Fraction
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import mpmath
@@ -27,36 +26,21 @@ UNTIL, SAMPLES = Fraction(3, 2), 301
 SWING = "swing_scene"
 
 
-def runs(root: Path) -> dict[str, Run]:
-    """Return the runs of the chapter.
-
-    Parameters
-    ----------
-    root : Path
-        Root of the repository.
-
-    Returns
-    -------
-    dict of str to Run
-        Runs by name.
-    """
-    return {
-        "paper": derived(root / PAPER),
-        "initial": series(root / PAPER, INITIAL_SCENE, ORDER),
-        "free": series(root / PAPER, FREE_SCENE, ORDER),
-        "pendulum": series(root / PENDULUM, SWING, ORDER),
-        "motion": simulation(root / PAPER, INITIAL_SCENE, UNTIL, SAMPLES),
-        "radius": Run(find_radii),
-    }
+RUNS = {
+    "paper": derived(PAPER),
+    "initial": series(PAPER, INITIAL_SCENE, ORDER),
+    "free": series(PAPER, FREE_SCENE, ORDER),
+    "pendulum": series(PENDULUM, SWING, ORDER),
+    "motion": simulation(PAPER, INITIAL_SCENE, UNTIL, SAMPLES),
+    "radius": Run(find_radii),
+}
 
 
-def page(root: Path, results: Mapping[str, Any]) -> Page:
+def page(results: Mapping[str, Any]) -> Page:
     """Return the page that results make.
 
     Parameters
     ----------
-    root : Path
-        Root of the repository.
     results : mapping
         Results of the runs by their names.
 

@@ -1,45 +1,28 @@
 """Chapter on the description of a system and its terms."""
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
-from ..cards import derivation_cards, files_of, scene_named
-from ..chapter import Page, Run
+from ..cards import derivation_cards, scene_named
+from ..chapter import Page
 from ..mathematics import description
 from ..runs import derived, printed
 from ..tilted_plane import draw_tilted_plane
 from . import FREE_SCENE, LINKAGE, PAPER, PENDULUM
 
-
-def runs(root: Path) -> dict[str, Run]:
-    """Return the runs of the chapter.
-
-    Parameters
-    ----------
-    root : Path
-        Root of the repository.
-
-    Returns
-    -------
-    dict of str to Run
-        Runs by name.
-    """
-    return {
-        "paper": derived(root / PAPER),
-        "pendulum": derived(root / PENDULUM),
-        "linkage": derived(root / LINKAGE),
-        "printed": printed(),
-    }
+RUNS = {
+    "paper": derived(PAPER),
+    "pendulum": derived(PENDULUM),
+    "linkage": derived(LINKAGE),
+    "printed": printed(),
+}
 
 
-def page(root: Path, results: Mapping[str, Any]) -> Page:
+def page(results: Mapping[str, Any]) -> Page:
     """Return the page that results make.
 
     Parameters
     ----------
-    root : Path
-        Root of the repository.
     results : mapping
         Results of the runs by their names.
 
@@ -49,7 +32,7 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
         Content and files of the page.
     """
     paper = results["paper"]
-    cards = derivation_cards(["1"], [paper, results["pendulum"]], results["printed"], root)
+    cards = derivation_cards(["1"], [paper, results["pendulum"]], results["printed"])
     scene = scene_named(paper, FREE_SCENE)
     start = {name: scene.initial_state[name] for name in paper.record.system.coordinates}
     tilt = float(scene.parameter_values["u0"])
@@ -64,5 +47,4 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
             "linkage": results["linkage"].record.system,
         },
         figures={"tilted-plane": draw_tilted_plane([float(value) for value in start.values()], tilt)},
-        sources=(PAPER, *files_of(cards)),
     )

@@ -1,7 +1,6 @@
 """Chapter on the control for one trajectory."""
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,7 +8,7 @@ import numpy as np
 from ...figures.curves import Panel, draw_curves
 from ...free_motion import FreeMotion
 from ...language import gettext
-from ..chapter import Page, Run
+from ..chapter import Page
 from ..runs import derived, free
 from . import BEAD, BOB, CABIN, INITIAL_SCENE, PAPER, PENDULUM, SPHERICAL_PENDULUM
 
@@ -25,31 +24,16 @@ FILES = {
 SCENES = {"paper": INITIAL_SCENE}  # of other files, the last
 
 
-def runs(root: Path) -> dict[str, Run]:
-    """Return the runs of the chapter.
-
-    Parameters
-    ----------
-    root : Path
-        Root of the repository.
-
-    Returns
-    -------
-    dict of str to Run
-        Runs by name.
-    """
-    return {name: derived(root / file) for name, file in FILES.items()} | {
-        f"{name} free": free(root / file, SCENES.get(name)) for name, file in FILES.items()
-    }
+RUNS = {name: derived(file) for name, file in FILES.items()} | {
+    f"{name} free": free(file, SCENES.get(name)) for name, file in FILES.items()
+}
 
 
-def page(root: Path, results: Mapping[str, Any]) -> Page:
+def page(results: Mapping[str, Any]) -> Page:
     """Return the page that results make.
 
     Parameters
     ----------
-    root : Path
-        Root of the repository.
     results : mapping
         Results of the runs by their names.
 

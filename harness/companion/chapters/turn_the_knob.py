@@ -39,37 +39,11 @@ UNTIL, SAMPLES = Fraction(4), 201
 UNDAMPED = (("c", "1"),)  # a damping other than the paper's
 
 
-def runs(root: Path) -> dict[str, Run]:
-    """Return the runs of the chapter.
-
-    Parameters
-    ----------
-    root : Path
-        Root of the repository.
-
-    Returns
-    -------
-    dict of str to Run
-        Runs by name.
-    """
-    file = root / KNOB
-    return {
-        "knob": derived(file),
-        "models": Run(models, (file,)),
-        "drawing": Run(_drawing_of, (file, LAWS["linear"])),
-        "free": free(file, LAWS["exponential"]),
-        "other": free(file, LAWS["exponential"], UNDAMPED),
-        **{law: simulation(file, scene, UNTIL, SAMPLES) for law, scene in LAWS.items()},
-    }
-
-
-def page(root: Path, results: Mapping[str, Any]) -> Page:
+def page(results: Mapping[str, Any]) -> Page:
     """Return the page that results make.
 
     Parameters
     ----------
-    root : Path
-        Root of the repository.
     results : mapping
         Results of the runs by their names.
 
@@ -108,7 +82,6 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
                 gettext("t (dimensionless)"),
             )
         },
-        sources=(KNOB,),
         files={"knob.js": script(found, results["models"], results["drawing"])},
     )
 
@@ -206,3 +179,13 @@ def _singular(found: Derived, name: str) -> Program:
             "outputs": {part: f"w_{part}" for part in parts},
         }
     )
+
+
+RUNS = {
+    "knob": derived(KNOB),
+    "models": Run(models, (KNOB,)),
+    "drawing": Run(_drawing_of, (KNOB, LAWS["linear"])),
+    "free": free(KNOB, LAWS["exponential"]),
+    "other": free(KNOB, LAWS["exponential"], UNDAMPED),
+    **{law: simulation(KNOB, scene, UNTIL, SAMPLES) for law, scene in LAWS.items()},
+}

@@ -2,14 +2,13 @@
 
 from collections.abc import Mapping
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 from ...figures.curves import Panel, draw_curves
 from ...free_motion import FreeMotion
 from ...language import gettext
 from ...simulation.result import Simulation
-from ..chapter import Page, Run
+from ..chapter import Page
 from ..runs import derived, free, simulation
 from . import BEAD, CABIN, INITIAL_SCENE, KNOB, PAPER, PENDULUM, SPHERICAL_PENDULUM
 
@@ -20,34 +19,19 @@ UNTIL, SAMPLES = Fraction(4), 201
 SCENES = {"paper": INITIAL_SCENE}  # of other files, the last
 
 
-def runs(root: Path) -> dict[str, Run]:
-    """Return the runs of the chapter.
-
-    Parameters
-    ----------
-    root : Path
-        Root of the repository.
-
-    Returns
-    -------
-    dict of str to Run
-        Runs by name.
-    """
-    files = {"paper": PAPER, **OTHERS}
-    return (
-        {name: derived(root / file) for name, file in files.items()}
-        | {f"c = {c}": simulation(root / KNOB, EXPONENTIAL, UNTIL, SAMPLES, (("c", c),)) for c in DAMPINGS}
-        | {f"{name} free": free(root / file, SCENES.get(name)) for name, file in files.items()}
-    )
+FILES = {"paper": PAPER, **OTHERS}
+RUNS = (
+    {name: derived(file) for name, file in FILES.items()}
+    | {f"c = {c}": simulation(KNOB, EXPONENTIAL, UNTIL, SAMPLES, (("c", c),)) for c in DAMPINGS}
+    | {f"{name} free": free(file, SCENES.get(name)) for name, file in FILES.items()}
+)
 
 
-def page(root: Path, results: Mapping[str, Any]) -> Page:
+def page(results: Mapping[str, Any]) -> Page:
     """Return the page that results make.
 
     Parameters
     ----------
-    root : Path
-        Root of the repository.
     results : mapping
         Results of the runs by their names.
 

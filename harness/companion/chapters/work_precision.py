@@ -32,32 +32,11 @@ SHORT_PLAN = {
 SWING, TOLERANCE, UNTIL, SAMPLES = "swing_scene", 1e-6, Fraction(100), 401
 
 
-def runs(root: Path) -> dict[str, Run]:
-    """Return the runs of the chapter.
-
-    Parameters
-    ----------
-    root : Path
-        Root of the repository.
-
-    Returns
-    -------
-    dict of str to Run
-        Runs by name.
-    """
-    return {
-        "study": Run(_short_study, (root / PAPER, INITIAL_SCENE)),
-        "drift": Run(drifting, (root / PENDULUM, SWING)),
-    }
-
-
-def page(root: Path, results: Mapping[str, Any]) -> Page:
+def page(results: Mapping[str, Any]) -> Page:
     """Return the page that results make.
 
     Parameters
     ----------
-    root : Path
-        Root of the repository.
     results : mapping
         Results of the runs by their names.
 
@@ -115,3 +94,9 @@ def drifting(file: Path, scene: str) -> dict[Stabilization, Simulation]:
         cure: simulate(problem, SimulationRequest(tol=TOLERANCE, stabilization=cure, until=UNTIL, samples=SAMPLES))
         for cure in Stabilization
     }
+
+
+RUNS = {
+    "study": Run(_short_study, (PAPER, INITIAL_SCENE)),
+    "drift": Run(drifting, (PENDULUM, SWING)),
+}

@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import dropwhile
-from pathlib import Path
 from typing import Any
 
 import sympy
@@ -16,9 +15,8 @@ from ...language import gettext, translatable, translated
 from ...mathjson import from_sympy
 from ...record import Equation, Relation
 from ...simulation.result import Simulation
-from ..cards import Card, Instance, anchors, files_of, named_equations, scene_named, verdicts_on
-from ..chapter import Page, Run
-from ..excerpts import excerpt, step
+from ..cards import Card, Instance, anchors, named_equations, scene_named, verdicts_on
+from ..chapter import Page
 from ..expressions import right_side, under, zeros
 from ..power import values_along
 from ..runs import Derived, derived, free, printed, simulation
@@ -65,34 +63,19 @@ SECTIONS = {
 """Titles of the chapter's sections, by the number or name of the equation that each begins with."""
 
 
-def runs(root: Path) -> dict[str, Run]:
-    """Return the runs of the chapter.
-
-    Parameters
-    ----------
-    root : Path
-        Root of the repository.
-
-    Returns
-    -------
-    dict of str to Run
-        Runs by name.
-    """
-    return {
-        "paper": derived(root / PAPER),
-        "printed": printed(),
-        "free": free(root / PAPER, INITIAL_SCENE),
-        "pushed": simulation(root / PAPER, INITIAL_SCENE, UNTIL, SAMPLES),
-    }
+RUNS = {
+    "paper": derived(PAPER),
+    "printed": printed(),
+    "free": free(PAPER, INITIAL_SCENE),
+    "pushed": simulation(PAPER, INITIAL_SCENE, UNTIL, SAMPLES),
+}
 
 
-def page(root: Path, results: Mapping[str, Any]) -> Page:
+def page(results: Mapping[str, Any]) -> Page:
     """Return the page that results make.
 
     Parameters
     ----------
-    root : Path
-        Root of the repository.
     results : mapping
         Results of the runs by their names.
 
@@ -103,7 +86,7 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
     """
     paper = results["paper"]
     example = list(dropwhile(lambda each: each.number != FIRST_NUMBER, results["printed"]))
-    cards = _cards(example, paper, results["free"].universal.laws, root)
+    cards = _cards(example, paper, results["free"].universal.laws)
     derived_multiplier = named_equations(paper)["multipliers"].relations[0].right
     printed_multiplier = right_side(next(each for each in example if each.name == "multiplier").printed_tree)
     laws = {name: scene_named(paper, name).control_law for name in (FREE_SCENE, INITIAL_SCENE)}
@@ -128,7 +111,6 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
                 [_printed_and_derived(paper, printed_multiplier, results["pushed"])], gettext("t (dimensionless)")
             )
         },
-        sources=files_of(cards),
     )
 
 
@@ -190,31 +172,23 @@ def _printed_and_derived(paper: Derived, printed: Expr, pushed: Simulation) -> P
     return Panel(gettext("multiplier λ₁ (dimensionless)"), {name: (pushed.times, each) for name, each in shown.items()})
 
 
-def _cards(example: list[PrintedEquation], paper: Derived, laws: tuple, root: Path) -> list[Card]:
-    cards: list[Card] = []
-    for each, place in zip(example, anchors(example), strict=True):
-        instances, lines = _derived(each, paper, laws, root)
-        cards.append(Card(place, each.number, each.name, "", True, (each,), instances, lines))
-    return cards
+def _cards(example: list[PrintedEquation], paper: Derived, laws: tuple) -> list[Card]:
+    return [
+        Card(place, each.number, each.name, "", True, (each,), _derived(each, paper, laws))
+        for each, place in zip(example, anchors(example), strict=True)
+    ]
 
 
-def _derived(each: PrintedEquation, paper: Derived, laws: tuple, root: Path) -> tuple[tuple, tuple]:
-    """Return the instance against a printed equation and the lines that derive it.
-
-    None where it is given, not derived.
-    """
+def _derived(each: PrintedEquation, paper: Derived, laws: tuple) -> tuple[Instance, ...]:
+    """Return the instance against a printed equation; none where it is given, not derived."""
     if each.number == "15":
-        universal = "maxima/free_motion/universal.mac"
-        lines = tuple(
-            excerpt(root, universal, name) for name in ("universal_controls", "solved_conditions", "solved_linear")
-        )
-        return (_law(laws, paper),), lines
+        return (_law(laws, paper),)
     if (found := COUNTERPARTS.get(each.name)) is None:
-        return (), ()
+        return ()
     equation = named_equations(paper, found.scene)[found.equation]
     one = replace(equation, relations=(equation.relations[found.place],))
     title = f"({equation.number}) {translated(equation.name)}"
-    return (Instance(title, one, verdicts_on(paper, equation, found.scene)),), step(root, equation.id)
+    return (Instance(title, one, verdicts_on(paper, equation, found.scene)),)
 
 
 def _law(laws: tuple, paper: Derived) -> Instance:

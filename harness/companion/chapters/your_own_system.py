@@ -9,40 +9,17 @@ from ...failures import HolonomError
 from ...formats import Document
 from ...temporary import private_directory
 from ..chapter import Page, Run
-from ..excerpts import excerpt
 from ..runs import derived
 from . import PENDULUM
 
-SCENE = "swing_scene"
 FITTING, CONTRADICTING = "y = -cos(%pi/13)", "y = -1"
 
 
-def runs(root: Path) -> dict[str, Run]:
-    """Return the runs of the chapter.
-
-    Parameters
-    ----------
-    root : Path
-        Root of the repository.
-
-    Returns
-    -------
-    dict of str to Run
-        Runs by name.
-    """
-    return {
-        "pendulum": derived(root / PENDULUM),
-        "refusal": Run(_refusal_of_the_change, (root / PENDULUM, FITTING, CONTRADICTING)),
-    }
-
-
-def page(root: Path, results: Mapping[str, Any]) -> Page:
+def page(results: Mapping[str, Any]) -> Page:
     """Return the page that results make.
 
     Parameters
     ----------
-    root : Path
-        Root of the repository.
     results : mapping
         Results of the runs by their names.
 
@@ -55,13 +32,9 @@ def page(root: Path, results: Mapping[str, Any]) -> Page:
         {
             "record": results["pendulum"].record,
             "report": results["pendulum"].report,
-            "system_lines": excerpt(root, PENDULUM, "system"),
-            "scene_lines": excerpt(root, PENDULUM, SCENE),
             "fitting": FITTING,
             "contradicting": CONTRADICTING,
-            "refusal": results["refusal"],
         },
-        sources=(PENDULUM,),
     )
 
 
@@ -82,3 +55,9 @@ def _loading_the_library(text: str) -> str:
     """Return the text with the library loaded by its name, for any folder."""
     load = next(line for line in text.splitlines() if line.startswith("load("))
     return text.replace(load, 'load("holonom.mac")$')
+
+
+RUNS = {
+    "pendulum": derived(PENDULUM),
+    "refusal": Run(_refusal_of_the_change, (PENDULUM, FITTING, CONTRADICTING)),
+}

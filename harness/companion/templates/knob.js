@@ -180,10 +180,14 @@ if (typeof document === "object") document.addEventListener("DOMContentLoaded", 
       return DATA.shapes.map((_, i) => drawing.outputs.flatMap((name, k) => name.startsWith(`drawing[${i + 1},`) ? [found[k]] : []));
     };
     const pairs = numbers => numbers.flatMap((x, k) => k % 2 ? [] : [[x, numbers[k + 1]]]);
-    const all = seen.map(shapes), points = all.flat().flatMap(pairs);
-    const extent = k => [Math.min(...points.map(p => p[k])), Math.max(...points.map(p => p[k]))];
+    const all = seen.map(shapes), last = DATA.shapes.length - 1;
+    /* The view follows the surfaces and the particle; the rest of the path is cut off. */
+    const close = all[now].filter((numbers, i) => numbers.length > 6 || i === last).flatMap(pairs);
+    const extent = k => {
+      const found = close.map(p => p[k]), low = Math.min(...found), high = Math.max(...found), room = 0.4*(high - low) + 0.3;
+      return [low - room, high + room];
+    };
     const place = scaled(svg, extent(0), extent(1), true, [2*WIDTH, 1.7*HEIGHT]);
-    const last = DATA.shapes.length - 1;
     svg.append(line(all.map(each => place(each[last])), {stroke: COLOURS[1], opacity: 0.5}));
     DATA.shapes.forEach((shape, i) => {
       const places = pairs(all[now][i]).map(place);

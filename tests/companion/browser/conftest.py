@@ -8,9 +8,7 @@ from chromium import chromium, missing_programs
 from observation import keep_screenshot, observe
 from views import VIEWS
 
-from holonom.companion.paper import REPOSITORY
-
-SCREENSHOTS = REPOSITORY / "build" / "screenshots"
+SCREENSHOTS = pages.REPOSITORY / "build" / "screenshots"
 # A look at some hundred pages takes more than a minute.
 LOOKS = [pytest.param(view, marks=pytest.mark.long) for view in VIEWS]
 

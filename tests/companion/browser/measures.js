@@ -65,7 +65,7 @@ const ofScreensOnly = element => matchMedia("print").matches && element.closest(
 const eitherWay = element => element.closest(".wide, .narrow")?.parentElement ?? element;
 const heads = "thead *";  // those of a folded table stand before its cells, as words
 const flatMathematics = () => told([...document.querySelectorAll("math")]
-  .filter(element => !drawn(eitherWay(element)) && !element.matches(heads) && !ofScreensOnly(element)));
+  .filter(element => !drawn(eitherWay(element)) && !element.matches(heads) && !element.closest("[hidden]") && !ofScreensOnly(element)));
 
 const brokenMathematics = () => told([...document.querySelectorAll("merror, math:empty")]);
 

@@ -29,7 +29,7 @@ def test_the_browser_has_nothing_to_complain_about(seen):
 
 def test_nothing_is_loaded_but_files_of_the_book(seen):
     for each in seen:
-        folders = ("source", "reference", "book", "manual")
+        folders = ("reference", "book", "manual")
         book = each.page.parent.parent if each.page.parent.name in folders else each.page.parent
         assert [found for found in each.requests if not found.startswith((book.as_uri(), "data:"))] == []
 
@@ -113,19 +113,6 @@ def test_the_first_key_brings_the_way_past_the_contents_into_sight(chapter):
     chapter.find_element("tag name", "body").send_keys(Keys.TAB)
     assert chapter.switch_to.active_element == skip
     WebDriverWait(chapter, 60).until(lambda _: is_in_sight(chapter, skip))  # it slides in
-
-
-def test_lines_of_maxima_unfold_and_lead_to_their_place_in_the_source(chapter):
-    folded = chapter.find_element("css selector", "#eq-7 details.lines")
-    link = folded.find_element("css selector", ".origin a")
-    assert not link.is_displayed()
-    folded.find_element("tag name", "summary").send_keys(Keys.ENTER)
-    assert link.is_displayed()
-    place = urlsplit(link.get_attribute("href")).fragment
-    link.send_keys(Keys.ENTER)
-    line = chapter.find_element("id", place)
-    assert is_in_sight(chapter, line)
-    assert chapter.execute_script("return document.querySelector('.line:target').id") == place
 
 
 @pytest.fixture
