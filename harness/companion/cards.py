@@ -1,4 +1,4 @@
-"""The card of an equation: as printed, as derived, with which verdict, and in plain words."""
+"""Cards of equations: printed and derived form, verdict, explanation."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -92,7 +92,7 @@ def scene_cards(
 
 
 def cards_of_scene(found: FileAnswers, numbers: Sequence[str], scene: str) -> list[Card]:
-    """Return cards of a scene's equations; none where it prescribes reactions and so is not in the record.
+    """Return cards of a scene's equations, none for prescribed reactions.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Page:
-    """What the pieces of a chapter's page are given beside the results, and the files that go beside the page."""
+    """Values for the templates of a page, and further files of the page."""
 
     content: Mapping[str, Any] = field(default_factory=dict)  # the template's variables
     figures: Mapping[str, str] = field(default_factory=dict)  # text of each SVG file, by its name

@@ -111,7 +111,10 @@ class Definition(SphinxRole):
 
 
 class Session(SphinxDirective):
-    """Statements at Maxima's prompt, one a line, with the answers; the sessions of a page continue each other."""
+    """Statements at Maxima's prompt, one a line, with the answers.
+
+    A session continues those before it on the page.
+    """
 
     optional_arguments, has_content = 1, True
 

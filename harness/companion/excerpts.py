@@ -18,7 +18,7 @@ class Excerpt:
 
 
 def excerpt(file: str, name: str) -> Excerpt:
-    """Find the definition of a Maxima function or variable in a file of the repository.
+    """Find the definition of a Maxima function or variable in a file.
 
     Parameters
     ----------

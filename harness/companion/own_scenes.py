@@ -81,7 +81,7 @@ def _prefix(file: Path, place: int) -> str:
 
 
 def _page(prefix: str, file: Path, drawn: bool, results: Mapping[str, Any]) -> Page:
-    """Return what the pages of a file show beside the results; on one of them the motions are drawn."""
+    """Return the content of a page of a file, with the drawings of its motions."""
     names = {name: f"{prefix}scene-{place}" for place, name in enumerate(results["motions"], 1)}
     shown = [(names[name], found) for name, found in results["motions"].items() if isinstance(found, Motion)]
     text = file.read_text(encoding="utf-8", errors="replace")

@@ -1,7 +1,6 @@
-"""The chapters that compute, one a module, named like its page; and the examples that they take their systems from.
+"""Chapters with computations, one per module, and the examples that they use.
 
-Each has `RUNS`, the runs that it needs by name, and a function `page(results)`, which computes from their results what
-the page shows beside them, and draws the figures.
+Each has `RUNS`, its runs by name, and a function `page(results)`, which computes further values and draws the figures.
 """
 
 from ...files import shared

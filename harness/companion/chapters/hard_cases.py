@@ -33,7 +33,7 @@ def page(results: Mapping[str, CaseReport]) -> Page:
 
 
 def _examined(name: str) -> CaseReport:
-    """Return the report on a case, in short; its name is what a kept result depends on."""
+    """Return the short report on the case of that name."""
     return examined(next(case for case in REGISTER if case.name == name), Extent.SHORT)
 
 

@@ -180,7 +180,7 @@ def _cards(example: list[PrintedEquation], paper: Derived, laws: tuple) -> list[
 
 
 def _derived(each: PrintedEquation, paper: Derived, laws: tuple) -> tuple[Instance, ...]:
-    """Return the instance against a printed equation; none where it is given, not derived."""
+    """Return the derived counterpart of a printed equation, none if it is given."""
     if each.number == "15":
         return (_law(laws, paper),)
     if (found := COUNTERPARTS.get(each.name)) is None:
