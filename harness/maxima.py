@@ -378,7 +378,7 @@ def read_maxima_text(file: Path) -> str:
     """
     try:
         if not stat.S_ISREG(file.stat().st_mode):
-            raise HolonomError(ErrorKind.FILE_UNREADABLE, file, "it is no regular file")
+            raise HolonomError(ErrorKind.FILE_UNREADABLE, file, "not a regular file")
         with file.open("rb") as opened:
             content = limited(opened, file)
     except FileNotFoundError:
@@ -391,7 +391,7 @@ def read_maxima_text(file: Path) -> str:
         line = content.count(b"\n", 0, error.start) + 1
         raise HolonomError(ErrorKind.NOT_UTF8, f"{file}:{line}", f"0x{content[error.start]:02x}") from None
     if "\0" in text:
-        raise HolonomError(ErrorKind.FILE_UNREADABLE, file, "it holds null characters and is no text")
+        raise HolonomError(ErrorKind.FILE_UNREADABLE, file, "it contains null characters")
     return text.removeprefix(BYTE_ORDER_MARK).replace("\r\n", "\n").replace("\r", "\n")
 
 

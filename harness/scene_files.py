@@ -120,5 +120,5 @@ def _open_allowed(file: Path) -> int:
 def _regular(descriptor: int) -> int:
     if not stat.S_ISREG(os.fstat(descriptor).st_mode):
         os.close(descriptor)
-        raise OSError(None, "it is no regular file")
+        raise OSError(None, "not a regular file")
     return descriptor

@@ -256,7 +256,7 @@ def _require_correction(checked: CheckedScene, change: mp.mpf, stated: str) -> N
     if not abs(change - mp.mpf(stated)) <= mp.mpf(10) ** -STATED_DIGITS * change:
         raise NotComparable(f"a correction of {stated}, where it is {mp.nstr(change, 6)}")
     if change > LIMITED_DIGITS * (given or 1):
-        raise NotComparable(f"a correction of {stated}, which is no rounding")
+        raise NotComparable(f"a correction of {stated}, which is larger than rounding")
 
 
 def _size(number: sp.Expr) -> mp.mpf:

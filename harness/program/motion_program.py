@@ -267,7 +267,7 @@ def _takes(head: str, arguments: int) -> bool:
 def _atom(tree: object) -> Atom:
     match tree:
         case "ImaginaryUnit" | "True" | "False":
-            raise _refusal(f"{tree} is no real number")
+            raise _refusal(f"{tree} is not a real number")
         case str():
             return Constant(tree) if tree in CONSTANTS else Name(tree)
         case ["Rational", numerator, denominator] if _number(denominator):

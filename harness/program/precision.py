@@ -77,7 +77,7 @@ def read_precision(text: str) -> Precision:
     if not text.isdecimal() or len(text) > len(str(MOST_DIGITS)) or not 1 <= int(text) <= MOST_DIGITS:
         raise HolonomError(
             ErrorKind.NOT_A_PRECISION,
-            detail=f"{text} is no precision: double, extended, quadruple, or from 1 to {MOST_DIGITS} digits",
+            detail=f"{text}: expected double, extended, quadruple, or from 1 to {MOST_DIGITS} digits",
         )
     return _of_digits(int(text))
 
@@ -88,7 +88,7 @@ def _double() -> Precision:
 
 def _extended() -> Precision:
     if np.finfo(np.longdouble).nmant != 63:
-        raise HolonomError(ErrorKind.NOT_A_PRECISION, detail="this machine has no extended precision")
+        raise HolonomError(ErrorKind.NOT_A_PRECISION, detail="extended precision is not available on this machine")
     return _binary("extended", 64, 16445, np.longdouble, _scientific(21), {"fp_type": np.longdouble})
 
 

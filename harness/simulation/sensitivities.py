@@ -114,7 +114,7 @@ class _ModeVariation:
         integrator.pars[:] = self.inputs.open_values(start, "right")[:contained]
         *_, steps, between, _ = integrator.propagate_until(end, c_output=True)
         if integrator.time != end or not np.isfinite(integrator.state).all():
-            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=f"they are no numbers beyond t = {start:.10g}")
+            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=f"they are not finite beyond t = {start:.10g}")
         piece = _Piece(start, end, self, between)
         self._compile_if_worthwhile(steps * left / (end - start))
         return piece

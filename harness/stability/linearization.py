@@ -209,7 +209,7 @@ class Linearization(Shown):
                 raise ValueError("the rates of the controls enter; take the input 'ddot'")
             return self.A, parts[0][0], self.C[rows], parts[0][1]
         if input != "ddot":
-            raise ValueError(f"there is no input {input!r}; take 'u' or 'ddot'")
+            raise ValueError(f"unknown input {input!r}: expected 'u' or 'ddot'")
         (b_u, d_u), (b_du, d_du), (b_ddu, d_ddu) = parts
         r, size = len(self.controls), len(self.A)
         one, none = np.eye(r), np.zeros((r, r))
@@ -245,7 +245,7 @@ class Linearization(Shown):
     def _rows(self, outputs: Sequence[str] | None) -> list[int]:
         wanted = self.outputs if outputs is None else outputs
         if unknown := [name for name in wanted if name not in self.outputs]:
-            raise ValueError(f"there is no output {unknown[0]!r}; the outputs are {', '.join(self.outputs)}")
+            raise ValueError(f"unknown output {unknown[0]!r}: expected {', '.join(self.outputs)}")
         return [self.outputs.index(name) for name in wanted]
 
 

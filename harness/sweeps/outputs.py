@@ -126,7 +126,7 @@ def _kept(item: str) -> OutputQuantity:
         case ast.Call(ast.Name("d"), [quantity, direction], []):
             what, by = (_expression(each, text) for each in (quantity, direction))
             if not isinstance(what, Name) or not isinstance(by, Name):
-                raise _refusal(text, "is no derivative of one quantity by one parameter or initial value")
+                raise _refusal(text, "is not a derivative of one quantity by one parameter or initial value")
             return OutputQuantity(text, Kind.DERIVATIVE, what, direction=by.text)
         case ast.Call(ast.Name("at"), [quantity, _], []):
             inside, _, time = text[len("at(") : -1].rpartition(",")
@@ -141,7 +141,7 @@ def _tree(text: str) -> ast.expr:
             raise ValueError
         return ast.parse(text.replace("^", "**"), mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        raise _refusal(text or "nothing", "is no expression") from None
+        raise _refusal(text or "nothing", "is not an expression") from None
 
 
 def _analytic(tree: ast.expr, text: str) -> Expression:

@@ -30,7 +30,7 @@ def require_known(problem: MotionProblem, quantities: Sequence[Expression]) -> N
     for quantity in quantities:
         if unknown := sorted(names_in(quantity) - set(there)):
             raise HolonomError(
-                ErrorKind.NOT_KEPT, detail=f"the motion has no {unknown[0]}; it has {', '.join(there)}, for each row"
+                ErrorKind.NOT_KEPT, detail=f"unknown quantity {unknown[0]}: expected one of {', '.join(there)}"
             )
 
 

@@ -376,7 +376,7 @@ def _require_directions(problem: MotionProblem, derivatives: Sequence[OutputQuan
         ):
             if name not in known:
                 raise HolonomError(
-                    ErrorKind.NOT_KEPT, detail=f"{kept.text} holds {name}, which is none of {', '.join(known)}"
+                    ErrorKind.NOT_KEPT, detail=f"{kept.text} contains {name}: expected one of {', '.join(known)}"
                 )
 
 

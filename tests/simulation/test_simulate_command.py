@@ -90,7 +90,7 @@ def test_samples_and_figures_are_written(tmp_path, simulate):
     [
         (["--tol", "1e-30"], "double precision holds tolerances from 1e-16 to 1, not 1e-30"),
         (["--until", "-1"], "the final time is not after the initial time"),
-        (["--precision", "single"], "single is no precision"),
+        (["--precision", "single"], "single: expected double"),
         (["-o", "motion.xls"], "Use .csv, .npz, .parquet."),
         (["--plot", "motion.pdf"], "Use .svg, .png."),
         (["-o", "/dev/full/motion.csv"], "cannot be written"),

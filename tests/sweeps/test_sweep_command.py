@@ -171,7 +171,7 @@ def test_another_sweep_in_the_same_folder_is_refused(swept, change, told):
         (("--grid", "m=1:2:3", "--grid", "c=1:2:3", "--grid", "g=1:2:3", "--plot", "p.svg"), "a curve takes one"),
         (("--grid", "m=1:2:3", "--resume"), "no sweep to resume"),
         (("--grid", "nothing=1:2:3"), "unknown parameter nothing of hoisting_scene"),
-        (("--grid", "m=1:2:3", "--keep", "lambda7"), "the motion has no lambda7"),
+        (("--grid", "m=1:2:3", "--keep", "lambda7"), "lambda7"),
         *(
             (("--grid", "m=1:2:3", "--dask", address), "invalid address")
             for address in ("", "nowhere", "file:///etc/passwd", "tcp://a b:1", "inproc://x", "127.0.0.1:99999")
