@@ -6,7 +6,7 @@ Maxima derives the equations, SymPy checks them, and they are integrated numeric
     scene = holonom.load("pendulum.mac")
     scene.equations, scene.check(), scene.free(), scene.series(), scene.simulate(until=10)
 
-Importing the package imports no other module and has no side effect; a name imports its modules at its first use.
+Importing the package imports no other module and has no side effect. A name imports its modules at its first use.
 """
 
 from importlib import import_module

@@ -67,7 +67,7 @@ class DescribedScene:
     servo_trees : tuple of trees
         Servo-constraints: expressions that the controls without a law keep at zero.
     parameter_values : mapping of str to Expr
-        The parameters that have values; settings are among them.
+        The parameters that have values. Settings are among them.
     initial_state, initial_guess : mapping of str to Expr
         Coordinates and velocities that the scene gives, and guesses of the others.
     span_trees : pair of trees or None

@@ -62,7 +62,7 @@ def ask(
     file : Source or Path
         As for `ask_all`.
     *arguments : None, int, Fraction, str or sequence of these
-        Arguments of the writer in Maxima, after the name of the file that it writes; a string is a name.
+        Arguments of the writer in Maxima, after the name of the file that it writes. A string is a name.
     settings, limits : mapping of str to str, Limits
         As for `ask_all`.
 
@@ -95,7 +95,7 @@ def ask_all(
     questions : sequence of Question
         The documents.
     file : Source or Path
-        A path is run; a source reuses its earlier description and has its own limits.
+        A path is run. A source reuses its earlier description and has its own limits.
     settings : mapping of str to str
         Numbers in Maxima's notation, for open names of the file and for parameters.
     limits : Limits
@@ -109,7 +109,7 @@ def ask_all(
     Raises
     ------
     HolonomError
-        As `holonom.source.describe` and `holonom.maxima.run_description`; or a string is not a name.
+        As `holonom.source.describe` and `holonom.maxima.run_description`, or a string is not a name.
     """
     if not questions:
         return []

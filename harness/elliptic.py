@@ -1,6 +1,6 @@
 """Jacobi's elliptic functions sn, cn, dn of (u, m) for SymPy, which lacks them.
 
-The notation is Maxima's. Their derivatives by u are polynomials in themselves (DLMF 22.13.1-3); mpmath evaluates
+The notation is Maxima's. Their derivatives by u are polynomials in themselves (DLMF 22.13.1-3). mpmath evaluates
 them.
 """
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 class Equations(Sequence["Equation"]):
     """Equations in the paper's order, which a notebook typesets.
 
-    ``equations[0]`` is the first; ``equations["8"]`` are those with the number (8), and
+    ``equations[0]`` is the first. ``equations["8"]`` are those with the number (8), and
     ``equations["multipliers"]`` the one with that id.
 
     Examples

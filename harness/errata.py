@@ -1,6 +1,6 @@
 """The paper as printed, compared with the derivation.
 
-Maxima does the comparison, in `examples/paper/printed.mac`; this module runs that and reads the result.
+Maxima does the comparison, in `examples/paper/printed.mac`. This module runs that and reads the result.
 """
 
 from dataclasses import dataclass

@@ -111,12 +111,12 @@ def write_whole(path: Path, content: str | bytes) -> None:
     path : Path
         The file. Its former content is replaced, and its permissions stay. A device or a pipe is written to directly.
     content : str or bytes
-        The new content; text becomes UTF-8.
+        The new content. Text becomes UTF-8.
 
     Raises
     ------
     HolonomError
-        The file cannot be written; its former content is still there.
+        The file cannot be written, or its former content is still there.
     """
     with whole_file(path) as file:
         file.write(content if isinstance(content, bytes) else content.encode())
@@ -163,7 +163,7 @@ def append_line(path: Path, line: str) -> None:
     Parameters
     ----------
     path : Path
-        The file; a link is not followed.
+        The file. A link is not followed.
     line : str
         Text without a line feed.
 
@@ -257,7 +257,7 @@ def write_whole_directory(path: Path, files: Mapping[str, str | bytes]) -> None:
     Parameters
     ----------
     path : Path
-        The directory; its parent exists.
+        The directory. Its parent exists.
     files : mapping of str to str or bytes
         Content of each file, text in UTF-8, by its path in the directory.
 

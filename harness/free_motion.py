@@ -195,13 +195,13 @@ def free_motion(
     file : Source or Path
         Scene file.
     scene : str or None
-        Name of the scene; None for the last one.
+        Name of the scene, or None for the last one.
     settings : mapping of str to str
         Numbers for parameters and for what the file leaves open.
     limits : Limits
         Limits of each run of Maxima.
     order : int or None
-        Highest order of the multipliers' power series, at least 2; None for Maxima's ``verdict_order``.
+        Highest order of the multipliers' power series, at least 2, or None for Maxima's ``verdict_order``.
 
     Returns
     -------
@@ -211,7 +211,7 @@ def free_motion(
     Raises
     ------
     HolonomError
-        As `holonom.maxima.ask_scene`; the file has no such scene.
+        As `holonom.maxima.ask_scene`, or the file has no such scene.
 
     References
     ----------

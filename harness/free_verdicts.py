@@ -78,7 +78,7 @@ class FreeMotionTrial:
         -------
         verdict : str
         reason : str
-            Reason for a change; empty without a change.
+            Reason for a change, empty without a change.
         """
         found = [check.verdict for check in checks]
         if Verdict.DISAGREES in found:

@@ -19,7 +19,7 @@ class Behaviour(Enum):
 class Function:
     """A function.
 
-    The derivative ``slope`` is a tree in the argument ``x`` and the value ``y``; the other argument is ``n`` if it is
+    The derivative ``slope`` is a tree in the argument ``x`` and the value ``y``. The other argument is ``n`` if it is
     an order, else ``m``. ``value`` takes mpmath and the arguments, if mpmath has no function of that name.
     """
 

@@ -97,7 +97,7 @@ def versions() -> dict[str, str]:
     Returns
     -------
     dict of str to str
-        By name; ``not installed`` for a missing component.
+        By name. ``not installed`` for a missing component.
     """
     packages = {name: _version(name.lower()) for name in ("heyoka", "SymPy")}
     found = {"holonom": _version("holonom"), "Maxima": maxima_version(), **packages}
@@ -129,7 +129,7 @@ def user_directory() -> Path:
     Returns
     -------
     Path
-        An absolute path; it may not exist.
+        An absolute path. It may not exist.
     """
     named = os.environ.get("MAXIMA_USERDIR")
     return Path(named or Path.home() / ".maxima").absolute()
@@ -141,7 +141,7 @@ def put_into_maxima(directory: Path) -> Path:
     Parameters
     ----------
     directory : Path
-        A directory that Maxima searches; it is created if it is missing.
+        A directory that Maxima searches. It is created if it is missing.
 
     Returns
     -------

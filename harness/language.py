@@ -5,7 +5,7 @@
 
 Texts that are made before the language is known, such as a title or a reason in a result, are marked with
 `translatable` and translated with `translated` when they are shown. Catalogs are
-``locale/LANGUAGE/LC_MESSAGES/holonom.po``; `make catalog` collects their messages from the sources.
+``locale/LANGUAGE/LC_MESSAGES/holonom.po``. `make catalog` collects their messages from the sources.
 """
 
 from __future__ import annotations
@@ -125,7 +125,7 @@ def ngettext(singular: str, plural: str, count: int, **values: Any) -> str:
 def translated(text: str) -> str:
     """Return a text in the current language.
 
-    A `Message` keeps its values; any other text is translated if the catalog has it.
+    A `Message` keeps its values. Any other text is translated if the catalog has it.
 
     Parameters
     ----------
@@ -150,7 +150,7 @@ def catalog_file(language: str, name: str = DOMAIN) -> Path:
     language : str
         A key of `LANGUAGES`.
     name : str, optional
-        Name of the catalog; messages of the program by default.
+        Name of the catalog. Messages of the program by default.
 
     Returns
     -------

@@ -45,7 +45,7 @@ VARIADIC: dict[str, Callable[..., Expr]] = {"Add": sympy.Add, "Multiply": sympy.
 def to_sympy(tree: Tree) -> Expr:
     """Convert a MathJSON tree to a SymPy expression.
 
-    It has only SymPy's automatic simplifications; every symbol is real.
+    It has only SymPy's automatic simplifications. Every symbol is real.
 
     Parameters
     ----------

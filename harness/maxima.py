@@ -1,6 +1,6 @@
 """One headless run of Maxima: no prompts, no init files, located errors.
 
-This is the only module that handles Maxima as a process. A run has a private directory; `headless.lisp`, loaded
+This is the only module that handles Maxima as a process. A run has a private directory. `headless.lisp`, loaded
 first, turns questions into errors and writes the ending to a file, because Maxima's exit status is not reliable. The
 output of Maxima is kept for people and not read, with one exception: the count of Maxima's own test runner.
 
@@ -209,7 +209,7 @@ def run_description(
     limits : Limits
         Limits of the run, and its sandbox.
     settings : mapping of str to str, or None
-        The settings of the file's run, for the command that repeats the run; None if no file was run.
+        The settings of the file's run, for the command that repeats the run, or None if no file was run.
 
     Returns
     -------

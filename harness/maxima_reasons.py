@@ -66,7 +66,7 @@ def translatable_reason(text: str) -> str:
     Returns
     -------
     str
-        The same text; any other than the known ones as it is.
+        The same text. Any other than the known ones as it is.
     """
     for pattern, matching in MATCHING.items():
         if found := matching.fullmatch(text):

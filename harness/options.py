@@ -1,7 +1,7 @@
 """Options as fields of requests, for the command line, Python and the reference.
 
 An option is a field of a dataclass. Its type is an enumeration, ``Fraction`` (a time), ``bool``, ``int``, ``float``,
-``str`` or a tuple of names, written with commas between; ``| None`` if it may be left out.
+``str`` or a tuple of names, written with commas between. ``| None`` if it may be left out.
 """
 
 import inspect
@@ -74,7 +74,7 @@ def options_of(request: type, *names: str) -> tuple[Field, ...]:
     request : type
         Dataclass of the request.
     *names : str
-        Names of fields; without any, all options.
+        Names of fields. Without any, all options.
 
     Returns
     -------

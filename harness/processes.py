@@ -38,7 +38,7 @@ def signal_without_parent(parent: int, number: int) -> None:
     Parameters
     ----------
     parent : int
-        Process number of the parent; if it has ended already, the signal is sent at once.
+        Process number of the parent. If it has ended already, the signal is sent at once.
     number : int
         The signal.
     """
@@ -70,7 +70,7 @@ def children(pid: int) -> list[int]:
     Returns
     -------
     list of int
-        Process numbers; empty if the process has ended.
+        Process numbers, empty if the process has ended.
     """
     if not os.path.exists(f"/proc/self/task/{os.getpid()}/children"):
         lines = map(str.split, _printed_by("ps", "-axo", "ppid=,pid="))
@@ -115,7 +115,7 @@ def held_memory(pid: int) -> int:
     Returns
     -------
     int
-        In bytes; 0 if the process has ended.
+        In bytes. 0 if the process has ended.
     """
     if not os.path.exists("/proc/self/status"):
         return sum(1024 * int(kib) for kib in _printed_by("ps", "-o", "rss=", "-p", str(pid)))

@@ -69,8 +69,8 @@ class LeftOut(NamedTuple):
 class Derivation:
     """The equations of the system with the effects named.
 
-    `closed_form_operations` counts the operations of (8) and (11) as written; None where they are too long to read
-    and stay a linear system, which the motion program solves; `left_out` names them. `mass_matrix` is ``regular``; or
+    `closed_form_operations` counts the operations of (8) and (11) as written, or None where they are too long to read
+    and stay a linear system, which the motion program solves. `left_out` names them. `mass_matrix` is ``regular``, or
     ``supported`` where it is singular and the constraints make up for it: A + J^T J is in its place in what is solved,
     and J^T times (7) is added to the equations of motion. `redundant` are the multipliers of the constraints that
     follow from the others: what is solved, (4), (5) and (8) to (11), is solved without these constraints.
@@ -101,7 +101,7 @@ class Scene:
     initial_state : mapping of str to Expr
         All coordinates and velocities at the initial time, by name.
     given : tuple of str
-        Coordinates and velocities whose initial values the scene gives; the others follow from the constraints.
+        Coordinates and velocities whose initial values the scene gives. The others follow from the constraints.
     correction : Correction or None
         The largest correction of a given value that violated the constraints in its last digits.
     span_trees : pair of trees or None
@@ -164,7 +164,7 @@ def derived_record(
     limits : Limits
         Limits of each run of Maxima.
     closed_form_size : int or None
-        Number of terms beyond which closed forms are left out; None for the file's own.
+        Number of terms beyond which closed forms are left out, or None for the file's own.
 
     Returns
     -------

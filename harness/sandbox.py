@@ -2,7 +2,7 @@
 
 In the sandbox a process has namespaces of its own: no network, no other process, the user nobody without privileges.
 It sees the system's programs and the files that it is given, read-only. Memory of limited size stands in for its
-working directory; outside, it can write to the given output files alone. A filter refuses system calls that no
+working directory. Outside, it can write to the given output files alone. A filter refuses system calls that no
 derivation needs.
 """
 
@@ -54,7 +54,7 @@ class Sandbox(Enum):
     """The use of the sandbox for a scene file: always, if possible, or never.
 
     In it, the file sees the system's programs, the library, copies of the files that its text names below its own
-    folder, and copies of the ``.mac``, ``.lisp`` and ``.csv`` files beside it; `Limits.allow` adds others. It has no
+    folder, and copies of the ``.mac``, ``.lisp`` and ``.csv`` files beside it. `Limits.allow` adds others. It has no
     network, no sockets, no privileges, and limited memory, processes and time.
 
     Examples
@@ -166,7 +166,7 @@ def run_process(command: Sequence[str], place: Place, printed: bytearray) -> int
     Returns
     -------
     int
-        Exit status; 128 + n if signal n ended the process.
+        Exit status. 128 + n if signal n ended the process.
 
     Raises
     ------
@@ -214,7 +214,7 @@ def is_isolated(limits: Limits) -> bool:
     Raises
     ------
     HolonomError
-        The limits require a sandbox, and this machine has none; or as `has_sandbox`.
+        The limits require a sandbox, and this machine has none, or as `has_sandbox`.
     """
     isolated = limits.sandbox is not Sandbox.TRUSTED and has_sandbox()
     if limits.sandbox is Sandbox.REQUIRED and not isolated:
@@ -306,7 +306,7 @@ def surroundings(program: Path) -> list[Path]:
     Returns
     -------
     list of Path
-        Files and folders; empty for a program in /usr.
+        Files and folders, empty for a program in /usr.
     """
     real = program.resolve()
     if real.is_relative_to("/usr"):

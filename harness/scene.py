@@ -1,6 +1,6 @@
 """High-level API: a scene as one object with all results of Holonom.
 
-Each result is computed once, at its first use; a scene does not change.
+Each result is computed once, at its first use. A scene does not change.
 """
 
 import re
@@ -527,12 +527,12 @@ class Scene:
         Returns
         -------
         LinearizedMotion
-            ``along.A``, ``along.transition``, ``along.floquet``, ``along.free``; ``along[k]`` is a `Linearization`.
+            ``along.A``, ``along.transition``, ``along.floquet``, ``along.free``. ``along[k]`` is a `Linearization`.
 
         Raises
         ------
         HolonomError
-            As `linearize`; small deviations change too fast.
+            As `linearize`, or small deviations change too fast.
 
         Examples
         --------

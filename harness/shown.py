@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 class Shown:
     """A result with a table, which `holonom.display` makes.
 
-    `holonom.display` sets these functions; it imports results, never the reverse. A dataclass with this base takes
+    `holonom.display` sets these functions. It imports results, never the reverse. A dataclass with this base takes
     ``repr=False``, because it would print its fields otherwise.
     """
 

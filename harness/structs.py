@@ -1,6 +1,6 @@
 """Typed values of documents: dataclasses read from JSON by their annotations.
 
-A document has the shape of its schema when it comes here (`holonom.formats.read`); it is not checked a second time.
+A document has the shape of its schema when it comes here (`holonom.formats.read`). It is not checked a second time.
 """
 
 from collections.abc import Callable, Mapping
@@ -35,7 +35,7 @@ def structured(kind: type[Struct], content: Mapping[str, Any], **given: Any) -> 
     ----------
     kind : type
         The type. Of its fields those of dataclasses, named tuples, ``tuple[...]`` and ``Mapping[str, ...]`` are read in
-        the same way; a class that has ``of_document`` reads itself; other classes are called, as enumerations are.
+        the same way. A class that has ``of_document`` reads itself. Other classes are called, as enumerations are.
         Fields that the object does not have keep their defaults.
     content : mapping of str to object
         The object.

@@ -50,7 +50,7 @@ def supervise(command: Callable[[], int]) -> Ending:
     Parameters
     ----------
     command : callable
-        Takes nothing; returns its exit status.
+        Takes nothing. Returns its exit status.
 
     Returns
     -------
@@ -143,7 +143,7 @@ def time_to_limit() -> float:
     Returns
     -------
     float
-        In seconds; infinite without a limit.
+        In seconds, infinite without a limit.
     """
     return math.inf if _board is None else _deadline - time.monotonic()
 

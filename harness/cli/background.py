@@ -12,7 +12,7 @@ from ..sandbox import Limits
 def run_in_background(file: Path, limits: Limits, work: Callable[[], None]) -> Iterator[None]:
     """Run work in a thread while the block has Maxima run about a file.
 
-    The work is mostly imports; the block itself must import nothing.
+    The work is mostly imports. The block itself must import nothing.
 
     Parameters
     ----------
@@ -21,7 +21,7 @@ def run_in_background(file: Path, limits: Limits, work: Callable[[], None]) -> I
     limits : Limits
         Limits of each run of Maxima.
     work : callable
-        Function without arguments; its exceptions are ignored.
+        Function without arguments. Its exceptions are ignored.
 
     Yields
     ------

@@ -21,7 +21,7 @@ def beside(work: Callable[..., Any], *arguments: Any) -> Iterator[Connection]:
     Parameters
     ----------
     work : callable
-        Function to call in the child; its first argument is the object sent to the child.
+        Function to call in the child. Its first argument is the object sent to the child.
     *arguments : object
         Further arguments of the function.
 

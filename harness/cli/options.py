@@ -306,9 +306,9 @@ def present(document: Any, json_file: Path | None, show: Callable[..., None], *s
     document : object
         Content that JSON can hold.
     json_file : Path or None
-        File that --json names; ``-`` is standard output; None without the option.
+        File that --json names. ``-`` is standard output, or None without the option.
     show : callable
-        Function that prints the result; its first argument is the console.
+        Function that prints the result. Its first argument is the console.
     *shown : object
         Further arguments of the function.
     """
@@ -327,7 +327,7 @@ def publish(text: str, file: Path | None) -> None:
     text : str
         The whole document.
     file : Path or None
-        File to write; ``-`` is standard output; None for no output.
+        File to write. ``-`` is standard output, or None for no output.
     """
     if file == STANDARD_OUTPUT:
         click.echo(visible(text) if sys.stdout.isatty() else text, nl=False)

@@ -1,6 +1,6 @@
 """The textbook companion: static pages whose results come from runs.
 
-A chapter says which runs it needs and what it makes of their results; a template turns that into a page. Numbers,
+A chapter says which runs it needs and what it makes of their results. A template turns that into a page. Numbers,
 equations and verdicts on the pages come from the runs, and the Maxima lines from the source files, at every build.
 """
 

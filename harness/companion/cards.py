@@ -46,7 +46,7 @@ def derivation_cards(
     Parameters
     ----------
     numbers : sequence of str
-        Which ones; the cards come in the order of the first record.
+        Which ones. The cards come in the order of the first record.
     derivations : sequence of Derived
         The first has the equations that are shown, the others those shown on request.
     printed : iterable of PrintedEquation
@@ -139,7 +139,7 @@ def named_equations(derived: Derived, scene: str | None = None) -> dict[str, Equ
     derived : Derived
         Derivation with its check.
     scene : str or None
-        Name of the scene; None for the derivation.
+        Name of the scene, or None for the derivation.
 
     Returns
     -------
@@ -180,7 +180,7 @@ def verdicts_on(derived: Derived, equation: Equation, scene: str | None) -> tupl
     equation : Equation
         Equation of a record.
     scene : str or None
-        Name of the scene; None for the derivation.
+        Name of the scene, or None for the derivation.
 
     Returns
     -------

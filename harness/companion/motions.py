@@ -49,7 +49,7 @@ def motion(file: Path, scene: str | None = None, until: Fraction | None = None) 
     scene : str or None
         Name of the scene.
     until : Fraction or None
-        Last time; None for that of the scene.
+        Last time, or None for that of the scene.
 
     Returns
     -------

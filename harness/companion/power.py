@@ -35,7 +35,7 @@ class EnergyBalance:
 def energy_balance(system: System, scene: Scene, motion: Simulation) -> EnergyBalance:
     """Take stock of the energy of a motion, from the description of the system alone.
 
-    The system has no potential energy; the motion has multipliers, at many equidistant times.
+    The system has no potential energy. The motion has multipliers, at many equidistant times.
 
     Parameters
     ----------

@@ -170,7 +170,7 @@ def simulation(
     scene : str or None
         Name of the scene.
     until : Fraction or None
-        Last time; None for that of the scene.
+        Last time, or None for that of the scene.
     samples : int or None
         Number of samples.
     settings : Settings

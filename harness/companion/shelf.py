@@ -27,7 +27,7 @@ class Shelf:
     kept : Path or None
         Where results of runs are kept from one build to the next.
     results : dict, optional
-        Those that are there already; others are added.
+        Those that are there already. Others are added.
     done : callable, optional
         Called each time that one of the runs is done.
     """
@@ -68,7 +68,7 @@ class Shelf:
         Returns
         -------
         Chapter or None
-            Chapter; None for a page without one.
+            Chapter, or None for a page without one.
         """
         return self.chapters.get(name.rpartition("/")[2])
 

@@ -37,15 +37,15 @@ def make_site(
     Parameters
     ----------
     scenes : sequence of Path
-        The files that the pages are about; without any they are the book and the manual.
+        The files that the pages are about. Without any they are the book and the manual.
     chapters : mapping of str to Chapter
         What stands behind the pages, by the last part of their names.
     directory : Path
         Where the pages are put, those of each language but the first in a directory of its name.
     pdf : Path or None
-        The file that the book is printed to; of each language but the first, with its name before the ending.
+        The file that the book is printed to. Of each language but the first, with its name before the ending.
     languages : sequence of str
-        Language codes; the first is that of the root folder.
+        Language codes. The first is that of the root folder.
     done : callable
         Called each time that one of the runs is done.
 
@@ -83,7 +83,7 @@ def build(scenes: Sequence[Path], directory: Path, shelf: Shelf, folders: Mappin
     Parameters
     ----------
     scenes : sequence of Path
-        Scene files; empty for the book and the manual.
+        Scene files, empty for the book and the manual.
     directory : Path
         Folder of the pages.
     shelf : Shelf

@@ -2,7 +2,7 @@
 
 Branch points are zeros of the arguments of abs, sign, roots and logarithms. Two expressions may be equal on one side
 of a branch and differ on the other. A function such as exp or tanh may differ from zero, or from one, only in a
-narrow range of its argument; points are drawn there as well.
+narrow range of its argument. Points are drawn there as well.
 """
 
 from __future__ import annotations

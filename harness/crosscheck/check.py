@@ -54,11 +54,11 @@ def check_record(
     record : Record
         The record to be checked.
     description : Description
-        Description of the scene file; nothing of it is taken from the record.
+        Description of the scene file. Nothing of it is taken from the record.
     seed : str or None
-        Seed of the random points; None is for a fresh one.
+        Seed of the random points. None is for a fresh one.
     closed_form_size : int or None
-        The limit that the record was derived with; None for that of the description.
+        The limit that the record was derived with, or None for that of the description.
     seconds : float
         Time for all verdicts. Equations without a verdict by then are undecided.
 

@@ -44,7 +44,7 @@ class CheckedDerivation:
         Returns
         -------
         ClosedForm or None
-            By the symbols of the accelerations; None without them.
+            By the symbols of the accelerations, or None without them.
         """
         return self._solution("driven_accelerations", self.system.accelerations)
 
@@ -54,7 +54,7 @@ class CheckedDerivation:
         Returns
         -------
         ClosedForm or None
-            By the symbols of the accelerations; None if the record does not hold (4).
+            By the symbols of the accelerations, or None if the record does not hold (4).
         """
         driven = self.driven_accelerations()
         released = dict.fromkeys(self.system.multipliers, sp.Integer(0))
@@ -66,7 +66,7 @@ class CheckedDerivation:
         Returns
         -------
         ClosedForm or None
-            By the symbols of the multipliers; None if the record does not hold them.
+            By the symbols of the multipliers, or None if the record does not hold them.
         """
         solution = self._solution("multipliers", self.system.multipliers)
         return solution and {multiplier: solution[multiplier] for multiplier in self.known.system.multipliers}
@@ -77,7 +77,7 @@ class CheckedDerivation:
         Returns
         -------
         ClosedForm or None
-            By their symbols; None if the record does not hold both.
+            By their symbols, or None if the record does not hold both.
         """
         accelerations = self._solution("accelerations", self.system.accelerations)
         multipliers = self.multipliers()
@@ -244,7 +244,7 @@ def christoffel_symbols(checked: CheckedDerivation, relations: Relations) -> Com
     checked : CheckedDerivation
         The derivation.
     relations : Relations
-        Relations of the equation; zeros are left out.
+        Relations of the equation. Zeros are left out.
 
     Returns
     -------

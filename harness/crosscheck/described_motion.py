@@ -148,7 +148,7 @@ class DescribedMotion:
         Returns
         -------
         dict of str to Polynomial
-            Constant polynomials by name; a switch is 1 or 0.
+            Constant polynomials by name. A switch is 1 or 0.
         """
         trees = {} if self.scene is None else self.scene.parameter_values.trees
         called = self.system.switches if self.scene is None else self.scene.effects
@@ -179,12 +179,12 @@ class DescribedMotion:
         curve : Curve
             Polynomial of each coordinate, control, parameter and the time.
         needed : container of int or None
-            Places of the tape to evaluate; None for all.
+            Places of the tape to evaluate, or None for all.
 
         Returns
         -------
         list of Polynomial
-            Polynomial at each place of the tape; empty if it is not needed.
+            Polynomial at each place of the tape, empty if it is not needed.
 
         Raises
         ------

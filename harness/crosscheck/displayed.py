@@ -2,7 +2,7 @@
 
 Maxima decides by a predicted length whether closed forms are made. It counts the displayed form: ``-x`` for
 ``(-1)*x``, ``x/y`` for ``x*y^(-1)``, ``sqrt(x)`` for ``x^(1/2)``. Trees hold the products and powers of the internal
-form; they are converted first.
+form. They are converted first.
 """
 
 from __future__ import annotations

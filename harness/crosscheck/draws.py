@@ -56,7 +56,7 @@ class Draws:
         Parameters
         ----------
         attempt : int
-            Number of the attempt, from 0; it decides about sizes and signs.
+            Number of the attempt, from 0. It decides about sizes and signs.
 
         Returns
         -------
@@ -182,7 +182,7 @@ def _exact(number: mp.mpf) -> sp.Rational:
 def _solved(residual: Steps, symbol: sp.Symbol, point: Point) -> mp.mpf | None:
     """Return the zero of the residual as a function of the symbol.
 
-    The secant method is used; None if it does not converge.
+    The secant method is used, or None if it does not converge.
     """
     values = {x: mp.mpf(number.p) / number.q for x, number in point.items()}
 

@@ -1,7 +1,7 @@
 """Evaluate expressions at many points, as steps that are found once.
 
 The number of digits may change between points. Intermediate values may be complex. A step without a value, such as a
-division by zero, has none, and neither have expressions that depend on it; the other values remain.
+division by zero, has none, and neither have expressions that depend on it. The other values remain.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ class Steps:
         Returns
         -------
         Numbers
-            One for each expression; None for an expression without a value.
+            One for each expression, or None for an expression without a value.
         """
         found: Numbers = []
         for step in self._steps:

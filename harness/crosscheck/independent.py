@@ -5,7 +5,7 @@ T is differentiated by the total time derivative, as in
     d/dt dT/d dot(q_s) - dT/dq_s = Q_s + lambda_beta df_beta/dq_s,        d^2 f_beta/dt^2 = 0,
 
 and in no other way: no split into A, B and T0, no Christoffel symbols, no symbolic inverse. Both sets of equations
-are linear in accelerations and multipliers; their coefficients make the bordered system [A -J^T; J 0].
+are linear in accelerations and multipliers. Their coefficients make the bordered system [A -J^T; J 0].
 
 The power of the reactions of moving constraints follows. A reaction lies along df/dq, and its power is lambda_b
 (df_b/dq_s) dot(q_s). On a motion the constraints stay zero, and with them their time derivative, (df_b/dq_s) dot(q_s)

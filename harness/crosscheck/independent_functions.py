@@ -3,7 +3,7 @@
 By Schwartz and Zippel's lemma this is a stronger test than points. In exp(x y + 2 z) the products of symbols are
 replaced by symbols of their own, exp(p1 + 2 p2), so that random values of x, y, z and of p1, p2 give the function any
 value, independent of x, y and z. Addition theorems remain valid: the symbols are the same in all functions. If two
-expressions agree then, they are equal as polynomials of functions and symbols, up to a negligible probability; a
+expressions agree then, they are equal as polynomials of functions and symbols, up to a negligible probability. A
 narrow well, exp(-10^6 (x - 1)^2), cannot hide. If they differ, the test is inconclusive.
 """
 

@@ -146,7 +146,7 @@ class CheckedScene:
         Returns
         -------
         Definitions or None
-            Closed forms by their symbols; None if the record does not hold the multipliers.
+            Closed forms by their symbols, or None if the record does not hold the multipliers.
         """
         multipliers = self.derivation.multipliers()
         if multipliers is None:
@@ -311,7 +311,7 @@ def determined_initial_values(checked: CheckedScene, relations: Relations) -> tu
 
     With the values put in, the constraints that determine them vanish identically. A value that is a number, in
     constraints that contain further initial values or parameters, holds for the scene's own numbers only. Each value
-    is that of the initial state, for which (12) has the constraints; this also decides the branch of a root.
+    is that of the initial state, for which (12) has the constraints. This also decides the branch of a root.
 
     Parameters
     ----------

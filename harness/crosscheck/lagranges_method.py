@@ -1,7 +1,7 @@
 """Compare with `sympy.physics.mechanics.LagrangesMethod`, a third derivation.
 
 The generalized force Q_s is a force on a point that moves with dot(q_s) along one axis. Controls and their
-derivatives enter as functions of time. The multipliers of the method's full mass matrix have the paper's sign; those
+derivatives enter as functions of time. The multipliers of the method's full mass matrix have the paper's sign. Those
 in its equations of motion have the opposite one.
 """
 

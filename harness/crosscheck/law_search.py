@@ -1,7 +1,7 @@
 """Random search for a law that makes every motion free, in floating-point numbers.
 
 The statement that no such law exists is tested by this search. Near a random time of the time span the controls are
-polynomials in the time with unknown coefficients; parameters without a value are drawn with both signs. The
+polynomials in the time with unknown coefficients. Parameters without a value are drawn with both signs. The
 multipliers of the bordered equations, at random states on the constraint manifold, are minimized by the
 Levenberg-Marquardt method. If there is a law, the residual falls at least by the fourth power of the interval's
 length. If the controls satisfy the equations at the time alone, it falls by the second or first power. Maxima's
@@ -165,7 +165,7 @@ def batched(numbers: Sequence[float], size: int) -> Iterator[Vector]:
     numbers : sequence of float
         The sequence.
     size : int
-        Length of each list; the last one may be shorter.
+        Length of each list. The last one may be shorter.
 
     Returns
     -------
@@ -266,7 +266,7 @@ class _Trial:
 def _polynomial(c: Vector, s: float, unit: float) -> Vector:
     """Return value, first and second derivative of c0 + c1 t + c2 t^2/2 + ...
 
-    The time is t = unit*s; the later terms are in powers of s.
+    The time is t = unit*s. The later terms are in powers of s.
     """
     powers = [c[0], c[1] * unit, c[2] * unit**2 / 2, *c[3:]]
     value = sum(a * s**k for k, a in enumerate(powers))

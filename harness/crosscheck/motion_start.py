@@ -89,7 +89,7 @@ def nearer_start(motion: DescribedMotion, start: State, masses: State | None = N
     start : State
         Time, coordinates and velocities of the initial state.
     masses : State or None
-        Masses of the moving controls in the problem; None for none.
+        Masses of the moving controls in the problem, or None for none.
 
     Returns
     -------

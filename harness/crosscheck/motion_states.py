@@ -111,7 +111,7 @@ class States:
         Parameters
         ----------
         attempt : int
-            Number of the state; even ones are near the initial state.
+            Number of the state. Even ones are near the initial state.
 
         Returns
         -------

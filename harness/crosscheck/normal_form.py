@@ -63,7 +63,7 @@ def is_identically_zero(expressions: Iterable[sp.Expr], allowance: int = ALLOWAN
     Returns
     -------
     bool
-        True is a proof; False is inconclusive.
+        True is a proof. False is inconclusive.
     """
     canonical = []
     for expression in expressions:
@@ -81,7 +81,7 @@ def is_identically_zero(expressions: Iterable[sp.Expr], allowance: int = ALLOWAN
 class NormalForms:
     """Numerators of expressions over one polynomial ring.
 
-    The symbols, functions and roots of the expressions are its generators; the allowance is of products of terms.
+    The symbols, functions and roots of the expressions are its generators. The allowance is of products of terms.
     """
 
     def __init__(self, expressions: Iterable[sp.Expr], allowance: int) -> None:

@@ -61,7 +61,7 @@ def premises_of(description: Description, closed_form_size: int | None = None) -
     ----------
     description : Description
     closed_form_size : int or None
-        Limit of closed forms; None for that of the description.
+        Limit of closed forms, or None for that of the description.
 
     Returns
     -------

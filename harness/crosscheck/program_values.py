@@ -1,6 +1,6 @@
 """Evaluate motion programs, and others of a motion, in many digits.
 
-Its arithmetic uses mpmath's low-level numbers, which takes half the time of the type `mpf`; functions are those of
+Its arithmetic uses mpmath's low-level numbers, which takes half the time of the type `mpf`. Functions are those of
 `tape`.
 """
 
@@ -66,7 +66,7 @@ def run(program: Program, inputs: Mapping[str, Polynomial]) -> Values:
     ----------
     program : Program
     inputs : mapping of str to Polynomial
-        Polynomial of each input; only its constant is used.
+        Polynomial of each input. Only its constant is used.
 
     Returns
     -------
@@ -129,7 +129,7 @@ def outputs_of(program: Program, inputs: Mapping[str, Polynomial]) -> Values:
     ----------
     program : Program
     inputs : mapping of str to Polynomial
-        Polynomial of each input; only its constant is used.
+        Polynomial of each input. Only its constant is used.
 
     Returns
     -------

@@ -82,7 +82,7 @@ def is_closed(description: Description, scene: DescribedScene | None) -> bool:
     ----------
     description : Description
     scene : DescribedScene or None
-        One of its scenes; None for the system.
+        One of its scenes, or None for the system.
 
     Returns
     -------

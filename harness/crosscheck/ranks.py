@@ -45,7 +45,7 @@ class Elimination:
         Returns
         -------
         Row
-            Value of each determined unknown, by column; the others are zero.
+            Value of each determined unknown, by column. The others are zero.
         """
         found: Row = {}
         for column, (row, right) in reversed(self._pivots.items()):
@@ -123,7 +123,7 @@ def least_solution(rows: Sequence[Row], right: Sequence[mp.mpf]) -> Row:
     Returns
     -------
     Row
-        Entries by column; those left out are zero.
+        Entries by column. Those left out are zero.
     """
     users: dict[int, list[tuple[int, mp.mpf]]] = {}
     for place, row in enumerate(rows):

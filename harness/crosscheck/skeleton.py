@@ -138,7 +138,7 @@ def predicted_size(system: System, derived: Derivation, known: MechanicalSystem,
     Returns
     -------
     float
-        Number of symbols and operations; if finite, at most `LARGEST_SIZE`.
+        Number of symbols and operations. If finite, at most `LARGEST_SIZE`.
     """
     if any(symbol.name in system.multipliers for force in known.forces for symbol in force.free_symbols):
         return inf

@@ -129,12 +129,12 @@ class Tape:
         known : mapping of str to Polynomial
             Polynomial of each name.
         needed : container of int or None
-            Places to evaluate; None for all.
+            Places to evaluate, or None for all.
 
         Returns
         -------
         list of Polynomial
-            Polynomial at each place; empty if it is not needed.
+            Polynomial at each place, empty if it is not needed.
 
         Raises
         ------
@@ -163,12 +163,12 @@ class Tape:
         values : sequence of Polynomial
             Result of `values`.
         needed : container of int or None
-            Places to evaluate, as for `values`; None for all.
+            Places to evaluate, as for `values`, or None for all.
 
         Returns
         -------
         list of Polynomial
-            Polynomial at each place; empty if it is not needed.
+            Polynomial at each place, empty if it is not needed.
         """
         found: list[Polynomial] = []
         for place, (head, arguments) in enumerate(self.operations):

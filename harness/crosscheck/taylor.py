@@ -1,6 +1,6 @@
 """Arithmetic of Taylor polynomials in the time, with the numbers of mpmath.
 
-A polynomial is a tuple of coefficients; those that it leaves out are zero. A function of one is composed of the
+A polynomial is a tuple of coefficients. Those that it leaves out are zero. A function of one is composed of the
 function's own Taylor coefficients (Griewank & Walther, Evaluating Derivatives, chapter 13).
 """
 

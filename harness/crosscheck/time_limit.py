@@ -1,6 +1,6 @@
 """A time limit for all verdicts together.
 
-The verdict that it interrupts is undecided; those before it remain.
+The verdict that it interrupts is undecided. Those before it remain.
 """
 
 from __future__ import annotations

@@ -53,10 +53,10 @@ def judge_law(
     ----------
     system : MechanicalSystem
     values : mapping of Symbol to Expr
-        Values of parameters; others are random.
+        Values of parameters. Others are random.
     law : ControlLaw
     span : tuple of (Expr, Expr) or None
-        First and last time of the states; None for no limits.
+        First and last time of the states, or None for no limits.
 
     Returns
     -------

@@ -1,7 +1,7 @@
 """Compare two expressions at points, and then by proof.
 
 A point is evaluated in two precisions. A digit that both have in common belongs to the value, and a difference common
-to both is real; a difference that shrinks with the precision is a rounding error of zero. No tolerance is needed, and
+to both is real. A difference that shrinks with the precision is a rounding error of zero. No tolerance is needed, and
 terms of any size count.
 
 A comparison may need the solution of linear equations. At a point they are solved numerically. In a proof a
@@ -100,7 +100,7 @@ def judge(comparison: Comparison, seed: str) -> CheckResult:
     ----------
     comparison : Comparison
     seed : str
-        Seed of the random points; the same seed makes the same points.
+        Seed of the random points. The same seed makes the same points.
 
     Returns
     -------

@@ -1,6 +1,6 @@
 """Show the condition of free motion (10), with names for its roots if it is long.
 
-A short condition is one formula; a long one is a list of its terms.
+A short condition is one formula. A long one is a list of its terms.
 """
 
 import re

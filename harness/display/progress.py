@@ -46,7 +46,7 @@ def motion_progress(title: str) -> Iterator[Callable[[float], None] | None]:
     Yields
     ------
     callable or None
-        Takes the completed fraction, from 0 to 1; None if no bar is shown.
+        Takes the completed fraction, from 0 to 1, or None if no bar is shown.
     """
     with _bar(title, 1.0) as bar:
         yield bar and (lambda fraction: bar.update(bar.task_ids[0], completed=fraction))
@@ -64,7 +64,7 @@ def sweep_progress(rows: int) -> Iterator[Callable[[int], None] | None]:
     Yields
     ------
     callable or None
-        Takes the number of completed rows; None if no bar is shown.
+        Takes the number of completed rows, or None if no bar is shown.
     """
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
 

@@ -58,7 +58,7 @@ def draw_study(study: "Study", path: Path) -> None:
     Raises
     ------
     HolonomError
-        The file cannot be written; Matplotlib is not installed.
+        The file cannot be written, or Matplotlib is not installed.
     """
     with figure_style():
         figure = new_figure(*STUDY)
@@ -126,7 +126,7 @@ def draw_stability(reports: Sequence[CaseReport], file: Path) -> None:
     Raises
     ------
     HolonomError
-        Matplotlib is not installed; the file cannot be written.
+        Matplotlib is not installed, or the file cannot be written.
     """
     rows = [row for report in reports for row in _rows(report)]
     sweeps = [report.sweep for report in reports if report.sweep is not None]

@@ -4,7 +4,7 @@
     animation(film), strip(film)        # SVG, in the reader's ink like all figures
 
 The animation needs no script. The strip shows positions at several times, later ones more strongly. Both show the
-scale and the time at the foot. Fixed parts, such as a hinge or a rail, are drawn in ink; moving parts are drawn in
+scale and the time at the foot. Fixed parts, such as a hinge or a rail, are drawn in ink. Moving parts are drawn in
 colour, and bodies leave a trace.
 """
 
@@ -96,7 +96,7 @@ def film_of(simulation: "Simulation", drawing: Drawing) -> Film:
     Parameters
     ----------
     simulation : Simulation
-        Its times are many and equidistant; it has the coordinates.
+        Its times are many and equidistant. It has the coordinates.
     drawing : Drawing
         Shapes of the system.
 

@@ -41,12 +41,12 @@ class MovingPicture:
         Parameters
         ----------
         path : str or Path
-            File to write; its suffix is .svg, .html, .gif or .mp4.
+            File to write. Its suffix is .svg, .html, .gif or .mp4.
 
         Raises
         ------
         HolonomError
-            There is no such format, or ffmpeg, which MP4 needs, is not installed; the file cannot be written.
+            There is no such format, or ffmpeg, which MP4 needs, is not installed, or the file cannot be written.
         """
         write_whole(Path(path), film_format(Path(path))(self.film))
 
@@ -88,12 +88,12 @@ def film_format(path: Path) -> Callable[[Film], str | bytes]:
     Parameters
     ----------
     path : Path
-        Name of the file; its suffix selects the format.
+        Name of the file. Its suffix selects the format.
 
     Returns
     -------
     callable
-        Takes a `Film`; returns str for SVG and HTML, bytes for GIF and MP4.
+        Takes a `Film`. Returns str for SVG and HTML, bytes for GIF and MP4.
 
     Raises
     ------

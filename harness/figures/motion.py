@@ -33,14 +33,14 @@ def draw_motion(simulation: "Simulation", file: Path, curves: Sequence[str] | No
     simulation : Simulation
         The motion.
     file : Path
-        File to write; the suffix .png selects PNG, any other SVG.
+        File to write. The suffix .png selects PNG, any other SVG.
     curves : sequence of str or None
         As for `motion_figure`.
 
     Raises
     ------
     HolonomError
-        Matplotlib is not installed; the file cannot be written.
+        Matplotlib is not installed, or the file cannot be written.
     """
     with figure_style():
         write_figure(motion_figure(simulation, curves), file)
@@ -54,7 +54,7 @@ def motion_figure(simulation: "Simulation", curves: Sequence[str] | None = None)
     simulation : Simulation
         The motion.
     curves : sequence of str or None
-        Names of quantities as in `Simulation.keys`; None for all but residuals and sensitivities.
+        Names of quantities as in `Simulation.keys`, or None for all but residuals and sensitivities.
 
     Returns
     -------
@@ -63,7 +63,7 @@ def motion_figure(simulation: "Simulation", curves: Sequence[str] | None = None)
     Raises
     ------
     HolonomError
-        Matplotlib is not installed; there is no such quantity, or the scene does not observe it.
+        Matplotlib is not installed, or there is no such quantity, or the scene does not observe it.
     """
     groups = {
         gettext("coordinates"): simulation.coordinates,
@@ -110,7 +110,7 @@ def of_like_size(curves: Mapping[str, NDArray]) -> list[dict[str, NDArray]]:
     Returns
     -------
     list of dict
-        The group with the largest values first; names keep their order within a group.
+        The group with the largest values first. Names keep their order within a group.
     """
     sizes = {name: float(np.max(np.abs(samples.astype(float)), initial=0.0)) for name, samples in curves.items()}
     parts: list[dict[str, NDArray]] = []

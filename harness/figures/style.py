@@ -203,7 +203,7 @@ def write_figure(figure: "Figure", path: Path) -> None:
     figure : Figure
         The figure to write.
     path : Path
-        The file; what it held is replaced. The same figure gives the same bytes.
+        The file. What it held is replaced. The same figure gives the same bytes.
 
     Raises
     ------
@@ -225,7 +225,7 @@ class Picture:
         Parameters
         ----------
         path : str or Path
-            File to write; the suffix .png selects PNG, any other SVG.
+            File to write. The suffix .png selects PNG, any other SVG.
 
         Raises
         ------

@@ -29,7 +29,7 @@ def sweep_figure(sweep: "Sweep", quantity: str | None = None) -> "Figure":
     sweep : Sweep
         A finished sweep over one parameter, or over two in a grid.
     quantity : str or None
-        Name of a column; None for `plotted`.
+        Name of a column, or None for `plotted`.
 
     Returns
     -------
@@ -38,7 +38,7 @@ def sweep_figure(sweep: "Sweep", quantity: str | None = None) -> "Figure":
     Raises
     ------
     HolonomError
-        Matplotlib is not installed; there is no such quantity; not one parameter varies, nor two in a grid.
+        Matplotlib is not installed, there is no such quantity, or not one parameter varies, nor two in a grid.
     """
     names = [axis["name"] for axis in sweep.document["parameters"]]
     shown = quantity or plotted(sweep.document)

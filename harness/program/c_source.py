@@ -1,8 +1,8 @@
 """A motion program as C99 source, for one point and for many.
 
-The names of the program are replaced by v0, v1, ...; which input and output is which stands in the opening comment.
+The names of the program are replaced by v0, v1, .... Which input and output is which stands in the opening comment.
 Many points are taken several at a time, as lanes of one vector, where the compiler knows GNU C's vectors. Left to find
-the lanes itself in a loop over the points, GCC 12 finds none; told to look, it takes four times as long to compile.
+the lanes itself in a loop over the points, GCC 12 finds none. Told to look, it takes four times as long to compile.
 """
 
 import json
@@ -166,9 +166,9 @@ def statements(program: Program, target: Target, inputs: Sequence[str], writes: 
     ----------
     program : Program
     target : Target
-        `ONE` point, or `MANY` in lanes; or another language's.
+        `ONE` point, or `MANY` in lanes, or another language's.
     inputs : sequence of str
-        For each input an expression; those that the program does not use are not read.
+        For each input an expression. Those that the program does not use are not read.
     writes : sequence of str
         For each output the statement that puts ``{value}`` where it belongs.
 

@@ -52,13 +52,13 @@ def differentiated(program: Program, seeds: Seeds) -> Program:
     program : Program
         The program to differentiate.
     seeds : mapping
-        Input, then direction, to the derivative of this input in this direction; what is missing is zero. Names in it
+        Input, then direction, to the derivative of this input in this direction. What is missing is zero. Names in it
         are inputs of the new program, behind those of the old one.
 
     Returns
     -------
     Program
-        Outputs as before, then ``d(output, direction)`` for each output and direction; zero is the number 0. A sign
+        Outputs as before, then ``d(output, direction)`` for each output and direction. Zero is the number 0. A sign
         counts as constant.
     """
     tape = _Tape({*program.inputs, *(name for name, _ in program.assignments)})

@@ -1,7 +1,7 @@
 """Operations and evaluation time of the terms of (3) and (7) and of the effects.
 
 A term costs as much as a program of that term alone. The cost of an effect is the difference between the scene's
-program and the program without it; for an absent effect, between the program with it and the scene's. A cost may be
+program and the program without it. For an absent effect, between the program with it and the scene's. A cost may be
 negative, because an effect can change the order of elimination. A pair of switches costs the excess over the sum of
 both.
 """

@@ -99,7 +99,7 @@ class MotionProgram:
         parameters : sequence of str
             With a module: parameters that stay open although the scene gives them values.
         name : str or None
-            With a module: its name, with which those of CasADi's functions begin; None for the file's name.
+            With a module: its name, with which those of CasADi's functions begin, or None for the file's name.
 
         Returns
         -------
@@ -116,7 +116,7 @@ class MotionProgram:
         parameters : sequence of str
             Parameters that stay open although the scene gives them values.
         name : str or None
-            Name of the function; None for the file's name.
+            Name of the function, or None for the file's name.
 
         Returns
         -------
@@ -143,7 +143,7 @@ class MotionProgram:
         directory : str or Path
             It is made where it is missing.
         name : str or None
-            What every public name begins with; None for the file's name.
+            What every public name begins with, or None for the file's name.
         parameters : sequence of str
             Those that stay open although the scene gives them values.
         """
@@ -157,7 +157,7 @@ class MotionProgram:
         file : str or Path
             File to write, usually with the suffix ``.fmu``.
         name : str or None
-            Name of the model; None for the file's name.
+            Name of the model, or None for the file's name.
         parameters : sequence of str
             Parameters that stay open although the scene gives them values.
         """

@@ -90,7 +90,7 @@ def heyoka_expressions(
     inputs : mapping of str to expression
         What to put for each input: a variable, heyoka's time, a parameter, a control law.
     number : callable
-        Takes a Fraction to one of heyoka's numbers; `float` is for double precision.
+        Takes a Fraction to one of heyoka's numbers. `float` is for double precision.
 
     Returns
     -------
@@ -100,7 +100,7 @@ def heyoka_expressions(
     Raises
     ------
     HolonomError
-        heyoka is not installed; an input is missing.
+        heyoka is not installed, or an input is missing.
     """
     if missing := [name for name in program.inputs if name not in inputs]:
         raise HolonomError(ErrorKind.INPUT_MISSING, detail=missing[0])
@@ -185,7 +185,7 @@ def _arithmetic(heyoka: ModuleType, number: Callable[[Fraction], object]) -> Ari
 def import_heyoka() -> ModuleType:
     """Import heyoka with its disk cache and its messages disabled.
 
-    The disk cache would run any machine code it finds in the home directory; altered code would give other motions. The
+    The disk cache would run any machine code it finds in the home directory. Altered code would give other motions. The
     messages would be written to standard output, which may contain a document. Errors are raised as exceptions.
 
     Returns

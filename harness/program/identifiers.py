@@ -58,7 +58,7 @@ def default_name(scene_file: Path) -> str:
     Parameters
     ----------
     scene_file : Path
-        Path of the scene file; only its name without suffix is used.
+        Path of the scene file. Only its name without suffix is used.
 
     Returns
     -------

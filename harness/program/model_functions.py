@@ -1,6 +1,6 @@
 """A scene's model as functions of time t, state y, controls u and parameters p.
 
-The controls u include their rates. ``law(t, p)`` returns u, and ``rhs(t, y, p)`` the derivative of y under it; both are
+The controls u include their rates. ``law(t, p)`` returns u, and ``rhs(t, y, p)`` the derivative of y under it. Both are
 missing if a control has no law. The other functions take (t, y, u, p):
 
 - ``motion`` returns accelerations and multipliers,

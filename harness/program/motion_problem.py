@@ -84,7 +84,7 @@ class MotionProblem:
     """The data of a motion to be simulated.
 
     Every program takes t, the coordinates, the velocities, the multipliers, the signs, the open parameters and what
-    the tables are at t, in this order; that of the outputs the accelerations, too.
+    the tables are at t, in this order. That of the outputs the accelerations, too.
     """
 
     # system, source: title of the system, and where it comes from
@@ -309,7 +309,7 @@ def motion_problem(
     digits : int
         Significant digits of the initial state.
     open_parameters : sequence of str
-        Parameters that are inputs of the programs, whether they have values or not; names of others do no harm.
+        Parameters that are inputs of the programs, whether they have values or not. Names of others do no harm.
 
     Returns
     -------
@@ -318,7 +318,7 @@ def motion_problem(
     Raises
     ------
     HolonomError
-        As `holonom.maxima.ask_scene`; the file has no scene, a control no law, a parameter no value.
+        As `holonom.maxima.ask_scene`, or the file has no scene, a control no law, a parameter no value.
     """
     source = source_of(file, limits)
     document = problem_document(source, request, limits, digits, open_parameters)
@@ -345,7 +345,7 @@ def problem_document(
     digits : int
         Significant digits of the initial state.
     open_parameters : sequence of str
-        Parameters that are inputs of the programs; names of other quantities are ignored.
+        Parameters that are inputs of the programs. Names of other quantities are ignored.
 
     Returns
     -------

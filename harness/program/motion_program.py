@@ -125,7 +125,7 @@ def read_program(text: str) -> Program:
     Raises
     ------
     HolonomError
-        The text is not such a document; names a value that nothing before it computes; computes one twice.
+        The text is not such a document, names a value that nothing before it computes, or computes one twice.
     """
     return _checked(read(Document.PROGRAM, text))
 

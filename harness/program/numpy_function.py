@@ -41,7 +41,7 @@ class NumpyFunction:
         Parameters
         ----------
         inputs : sequence of array_like
-            One array or number for each input of the program; they are broadcast against each other to the shape of
+            One array or number for each input of the program. They are broadcast against each other to the shape of
             the points.
 
         Returns

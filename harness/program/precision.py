@@ -70,7 +70,7 @@ def read_precision(text: str) -> Precision:
     Raises
     ------
     HolonomError
-        heyoka is not installed; it or this machine has no such numbers.
+        heyoka is not installed, or it or this machine has no such numbers.
     """
     if text in HARDWARE:
         return HARDWARE[text]()

@@ -40,7 +40,7 @@ def read_settings(texts: Iterable[str]) -> dict[str, str]:
     Parameters
     ----------
     texts : iterable of str
-        Settings of the command line; the last one of a name counts.
+        Settings of the command line. The last one of a name counts.
 
     Returns
     -------

@@ -27,12 +27,12 @@ def problem_in(problem: MotionProblem, pattern: Pattern) -> MotionProblem:
     problem : MotionProblem
         The motion, with or without signs.
     pattern : mapping of str to int or str
-        1, -1 or `SLIDING` for each sign; one at most is held, of those that `holdable` names.
+        1, -1 or `SLIDING` for each sign. One at most is held, of those that `holdable` names.
 
     Returns
     -------
     MotionProblem
-        The motion without signs; `problem` itself if it has none.
+        The motion without signs. `problem` itself if it has none.
     """
     if not problem.signs:
         return problem
@@ -76,7 +76,7 @@ def drawing_at_any_time(problem: MotionProblem) -> Drawing:
     Parameters
     ----------
     problem : MotionProblem
-        The motion; it has a drawing.
+        The motion. It has a drawing.
 
     Returns
     -------
@@ -100,7 +100,7 @@ def drawing_with_values(problem: MotionProblem) -> Drawing:
     Parameters
     ----------
     problem : MotionProblem
-        The motion; it has a drawing.
+        The motion. It has a drawing.
 
     Returns
     -------
@@ -281,7 +281,7 @@ def sharing_programs(problem: MotionProblem, known: dict[Hashable, MotionProblem
     problem : MotionProblem
         Without signs.
     known : dict
-        The motions given so far; changed in place.
+        The motions given so far. Changed in place.
 
     Returns
     -------
@@ -352,7 +352,7 @@ def switching_function(problem: MotionProblem, quantity: str, name: str, pattern
     problem : MotionProblem
         The motion.
     quantity : str
-        ``switch``, the function whose sign it is; ``switch_rate``, its rate; or ``drive``, the first of its rates that
+        ``switch``, the function whose sign it is. ``switch_rate``, its rate, or ``drive``, the first of its rates that
         contains accelerations, with the sign's value from the pattern.
     name : str
         One of the signs.

@@ -43,7 +43,7 @@ class PiecesOfTable:
     def at(self, times: Numbers, side: Literal["left", "right"] = "left") -> Numbers:
         """Return the polynomials at times in double precision.
 
-        At a knot this is the polynomial that ends there; on its right side, the one that begins.
+        At a knot this is the polynomial that ends there. On its right side, the one that begins.
 
         Parameters
         ----------

@@ -47,5 +47,5 @@ def compute_series(file: Source | Path, request: SeriesRequest, limits: Limits) 
 
 
 def _direction(name: str) -> Argument:
-    """Return a name for Maxima; a velocity ``dot(x)`` as the names dot and x."""
+    """Return a name for Maxima. A velocity ``dot(x)`` as the names dot and x."""
     return ["dot", name[4:-1]] if name.startswith("dot(") and name.endswith(")") else name

@@ -42,7 +42,7 @@ def expand_by_heyoka(file: Source | Path, request: SeriesRequest, limits: Limits
     file : Source or Path
         Scene file.
     request : SeriesRequest
-        Its precision is not None; its end, if any, is that of the continuation.
+        Its precision is not None. Its end, if any, is that of the continuation.
     limits : Limits
         Limits of each run of Maxima.
 
@@ -84,7 +84,7 @@ def expand(problem: MotionProblem, order: int, precision: Precision) -> MotionSe
     Raises
     ------
     HolonomError
-        heyoka is not installed; the order is too high, or a coefficient is too large for the numbers.
+        heyoka is not installed, or the order is too high, or a coefficient is too large for the numbers.
     """
     require_means(problem, precision, order)
     integrator = expanding_integrator(problem, order, precision)
@@ -124,9 +124,9 @@ def continue_motion(problem: MotionProblem, until: Fraction, precision: Precisio
     problem : MotionProblem
         The motion, whose initial values have at least the digits of the precision.
     until : Fraction
-        Final time, in the scene's unit; it may be before the initial time.
+        Final time, in the scene's unit. It may be before the initial time.
     precision : Precision
-        Numbers of heyoka; their rounding is the tolerance.
+        Numbers of heyoka. Their rounding is the tolerance.
 
     Returns
     -------
@@ -136,7 +136,7 @@ def continue_motion(problem: MotionProblem, until: Fraction, precision: Precisio
     Raises
     ------
     HolonomError
-        heyoka is not installed; the steps shrink to nothing, or there are more than `MOST_STEPS`.
+        heyoka is not installed, or the steps shrink to nothing, or there are more than `MOST_STEPS`.
     """
     last = precision.ratio(until)
     require_means(problem, precision, order_for(precision.digits + GUARD_DIGITS))
@@ -165,7 +165,7 @@ def expanding_integrator(problem: MotionProblem, order: int, precision: Precisio
     problem : MotionProblem
         The motion to expand.
     order : int
-        Highest power of t - t0 for the multipliers; the state is expanded to one order more.
+        Highest power of t - t0 for the multipliers. The state is expanded to one order more.
     precision : Precision
         Numbers of heyoka.
     effort : int
@@ -179,7 +179,7 @@ def expanding_integrator(problem: MotionProblem, order: int, precision: Precisio
     Raises
     ------
     HolonomError
-        heyoka is not installed; the order is too high.
+        heyoka is not installed, or the order is too high.
     """
     if order > precision.highest_order:
         raise HolonomError(

@@ -50,7 +50,7 @@ class MotionSeries(Shown):
     sensitivities : mapping of str to tuple of str
         Derivatives of these coefficients by parameters and initial values, by names such as ``d(x, m)``.
     switch : str or None
-        A function with whose sign the motion is another than the series; None where there is none.
+        A function with whose sign the motion is another than the series, or None where there is none.
     """
 
     scene: str
@@ -162,7 +162,7 @@ def values_at(motion: MotionSeries, time: Fraction) -> Values:
     Raises
     ------
     HolonomError
-        The time is not inside the radius of convergence; or that is unknown and the terms do not fall; a sign in
+        The time is not inside the radius of convergence, or that is unknown and the terms do not fall, or a sign in
         the system or the law may have changed before.
     """
     with mpmath.workdps(motion.digits):
@@ -188,7 +188,7 @@ def series_document(motion: MotionSeries, values: Values | None = None) -> dict[
     Parameters
     ----------
     motion : MotionSeries
-        The series; numbers are published as text unless they are doubles.
+        The series. Numbers are published as text unless they are doubles.
     values : Values or None
         Sums at one time, published as ``at``.
 

@@ -7,7 +7,7 @@ Near a singularity, or a complex pair of them, the coefficients approach a three
 and the singularities z = t - t0 satisfy 1 + p_0 z + s_0 z^2 = 0. Without corrections, and from two such equations,
 this is Mercer and Roberts' test. Here the corrections are fitted over the later orders, which extrapolates that test
 to n = infinity, and Domb and Sykes' with it if there is a single singularity. Two more terms distinguish two pairs.
-Each number of corrections gives an estimate; those that agree best with their neighbours are taken, and their
+Each number of corrections gives an estimate. Those that agree best with their neighbours are taken, and their
 difference, times a factor of safety, is the uncertainty. If they do not agree, the root test is used: |c_n| falls
 like R^-n at a finite radius R, and faster by some power of n! if the motion is entire.
 
@@ -15,7 +15,7 @@ A series in even or in odd powers alone is one in the square of the time: its si
 
 References
 ----------
-Mercer & Roberts, SIAM J. Appl. Math. 50 (1990) 1547; Domb & Sykes, Proc. R. Soc. A 240 (1957) 214;
+Mercer & Roberts, SIAM J. Appl. Math. 50 (1990) 1547; Domb & Sykes, Proc. R. Soc. A 240 (1957) 214.
 Guttmann & Joyce, J. Phys. A 5 (1972) L81, for recurrences with corrections in 1/n.
 """
 
@@ -167,7 +167,7 @@ def _first_end(found: Sequence[Radius]) -> Radius:
 def truncation_error(coefficients: Sequence[mpmath.mpf], radius: Radius, time: float) -> float:
     """Estimate the truncation error of a power series.
 
-    The estimate is the sum of a geometric series above the last terms; infinite if that diverges.
+    The estimate is the sum of a geometric series above the last terms, infinite if that diverges.
 
     Parameters
     ----------

@@ -61,7 +61,7 @@ def decided(radius: Radius, series: Sequence[Sequence[mpmath.mpf]], program: Pro
     series : sequence of sequence of mpf
         Of the coordinates, in powers of t - t0.
     program : Program or None
-        Of t, coordinates and velocities; None if it is not known.
+        Of t, coordinates and velocities, or None if it is not known.
     t0 : mpf
         Initial time, in the scene's unit.
 

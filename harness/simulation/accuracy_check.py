@@ -5,7 +5,7 @@ power of ten, relative to the size of the quantity. A larger error of a constrai
 feature, lost digits or a tolerance that was not reached.
 
 A function of the state may be faint nearly everywhere and strong in a small region. Rounding swallows an exponential
-that is small, or near to its limit; a high power is similar. Its effect shows neither at a few states nor at the
+that is small, or near to its limit. A high power is similar. Its effect shows neither at a few states nor at the
 beginning of a step.
 """
 

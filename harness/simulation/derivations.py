@@ -84,7 +84,7 @@ def open_names(request: Request, digits: int, also_open: Collection[str] = ()) -
     Returns
     -------
     tuple of str
-        In alphabetical order; empty beyond double precision.
+        In alphabetical order. Empty beyond double precision.
     """
     names = {name for name in (*request.settings, *also_open) if NAME.fullmatch(name)}
     return tuple(sorted(names)) if digits == DOUBLE_DIGITS else ()

@@ -121,7 +121,7 @@ class EnergyBalance:
         Returns
         -------
         ndarray
-            `inner_states` times for each interval; empty if the power is zero.
+            `inner_states` times for each interval, empty if the power is zero.
         """
         if self.conservative:
             return zeros(self._precision, 0)

@@ -39,7 +39,7 @@ def first_event(motion: "HybridMotion", precision: Precision, end: Any) -> Cross
     Parameters
     ----------
     motion : HybridMotion
-        The motion; it is integrated to the event or to the end.
+        The motion. It is integrated to the event or to the end.
     precision : Precision
         Numbers of the motion.
     end : number
@@ -53,7 +53,7 @@ def first_event(motion: "HybridMotion", precision: Precision, end: Any) -> Cross
     Raises
     ------
     HolonomError
-        An expression has no real, finite value; the motion cannot be continued so far.
+        An expression has no real, finite value, or the motion cannot be continued so far.
     """
     sides: dict[str, int] = {}
     events: dict[Mode, Events] = {}
@@ -100,7 +100,7 @@ class Events(SignedFunctions):
         step : Step
             A step of the mode.
         sides : dict of str to int
-            Signs that expressions have had since they left zero; those of this step are added.
+            Signs that expressions have had since they left zero. Those of this step are added.
 
         Returns
         -------

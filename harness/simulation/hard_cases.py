@@ -164,7 +164,7 @@ def fastest_decay(at: MotionState) -> float:
     Returns
     -------
     float
-        Per unit of time; zero if no decay rate exceeds its frequency. It follows from the derivatives of the
+        Per unit of time, zero if no decay rate exceeds its frequency. It follows from the derivatives of the
         accelerations with respect to coordinates and velocities.
     """
     here = at.here

@@ -3,9 +3,9 @@
 While the signs in its equations stay the same, a motion is analytic. An engine integrates it with these signs. If a
 switching function changes its sign, the step is cut, and the equations on both sides decide the continuation:
 
-- if both sides lead across the surface, it is crossed;
+- if both sides lead across the surface, it is crossed.
 - if both lead back to it, the motion slides on it, as dry friction sticks, until one of them does not
-  (Filippov, Differential Equations with Discontinuous Righthand Sides, section 4);
+  (Filippov, Differential Equations with Discontinuous Righthand Sides, section 4).
 - if a joint is released, its constraints end: the state stays the same, and the accelerations jump;
 - if the rate of a control law jumps, the velocities do: the momenta dL/d dot(q) change along the constraints' gradients
   alone, by the impulse that makes the new velocities satisfy the constraints (Pars, A Treatise on Analytical Dynamics,
@@ -100,7 +100,7 @@ class HybridMotion:
     Raises
     ------
     HolonomError
-        As `FallbackEngine`; the motion starts where the equations leave open how it continues.
+        As `FallbackEngine`, or the motion starts where the equations leave open how it continues.
     """
 
     def __init__(self, problem: MotionProblem, request: SimulationRequest, precision: Precision, end: Any) -> None:

@@ -108,7 +108,7 @@ class InitialStates:
         Returns
         -------
         (str, str) or None
-            Name and size of the correction; None without a correction.
+            Name and size of the correction, or None without a correction.
         """
         name, size, now = self._largest_change(Origin.GIVEN, values, states)
         nominal = self._nominal.state[list(self._origins).index(name)] if name else 1.0
@@ -127,7 +127,7 @@ class InitialStates:
         Returns
         -------
         (str, str) or None
-            Name and difference; None without a guess.
+            Name and difference, or None without a guess.
         """
         name, size, _ = self._largest_change(Origin.NEAR, values, states)
         return (name, f"{size:.3g}") if name else None
@@ -418,7 +418,7 @@ def least_step(mass: Numbers | None, jacobian: Numbers, residual: Numbers, redun
     Parameters
     ----------
     mass : ndarray, shape (u, u, k), or None
-        Metric of the u unknowns; None if the correction is the only one.
+        Metric of the u unknowns, or None if the correction is the only one.
     jacobian : ndarray, shape (b, u, k)
         Derivatives of b constraints by the unknowns.
     residual : ndarray, shape (b, k)

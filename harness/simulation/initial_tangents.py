@@ -55,7 +55,7 @@ def initial_tangents(problem: MotionProblem, analytic: MotionProblem, directions
     problem, analytic : MotionProblem
         The motion, and the same one without signs, as it begins.
     directions : sequence of str
-        Parameters, by their `size_of`; coordinates and velocities, whose initial values move by one.
+        Parameters, by their `size_of`. Coordinates and velocities, whose initial values move by one.
 
     Returns
     -------

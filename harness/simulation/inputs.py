@@ -94,7 +94,7 @@ class Inputs:
         signs : sequence
             One number, or k, for each sign that the program takes.
         values : ndarray, shape (p, k), or None
-            Of the open parameters of k motions; None for those of the problem.
+            Of the open parameters of k motions, or None for those of the problem.
         accelerations : ndarray, shape (n, k), or None
             None for a program that takes none.
 

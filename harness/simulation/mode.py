@@ -264,12 +264,12 @@ class Mode:
         Yields
         ------
         Step
-            With this mode; the last step ends where the controls are lost.
+            With this mode. The last step ends where the controls are lost.
 
         Raises
         ------
         HolonomError
-            The controls have no values from a time on; or as `FallbackEngine.integrate`.
+            The controls have no values from a time on, or as `FallbackEngine.integrate`.
         """
         for step in self.engine.integrate(until):
             step = step._replace(mode=self)

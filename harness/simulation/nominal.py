@@ -1,7 +1,7 @@
 """Nominal sizes of coordinates, velocities and time.
 
 Tolerances, projections, events, switchings and residuals are relative to these sizes, so that a motion does not depend
-on units. A scene may give them, ``nominal = [x = 1e-6]``; the others are found. A coordinate is as large as at the
+on units. A scene may give them, ``nominal = [x = 1e-6]``. The others are found. A coordinate is as large as at the
 start or, if it starts near zero, as the least of the others in the mass metric: A_ii q_i^2 is the same. If all start at
 zero, the distance counts that velocities, forces or moving constraints make in the time span. The time is the length of
 the span, or the time that the first velocities take for the size of the coordinates. Both give the size of velocities.
@@ -126,7 +126,7 @@ def with_nominal(problem: MotionProblem, span: float) -> MotionProblem:
     Parameters
     ----------
     problem : MotionProblem
-        The motion; sizes that the scene gives are kept.
+        The motion. Sizes that the scene gives are kept.
     span : float
         Length of the time span, in the scene's unit.
 
@@ -145,7 +145,7 @@ def nominal_of(problem: MotionProblem) -> Nominal:
     Parameters
     ----------
     problem : MotionProblem
-        The motion; missing sizes follow from the scene's time span.
+        The motion. Missing sizes follow from the scene's time span.
 
     Returns
     -------
@@ -230,7 +230,7 @@ def _sizes(roots: Matrix, states: Matrix, span: float, reach: float) -> tuple[Ma
     states : ndarray, shape (2n, k)
         At the start.
     span : float
-        Length of the time span; zero where there is none.
+        Length of the time span, zero where there is none.
     reach : float
         How far, in the mass metric, a motion goes whose coordinates all start at zero, at rest.
     """

@@ -39,11 +39,11 @@ def require_formats(samples: Path | None, figure: Path | None, film: Path | None
     Parameters
     ----------
     samples : Path or None
-        File of the samples; None for no file.
+        File of the samples, or None for no file.
     figure : Path or None
-        File of the figure; None for no file.
+        File of the figure, or None for no file.
     film : Path or None
-        File of the film; None for no file.
+        File of the film, or None for no file.
 
     Raises
     ------
@@ -75,7 +75,7 @@ def require_memory(problem: MotionProblem, samples: int, memory_mib: int) -> Non
     Raises
     ------
     HolonomError
-        The samples need more memory; the message states the number that fits.
+        The samples need more memory. The message states the number that fits.
     """
     numbers = _numbers_a_sample(problem)
     needed = samples * numbers * BYTES_OF_NUMBER / MIB
@@ -100,7 +100,7 @@ def require_disk(problem: MotionProblem, samples: int, path: Path) -> None:
     Raises
     ------
     HolonomError
-        The folder has less room; the message states the number that fits.
+        The folder has less room. The message states the number that fits.
     """
     folder = path.resolve().parent
     free = shutil.disk_usage(folder).free / MIB
@@ -131,18 +131,18 @@ def write_files(
     simulation : Simulation
         The motion.
     samples : Path or None
-        File of the samples; None for no file.
+        File of the samples, or None for no file.
     figure : Path or None
-        File of the figure; None for no file.
+        File of the figure, or None for no file.
     curves : sequence of str or None
         Curves of the figure, as for `motion_figure`.
     film : Path or None
-        File of the film; None for no file.
+        File of the film, or None for no file.
 
     Raises
     ------
     HolonomError
-        As `require_formats`; a file cannot be written.
+        As `require_formats`, or a file cannot be written.
     """
     if samples is not None:
         write_samples(simulation, samples)
@@ -162,12 +162,12 @@ def write_samples(simulation: Simulation, path: Path) -> None:
     simulation : Simulation
         The motion.
     path : Path
-        File to write; its suffix is .csv, .npz or .parquet.
+        File to write. Its suffix is .csv, .npz or .parquet.
 
     Raises
     ------
     HolonomError
-        There is no such format, or what it needs is not installed; the file cannot be written.
+        There is no such format, or what it needs is not installed, or the file cannot be written.
     """
     with sample_file(path, simulation.report.digits) as take:
         take(simulation)
@@ -197,7 +197,7 @@ def sample_file(path: Path, digits: int) -> Iterator[Callable[[Sampled], None]]:
     Parameters
     ----------
     path : Path
-        File to write; its suffix is .csv, .npz or .parquet.
+        File to write. Its suffix is .csv, .npz or .parquet.
     digits : int
         Decimal digits of numbers beyond double precision.
 
@@ -209,7 +209,7 @@ def sample_file(path: Path, digits: int) -> Iterator[Callable[[Sampled], None]]:
     Raises
     ------
     HolonomError
-        There is no such format, or what it needs is not installed; the file cannot be written.
+        There is no such format, or what it needs is not installed, or the file cannot be written.
     """
     form = sample_format(path)
     with whole_file(path) as file, form(file) as write:

@@ -63,7 +63,7 @@ class Recording:
     mode : Mode
         In which the motion begins.
     times : iterable of numbers, or None
-        In order, before the last; None for the ends of the steps.
+        In order, before the last, or None for the ends of the steps.
     process : callable
         Takes each `SampleBlock`.
 

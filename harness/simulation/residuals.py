@@ -2,7 +2,7 @@
 
 A residual is measured along its constraint's gradient: |f_beta| / |df_beta/dq| is, to first order, how far the
 coordinates are from the constraint. The largest of them is taken relative to the largest coordinate where that is more
-than its nominal size; likewise for the velocities with df/dt, and for the accelerations with J a + c.
+than its nominal size. Likewise for the velocities with df/dt, and for the accelerations with J a + c.
 """
 
 from collections.abc import Mapping

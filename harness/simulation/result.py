@@ -44,11 +44,11 @@ class Report:
     condition : float
         Condition number of G = J A^-1 J^T at the end, each constraint scaled to unit length.
     moved : (str, str) or None
-        The initial value that differs most from the scene's guess, and by how much; None without a guess.
+        The initial value that differs most from the scene's guess, and by how much, or None without a guess.
     segments : tuple of EngineSegment
         Which engine followed the motion from when to when, and why.
     code : str
-        How heyoka compiled the Taylor engine in the end (`Code`); empty where it did nothing.
+        How heyoka compiled the Taylor engine in the end (`Code`), empty where it did nothing.
     digits : int
         Decimal digits that tell its numbers apart.
     correction : (str, str) or None
@@ -60,7 +60,7 @@ class Report:
     violations : tuple of AccuracyViolation
         Errors that are too large for the tolerance. A motion with any is rejected.
     ending : Ending or None
-        Whether an event ended the motion; None where the scene names none.
+        Whether an event ended the motion, or None where the scene names none.
     undetermined : tuple of str
         Outputs that are not unique because constraints are redundant.
     joints : mapping of str to str
@@ -70,7 +70,7 @@ class Report:
     outputs : mapping of str to number
         What the scene observes under names of its own.
     choice : Choice or None
-        Why the engine that began was taken; None where one was requested, or is the only one.
+        Why the engine that began was taken, or None where one was requested, or is the only one.
     relative_degrees : tuple of int
         Of each output that servo-constraints prescribe: which of its rates the controls are in.
     sensitivities : mapping of str to float
@@ -219,7 +219,7 @@ class Simulation(Sampled, Shown):
         Parameters
         ----------
         curves : sequence of str or None
-            Names of quantities as in `keys`; None for all but residuals and sensitivities.
+            Names of quantities as in `keys`, or None for all but residuals and sensitivities.
 
         Returns
         -------
@@ -228,7 +228,7 @@ class Simulation(Sampled, Shown):
         Raises
         ------
         HolonomError
-            Matplotlib is not installed; there is no such quantity, or the scene does not observe it.
+            Matplotlib is not installed, or there is no such quantity, or the scene does not observe it.
         """
         from ..figures.motion import motion_figure
         from ..figures.style import Picture

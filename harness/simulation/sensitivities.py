@@ -202,11 +202,11 @@ class Sensitivities:
     problem : MotionProblem
         With its parameters open.
     directions : sequence of str
-        Parameters; coordinates and velocities, for their initial values.
+        Parameters. Coordinates and velocities, for their initial values.
     begun : Mode
         In which the motion begins.
     tol : float or None
-        Tolerance of a step; None for the precision of the numbers.
+        Tolerance of a step, or None for the precision of the numbers.
     end : float
         The last time.
 
@@ -387,7 +387,7 @@ def tolerance_of(problem: MotionProblem, tol: float | None) -> dict[str, float]:
     problem : MotionProblem
         The motion, which gives the nominal sizes.
     tol : float or None
-        Relative tolerance of a step; None for the rounding of doubles.
+        Relative tolerance of a step, or None for the rounding of doubles.
 
     Returns
     -------

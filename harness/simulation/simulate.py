@@ -94,7 +94,7 @@ def follow(
     Raises
     ------
     HolonomError
-        The request cannot be met: its precision, tolerance, engine or end; or the motion cannot be continued so far.
+        The request cannot be met: its precision, tolerance, engine or end, or the motion cannot be continued so far.
     """
     with one_blas_thread(), np.errstate(all="ignore"):  # numbers that leave their range are rejected in the report
         _require_steps(problem, request)
@@ -184,7 +184,7 @@ def last_time(problem: MotionProblem, until: Fraction | None, precision: Precisi
     problem : MotionProblem
         The motion.
     until : Fraction or None
-        Requested last time, in the scene's unit; None for the end of the scene's time span.
+        Requested last time, in the scene's unit, or None for the end of the scene's time span.
     precision : Precision
         Numbers of the result.
 

@@ -2,7 +2,7 @@
 
 A step is examined in parts, each a small part of the time span, and shorter if a function is not resolved. A function
 is sampled at the Chebyshev points of a part and interpolated by a polynomial of degree 32, whose last coefficients show
-the resolution. So no feature is missed that lasts longer than 1/2048 of the time span; the length of a step depends
+the resolution. So no feature is missed that lasts longer than 1/2048 of the time span. The length of a step depends
 only on the smoothness of the state, not of the functions. Two zeros close together are found by the polynomial's
 minimum between them. The time is found by taking sections, to the last bit of its numbers.
 """

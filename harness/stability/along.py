@@ -57,7 +57,7 @@ class Floquet:
     multipliers : ndarray, shape (2m,)
         Eigenvalues of the monodromy matrix, complex, the largest first.
     stability : Stability
-        Of the motion, by Lyapunov's theorem; undecided if a multiplier lies on the unit circle, as one always does if
+        Of the motion, by Lyapunov's theorem. Undecided if a multiplier lies on the unit circle, as one always does if
         neither the equations nor the controls contain the time.
     """
 
@@ -84,7 +84,7 @@ class FreeDeviations:
     basis : ndarray, shape (2m, staying)
         Of the initial deviations that stay free.
     stability : Stability or None
-        Of the multipliers, if the motion is periodic; None otherwise.
+        Of the multipliers, if the motion is periodic. None otherwise.
     """
 
     staying: int
@@ -107,7 +107,7 @@ class LinearizedMotion(Shown):
     transition : ndarray, shape (k, 2m, 2m)
         Phi: deviations are x(t) = Phi(t) x(t0).
     error : float
-        Estimated relative error of Phi at the end; an upper bound in most cases.
+        Estimated relative error of Phi at the end. An upper bound in most cases.
     floquet : Floquet or None
         None if the motion, or its equations, do not have its duration as a period.
     free : FreeDeviations or None
@@ -372,7 +372,7 @@ def _propagated(rates: Matrix, duration: float, start: Matrix, nodes: int = NODE
 def _collocation(nodes: int) -> Matrix:
     """Return integrals from 0 to c_j of Lagrange's polynomials at equidistant nodes.
 
-    The polynomial k is 1 at c_k = k/nodes and 0 at the others; shape (nodes, nodes + 1).
+    The polynomial k is 1 at c_k = k/nodes and 0 at the others. Shape (nodes, nodes + 1).
     """
     places = np.linspace(-1, 1, nodes + 1)
     polynomials = np.linalg.inv(legendre.legvander(places, nodes))

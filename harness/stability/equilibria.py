@@ -69,7 +69,7 @@ class Equilibrium:
     coordinates, multipliers : mapping of str to float
     stability : Stability
     isolated : bool
-        Whether no others are next to it; False where that is not known.
+        Whether no others are next to it. False where that is not known.
     linearization : Linearization
     """
 
@@ -175,7 +175,7 @@ def find_equilibria(
     equations : LinearEquations
         Of the same scene.
     controls : mapping of str to float
-        Constant values; those missing are of the law at the first time.
+        Constant values. Those missing are of the law at the first time.
     starts : int
         Random starts.
     seed : int
@@ -190,7 +190,7 @@ def find_equilibria(
     Raises
     ------
     HolonomError
-        The equations contain the time; a control has no value; the motion is not analytic.
+        The equations contain the time, a control has no value, or the motion is not analytic.
     """
     require_analytic(problem)
     if equations.changes_with_time:
@@ -439,7 +439,7 @@ def certain_distances(A: Matrix, error: float, distance: Callable[[Vector], Vect
     error : float
         Relative.
     distance : callable
-        Of the eigenvalues, complex, shape (s,); with a slope of at most one.
+        Of the eigenvalues, complex, shape (s,). With a slope of at most one.
 
     Returns
     -------

@@ -39,7 +39,7 @@ class LinearEquations:
     forced : bool
         Whether forces without a potential act.
     law : Program or None
-        Of t: u, dot u, ddot u; None where a control has no law.
+        Of t: u, dot u, ddot u, or None where a control has no law.
     program : Program
         Of (t, q, dot q, ddot q, lambda, u, dot u, ddot u).
     outputs : tuple of str
@@ -84,7 +84,7 @@ class LinearEquations:
         Returns
         -------
         ndarray, shape (3r,)
-            All u, then all dot u, then all ddot u; empty without controls.
+            All u, then all dot u, then all ddot u, empty without controls.
 
         Raises
         ------
@@ -111,7 +111,7 @@ class LinearEquations:
         -------
         mapping of str to ndarray
             ``equation``, shape (n,), ``constraint``, ``rate`` and ``acceleration``, shape (g,): r, f, Df, DDf. Their
-            gradients ``equation_by_q``, and so on by q, v, a, u, du, ddu; ``A_rate``, shape (n, n). ``output``, the
+            gradients ``equation_by_q``, and so on by q, v, a, u, du, ddu. ``A_rate``, shape (n, n). ``output``, the
             scene's own, with its gradients, also by the multipliers that are looked at.
         """
         n, g, r = len(self.coordinates), len(self.multipliers), len(self.controls)
@@ -157,7 +157,7 @@ def linear_equations(source: Source, request: Request) -> LinearEquations:
     Raises
     ------
     HolonomError
-        As `holonom.documents.ask`; a parameter has no value.
+        As `holonom.documents.ask`, or a parameter has no value.
     """
     text = ask(Document.LINEARIZATION, source, request.scene, settings=request.settings)
     return structured(LinearEquations, read(Document.LINEARIZATION, text))

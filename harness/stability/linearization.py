@@ -5,7 +5,7 @@ and P, R, S the solutions of
 
     J P = -U,        J R = -J' N,        J S = -(J' P + U')
 
-that are orthogonal to N in the mass metric; ' is the rate along the motion. N moves along with the motion so that
+that are orthogonal to N in the mass metric. The prime is the rate along the motion. N moves along with the motion so that
 N^T A N' = -N^T A' N/2, as little as its lengths in the mass metric allow. Then xi = N^T A dq and eta = N^T A dv satisfy
 
     xi'  = eta + N^T A' N xi/2 + (R^T A P + N^T A' P) du,
@@ -51,7 +51,7 @@ class Linearization(Shown):
     ----------
     scene : str
     at : float or None
-        The time; None for an equilibrium.
+        The time, or None for an equilibrium.
     at_rest : bool
         True if velocities and accelerations vanish there. Otherwise A belongs to one time of a motion, and its
         eigenvalues do not decide about stability.
@@ -145,7 +145,7 @@ class Linearization(Shown):
         Parameters
         ----------
         outputs : sequence of str or None
-            Names of outputs; None for all.
+            Names of outputs, or None for all.
 
         Returns
         -------
@@ -183,7 +183,7 @@ class Linearization(Shown):
         Parameters
         ----------
         input : str
-            ``u``, the controls' deviations, where their rates do not enter; ``ddot``, the controls' accelerations: u
+            ``u``, the controls' deviations, where their rates do not enter. ``ddot``, the controls' accelerations: u
             and du/dt are states then, behind xi and eta.
         outputs : sequence of str or None
             None for all.
@@ -200,7 +200,7 @@ class Linearization(Shown):
         Raises
         ------
         ValueError
-            The rates of the controls enter; there is no such input or output.
+            The rates of the controls enter, or there is no such input or output.
         """
         rows = self._rows(outputs)
         parts = [[self.B[rate], self.D[rate][rows]] for rate in RATES]
@@ -259,7 +259,7 @@ def linearize(problem: MotionProblem, equations: LinearEquations, at: Fraction |
     equations : LinearEquations
         Of the same scene.
     at : Fraction or None
-        The time; None for the start.
+        The time, or None for the start.
 
     Returns
     -------
@@ -268,7 +268,7 @@ def linearize(problem: MotionProblem, equations: LinearEquations, at: Fraction |
     Raises
     ------
     HolonomError
-        The motion is not analytic, or cannot be continued so far; the constraints are singular there.
+        The motion is not analytic, or cannot be continued so far, or the constraints are singular there.
     """
     require_analytic(problem)
     t, state = state_at(problem, at)
@@ -287,7 +287,7 @@ def linearized(
     point : Point
         State with accelerations, multipliers and controls.
     at : float or None
-        The time at which a motion is there; None for an equilibrium.
+        The time at which a motion is there, or None for an equilibrium.
 
     Returns
     -------
@@ -376,7 +376,7 @@ def state_at(problem: MotionProblem, at: Fraction | None) -> tuple[float, Vector
     problem : MotionProblem
         The motion.
     at : Fraction or None
-        Time in the scene's unit; None for the start.
+        Time in the scene's unit, or None for the start.
 
     Returns
     -------
@@ -447,7 +447,7 @@ def motion_at(problem: MotionProblem, equations: LinearEquations, t: float, stat
     Raises
     ------
     HolonomError
-        A control has no law; the mass matrix is singular along a free direction.
+        A control has no law, or the mass matrix is singular along a free direction.
     """
     n, kept, multipliers = len(equations.coordinates), list(problem.independent), np.zeros(len(equations.multipliers))
     at_rest = Point(t, state, np.zeros(n), multipliers, equations.controls_at(t))

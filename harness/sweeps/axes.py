@@ -151,7 +151,7 @@ class Axes:
         Parameters
         ----------
         first, last : int
-            Row numbers, from zero; the last is excluded.
+            Row numbers, from zero. The last is excluded.
 
         Returns
         -------
@@ -192,7 +192,7 @@ def read_axes(
     Raises
     ------
     HolonomError
-        One of them is not of its form; as `make_axes`.
+        One of them is not of its form, or as `make_axes`.
     """
     values = [*map(_read_grid, grids), *map(_read_list, lists)]
     return make_axes(values, [sample(*_named(text), text) for text in samples], size, seed)
@@ -245,7 +245,7 @@ def grid(name: str, first: Number, last: Number, count: int | str, text: str | N
     count : int or str
         Number of values, at least 1.
     text : str or None
-        Option of the command line, for error messages; None to compose it.
+        Option of the command line, for error messages. None to compose it.
 
     Returns
     -------
@@ -272,7 +272,7 @@ def listed(name: str, numbers: Sequence[Number], text: str | None = None) -> Lis
     numbers : sequence of Number
         Its values, in order.
     text : str or None
-        Option of the command line, for error messages; None to compose it.
+        Option of the command line, for error messages. None to compose it.
 
     Returns
     -------
@@ -297,7 +297,7 @@ def sample(name: str, drawn: str, text: str | None = None) -> Sample:
     drawn : str
         ``normal(MEAN,DEVIATION)``, ``uniform(LEAST,GREATEST)`` or ``loguniform(LEAST,GREATEST)``.
     text : str or None
-        Option of the command line, for error messages; None to compose it.
+        Option of the command line, for error messages. None to compose it.
 
     Returns
     -------

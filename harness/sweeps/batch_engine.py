@@ -88,7 +88,7 @@ class BatchEngine:
     look : callable
         Makes numbers of these, given step by step: shape (numbers, elements).
     elements : int or None
-        Of a batch, 2 or more; None for as many as are followed fastest.
+        Of a batch, 2 or more, or None for as many as are followed fastest.
     """
 
     def __init__(
@@ -142,7 +142,7 @@ class BatchEngine:
         values : ndarray, shape (p, k)
             Of the open parameters.
         stops : sequence of float or ndarray, shape (k,)
-            Times to stop at, in order, for all motions or for each; the last is the end.
+            Times to stop at, in order, for all motions or for each. The last is the end.
 
         Returns
         -------

@@ -71,7 +71,7 @@ class SweepFolder:
     Raises
     ------
     HolonomError
-        It holds another sweep, or other things; it cannot be written.
+        It holds another sweep, or other things, or it cannot be written.
     """
 
     def __init__(self, path: Path, document: Mapping[str, Any]) -> None:
@@ -93,7 +93,7 @@ class SweepFolder:
         Raises
         ------
         HolonomError
-            There is another sweep or something else in the folder; another command is at work there; there is
+            There is another sweep or something else in the folder, another command is at work there, or there is
             nothing to resume.
         """
         self._require_ours(resume)
@@ -187,7 +187,7 @@ def read_document(folder: Path) -> dict[str, Any]:
     Returns
     -------
     dict of str to object
-        Content of ``_sweep.json``; see the schema ``sweep``.
+        Content of ``_sweep.json``. See the schema ``sweep``.
 
     Raises
     ------
@@ -208,7 +208,7 @@ def chunks_of(document: Mapping[str, Any]) -> list[Chunk]:
     Parameters
     ----------
     document : mapping of str to object
-        Document of the sweep; its ``rows`` and ``chunk`` are used.
+        Document of the sweep. Its ``rows`` and ``chunk`` are used.
 
     Returns
     -------
@@ -245,7 +245,7 @@ def without_places(value: Any) -> Any:
     Parameters
     ----------
     value : object
-        An entry; anything but a mapping is returned unchanged.
+        An entry. Anything but a mapping is returned unchanged.
 
     Returns
     -------

@@ -2,16 +2,16 @@
 
     final               the coordinates and velocities at the end
     EXPR                a quantity at the end, at(EXPR, T) at a given time
-    max(EXPR)           its largest value on the way; so min, mean, and max(abs(EXPR))
+    max(EXPR)           its largest value on the way. So min, mean, and max(abs(EXPR))
     d(NAME, P)          derivative at the end of a quantity by a parameter that varies, or by an initial value
-    zero(EXPR)          the first time after the start at which it crosses zero; empty where it does not
+    zero(EXPR)          the first time after the start at which it crosses zero, empty where it does not
     free                whether the multipliers stay at zero, as the condition (10) of free motion says
     radius              radius of convergence of the initial motion
-    residual            how far the end is from the constraints; it is kept in any case
+    residual            how far the end is from the constraints. It is kept in any case
 
-The end is where the scene's `until` ends the motion, or else its time span; at a given time after it there is nothing.
+The end is where the scene's `until` ends the motion, or else its time span. At a given time after it there is nothing.
 EXPR is made of t, coordinates, dot(x), ddot(x), multipliers, Lambda[s] and controls where the scene observes them,
-outputs that it names, energy and the parameters. It becomes an expression of the motion program; nothing of it is run
+outputs that it names, energy and the parameters. It becomes an expression of the motion program. Nothing of it is run
 as code.
 """
 

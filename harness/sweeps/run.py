@@ -42,7 +42,7 @@ class Sweep:
     path : Path
         The folder.
     document : mapping
-        What was swept, and how; see the schema ``sweep``.
+        What was swept, and how. See the schema ``sweep``.
     mended : tuple of str
         Files that were there and not as they were written: they have been computed again.
     """
@@ -120,7 +120,7 @@ def run_sweep(
     wanted : SweepRequest
         Axes, outputs, tolerance, workers and size of chunks.
     folder : Path
-        Folder to write to; it is created if missing.
+        Folder to write to. It is created if missing.
     limits : Limits
         Limits of each run of Maxima.
     progress : Progress or None
@@ -134,7 +134,7 @@ def run_sweep(
     Raises
     ------
     HolonomError
-        The request cannot be met, or the folder holds something else; as `holonom.program.motion_problem`.
+        The request cannot be met, or the folder holds something else, or as `holonom.program.motion_problem`.
     """
     require_address(wanted.scheduler)
     held(wanted.tol, read_precision("double"))

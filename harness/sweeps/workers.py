@@ -43,7 +43,7 @@ def require_address(scheduler: str | None) -> None:
     Parameters
     ----------
     scheduler : str or None
-        Such as ``tcp://host:8786``; None for no scheduler.
+        Such as ``tcp://host:8786``, or None for no scheduler.
 
     Raises
     ------
@@ -69,7 +69,7 @@ def compute(plan: Plan, chunks: Sequence[Chunk], take: Take, workers: int, sched
     take : callable
         Is given each chunk with the bytes of its file.
     workers : int
-        Processes to start; with one, or for one chunk, this process does it.
+        Processes to start. With one, or for one chunk, this process does it.
     scheduler : str or None
         Address of a Dask scheduler that is to be used instead.
 

@@ -36,7 +36,7 @@ PUNCTUATION = "\u2013\u2014\u2018\u2019\u201c\u201d\u2026"
 def tex_document(record: Record) -> str:
     """Write a derivation as a LaTeX document.
 
-    pdflatex and lualatex compile it; each equation stands under the equation number and its name.
+    pdflatex and lualatex compile it. Each equation stands under the equation number and its name.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def text(plain: str) -> str:
     Parameters
     ----------
     plain : str
-        Plain text; characters that LaTeX reserves are allowed.
+        Plain text. Characters that LaTeX reserves are allowed.
 
     Returns
     -------

@@ -1,6 +1,6 @@
 """Typeset equations of a derivation record.
 
-Relations stand below each other; the entries of an array form one matrix.
+Relations stand below each other. The entries of an array form one matrix.
 """
 
 from collections.abc import Sequence

@@ -389,7 +389,7 @@ def _product(room: float, *factors: Tree) -> Box:
 def _product_lines(factors: Sequence[Tree], room: float) -> list[Box]:
     """Return the lines of a product.
 
-    It stays on one line if breaking its widest factor leaves enough room; else it is broken before factors.
+    It stays on one line if breaking its widest factor leaves enough room. Else it is broken before factors.
     """
     boxes = [_factor(factor, inf) for factor in factors]
     widest = max(range(len(boxes)), key=lambda place: boxes[place].width)

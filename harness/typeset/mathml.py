@@ -30,7 +30,7 @@ def mathml(latex: str, alt: str = "") -> str:
     latex : str
         LaTeX for math mode, as `holonom.typeset.latex` makes it.
     alt : str
-        Text alternative; without it, the LaTeX on one line.
+        Text alternative. Without it, the LaTeX on one line.
 
     Returns
     -------
@@ -55,7 +55,7 @@ def inline_mathml(latex: str, alt: str = "") -> str:
     latex : str
         LaTeX for math mode.
     alt : str
-        Text alternative; without it, the LaTeX on one line.
+        Text alternative. Without it, the LaTeX on one line.
 
     Returns
     -------

@@ -95,7 +95,7 @@ def equations_latex(equations: Iterable[Equation]) -> str:
     Parameters
     ----------
     equations : iterable of Equation
-        Equations of a derivation record; those without relations are left out.
+        Equations of a derivation record. Those without relations are left out.
 
     Returns
     -------

@@ -172,7 +172,7 @@ def required(method: str, quantity: str, holds: bool) -> Result:
 def correct_digits(computed: Iterable[float], truth: Iterable[mpf], scale: float | mpf | None = None) -> float:
     """Return the correct decimal digits of the worst number, from 0 to 16.
 
-    An error is relative to the scale; without it, to the largest of the true numbers. Numbers that are not finite have
+    An error is relative to the scale. Without it, to the largest of the true numbers. Numbers that are not finite have
     0 digits.
 
     Parameters

@@ -30,7 +30,7 @@ def parallel_constraints(extent: Extent) -> Findings:
     Parameters
     ----------
     extent : Extent
-        Without effect; the case has no motion.
+        Without effect. The case has no motion.
 
     Yields
     ------
@@ -70,7 +70,7 @@ def sarrus_linkage(extent: Extent) -> Findings:
     Parameters
     ----------
     extent : Extent
-        Without effect; the motion is short.
+        Without effect. The motion is short.
 
     Yields
     ------

@@ -37,7 +37,7 @@ def mass_ratio(extent: Extent) -> Findings:
     Parameters
     ----------
     extent : Extent
-        Without effect; the motion is short.
+        Without effect. The motion is short.
 
     Yields
     ------

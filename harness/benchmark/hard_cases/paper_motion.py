@@ -1,6 +1,6 @@
 """The paper's example under the control (15), u = u0 exp(t): an exact free motion.
 
-The sum s = q1 + q2 obeys s'' + 2 s' + s = 0, so that s = (a + b t) exp(-t); q1'' = -s and q3 = u s.
+The sum s = q1 + q2 obeys s'' + 2 s' + s = 0, so that s = (a + b t) exp(-t). q1'' = -s and q3 = u s.
 """
 
 import numpy as np
@@ -90,7 +90,7 @@ def free_motion(extent: Extent) -> Findings:
     Parameters
     ----------
     extent : Extent
-        Without effect; the motion has the scene's time span.
+        Without effect. The motion has the scene's time span.
 
     Yields
     ------
@@ -132,7 +132,7 @@ def overflowing_control(extent: Extent) -> Findings:
     Parameters
     ----------
     extent : Extent
-        Without effect; both motions pass the overflow.
+        Without effect. Both motions pass the overflow.
 
     Yields
     ------

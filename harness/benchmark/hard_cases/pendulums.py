@@ -72,7 +72,7 @@ def period(amplitude: mpf, frequency: mpf) -> mpf:
 def turning(frequency: mpf, t: mpf) -> tuple[mpf, mpf]:
     """Return sin(phi) and cos(phi) of a rotating pendulum.
 
-    The angle is measured from the top; the motion starts at phi = 0 with the velocity 1.
+    The angle is measured from the top. The motion starts at phi = 0 with the velocity 1.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ def constraint_given_twice(extent: Extent) -> Findings:
     Parameters
     ----------
     extent : Extent
-        Without effect; the motion is short.
+        Without effect. The motion is short.
 
     Yields
     ------
@@ -147,7 +147,7 @@ REVOLUTIONS = {Extent.SHORT: 5, Extent.FULL: 50}
 def dead_centres(extent: Extent) -> Findings:
     """Yield digits of the first tip's place after many revolutions, and of the energy.
 
-    Twice a revolution all rods are in line. There the parallelogram may turn into an antiparallelogram; the motion
+    Twice a revolution all rods are in line. There the parallelogram may turn into an antiparallelogram. The motion
     continues as the pendulum it has been.
 
     Parameters

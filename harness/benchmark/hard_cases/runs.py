@@ -53,7 +53,7 @@ def problem(file: str, scene: str | None = None, solve: Solve = Solve.DIRECT) ->
     file : str
         Path below the folder of examples.
     scene : str or None
-        Name of the scene; None for the file's last one.
+        Name of the scene, or None for the file's last one.
     solve : Solve
         Solve for the multipliers.
 
@@ -123,7 +123,7 @@ def places_kept(
     needed : float
         Digits that Holonom has to keep.
     scale : float or None
-        Size to which errors are relative; None for the largest true value.
+        Size to which errors are relative, or None for the largest true value.
 
     Yields
     ------

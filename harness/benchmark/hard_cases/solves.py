@@ -40,7 +40,7 @@ def every_solve(file: str, scene: str | None = None) -> Mapping[str, SolveAt]:
     file : str
         Path below the folder of examples.
     scene : str or None
-        Name of the scene; None for the file's last one.
+        Name of the scene, or None for the file's last one.
 
     Returns
     -------
@@ -94,7 +94,7 @@ def textbook(matrices: Matrices) -> Solved:
     Returns
     -------
     Solved
-        Solution; nan if a matrix is singular.
+        Solution, nan if a matrix is singular.
     """
     J = matrices.jacobian
     try:

@@ -83,7 +83,7 @@ def car_axis(extent: Extent) -> Findings:
     Parameters
     ----------
     extent : Extent
-        Without effect; the values are published for one time.
+        Without effect. The values are published for one time.
 
     Yields
     ------
@@ -92,7 +92,7 @@ def car_axis(extent: Extent) -> Findings:
 
     References
     ----------
-    Mazzia & Magherini, Test Set for Initial Value Problem Solvers, problem caraxis; the values are those of the package
+    Mazzia & Magherini, Test Set for Initial Value Problem Solvers, problem caraxis. The values are those of the package
     deTestSet for R, which are right to about twelve decimals.
     """
     axis, until, needed = problem("car_axis.mac"), 3, 10.0

@@ -25,7 +25,7 @@ def vanishing_length(extent: Extent) -> Findings:
     Parameters
     ----------
     extent : Extent
-        Without effect; the motions are short.
+        Without effect. The motions are short.
 
     Yields
     ------

@@ -42,7 +42,7 @@ def cheapest_methods(measurements: Sequence[Measurement]) -> Iterator[Advice]:
     Parameters
     ----------
     measurements : sequence of Measurement
-        All measurements of a study; those of whole motions count.
+        All measurements of a study. Those of whole motions count.
 
     Yields
     ------
@@ -64,7 +64,7 @@ def prices(measurements: Sequence[Measurement]) -> Iterator[Price]:
     Parameters
     ----------
     measurements : sequence of Measurement
-        All measurements of a study; those of whole motions count.
+        All measurements of a study. Those of whole motions count.
 
     Yields
     ------
@@ -84,7 +84,7 @@ def line_of(measurements: Sequence[Measurement]) -> tuple[list[float], float]:
     Parameters
     ----------
     measurements : sequence of Measurement
-        Measurements of one method; two or more.
+        Measurements of one method. Two or more.
 
     Returns
     -------

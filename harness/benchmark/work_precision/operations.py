@@ -1,7 +1,7 @@
 """Number of operations of an expansion, by the order of its coefficients.
 
 A sum takes one operation a coefficient. A product of two series takes 2n + 1 for its coefficient of order n. So do a
-quotient, a power and each function of a series; a sine takes twice as much, because it needs its cosine. A constant
+quotient, a power and each function of a series. A sine takes twice as much, because it needs its cosine. A constant
 takes none, and multiplication of a series by a constant takes one operation a coefficient.
 
 References

@@ -1,7 +1,7 @@
 """The reference motion: a run with many more digits, confirmed by a second one.
 
 The two runs differ in the digits that they compute with and in the order of their expansions, which follows from the
-tolerance; neither projects.
+tolerance. Neither projects.
 """
 
 from __future__ import annotations

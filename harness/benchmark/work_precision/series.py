@@ -1,6 +1,6 @@
 """A series expansion at the initial time, summed at one time, order by order.
 
-Maxima times its own expansions, exact and to a number of digits, without the derivation of the program; the double
+Maxima times its own expansions, exact and to a number of digits, without the derivation of the program. The double
 precision ones are heyoka's.
 """
 
@@ -108,7 +108,7 @@ def maxima_series(
 ) -> Iterator[Measurement]:
     """Yield Maxima's expansions, timed by Maxima.
 
-    Operations are those of one expansion; rounded coefficients take at least two.
+    Operations are those of one expansion. Rounded coefficients take at least two.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ def maxima_series(
     Raises
     ------
     HolonomError
-        As `holonom.maxima.ask_scene`; there are no exact coefficients.
+        As `holonom.maxima.ask_scene`, or there are no exact coefficients.
     """
     asked = (request.scene, orders, digits)
     text = ask(Document.SERIES_COSTS, file, *asked, settings=request.settings, limits=limits)

@@ -117,7 +117,7 @@ def scipy_solver(method: str, motion: CompiledRates, span: tuple[float, float], 
     Raises
     ------
     HolonomError
-        The method gave up; says why.
+        The method gave up, with the reason.
     """
     from scipy.integrate import solve_ivp
 
@@ -150,7 +150,7 @@ def sundials_solver(method: str, motion: CompiledRates, span: tuple[float, float
     Raises
     ------
     HolonomError
-        scikit-sundae is not installed; CVODE gave up.
+        scikit-sundae is not installed, or CVODE gave up.
     """
     try:
         from sksundae.cvode import CVODE

@@ -99,7 +99,7 @@ def study(
     file : Source or Path
         Scene file.
     request : Request
-        Scene, solve and settings; the solve is used in all comparisons but that of the two solves.
+        Scene, solve and settings. The solve is used in all comparisons but that of the two solves.
     limits : Limits
         Limits of each run of Maxima.
     plan : Plan
@@ -114,7 +114,7 @@ def study(
     Raises
     ------
     HolonomError
-        As `holonom.program.motion_problem.motion_problem`; the scene has no motion program or names no end.
+        As `holonom.program.motion_problem.motion_problem`, or the scene has no motion program or names no end.
     """
     source = source_of(file, limits)
     problems, unsolved = _problems(source, request, plan)

@@ -29,7 +29,7 @@ def write(program: Program) -> str:
     Returns
     -------
     str
-        Source text; it needs only the standard library.
+        Source text. It needs only the standard library.
     """
     variables = {known: infix.atom(f"v{index}") for index, known in enumerate(_names(program))}
     return filled(

@@ -34,7 +34,7 @@ def write_model(model: Model, name: str) -> str:
     Raises
     ------
     HolonomError
-        The control law has tables; the name cannot begin a function's name.
+        The control law has tables, or the name cannot begin a function's name.
     """
     require_identifier(name)
     if model.tables:

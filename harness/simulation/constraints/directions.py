@@ -76,9 +76,9 @@ def weighted_constraints(mass: Matrix, jacobian: Matrix) -> WeightedConstraints:
     Parameters
     ----------
     mass : ndarray, shape (n, n)
-        A, symmetric; positive definite together with the constraints.
+        A, symmetric. Positive definite together with the constraints.
     jacobian : ndarray, shape (g, n)
-        J; its rows may be dependent, and of any scale.
+        J. Its rows may be dependent, and of any scale.
 
     Returns
     -------

@@ -40,8 +40,8 @@ ROUNDING = 4 * EPSILON  # relative change of the accelerations that is none
 class FactoredConstraints(ABC):
     """The factored equations of motion at a state, or at several states.
 
-    For several states, all arrays have a leading axis. Methods take and return forces and accelerations of shape (n,);
-    residuals, curvatures c and multipliers are of shape (g,).
+    For several states, all arrays have a leading axis. Methods take and return forces and accelerations of shape (n,).
+    Residuals, curvatures c and multipliers are of shape (g,).
     """
 
     @abstractmethod
@@ -383,11 +383,11 @@ def factored_constraints(mass: Matrix, jacobian: Matrix, rank: int | None = None
     Parameters
     ----------
     mass : ndarray, shape (n, n) or (k, n, n)
-        A, symmetric; positive definite together with the constraints.
+        A, symmetric. Positive definite together with the constraints.
     jacobian : ndarray, shape (g, n) or (k, g, n)
-        J; its rows may be dependent, and of any scale.
+        J. Its rows may be dependent, and of any scale.
     rank : int or None
-        How many of the constraints count as independent; None to count them, at one state.
+        How many of the constraints count as independent. None to count them, at one state.
 
     Returns
     -------

@@ -41,7 +41,7 @@ class ProgramProjection:
         time : number
             Time of the state.
         state : ndarray, shape (2n,)
-            Coordinates, then velocities; changed in place.
+            Coordinates, then velocities. Changed in place.
 
         Returns
         -------

@@ -48,7 +48,7 @@ def settle(
     state : ndarray, shape (2n,) or (k, 2n)
         Coordinates, then velocities. Several states are settled at once if the rank is given.
     rank : int or None
-        Number of independent constraints; None to determine it at each position.
+        Number of independent constraints. None to determine it at each position.
 
     Returns
     -------

@@ -2,7 +2,7 @@
 
 In the mass metric and scaled to length one, the directions of the constraints have singular values. Without those of
 redundant constraints, the least one vanishes in a singular configuration, in proportion to the distance. A constraint
-whose gradient itself vanishes, such as a length that shrinks to zero, is not detected by it; its gradient is compared
+whose gradient itself vanishes, such as a length that shrinks to zero, is not detected by it. Its gradient is compared
 with the one at the start.
 
 A motion that meets such a time exactly, a bob drawn straight up into its hinge, is as smooth there as anywhere else: no
@@ -44,7 +44,7 @@ NEGLIGIBLE = 1e-6  # of a gradient, or of a residual beside what the gradient ma
 def probed(matrices: MotionMatrices, t: float, state: Vector) -> tuple[int, float]:
     """Return the rank of the constraints and the distance to a singular configuration.
 
-    Constraints that are dependent at a state may be dependent everywhere, or only in a singular configuration; the next
+    Constraints that are dependent at a state may be dependent everywhere, or only in a singular configuration. The next
     state decides. A small distance further, the singular value of a singular configuration has grown like the distance,
     and the one of redundant constraints, due to rounding and curvature, like its square.
 
@@ -62,7 +62,7 @@ def probed(matrices: MotionMatrices, t: float, state: Vector) -> tuple[int, floa
     int
         The rank of J on the constraints.
     float
-        Time until the least singular value that counts vanishes, if it continues so; infinite where it grows, zero so
+        Time until the least singular value that counts vanishes, if it continues so, infinite where it grows, zero so
         near a singular configuration that the state stands for one.
     """
     n, nominal = len(state) // 2, matrices.nominal

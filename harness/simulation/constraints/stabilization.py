@@ -26,7 +26,7 @@ Equations = list[tuple[Any, Any]]
 def equations_of_motion(problem: MotionProblem, program: Program, precision: Precision) -> Equations:
     """Return the first-order equations without stabilization.
 
-    Each coordinate and velocity has its derivative; open inputs are heyoka's parameters.
+    Each coordinate and velocity has its derivative. Open inputs are heyoka's parameters.
 
     Parameters
     ----------

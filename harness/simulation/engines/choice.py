@@ -1,6 +1,6 @@
 """Choice of the quicker engine for a motion: the Taylor or the Runge-Kutta engine.
 
-The Taylor engine is compiled quickly and takes a few steps; their average length gives the number of the others. Their
+The Taylor engine is compiled quickly and takes a few steps. Their average length gives the number of the others. Their
 cost, in the code that is worthwhile for that number, is compared with the cost of the other engine and of the C
 compiler. All costs follow from numbers of steps and of operations, with constants measured on one machine. So the
 choice depends neither on the machine nor on its load.

@@ -1,7 +1,7 @@
 """Options of heyoka's compiler, and the choice between them.
 
 Measured at tolerance 1e-15 on the pendulum of controlled length to t = 100, the chain with N = 8 and Andrews' squeezer
-to the end of their time spans; 16, 212 and 438 operations:
+to the end of their time spans. 16, 212 and 438 operations:
 
                seconds to compile      milliseconds to run
     quick      0.011  0.031  0.14      0.60  1.57  7.4

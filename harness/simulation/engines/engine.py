@@ -138,7 +138,7 @@ class Engine(Protocol):
         Parameters
         ----------
         tol : float or None
-            Tolerance of a step; None if none is requested.
+            Tolerance of a step, or None if none is requested.
 
         Returns
         -------
@@ -182,7 +182,7 @@ class Engine(Protocol):
         Raises
         ------
         Obstacle
-            The engine cannot, while another one may; time and state are those before the obstacle.
+            The engine cannot continue, but another one may. Time and state are those before the obstacle.
         HolonomError
             The motion itself ends.
         """

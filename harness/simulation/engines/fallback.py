@@ -1,6 +1,6 @@
 """Integration of a motion by several engines, with the robust engine as fallback.
 
-The Taylor engine is the first choice, or the Runge-Kutta engine if it is quicker; both use the motion program. If
+The Taylor engine is the first choice, or the Runge-Kutta engine if it is quicker. Both use the motion program. If
 constraints are redundant, no order of pivots solves the equations, and the robust engine integrates the whole motion.
 Near a singular configuration, or if numbers leave their range, it replaces the other engine until the constraints are
 as independent again as they were before.
@@ -42,13 +42,13 @@ class FallbackEngine:
     ----------
     task : Task
     between : OutputCounts or None
-        What is wanted between the steps; None where the motion continues after this one, so that engines cannot be
+        What is wanted between the steps, or None where the motion continues after this one, so that engines cannot be
         weighed by what is ahead.
 
     Attributes
     ----------
     choice : Choice or None
-        Why the engine that began was taken; None where there was nothing to weigh.
+        Why the engine that began was taken, or None where there was nothing to weigh.
     segments : list of EngineSegment
         In order, as far as the motion has come.
 

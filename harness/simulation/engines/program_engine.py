@@ -81,7 +81,7 @@ class ProgramEngine:
     failed : object
         The outcome of the integrator's steps where the last one led to no numbers.
     matrices : MotionMatrices or None
-        Of the same motion; None to make them.
+        Of the same motion. None to make them.
     """
 
     name: EngineName
@@ -148,7 +148,7 @@ class ProgramEngine:
         Raises
         ------
         Obstacle
-            The motion program fails ahead, while pivots may lead on; time and state are those before it does.
+            The motion program fails ahead, while pivots may continue. Time and state are those before it does.
         HolonomError
             The motion itself ends.
         """
@@ -360,7 +360,7 @@ def decay_in(problem: MotionProblem, decay: float | None) -> float:
     Parameters
     ----------
     problem : MotionProblem
-        The motion, which gives the time span; its length is one if the scene gives none.
+        The motion, which gives the time span. Its length is one if the scene gives none.
     decay : float or None
         Requested rate, per unit of time.
 

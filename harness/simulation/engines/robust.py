@@ -57,7 +57,7 @@ class RobustEngine:
     tol : float or None
         Tolerance of a step, relative, and absolute in terms of nominal sizes.
     matrices : MotionMatrices or None
-        Of the same motion; None to make them.
+        Of the same motion. None to make them.
 
     Attributes
     ----------

@@ -65,17 +65,17 @@ class RungeKuttaEngine(ProgramEngine):
     Parameters
     ----------
     tol : float or None
-        Tolerance of a step, relative, and absolute in terms of nominal sizes; None for `USUAL`.
+        Tolerance of a step, relative, and absolute in terms of nominal sizes, or None for `USUAL`.
     stabilization : Stabilization
     decay : float or None
         gamma of Baumgarte's and Gear's stabilization, as for `TaylorEngine`.
     matrices : MotionMatrices or None
-        Of the same motion; None to make them.
+        Of the same motion. None to make them.
 
     Raises
     ------
     HolonomError
-        The tolerance is finer than the method holds; there is no C compiler.
+        The tolerance is finer than the method holds, or there is no C compiler.
     """
 
     name, fixed_pivots, open_parameters = EngineName.RUNGE_KUTTA, True, False
@@ -131,7 +131,7 @@ class RungeKuttaEngine(ProgramEngine):
         Parameters
         ----------
         tol : float or None
-            Tolerance of a step; None if none is requested.
+            Tolerance of a step, or None if none is requested.
 
         Returns
         -------
@@ -229,7 +229,7 @@ class DormandPrince(ctypes.Structure):
         Length of the last step.
     quiet_steps : callable
         Takes a time and a number of steps, and that many steps, or those to the time, if there is nothing to
-        watch on the way; returns their number, 0 where the motion is left as it was.
+        watch on the way. Returns their number, 0 where the motion is left as it was.
     open_values : sequence of float
         Of `MotionProblem.open_inputs`, in place.
     usual : float

@@ -1,6 +1,6 @@
 """The Taylor engine: heyoka's adaptive integrator on the motion program.
 
-After a block of steps the state is projected onto the constraints; the next block is as long as the way back to them is
+After a block of steps the state is projected onto the constraints. The next block is as long as the way back to them is
 short.
 """
 
@@ -43,21 +43,21 @@ class TaylorEngine(ProgramEngine):
     Parameters
     ----------
     tol : float or None
-        Tolerance of a step; None for the precision of the numbers.
+        Tolerance of a step, or None for the precision of the numbers.
     compact : bool or None
-        Whether to compile in compact mode; None to begin with code that is quickly compiled, and to compile better
+        Whether to compile in compact mode. None to begin with code that is quickly compiled, and to compile better
         code when what is left of a run earns that back.
     decay : float or None
-        gamma of Baumgarte's and Gear's stabilization; None for `DECAYS_IN_A_RUN` by the scene's time span.
+        gamma of Baumgarte's and Gear's stabilization, or None for `DECAYS_IN_A_RUN` by the scene's time span.
     matrices : MotionMatrices or None
-        Of the same motion; None to make them.
+        Of the same motion. None to make them.
     end : number or None
-        The last time of the motion; None for the next one to which it is followed.
+        The last time of the motion, or None for the next one to which it is followed.
 
     Raises
     ------
     HolonomError
-        The precision is none, or cannot hold the tolerance; heyoka is not installed.
+        The precision is none, or cannot hold the tolerance, or heyoka is not installed.
     """
 
     name, fixed_pivots, open_parameters = EngineName.TAYLOR, True, True
@@ -132,7 +132,7 @@ class TaylorEngine(ProgramEngine):
         Parameters
         ----------
         tol : float or None
-            Tolerance of a step; None if none is requested.
+            Tolerance of a step, or None if none is requested.
 
         Returns
         -------
