@@ -5,7 +5,7 @@ and P, R, S the solutions of
 
     J P = -U,        J R = -J' N,        J S = -(J' P + U')
 
-that are orthogonal to N in the mass metric. The prime is the rate along the motion. N moves along with the motion so that
+that are orthogonal to N in the mass metric, where ' is the rate along the motion. N moves with the motion so that
 N^T A N' = -N^T A' N/2, as little as its lengths in the mass metric allow. Then xi = N^T A dq and eta = N^T A dv satisfy
 
     xi'  = eta + N^T A' N xi/2 + (R^T A P + N^T A' P) du,
