@@ -3,10 +3,14 @@
 Tolerances, projections, events, switchings and residuals are relative to these sizes, so that a motion does not depend
 on units. A scene may give them, ``nominal = [x = 1e-6]``. The others are found. A coordinate is as large as at the
 start or, if it starts near zero, as the least of the others in the mass metric: A_ii q_i^2 is the same. If all start at
-zero, the distance counts that velocities, forces or moving constraints make in the time span. The time is the length of
-the span, or the time that the first velocities take for the size of the coordinates. Both give the size of velocities.
+zero, the distance counts that the motion goes in the longest time within which the first two of Picard's iterates
+agree. The time is this one, the time that the first velocities take for the size of the coordinates, or the length of
+the time span. Coordinates and time give the size of velocities.
+
+A size that is too large is a tolerance that is too coarse, one that is too small only takes more steps.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 from math import log
 from typing import NamedTuple
@@ -14,12 +18,18 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..program.motion_problem import MotionProblem
+from ..program.motion_problem import MotionProblem, computing
+from ..program.motion_program import Program, names_used
 from ..program.numpy_function import NumpyFunction
 from ..program.sign_pattern import program_in
 from .inputs import Inputs
 
-TIMES = 65  # of the time span at which forces and constraints are looked at where a motion starts at zero
+TIMES = np.linspace(0, 1, 17)  # shares of a window at which a motion that starts at zero is looked at
+WINDOWS = 4.0 ** -np.arange(20)  # such windows, as shares of the time span
+ROUGH = 1 / 2  # change of an acceleration from time to time, relative to the largest in a window that is too long
+SCAN = np.linspace(0, 1, 1025)  # shares of the time span at which a first push is looked for
+FELT = 1e-3  # of the largest acceleration at these: the first push that sets a motion going from rest
+AT_ONCE = 64  # motions that are looked at together
 COARSE = 1e3  # power in which tolerances change: what is compiled with one serves many motions
 NEAR_ZERO = 1e-3  # of the largest coordinate, as it is and in the mass metric: a light one is small in that alone
 
@@ -158,10 +168,8 @@ def nominal_of(problem: MotionProblem) -> Nominal:
     return _completed(problem, last - first)
 
 
-def nominal_at_each(problem: MotionProblem, mass: Matrix, states: Matrix, span: float) -> Nominal:
+def nominal_at_each(problem: MotionProblem, mass: Matrix, states: Matrix, values: Matrix, span: float) -> Nominal:
     """Return the nominal sizes of k motions of one problem.
-
-    One whose coordinates all start at zero has those of the problem's own motion.
 
     Parameters
     ----------
@@ -171,6 +179,8 @@ def nominal_at_each(problem: MotionProblem, mass: Matrix, states: Matrix, span: 
         A at the start of each motion.
     states : ndarray, shape (2n, k)
         Initial state of each motion.
+    values : ndarray, shape (p, k)
+        Open parameters of each motion.
     span : float
         Length of the time span, in the scene's unit.
 
@@ -179,27 +189,21 @@ def nominal_at_each(problem: MotionProblem, mass: Matrix, states: Matrix, span: 
     Nominal
         Shapes (k,) and (2n, k).
     """
-    own = nominal_of(problem)
-    roots = _roots(np.moveaxis(np.diagonal(mass), -1, 0))
     with np.errstate(all="ignore"):
-        found, time = _sizes(roots, states, span, 0.0)
-    zero = ~states.any(axis=0)
-    found[:, zero], time[zero] = own.coordinates[:, None], own.time
-    return _with_given(problem, found, time)
+        return _sizes(problem, _roots(np.moveaxis(np.diagonal(mass), -1, 0)), states, values, span)
 
 
 def _completed(problem: MotionProblem, span: float) -> Nominal:
     """Return the sizes that the scene gives, and those found."""
-    if not problem.start.keys() >= {*problem.state}:  # a parameter without a value decides about the start
+    known = problem.start.keys() >= {*problem.state} and problem.values.keys() >= {*problem.parameters}
+    if not known:  # a parameter without a value decides about the motion
         return Nominal(1.0, np.ones(len(problem.state)))
     state = np.array([[float(problem.start[name])] for name in problem.state])
-    roots, reach = np.ones((len(problem.coordinates), 1)), 0.0
+    values, n = np.reshape(problem.numbers, (-1, 1)), len(problem.coordinates)
     with np.errstate(all="ignore"):
-        if problem.values.keys() >= {*problem.parameters}:
-            start = _Start(problem, state, span)
-            roots, reach = start.roots, start.reach()
-        found, time = _sizes(roots, state, span, reach)
-    sizes = _with_given(problem, found, time)
+        masses = _Outputs(problem, problem.matrices, [f"A[{s},{s}]" for s in range(1, n + 1)])
+        roots = _roots(masses(np.array([float(problem.start["t"])]), state, values))
+        sizes = _sizes(problem, roots, state, values, span)
     return Nominal(float(sizes.time[0]), sizes.state[:, 0])
 
 
@@ -218,10 +222,8 @@ def _with_given(problem: MotionProblem, coordinates: Matrix, time: Vector) -> No
     return Nominal(time, np.concatenate([coordinates, velocities.reshape(coordinates.shape)]))
 
 
-def _sizes(roots: Matrix, states: Matrix, span: float, reach: float) -> tuple[Matrix, Vector]:
-    """Return the sizes of the coordinates and of the time of k motions.
-
-    Coordinates have shape (n, k), times (k,).
+def _sizes(problem: MotionProblem, roots: Matrix, states: Matrix, values: Matrix, span: float) -> Nominal:
+    """Return the sizes of k motions.
 
     Parameters
     ----------
@@ -231,21 +233,62 @@ def _sizes(roots: Matrix, states: Matrix, span: float, reach: float) -> tuple[Ma
         At the start.
     span : float
         Length of the time span, zero where there is none.
-    reach : float
-        How far, in the mass metric, a motion goes whose coordinates all start at zero, at rest.
     """
     q, v = np.abs(np.split(states, 2))
     size, speed = (np.max(roots * part, axis=0, initial=0.0) for part in (q, v))
     time = np.where((size > 0) & (speed > 0), size / speed, np.inf)
     time = np.minimum(time, span or np.inf)
     time = np.where(time < np.inf, time, 1.0)
-    size = np.where(size > 0, size, np.maximum(speed * time, reach))
+    zero = np.flatnonzero(size == 0)
+    for at in np.split(zero, range(AT_ONCE, len(zero), AT_ONCE)) if span and len(zero) else ():
+        size[at], time[at] = _from_zero(problem, roots[:, at], states[:, at], values[:, at], span)
     own = np.maximum(q, v * time)
     felt = (roots * own >= NEAR_ZERO * size) | (own >= NEAR_ZERO * np.max(own, axis=0, initial=0.0))
     felt &= own > 0
     least = np.min(np.where(felt, roots * own, np.inf), axis=0, initial=np.inf)
     found = np.where(felt, own, np.where(least < np.inf, least, size) / roots)
-    return np.where((size > 0) & (size < np.inf), found, 1.0), time
+    return _with_given(problem, np.where((size > 0) & (size < np.inf), found, 1.0), time)
+
+
+def _from_zero(
+    problem: MotionProblem, roots: Matrix, states: Matrix, values: Matrix, span: float
+) -> tuple[Vector, Vector]:
+    """Return how far k motions go from zero, in the mass metric, and the time that they take, shape (k,).
+
+    The first iterate has the accelerations of the initial state, the second those along the first.
+    """
+    weights, lengths = roots[:, None, None], span * WINDOWS[:, None]
+    rates = _Outputs(problem, problem.motion, [f"ddot({name})" for name in problem.coordinates])
+
+    def largest(numbers: Matrix) -> Matrix:
+        """Of all coordinates and times."""
+        return np.max(weights * np.abs(numbers), axis=(0, 1), initial=0.0)
+
+    def moved(accelerations: Matrix) -> Matrix:
+        q, v = np.split(states[:, None, None], 2)
+        velocities = v + _integral(accelerations, lengths)
+        return np.concatenate([q + _integral(velocities, lengths), velocities])
+
+    start, n = float(problem.start["t"]), len(problem.coordinates)
+    scan = span * (SCAN if rates.of_time else SCAN[:1])
+    push = largest(rates(start + scan[None, :, None], states[:, None, None], values))
+    felt = np.argmax(push >= FELT * np.nanmax(push, axis=0), axis=0)
+    begun = start + np.where(states[n:].any(axis=0), 0.0, scan[felt])
+    times = begun + lengths * TIMES[:, None, None]
+    first = rates(times, states[:, None, None], values)
+    path = moved(first)
+    way, change = path[:n], (moved(rates(times, path, values)) - path)[:n]
+    agree = (largest(change) <= largest(way)) & (largest(np.diff(first, axis=1)) <= ROUGH * largest(first))
+    agree = np.logical_and.accumulate(agree[::-1])[::-1]
+    longest = np.argmax(agree, axis=0)[None]
+    size = np.take_along_axis(largest(way), longest, 0)[0]
+    return np.where(agree.any(axis=0), size, np.nanmean(push, axis=0) * span**2), lengths[longest[0], 0]
+
+
+def _integral(rates: Matrix, lengths: Matrix) -> Matrix:
+    """Return the integral from the start of each window, shape (n, times, windows, k), by the trapezoidal rule."""
+    steps = (rates[:, 1:] + rates[:, :-1]) / 2 * lengths * TIMES[1]
+    return np.concatenate([np.zeros_like(rates[:, :1]), np.cumsum(steps, axis=1)], axis=1)
 
 
 def _roots(masses: Matrix) -> Matrix:
@@ -258,42 +301,29 @@ def _roots(masses: Matrix) -> Matrix:
     return np.sqrt(np.where(there, masses, np.where(mean > 0, mean, 1.0)))
 
 
-class _Start:
-    """The initial state, with matrices at the initial time and later.
+class _Outputs:
+    """Outputs of a program of the motion at many states, zero if they are so by structure.
 
     Signs are taken to be positive, because sizes depend on them little.
 
     Attributes
     ----------
-    roots : ndarray, shape (n, 1)
-        Of the masses on the diagonal.
+    of_time : bool
+        Whether they depend on the time explicitly.
     """
 
-    def __init__(self, problem: MotionProblem, state: Matrix, span: float) -> None:
-        self._span, self._g = span, len(problem.multipliers)
-        times = float(problem.start["t"]) + span * np.linspace(0, 1, TIMES)
-        pattern = {sign.name: 1 for sign in problem.signs}
-        program = program_in(problem, problem.matrices, pattern) if pattern else problem.matrices
-        inputs = Inputs(problem)(times, np.repeat(state, TIMES, axis=1))
-        self._values = dict(zip(program.outputs, NumpyFunction(program).at_points(inputs), strict=True))
-        self._places = range(1, len(problem.coordinates) + 1)
-        self.roots = _roots(np.array([self._at(f"A[{s},{s}]")[:1] for s in self._places]).reshape(-1, 1))
+    def __init__(self, problem: MotionProblem, program: Program, names: Sequence[str]) -> None:
+        self._problem, self._names, self._inputs = problem, names, Inputs(problem)
+        signless = program_in(problem, computing(program, {*names}), {sign.name: 1 for sign in problem.signs})
+        self._function = NumpyFunction(signless)
+        self.of_time = bool(problem.tables) or "t" in names_used(signless)
 
-    def reach(self) -> float:
-        """Return the distance from rest in the time span, in the mass metric.
-
-        The mean force or moving constraints make it.
-        """
-        forces = np.array([np.abs(self._at(f"h[{s}]")) for s in self._places]) / self.roots
-        largest = np.max(forces, axis=0, initial=0.0)
-        known = largest[np.isfinite(largest)]
-        farthest = float(known.mean()) * self._span**2 if known.size else 0.0
-        for beta in range(1, self._g + 1):
-            gradient = np.array([self._at(f"J[{beta},{s}]") for s in self._places]) / self.roots
-            distance = np.abs(self._at(f"residual[{beta}]")) / np.linalg.norm(gradient, axis=0)
-            farthest = np.max(distance, initial=farthest, where=np.isfinite(distance))
-        return float(farthest)
-
-    def _at(self, output: str) -> Vector:
-        """Return an output of the program at the times, zero if it is so by structure."""
-        return self._values.get(output, np.zeros(TIMES))
+    def __call__(self, times: Matrix, states: Matrix, values: Matrix) -> Matrix:
+        """Return the outputs, shape (outputs, ..., k), at states of shape (2n, ..., k) of k motions."""
+        shape = np.broadcast_shapes(times.shape, states.shape[1:])
+        states = np.broadcast_to(states, (len(states), *shape)).reshape(len(states), -1)
+        values = np.broadcast_to(values.reshape(-1, *[1] * (len(shape) - 1), shape[-1]), (len(values), *shape))
+        values = None if self._problem.tables else values.reshape(len(values), states.shape[1])
+        inputs = self._inputs(np.broadcast_to(times, shape).ravel(), states, values=values)
+        found = dict(zip(self._function.outputs, self._function.at_points(inputs), strict=True))
+        return np.array([found.get(name, np.zeros(inputs.shape[1])) for name in self._names]).reshape(-1, *shape)

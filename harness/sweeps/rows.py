@@ -25,7 +25,7 @@ from ..simulation.control_matrix import controls_may_fail
 from ..simulation.evaluation import in_full_vectors
 from ..simulation.initial_state import initial_states_of, started
 from ..simulation.matrices import BatchMatrices
-from ..simulation.nominal import nominal_at_each
+from ..simulation.nominal import COARSE, nominal_at_each, nominal_of, with_nominal
 from ..simulation.request import SimulationRequest, Stabilization
 from ..simulation.residuals import constraint_residuals
 from ..simulation.simulate import last_time
@@ -159,7 +159,8 @@ class RowMaker:
         if not self._moves:
             states = starts.states[:, there]
             at = self._batch_matrices(self._start, states, rows.values[:, there])
-            left = constraint_residuals(at, states, nominal_at_each(self._problem, at.mass, states, 0.0))
+            nominal = nominal_at_each(self._problem, at.mass, states, rows.values[:, there], 0.0)
+            left = constraint_residuals(at, states, nominal)
             rows.residual[there] = np.maximum(left["position"], left["velocity"])
             return
         for row in self._left_alone(rows, there, starts.states):
@@ -187,16 +188,21 @@ class RowMaker:
     def _together(self, rows: "_Rows", there: NDArray, states: Floats, stops: Sequence[float]) -> NDArray:
         """Integrate motions in batches, and return the rows that need another method."""
         values = rows.values[:, there]
+        start = self._batch_matrices(self._start, states, values), states
+        nominal = nominal_at_each(self._problem, start[0].mass, states, values, self._end - self._start)
+        small = (nominal.state * COARSE < nominal_of(self._common).state[:, None]).any(axis=0)
+        if small.any():
+            rest = there[~small]
+            left = self._together(rows, rest, states[:, ~small], stops) if len(rest) else rest
+            return np.concatenate([there[small], left])
         ends, ended = self._ends(states, values)
         times = sorted({*self._asked, *(t for t in stops if t < self._end)})
         stops = [np.minimum(time, ends) for time in times] if self._problem.until else times
         found = self._engine.follow(states, values, stops)
-        start, end = (self._start, states), (ends, found.states[-1])
-        at_start, at_end = ((self._batch_matrices(*at, values), at[1]) for at in (start, end))
-        nominal = nominal_at_each(self._problem, at_start[0].mass, states, self._end - self._start)
-        small = expected(self.plan.tol, found.steps) * nominal.velocities
-        left = constraint_residuals(*at_end, nominal)
-        energy = energy_missed(at_start, at_end, found.energy_error, found.exchanged, small)
+        end = self._batch_matrices(ends, found.states[-1], values), found.states[-1]
+        stopped = expected(self.plan.tol, found.steps) * nominal.velocities
+        left = constraint_residuals(*end, nominal)
+        energy = energy_missed(start, end, found.energy_error, found.exchanged, stopped)
         residual = np.maximum(left["position"], left["velocity"])
         well = ended & found.arrived & trusted({**left, "energy": energy}, self.plan.tol, found.steps)
         done = there[well]
@@ -216,10 +222,7 @@ class RowMaker:
         return np.fmin(self._end, np.fmin.reduce(found.seen)), found.arrived
 
     def _by_itself(self, rows: "_Rows", row: int, state: Floats) -> None:
-        numbers = {
-            name: Fraction(float(x)) for name, x in zip(self._problem.parameters, rows.values[:, row], strict=True)
-        }
-        problem = started(self._problem, numbers, state)
+        problem = self._started(rows.values[:, row], state)
         if self._derivatives:
             problem = replace(problem, observe=(*problem.observe, "trajectory", "multipliers"))
         try:
@@ -318,6 +321,22 @@ class RowMaker:
         return BatchMatrices(self._problem)
 
     @cached_property
+    def _common(self) -> MotionProblem:
+        """The problem with the nominal sizes of the sweep's middle row, to which tolerances of batches are relative."""
+        middle = self.plan.axes.rows // 2
+        values = self.plan.axes.numbers(middle, middle + 1)
+        starts = self._starts(values)
+        if not starts.found[0]:
+            return self._problem
+        motion = self._started(values[:, 0], starts.states[:, 0])
+        return replace(self._problem, nominal=with_nominal(motion, self._end - self._start).nominal)
+
+    def _started(self, values: Floats, state: Floats) -> MotionProblem:
+        """Return the motion of one row."""
+        numbers = {name: Fraction(float(x)) for name, x in zip(self._problem.parameters, values, strict=True)}
+        return started(self._problem, numbers, state)
+
+    @cached_property
     def _engine(self) -> BatchEngine:
         return self._looking_at(self._along, self._seen)
 
@@ -328,7 +347,7 @@ class RowMaker:
 
     def _looking_at(self, along: Sequence[Expression], look: Look) -> BatchEngine:
         projects = self.plan.stabilization is Stabilization.PROJECTION
-        return BatchEngine(self._problem, self.plan.tol, projects, along, look, self.plan.elements)
+        return BatchEngine(self._common, self.plan.tol, projects, along, look, self.plan.elements)
 
     @cached_property
     def _evaluate(self) -> "NDArray":

@@ -260,3 +260,51 @@ def swept(units: Units):
     weights = [units.length * n / units.time**2 for n in (5, 10, 20)]
     scene = holonom.system(written("pendulum", units))
     return holonom.sweep(scene, values={"g": weights}, keep=["final"]).to_pandas()
+
+
+FROM_REST = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x], parameters = [k], kinetic_energy = dot(x)^2/2, potential_energy = k*x^2/2,
+  forces = [{force}])$
+push : holonomic_scene(system, parameter_values = [k = {k}], initial_state = [x = 0, dot(x) = {v}],
+  time_span = [0, {end}])$
+"""
+
+
+@pytest.mark.parametrize(
+    ("force", "k", "v", "end", "reach", "time"),
+    [
+        ("1", "1", "0", "6283", 2, 1),  # 1 - cos(t)
+        ("cos(50*t)", "0", "0", "200", 2 / 2500, 1 / 50),
+        ("1 - 1000*dot(x)", "0", "0", "10", 1e-6, 1e-3),  # at first; it goes on at its last velocity, 1/1000
+        ("if t < 1000 then 0 else 1", "1", "0", "6283", 2, 1),
+        ("0", "1", "1/1000", "6283", 1e-3, 1),
+        ("0", "0", "1/1000", "6283", 6.283, 6283),
+    ],
+)
+def test_a_motion_from_zero_has_the_size_that_it_reaches(force, k, v, end, reach, time, write_scene):
+    text = FROM_REST.format(force=force, k=k, v=v, end=end)
+    sizes = nominal_of(motion_problem(write_scene(text), Request(), Limits()))
+    assert 1 / 5 <= sizes.state[0] / reach <= 5
+    assert 1 / 5 <= sizes.time / time <= 5
+
+
+@pytest.mark.usefixtures("c_compiler")
+def test_a_fast_force_on_a_mass_at_rest_was_followed_with_an_error_of_its_way(write_scene):
+    """Truth: x = (1 - cos(50 t))/2500; the error was 2.6 of that, and the motion trusted."""
+    text = FROM_REST.format(force="cos(50*t)", k="0", v="0", end="200")
+    motion = motion_problem(write_scene(text), Request(), Limits())
+    report = simulate(motion, SimulationRequest(engine=EngineName.RUNGE_KUTTA, tol=1e-9, samples=0)).report
+    assert report.trusted
+    assert report.coordinates["x"] * 2500 == pytest.approx(1 - np.cos(50 * 200), abs=1e-3)
+
+
+@pytest.mark.parametrize(("start", "force"), [("a", "0"), ("0", "a*k")])
+def test_rows_of_a_sweep_were_as_exact_as_the_largest(start, force):
+    """Truth: a cos(t) and a (1 - cos(t)); from rest, the error of the first row was 800 times its size."""
+    text = FROM_REST.format(force=force, k="1, a = 1", v="0", end="10").replace("[k]", "[k, a]")
+    scene = holonom.system(text.replace("x = 0", f"x = {start}"))
+    sizes = np.array([1e-12, 1e-9, 1e-5, 1e-3, 1.0, 1e3])
+    table = holonom.sweep(scene, values={"a": sizes.tolist()}, keep=["final"], tol=1e-6).to_pandas()
+    truth = np.cos(10) if start == "a" else 1 - np.cos(10)
+    assert table["status"].tolist() == ["ok"] * len(sizes)
+    assert table["x"].to_numpy() / sizes == pytest.approx(truth, abs=1e-4)
