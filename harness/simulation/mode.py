@@ -25,14 +25,13 @@ from .constraints.program_projection import ProgramProjection
 from .constraints.singularity import no_controls, require_gradient, shortly_before, vanishing_times
 from .control_matrix import ControlMatrix, controls_may_fail
 from .energy import EnergyBalance
-from .engines.choice import OutputCounts
 from .engines.engine import Solutions, Step, Task
 from .engines.fallback import FallbackEngine
 from .evaluation import Evaluation, Numbers, as_floats, evaluation, evaluation_once
 from .hard_cases import MotionState, dependence
 from .inputs import Inputs
 from .matrices import MotionMatrices, start_of
-from .request import SimulationRequest
+from .request import FINAL_STATE_ALONE, SimulationRequest
 from .time_dependence import time_dependence
 from .time_events import TimeEvent
 from .zeros import SignedFunctions
@@ -139,10 +138,9 @@ class Mode:
         obstacle = analytic.obstacle or dependence(analytic, MotionState(self.matrices, *start_of(analytic)))
         self.problem = replace(analytic, obstacle=obstacle)
         self.balance = EnergyBalance(self.problem, self._multipliers, precision)
-        between = (
-            None if problem.signs or problem.tables else OutputCounts(request.samples or 0, self.balance.inner_states)
-        )
-        self.engine = FallbackEngine(Task(self.problem, request, precision, end, self.matrices), between)
+        dense = bool(request.samples != FINAL_STATE_ALONE or self.balance.inner_states)
+        dense = None if problem.signs or problem.tables else dense
+        self.engine = FallbackEngine(Task(self.problem, request, precision, end, self.matrices), dense)
         self._start, self._end = float(problem.start["t"]), float(end)
         self._doubtful = vanishing_times(self.problem, self.matrices, self._end)
         to_come = (float(event.t) for name, event in time_events.items() if pattern[name] != event.to)

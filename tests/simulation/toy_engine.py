@@ -35,7 +35,7 @@ class ToyEngine:
         return True
 
     @classmethod
-    def expected_seconds(cls, steps, operations, tol, between):
+    def expected_seconds(cls, steps, operations, tol, dense):
         return 0.0
 
     def restart(self, time, state):

@@ -9,7 +9,6 @@ Measured on the five motions of `tests/benchmarks/simulation.py`, 18 to 431 oper
 """
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 from ..request import EngineName
 from .registry import compared_engines
@@ -30,14 +29,7 @@ class Choice:
     refused: str = ""  # why the other could not be compiled, where it would have been quicker
 
 
-class OutputCounts(NamedTuple):
-    """Numbers of states between steps. Each costs a step of the Runge-Kutta engine."""
-
-    altogether: int
-    in_each: int  # in each step
-
-
-def quicker_engine(steps: int, operations: int, tol: float, between: OutputCounts) -> Choice:
+def quicker_engine(steps: int, operations: int, tol: float, dense: bool) -> Choice:
     """Return the engine with the shorter expected time.
 
     Parameters
@@ -48,14 +40,14 @@ def quicker_engine(steps: int, operations: int, tol: float, between: OutputCount
         Operations of one evaluation of the accelerations.
     tol : float
         Tolerance of a step.
-    between : OutputCounts
-        Numbers of states between the steps.
+    dense : bool
+        Whether states between the steps are wanted.
 
     Returns
     -------
     Choice
     """
     kinds = compared_engines()
-    seconds = {kind.name: kind.expected_seconds(steps, operations, tol, between) for kind in kinds}
+    seconds = {kind.name: kind.expected_seconds(steps, operations, tol, dense) for kind in kinds}
     engine = min((kind.name for kind in kinds if kind.comparable(tol)), key=seconds.get)
     return Choice(engine, steps, operations, seconds[EngineName.TAYLOR], seconds[EngineName.RUNGE_KUTTA])

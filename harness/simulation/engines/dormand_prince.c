@@ -15,7 +15,7 @@
 #define LEAST_GROWTH 0.333
 #define MOST_GROWTH 6.0
 
-enum { COORDINATES = STATE/2 };
+enum { COORDINATES = STATE/2, ROWS = 8 };     /* of dense output: the state at the start, and seven coefficients */
 
 struct follower {
     double t, *state;               /* where the motion has come                                       */
@@ -25,7 +25,8 @@ struct follower {
                                     /* shortest of those that are shorter than the one before          */
     double usual;                   /* the longest of quiet steps since the motion began anew          */
     long most, taken;               /* steps                                                           */
-    double *times, *states;      /* filled with the start of each step, unless they are NULL        */
+    double *times;                  /* filled with the start of each step, and                         */
+    double (*dense)[ROWS][STATE];   /* with its dense output, unless they are NULL                     */
 };
 
 long evaluations;
@@ -94,12 +95,12 @@ static double size_of(const double *x, const double *state)
     evaluate(t + fraction*h, w, k##number);
 
 /* One step, from rates k1 to rates k13. A stage that is not finite makes the solution, and its rates, not finite either:
-   returns whether they are. */
-static int take_step(double t, double h, double *y, const double *k1, double *k13)
+   returns whether they are. A step that succeeds has dense output of order 7, unless it is NULL. */
+static int take_step(double t, double h, double *y, const double *k1, double *k13, double (*dense)[STATE])
 {
     h = (t + h) - t;    /* as far as the time then is: far from zero it is rounded by much of a short step */
     double k2[STATE], k3[STATE], k4[STATE], k5[STATE], k6[STATE], k7[STATE], k8[STATE], k9[STATE], k10[STATE];
-    double k11[STATE], k12[STATE], w[STATE], five = 0, three = 0;
+    double k11[STATE], k12[STATE], w[STATE], after[STATE], five = 0, three = 0;
     STAGE(2, 0.05260015195876773, 0.05260015195876773*k1[i])
     STAGE(3, 0.0789002279381516, 0.0197250569845379*k1[i] + 0.0591751709536137*k2[i])
     STAGE(4, 0.1183503419072274, 0.02958758547680685*k1[i] + 0.08876275643042054*k3[i])
@@ -119,10 +120,10 @@ static int take_step(double t, double h, double *y, const double *k1, double *k1
           - 17.9589318631188*k6[i] + 27.94888452941996*k7[i] - 2.8589982771350235*k8[i] - 8.87285693353063*k9[i]
           + 12.360567175794303*k10[i] + 0.6433927460157636*k11[i])
     for (int i = 0; i < STATE; i++) {
-        w[i] = y[i] + h*(0.054293734116568765*k1[i] + 4.450312892752409*k6[i] + 1.8915178993145003*k7[i]
+        after[i] = y[i] + h*(0.054293734116568765*k1[i] + 4.450312892752409*k6[i] + 1.8915178993145003*k7[i]
             - 5.801203960010585*k8[i] + 0.3111643669578199*k9[i] - 0.1521609496625161*k10[i]
             + 0.20136540080403034*k11[i] + 0.04471061572777259*k12[i]);
-        const double scale = tolerance*(nominal[i] + fmax(fabs(y[i]), fabs(w[i])));
+        const double scale = tolerance*(nominal[i] + fmax(fabs(y[i]), fabs(after[i])));
         const double error5 = (0.01312004499419488*k1[i] - 1.2251564463762044*k6[i] - 0.4957589496572502*k7[i]
             + 1.6643771824549864*k8[i] - 0.35032884874997366*k9[i] + 0.3341791187130175*k10[i]
             + 0.08192320648511571*k11[i] - 0.022355307863886294*k12[i])/scale;
@@ -132,15 +133,50 @@ static int take_step(double t, double h, double *y, const double *k1, double *k1
         five += error5*error5;
         three += error3*error3;
     }
-    memcpy(y, w, sizeof w);
     estimated = five == 0 ? 0 : h*five/sqrt((five + 0.01*three)*STATE);
-    return rates(t + h, y, k13);
+    const int failed = rates(t + h, after, k13);
+    if (dense && !failed && estimated <= 1) {
+        double k14[STATE], k15[STATE], k16[STATE];
+        STAGE(14, 0.1, 0.056167502283047954*k1[i] + 0.25350021021662483*k7[i] - 0.2462390374708025*k8[i]
+              - 0.12419142326381637*k9[i] + 0.15329179827876568*k10[i] + 0.00820105229563469*k11[i]
+              + 0.007567897660545699*k12[i] - 0.008298*k13[i])
+        STAGE(15, 0.2, 0.03183464816350214*k1[i] + 0.028300909672366776*k6[i] + 0.053541988307438566*k7[i]
+              - 0.05492374857139099*k8[i] - 0.00010834732869724932*k11[i] + 0.0003825710908356584*k12[i]
+              - 0.00034046500868740456*k13[i] + 0.1413124436746325*k14[i])
+        STAGE(16, 0.7777777777777778, -0.42889630158379194*k1[i] - 4.697621415361164*k6[i] + 7.683421196062599*k7[i]
+              + 4.06898981839711*k8[i] + 0.3567271874552811*k9[i] - 0.0013990241651590145*k13[i]
+              + 2.9475147891527724*k14[i] - 9.15095847217987*k15[i])
+        for (int i = 0; i < STATE; i++) {
+            dense[0][i] = y[i];
+            dense[1][i] = after[i] - y[i];
+            dense[2][i] = h*k1[i] - dense[1][i];
+            dense[3][i] = dense[1][i] - h*k13[i] - dense[2][i];
+            dense[4][i] = h*(-8.428938276109013*k1[i] + 0.5667149535193777*k6[i] - 3.0689499459498917*k7[i]
+                + 2.38466765651207*k8[i] + 2.117034582445028*k9[i] - 0.871391583777973*k10[i]
+                + 2.2404374302607883*k11[i] + 0.6315787787694688*k12[i] - 0.08899033645133331*k13[i]
+                + 18.148505520854727*k14[i] - 9.194632392478356*k15[i] - 4.436036387594894*k16[i]);
+            dense[5][i] = h*(10.427508642579134*k1[i] + 242.28349177525817*k6[i] + 165.20045171727028*k7[i]
+                - 374.5467547226902*k8[i] - 22.113666853125306*k9[i] + 7.733432668472264*k10[i]
+                - 30.674084731089398*k11[i] - 9.332130526430229*k12[i] + 15.697238121770845*k13[i]
+                - 31.139403219565178*k14[i] - 9.35292435884448*k15[i] + 35.81684148639408*k16[i]);
+            dense[6][i] = h*(19.985053242002433*k1[i] - 387.0373087493518*k6[i] - 189.17813819516758*k7[i]
+                + 527.8081592054236*k8[i] - 11.57390253995963*k9[i] + 6.8812326946963*k10[i]
+                - 1.0006050966910838*k11[i] + 0.7777137798053443*k12[i] - 2.778205752353508*k13[i]
+                - 60.19669523126412*k14[i] + 84.32040550667716*k15[i] + 11.99229113618279*k16[i]);
+            dense[7][i] = h*(-25.69393346270375*k1[i] - 154.18974869023643*k6[i] - 231.5293791760455*k7[i]
+                + 357.6391179106141*k8[i] + 93.40532418362432*k9[i] - 37.45832313645163*k10[i]
+                + 104.0996495089623*k11[i] + 29.8402934266605*k12[i] - 43.53345659001114*k13[i]
+                + 96.32455395918828*k14[i] - 39.17726167561544*k15[i] - 149.72683625798564*k16[i]);
+        }
+    }
+    memcpy(y, after, sizeof after);
+    return failed;
 }
 
 /* One step as long as the error of the one before allows (Hairer, Norsett & Wanner I, section II.4), with a margin that
    lets next to none fail; shorter ones where it fails. Sets the length of the next one, unless the time ends this one.
    Returns the length of the step, zero where none succeeds. */
-static double go_on(double *t, double until, double *length, double *y)
+static double go_on(double *t, double until, double *length, double *y, double (*dense)[STATE])
 {
     const double begun = *t;
     double h = *length, before[STATE], after[STATE];
@@ -149,7 +185,7 @@ static double go_on(double *t, double until, double *length, double *y)
     for (;;) {
         const int last = h > until - begun;
         if (last) h = until - begun;
-        const int failed = take_step(begun, h, y, slope, after);
+        const int failed = take_step(begun, h, y, slope, after, dense);
         const double next = failed ? 0.5*h : h*fmin(MOST_GROWTH, fmax(LEAST_GROWTH, MARGIN*pow(estimated, -1.0/8)));
         if (!failed && estimated <= 1) {
             *t = last ? until : begun + h;
@@ -211,12 +247,9 @@ static int follow(struct follower *f)
         f->last = 0;
     }
     while (f->t < f->until && f->taken < f->most) {
-        if (f->times) {
-            f->times[f->taken] = f->t;
-            memcpy(f->states + f->taken*STATE, f->state, sizeof left);
-        }
+        if (f->times) f->times[f->taken] = f->t;
         const double before = f->last;
-        const double taken = go_on(&f->t, f->until, &step, f->state);
+        const double taken = go_on(&f->t, f->until, &step, f->state, f->dense ? f->dense[f->taken] : NULL);
         if (!(taken > 0)) return 1;
         f->taken++;
         f->last = taken;
@@ -261,15 +294,5 @@ long advance_quietly(struct follower *f, double until, long most)
     }
     f->t = begun;
     memcpy(f->state, state, sizeof state);
-    return 0;
-}
-
-/* Takes a state to a time not far from its own, in as many steps as that needs. */
-int go_between(double t, double time, double *state)
-{
-    double stride = time - t;
-    slope_known = 0;
-    while (t < time)
-        if (!(go_on(&t, time, &stride, state) > 0)) return 1;
     return 0;
 }

@@ -16,7 +16,6 @@ from ..evaluation import Numbers
 from ..hard_cases import Difficulty
 from ..matrices import MotionMatrices
 from ..request import EngineName, SimulationRequest
-from .choice import OutputCounts
 
 if TYPE_CHECKING:
     from ..mode import Mode
@@ -146,12 +145,12 @@ class Engine(Protocol):
         """
 
     @classmethod
-    def expected_seconds(cls, steps: int, operations: int, tol: float, between: OutputCounts) -> float:
+    def expected_seconds(cls, steps: int, operations: int, tol: float, dense: bool) -> float:
         """Return the expected time of a motion.
 
         Parameters
         ----------
-        steps, operations, tol, between : int, int, float, OutputCounts
+        steps, operations, tol, dense : int, int, float, bool
             As for `quicker_engine`.
 
         Returns

@@ -17,7 +17,7 @@ from ...failures import ErrorKind, HolonomError
 from ..evaluation import Numbers, as_floats
 from ..hard_cases import Difficulty
 from ..request import EngineName
-from .choice import TRIAL, Choice, OutputCounts, quicker_engine
+from .choice import TRIAL, Choice, quicker_engine
 from .engine import Engine, Obstacle, Solutions, Step, Task
 from .registry import DEFAULT, FALLBACK, compared_engines, engine_class
 
@@ -41,9 +41,9 @@ class FallbackEngine:
     Parameters
     ----------
     task : Task
-    between : OutputCounts or None
-        What is wanted between the steps, or None where the motion continues after this one, so that engines cannot be
-        weighed by what is ahead.
+    dense : bool or None
+        Whether states between the steps are wanted. None if the motion continues after this one, so that engines
+        cannot be weighed by what is ahead.
 
     Attributes
     ----------
@@ -58,11 +58,11 @@ class FallbackEngine:
         The engine asked for cannot follow this motion, or not in this precision or to this tolerance.
     """
 
-    def __init__(self, task: Task, between: OutputCounts | None = None) -> None:
+    def __init__(self, task: Task, dense: bool | None = None) -> None:
         self._task, self._automatic = task, task.request.engine == EngineName.AUTO
         self.choice: Choice | None = None
         self._second: Engine | None = None
-        self._current = self._first = self._first_engine(between)
+        self._current = self._first = self._first_engine(dense)
         self._begun, self.segments = float(self.time), []
 
     @property
@@ -175,7 +175,7 @@ class FallbackEngine:
 
     # ---- engines ----
 
-    def _first_engine(self, between: OutputCounts | None) -> Engine:
+    def _first_engine(self, dense: bool | None) -> Engine:
         obstacle, request = self._task.problem.obstacle, self._task.request
         chosen = request.engine if not self._automatic else DEFAULT if obstacle is None else FALLBACK
         if self._task.problem.reacting and (obstacle is not None or chosen == FALLBACK):
@@ -184,10 +184,10 @@ class FallbackEngine:
             raise HolonomError(ErrorKind.NO_PIVOTS, detail=obstacle)
         first = engine_class(chosen).for_motion(self._task)
         weighs = self._automatic and obstacle is None and request.compact is None and self._in_doubles
-        steps = first.steps_ahead(self._task.end, TRIAL) if weighs and between is not None else None
+        steps = first.steps_ahead(self._task.end, TRIAL) if weighs and dense is not None else None
         if steps is None or not any(other.comparable(request.tol) for other in compared_engines()[1:]):
             return first
-        self.choice = quicker_engine(steps, self._task.problem.motion.operations, first.tol, between)
+        self.choice = quicker_engine(steps, self._task.problem.motion.operations, first.tol, dense)
         if self.choice.engine == DEFAULT:
             return first
         try:

@@ -29,7 +29,6 @@ from ..inputs import named_inputs
 from ..matrices import MotionMatrices
 from ..nominal import Nominal
 from ..request import EngineName, Stabilization
-from .choice import OutputCounts
 from .code import REFERENCE
 from .engine import Step, Task
 from .program_engine import SHRUNK, ProgramEngine, Taken, decay_in, decay_until
@@ -38,6 +37,7 @@ FINEST, USUAL = 1e-14, 1e-12  # tolerances; below the first, rounding decides ab
 # seconds a step takes for an operation, in all its stages, and beside them
 STAGES, STEP = 7.5e-9, 2e-7
 STRIDE = 0.89  # steps for one of the Taylor engine
+DENSE, DENSER = 8, 1.25  # rows of the dense output; what it costs, three stages beside twelve
 ORDER = 8  # what its steps shrink with
 COMPILER = 0.15, 5e-4  # seconds that the C compiler takes, and for an operation
 
@@ -140,12 +140,12 @@ class RungeKuttaEngine(ProgramEngine):
         return tol is not None and FINEST <= tol < 1 and has_compiler()
 
     @classmethod
-    def expected_seconds(cls, steps: int, operations: int, tol: float, between: OutputCounts) -> float:
+    def expected_seconds(cls, steps: int, operations: int, tol: float, dense: bool) -> float:
         """Return the expected time of compilation and steps.
 
         Parameters
         ----------
-        steps, operations, tol, between : int, int, float, OutputCounts
+        steps, operations, tol, dense : int, int, float, bool
             As for `quicker_engine`.
 
         Returns
@@ -153,7 +153,7 @@ class RungeKuttaEngine(ProgramEngine):
         float
             In seconds.
         """
-        taken = STRIDE * steps * (REFERENCE / tol) ** (1 / ORDER) * (1 + between.in_each) + between.altogether
+        taken = STRIDE * steps * (REFERENCE / tol) ** (1 / ORDER) * (DENSER if dense else 1.0)
         begun, each = COMPILER
         return begun + each * operations + taken * (STEP + STAGES * operations)
 
@@ -246,7 +246,7 @@ class DormandPrince(ctypes.Structure):
         ("_state", ctypes.c_void_p),
         *((name, ctypes.c_double) for name in ("_until", "last_h", "_shortest", "_longest", "usual")),
         *((name, ctypes.c_long) for name in ("_most", "_taken")),
-        *((name, ctypes.c_void_p) for name in ("_times", "_states")),
+        *((name, ctypes.c_void_p) for name in ("_times", "_dense")),
     )
 
     def __init__(
@@ -257,11 +257,10 @@ class DormandPrince(ctypes.Structure):
         narrow = NO_VECTORS if len(problem.state) < WIDE else ()
         small = UNROLLED if problem.motion.operations < SMALL else ()
         library = load_c("\n".join(_source(problem, stabilization, decay)), *narrow, *small)
-        self._advance, self._go_between = library.advance, library.go_between
+        self._advance = library.advance
         self._advance.argtypes = (ctypes.c_void_p,)
         library.advance_quietly.argtypes = (ctypes.c_void_p, ctypes.c_double, ctypes.c_long)
         library.advance_quietly.restype = ctypes.c_long
-        self._go_between.argtypes = (ctypes.c_double, ctypes.c_double, ctypes.c_void_p)
         self._address = ctypes.addressof(self)
         self.quiet_steps = partial(library.advance_quietly, self._address)
         self._evaluations = ctypes.c_long.in_dll(library, "evaluations")
@@ -274,7 +273,7 @@ class DormandPrince(ctypes.Structure):
     def close(self) -> None:
         """Give the memory of the library back, and close it."""
         self._closing()
-        del self._advance, self._go_between, self.quiet_steps
+        del self._advance, self.quiet_steps
 
     @property
     def evaluations(self) -> int:
@@ -317,25 +316,39 @@ class DormandPrince(ctypes.Structure):
             Result of `propagate_until`.
         steps : list of Step
         """
-        times, states = np.empty(most + 1), np.empty((most, len(self.state)))
-        self._times, self._states = times.ctypes.data, states.ctypes.data
+        times, dense = np.empty(most + 1), np.empty((most, DENSE, len(self.state)))
+        self._times, self._dense = times.ctypes.data, dense.ctypes.data
         taken = self.propagate_until(until, most)
-        self._times = None
+        self._times = self._dense = None
         times[taken[3]] = self.time
         ends = pairwise(times[: taken[3] + 1].tolist())
-        between = (partial(self._states_between, begin, state) for begin, state in zip(times, states, strict=False))
-        return taken, [Step(*step, found) for step, found in zip(ends, between, strict=False)]
+        return taken, [Step(*step, partial(states_of, *step, rows)) for step, rows in zip(ends, dense, strict=False)]
 
-    def _states_between(self, begin: float, state: Floats, times: Floats) -> Floats:
-        """Return states at times of a step, shape (2n, k), each by a step of its own.
 
-        They are as exact as the motion.
-        """
-        found = np.repeat(state[None, :], len(times), axis=0)
-        for time_point, reached in zip(times, found, strict=True):
-            if self._go_between(begin, time_point, reached.ctypes.data) != 0:
-                raise HolonomError(ErrorKind.NO_WAY_ON, detail=f"{begin:.10g}, where a step between two others fails")
-        return found.T.copy()
+def states_of(start: float, end: float, rows: Floats, times: Floats) -> Floats:
+    """Return states at times of a step by the method's dense output.
+
+    Its order is 7 (Hairer, Norsett & Wanner I, section II.6).
+
+    Parameters
+    ----------
+    start, end : float
+        Times of the step.
+    rows : ndarray, shape (8, 2n)
+        State at the start, and coefficients of products of x and 1 - x in turn.
+    times : ndarray, shape (k,)
+        Times of the step.
+
+    Returns
+    -------
+    ndarray, shape (2n, k)
+    """
+    x = (times - start) / (end - start)
+    states = np.zeros((rows.shape[1], len(times)))
+    for place, row in enumerate(rows[:0:-1]):
+        states += row[:, None]
+        states *= x if place % 2 == 0 else 1 - x
+    return states + rows[0][:, None]
 
 
 def _source(problem: MotionProblem, stabilization: Stabilization, decay: float) -> Iterator[str]:

@@ -24,7 +24,6 @@ from ..constraints.stabilization import Equations, equations_of_motion, stabiliz
 from ..evaluation import Numbers
 from ..matrices import MotionMatrices
 from ..request import EngineName, Stabilization
-from .choice import OutputCounts
 from .code import Code, better_code, compilation, is_worthwhile, running
 from .engine import Step, Task
 from .program_engine import FIRST_BLOCK, ProgramEngine, Taken, decay_in, decay_until
@@ -141,12 +140,12 @@ class TaylorEngine(ProgramEngine):
         return True
 
     @classmethod
-    def expected_seconds(cls, steps: int, operations: int, tol: float, between: OutputCounts) -> float:
+    def expected_seconds(cls, steps: int, operations: int, tol: float, dense: bool) -> float:
         """Return the expected time with the code that is worthwhile for the steps.
 
         Parameters
         ----------
-        steps, operations, tol, between : int, int, float, OutputCounts
+        steps, operations, tol, dense : int, int, float, bool
             As for `quicker_engine`.
 
         Returns

@@ -8,12 +8,11 @@ import pytest
 from problems import problem
 
 from holonom.simulation.engines import fallback, runge_kutta
-from holonom.simulation.engines.choice import Choice, OutputCounts, quicker_engine
+from holonom.simulation.engines.choice import Choice, quicker_engine
 from holonom.simulation.engines.runge_kutta import FINEST, RungeKuttaEngine
 from holonom.simulation.request import EngineName, SimulationRequest
 from holonom.simulation.simulate import simulate
 
-NOTHING = OutputCounts(0, 0)
 LONG, SHORT = Fraction(100_000), Fraction(10)
 
 
@@ -80,11 +79,11 @@ def test_a_compiler_that_fails_leaves_the_motion_to_taylor(monkeypatch, tmp_path
 
 @pytest.mark.usefixtures("c_compiler")
 def test_states_wanted_between_the_steps_count():
-    """Truth: each takes the Runge-Kutta engine a step of its own, and the other next to nothing."""
-    steps, operations, tol = 50_000, 210, 1e-6
-    assert quicker_engine(steps, operations, tol, NOTHING).engine is EngineName.RUNGE_KUTTA
-    assert quicker_engine(steps, operations, tol, OutputCounts(10**6, 0)).engine is EngineName.TAYLOR
-    assert quicker_engine(steps, operations, tol, OutputCounts(0, 10)).engine is EngineName.TAYLOR
+    """Truth: dense output takes three stages beside the twelve of a step, and the other engine next to nothing."""
+    alone, dense = (quicker_engine(50_000, 210, 1e-6, wanted) for wanted in (False, True))
+    begun = RungeKuttaEngine.expected_seconds(0, 210, 1e-6, False)
+    assert dense.runge_kutta - begun == pytest.approx((alone.runge_kutta - begun) * 15 / 12)
+    assert dense.taylor == alone.taylor
 
 
 @pytest.mark.usefixtures("c_compiler")
@@ -92,7 +91,7 @@ def test_runge_kutta_is_relieved_at_dead_centres_like_taylor(monkeypatch):
     """Truth: the linkage as the Taylor engine follows it through the same dead centres."""
 
     def of(engine):
-        def chosen(steps, operations, tol, between):
+        def chosen(steps, operations, tol, dense):
             return Choice(engine, steps, operations, 0.0, 0.0)
 
         monkeypatch.setattr(fallback, "quicker_engine", chosen)

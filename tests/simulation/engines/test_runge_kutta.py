@@ -60,14 +60,34 @@ def test_coefficients_are_those_of_scipys_method():
     def row(terms: str) -> list[float]:
         found = re.findall(r"(-? ?[\d.]+(?:e-\d+)?)\*k(\d+)\[i\]", terms)
         numbers = {int(stage): float(number.replace(" ", "")) for number, stage in found}
-        return [numbers.get(stage, 0.0) for stage in range(1, table.n_stages + 1)]
+        return [numbers.get(stage, 0.0) for stage in range(1, 17)]
 
+    def filled(numbers: np.ndarray) -> list[float]:
+        return [*numbers, *[0.0] * 16][:16]
+
+    stages, fractions = [*table.A, table.B, *table.A_EXTRA], [*table.C, 1.0, *table.C_EXTRA]
     for stage, fraction, terms in re.findall(r"STAGE\((\d+), ([\d.]+), (.*?)\)\n", text, re.DOTALL):
-        assert row(terms) == [*table.A[int(stage) - 1], *[0.0] * 12][:12]
-        assert float(fraction) == table.C[int(stage) - 1]
-    for name, numbers in (("w[i] = y[i] + h*(0", table.B), ("error5 = (", table.E5), ("error3 = (", table.E3)):
+        assert row(terms) == filled(stages[int(stage) - 1])
+        assert float(fraction) == fractions[int(stage) - 1]
+    formulas = {"after[i] = y[i] + h*(0": table.B, "error5 = (": table.E5, "error3 = (": table.E3}
+    formulas |= {f"dense[{place}][i] = h*(": numbers for place, numbers in enumerate(table.D, start=4)}
+    for name, numbers in formulas.items():
         terms = text[text.index(name) + len(name.rstrip("0")) :]
-        assert row(terms[: terms.index(";")]) == list(numbers[:12])
+        assert row(terms[: terms.index(";")]) == filled(numbers)
+
+
+def test_states_between_the_steps_take_three_evaluations_and_have_the_error_of_a_step():
+    """Truth: the Taylor engine's at the same times; by a step of its own, each took twelve, 180 a step here."""
+    motion, true = (
+        simulate(problem("pendulum.mac"), SimulationRequest(engine=engine, tol=1e-9, samples=101))
+        for engine in (EngineName.RUNGE_KUTTA, EngineName.TAYLOR)
+    )
+    for name, values in motion.coordinates.items():
+        assert values == pytest.approx(true.coordinates[name], abs=2e-8)
+    engine = RungeKuttaEngine(problem("pendulum.mac"), 1e-9)
+    for step in engine.integrate(10.0):
+        step.states(np.linspace(step.start, step.end, 15))
+    assert engine.evaluations <= 16 * engine.steps
 
 
 def test_the_error_follows_the_tolerance():
