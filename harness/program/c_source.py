@@ -7,8 +7,8 @@ the lanes itself in a loop over the points, GCC 12 finds none. Told to look, it 
 
 import json
 import re
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 from math import e, pi
@@ -17,15 +17,26 @@ from textwrap import indent
 from . import infix
 from .arithmetic import ELEMENTARY, INFIX, Arithmetic
 from .infix import Formula
-from .motion_program import BINARY, Constant, Operation, Program, names_used
+from .motion_program import BINARY, Constant, Name, Operation, Program, names_in, names_used
 from .templates import filled, template
 
 FUNCTIONS = ELEMENTARY | {Operation.ABS: "fabs"}
+
+# Assignments in one function of C: GCC's time at -O2 grows as the square of its length.
+LONGEST = 500  # that is left whole
+PIECE = 100  # in each function that a longer one is divided into
 
 HELPERS = """\
 static inline double square(double x) { return x*x; }
 static inline double cube(double x) { return x*x*x; }
 static inline double sign(double x) { return (x > 0) - (x < 0); }"""
+NOT_INLINE = """\
+#if !defined PIECE && defined __GNUC__
+#define PIECE static __attribute__((noinline))
+#elif !defined PIECE
+#define PIECE static
+#endif
+"""
 ROOTS_AND_POWERS = {Fraction(1, 2): "sqrt", Fraction(2): "square", Fraction(3): "cube"}
 MULTIPLIED_OUT = range(4, 17)  # exponents for which a few squares and cubes are sooner done than pow
 
@@ -37,10 +48,11 @@ LANE_FUNCTIONS = {
 
 @dataclass(frozen=True)
 class Target:
-    """The form of statements and formulas in C or a similar language."""
+    """The form of statements, formulas and numbers in C or a similar language."""
 
     statement: str
     arithmetic: Arithmetic[Formula]
+    type: str = "double"
 
 
 def c_source(program: Program) -> str:
@@ -55,19 +67,22 @@ def c_source(program: Program) -> str:
     str
         A translation unit that needs the standard library alone.
     """
-    places = range(len(program.inputs))
-    one = scalar_statements(program, [f"in[{place}]" for place in places])
-    lanes = [f"lanes_at(in + {place}*points + i)" for place in places]
-    results = [f"put_lanes(out + {place}*points + i, {{value}});" for place in range(len(program.outputs))]
-    many = "\n".join(statements(program, MANY, lanes, results))
+    inputs, outputs = range(len(program.inputs)), range(len(program.outputs))
+    reads, writes = [f"in[{place}]" for place in inputs], [f"out[{place}] = {{value}};" for place in outputs]
+    one = in_pieces(program, ONE, reads, writes, "motion", "const double *in, double *out")
+    reads = [f"lanes_at(in + {place}*points + i)" for place in inputs]
+    writes = [f"put_lanes(out + {place}*points + i, {{value}});" for place in outputs]
+    parameters = "size_t points, size_t i, const double *in, double *out"
+    many = in_pieces(program, MANY, reads, writes, "motion_batch", parameters)
     return filled(
         "motion.c",
         title=comment_text(title_of(program)),
         table="\n".join(_table(program)),
         helpers=HELPERS,
-        one=indent("\n".join(one), " " * 4),
+        pieces=one.functions,
+        one=indent(one.body, " " * 4),
         lanes=batch_support(many),
-        many=indent(many, " " * 8),
+        many=indent(many.body, " " * 8),
         inputs=len(program.inputs),
         outputs=len(program.outputs),
     )
@@ -190,12 +205,116 @@ def statements(program: Program, target: Target, inputs: Sequence[str], writes: 
         yield write.format(value=target.arithmetic.atom(value, names).text)
 
 
-def batch_support(text: str) -> str:
-    """Return the vector type and the functions that statements for `MANY` need.
+@dataclass(frozen=True)
+class Pieces:
+    """Statements of a function of C, and the functions that they call."""
+
+    functions: str
+    body: str
+
+
+def in_pieces(
+    program: Program, target: Target, inputs: Sequence[str], writes: Sequence[str], function: str, parameters: str
+) -> Pieces:
+    """Return a program as statements of C, one longer than `LONGEST` as calls of its pieces.
+
+    Values that a later piece needs are kept in an array ``w``.
 
     Parameters
     ----------
-    text : str
+    program, target, inputs, writes
+        As for `statements`.
+    function : str
+        Beginning of the names of the pieces.
+    parameters : str
+        Parameters of the pieces, by which they read the inputs and write the outputs.
+
+    Returns
+    -------
+    Pieces
+    """
+    if len(program.assignments) <= LONGEST:
+        return Pieces("", "\n".join(statements(program, target, inputs, writes)))
+    results = list(zip(program.outputs.items(), writes, strict=True))
+    parts = [*((part, []) for part in _parts(program.assignments)), *(((), part) for part in _parts(results))]
+    uses = [_names_in_part(*part) for part in parts]
+    last_use = {name: number for number, used in enumerate(uses) for name in used}
+    given = dict(zip(program.inputs, inputs, strict=True))
+    kept_at: dict[str, int] = {}
+    free: list[int] = []
+    size, functions = 0, []
+    declared, passed = f"{parameters}, {target.type} *w", ", ".join([*names_of(parameters), "w"])
+    for number, (assignments, outputs) in enumerate(parts):
+        kept_here = {name: f"w[{kept_at[name]}]" for name in uses[number] if name in kept_at}
+        reads = {name: given[name] for name in uses[number] if name in given} | kept_here
+        free += [kept_at.pop(name) for name in kept_here if last_use[name] == number]
+        kept = [name for name, _ in assignments if last_use.get(name, number) > number]
+        for name in kept:
+            kept_at[name] = free.pop() if free else size
+            size = max(size, kept_at[name] + 1)
+        piece = replace(
+            program,
+            inputs=tuple(reads),
+            assignments=tuple(assignments),
+            outputs={name: Name(name) for name in kept} | dict(output for output, _ in outputs),
+        )
+        stores = [*(f"w[{kept_at[name]}] = {{value}};" for name in kept), *(write for _, write in outputs)]
+        text = body_of(statements(piece, target, list(reads.values()), stores), names_of(declared))
+        functions.append(f"PIECE void {function}_{number}({declared})\n{{\n{text}\n}}\n\n")
+    calls = (f"{function}_{number}({passed});" for number in range(len(parts)))
+    return Pieces(NOT_INLINE + "".join(functions), "\n".join([f"{target.type} w[{size}];", *calls]))
+
+
+def _parts(items: Sequence) -> list[Sequence]:
+    return [items[first : first + PIECE] for first in range(0, len(items), PIECE)]
+
+
+def _names_in_part(assignments: Sequence, outputs: Sequence) -> list[str]:
+    """Return the names that assignments and written outputs are made of, each once, in an order of their own."""
+    expressions = [*(expression for _, expression in assignments), *(value for (_, value), _ in outputs)]
+    return list(dict.fromkeys(name for expression in expressions for name in sorted(names_in(expression))))
+
+
+def names_of(parameters: str) -> list[str]:
+    """Return the names in a list of declarations of C.
+
+    Parameters
+    ----------
+    parameters : str
+        Declarations, separated by commas.
+
+    Returns
+    -------
+    list of str
+    """
+    return re.findall(r"(\w+)(?=,|$)", parameters)
+
+
+def body_of(lines: Iterable[str], parameters: Iterable[str]) -> str:
+    """Return the body of a C function, with casts to void of unused parameters.
+
+    Parameters
+    ----------
+    lines : iterable of str
+        Statements.
+    parameters : iterable of str
+        Names of the parameters.
+
+    Returns
+    -------
+    str
+    """
+    text = "\n".join(lines)
+    unused = [name for name in parameters if not re.search(rf"\b{name}\b", text)]
+    return indent("\n".join([*(f"(void)({name});" for name in unused), text]), " " * 4).rstrip()
+
+
+def batch_support(many: Pieces) -> str:
+    """Return the vector type and the functions that statements for `MANY` need, their pieces among them.
+
+    Parameters
+    ----------
+    many : Pieces
         Statements for `MANY`.
 
     Returns
@@ -204,9 +323,11 @@ def batch_support(text: str) -> str:
         Definitions in C.
     """
     arities = {name: 2 if operation in BINARY else 1 for operation, name in FUNCTIONS.items()} | {"pow": 2}
-    called = set(re.findall(r"\blanes_(\w+)\(", text))
-    return template("lanes.h") + "".join(
-        LANE_FUNCTIONS[arity].format(name) + "\n" for name, arity in arities.items() if name in called
+    called = set(re.findall(r"\blanes_(\w+)\(", many.functions + many.body))
+    return (
+        template("lanes.h")
+        + "".join(LANE_FUNCTIONS[arity].format(name) + "\n" for name, arity in arities.items() if name in called)
+        + many.functions
     )
 
 
@@ -246,4 +367,4 @@ def _arithmetic(prefix: str, number: Callable[[Fraction | float], Formula]) -> A
 
 
 ONE = Target("const double {name} = {formula};", _arithmetic("", _scalar))
-MANY = Target("const lanes {name} = {formula};", _arithmetic("lanes_", _lanes))
+MANY = Target("const lanes {name} = {formula};", _arithmetic("lanes_", _lanes), "lanes")

@@ -11,6 +11,7 @@ from click.testing import CliRunner
 from scipy.interpolate import CubicSpline
 
 from holonom.cli import holonom
+from holonom.program import c_source
 from holonom.program.identifiers import default_name, identifiers
 from holonom.program.model import scene_model
 from holonom.program.request import Request
@@ -157,6 +158,43 @@ def test_the_jacobian_of_a_chain_is_zero_where_it_has_no_entry(tmp_path, c_compi
         if k > 0:
             expected[k, 2 * k - 2 : 2 * k] = -link
     assert np.array_equal(found, expected)
+
+
+def test_a_library_in_pieces_has_the_same_numbers(tmp_path, monkeypatch, c_compiler):
+    """Bit for bit, without contractions, which may not cross from one piece into the next."""
+    found = []
+    for longest in (c_source.LONGEST, 4):
+        monkeypatch.setattr(c_source, "LONGEST", longest)
+        monkeypatch.setattr(c_source, "PIECE", 3)
+        directory = write_library(tmp_path / str(longest), "chain.mac", "links", "m", "g", "l")
+        assert ("PIECE void motion_2(" in (directory / "links.c").read_text(encoding="utf-8")) == (longest == 4)
+        options = ["-std=c11", *STRICT, "-ffp-contract=off", "-shared", "-fPIC"]
+        compiled = run("cc", *options, "links.c", "-o", "links.so", "-lm", directory=directory)
+        assert (compiled.returncode, compiled.stderr) == (0, "")
+        found.append(numbers_of_chain(ctypes.CDLL(str(directory / "links.so"))))
+    assert all(np.isfinite(numbers).all() and numbers.any() for numbers in found[0])
+    assert all(map(np.array_equal, *found))
+
+
+def numbers_of_chain(library: ctypes.CDLL) -> list[np.ndarray]:
+    """What the functions of a library of four masses compute of nine points near the hanging chain."""
+    points, rng = 9, np.random.default_rng(3)
+    hanging = np.ravel([(0.0, -k) for k in range(1, 5)])[:, None]
+    q, v = hanging + rng.normal(scale=0.01, size=(8, points)), rng.normal(size=(8, points))
+    u, p = np.outer([1.0, 0.1, 0.2], np.ones(points)), np.ones((3, points))
+    a, multipliers, f, rate = (np.zeros((rows, points)) for rows in (8, 4, 4, 4))
+    t, J = np.zeros(points), np.zeros((points, 32))
+    arrays = [array.ctypes.data_as(ctypes.c_void_p) for array in (t, q, v, u, p, a, multipliers)]
+    library.links_motion_batch(ctypes.c_size_t(points), *arrays)
+    one_point = [np.ascontiguousarray(array.T) for array in (q, v, u, p, a, multipliers, f, rate)]
+    for row, entries in zip(zip(*one_point, strict=True), J, strict=True):
+        q1, v1, u1, p1, a1, l1, f1, rate1, J1 = (x.ctypes.data_as(ctypes.c_void_p) for x in (*row, entries))
+        time = ctypes.c_double(0)
+        library.links_motion(time, q1, v1, u1, p1, a1, l1)
+        library.links_residual(time, q1, v1, u1, p1, f1, rate1)
+        library.links_jacobian(time, q1, v1, u1, p1, J1)
+        assert library.links_project(time, q1, v1, u1, p1) == 0
+    return [a, multipliers, *one_point, J]
 
 
 def test_projection_goes_along_the_radius(pendulum):

@@ -5,17 +5,31 @@ indices the header enumerates. The array ``u`` contains the controls, then their
 """
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from textwrap import fill, indent
 
-from ..c_source import HELPERS, MANY, ONE, batch_support, comment_text, statements, title_of
+from ..c_source import (
+    HELPERS,
+    MANY,
+    ONE,
+    Pieces,
+    batch_support,
+    body_of,
+    comment_text,
+    in_pieces,
+    names_of,
+    statements,
+    title_of,
+)
 from ..identifiers import identifiers, require_identifier
 from ..model import Model
 from ..motion_problem import computing
 from ..motion_program import Program
 from ..templates import filled, template
 
+GIVEN = "double t, const double *q, const double *v, const double *u, const double *p"
 UNKNOWN = "NAN"  # what has no value
 ENTRY = re.compile(r"J\[(\d+),(\d+)\]")  # of the constraints' Jacobian, counted from one
 
@@ -108,13 +122,13 @@ def _enumerations(model: Model, prefix: str) -> Iterator[str]:
 
 
 def _source(model: Model, written: Mapping[str, str]) -> str:
-    many = "\n".join(
-        statements(
-            model.motion,
-            MANY,
-            [f"lanes_at({place})" for place in _places(model, "{array} + {index}*points + i", "t + i")],
-            [f"put_lanes({place}, {{value}});" for place in _results(model, "{array} + {index}*points + i")],
-        )
+    many = in_pieces(
+        model.motion,
+        MANY,
+        [f"lanes_at({place})" for place in _places(model, "{array} + {index}*points + i", "t + i")],
+        [f"put_lanes({place}, {{value}});" for place in _results(model, "{array} + {index}*points + i")],
+        "motion_batch",
+        f"size_t points, size_t i, {GIVEN.replace('double t', 'const double *t')}, double *a, double *lambda",
     )
     one = partial(_function, inputs=_places(model, "{array}[{index}]", "t"))
     corrections = {
@@ -122,41 +136,44 @@ def _source(model: Model, written: Mapping[str, str]) -> str:
         for kind, array in (("position", "dq"), ("velocity", "dv"))
         for s in range(1, len(model.coordinates) + 1)
     }
+    functions = {
+        "motion": one("motion", "a lambda", model.motion, _results(model, "{array}[{index}]")),
+        "residual": _residual(model, one),
+        "jacobian": _jacobian(model, one),
+        "servo": _found("servo", model.servo, one, "found"),
+        "outputs": _found("observe", model.outputs, one, "y"),
+        "corrections": one(
+            "corrections", "dq dv", model.projection, [corrections[name] for name in model.projection.outputs]
+        ),
+    }
     return filled(
         "library.c",
         **written,
+        **{name: function.body for name, function in functions.items()},
+        pieces="".join(function.functions for function in functions.values()),
         helpers=HELPERS,
         names="\n".join(_names(model, written["name"])),
-        start=_body(_start(model), "t q v"),
-        values=_body((f"p[{i}] = {model.values.get(p, UNKNOWN)};" for i, p in enumerate(model.parameters)), "p"),
+        start=body_of(_start(model), ["t", "q", "v"]),
+        values=body_of((f"p[{i}] = {model.values.get(p, UNKNOWN)};" for i, p in enumerate(model.parameters)), ["p"]),
         tables="".join(_tables(model)),
         law=_law(model),
         operations=model.motion.operations,
-        motion=one(model.motion, _results(model, "{array}[{index}]"), "t q v u p a lambda"),
         lanes=batch_support(many),
-        many=indent(many, " " * 8),
+        many=indent(many.body, " " * 8),
         n=len(model.coordinates),
         m=len(model.controls),
         k=len(model.parameters),
         g=len(model.multipliers),
-        residual=_residual(model, one),
-        jacobian=_jacobian(model, one),
-        servo=_found(model.servo, one, "found"),
-        outputs=_found(model.outputs, one, "y"),
-        corrections=one(model.projection, [corrections[name] for name in model.projection.outputs], "t q v u p dq dv"),
     )
 
 
-def _function(program: Program, results: Iterable[str], parameters: str, inputs: Sequence[str]) -> str:
-    """Body of a function that computes a program's outputs into the places given."""
-    return _body(statements(program, ONE, inputs, [f"{place} = {{value}};" for place in results]), parameters)
-
-
-def _body(lines: Iterable[str], parameters: str) -> str:
-    """Return statements, preceded by casts to void of unused parameters."""
-    text = "\n".join(lines)
-    unused = [name for name in parameters.split() if not re.search(rf"\b{name}\b", text)]
-    return indent("\n".join([*(f"(void)({name});" for name in unused), text]), " " * 4).rstrip()
+def _function(name: str, arrays: str, program: Program | None, results: Sequence[str], inputs: Sequence[str]) -> Pieces:
+    """Body of a function that computes a program's outputs into places in arrays; empty without a program."""
+    parameters = ", ".join([GIVEN, *(f"double *{array}" for array in arrays.split())])
+    if program is None:
+        return Pieces("", body_of((), names_of(parameters)))
+    pieces = in_pieces(program, ONE, inputs, [f"{place} = {{value}};" for place in results], name, parameters)
+    return replace(pieces, body=body_of([pieces.body], names_of(parameters)))
 
 
 def _places(model: Model, item: str, time: str) -> list[str]:
@@ -218,7 +235,7 @@ def _tables(model: Model) -> Iterator[str]:
 
 def _law(model: Model) -> str:
     if model.law is None:
-        return _body((), "t p u")
+        return body_of((), ["t", "p", "u"])
     inputs = ["t", *(f"p[{index}]" for index in range(len(model.parameters)))]
     found = []
     for number, table in enumerate(model.tables):
@@ -226,38 +243,35 @@ def _law(model: Model) -> str:
         found.append(f"const double *const piece{number} = piece_at(t, table{number}, {size});")
         inputs += [f"piece{number}[{place}]" for place in range(len(table.inputs))]
     results = [f"u[{model.histories.index(name)}] = {{value}};" for name in model.law.outputs]
-    return _body([*found, *statements(model.law, ONE, inputs, results)], "t p u")
+    return body_of([*found, *statements(model.law, ONE, inputs, results)], ["t", "p", "u"])
 
 
-def _residual(model: Model, function: Callable[..., str]) -> str:
-    parameters = "t q v u p f rate"
-    if model.constraints is None:
-        return _body((), parameters)
+def _residual(model: Model, function: Callable[..., Pieces]) -> Pieces:
     g = range(1, len(model.multipliers) + 1)
     places = {f"residual[{b}]": f"f[{b - 1}]" for b in g} | {f"residual_rate[{b}]": f"rate[{b - 1}]" for b in g}
-    program = computing(model.constraints, places)
-    return function(program, [places[name] for name in program.outputs], parameters)
+    return _computed("residual", "f rate", model.constraints, places, function)
 
 
-def _found(program: Program | None, function: Callable[..., str], array: str) -> str:
-    """Return a function's body that computes a program's outputs into an array.
-
-    It is empty if there is no program.
-    """
-    parameters = f"t q v u p {array}"
-    if program is None:
-        return _body((), parameters)
-    places = [f"{array}[{place}]" for place in range(len(program.outputs))]
-    return function(computing(program, program.outputs), places, parameters)
+def _found(name: str, program: Program | None, function: Callable[..., Pieces], array: str) -> Pieces:
+    """Return a function's body that computes a program's outputs into an array."""
+    outputs = program.outputs if program else ()
+    places = {output: f"{array}[{place}]" for place, output in enumerate(outputs)}
+    return _computed(name, array, program, places, function)
 
 
-def _jacobian(model: Model, function: Callable[..., str]) -> str:
-    parameters = "t q v u p J"
-    if model.constraints is None:
-        return _body((), parameters)
+def _jacobian(model: Model, function: Callable[..., Pieces]) -> Pieces:
     n = len(model.coordinates)
-    entries = (ENTRY.fullmatch(name) for name in model.constraints.outputs)
+    outputs = model.constraints.outputs if model.constraints else ()
+    entries = (ENTRY.fullmatch(name) for name in outputs)
     places = {entry[0]: f"J[{(int(entry[1]) - 1) * n + int(entry[2]) - 1}]" for entry in entries if entry}
-    program = computing(model.constraints, places)
-    zeros = f"    memset(J, 0, {n * len(model.multipliers)}*sizeof *J);"
-    return "\n".join([zeros, function(program, [places[name] for name in program.outputs], parameters)])
+    written = _computed("jacobian", "J", model.constraints, places, function)
+    zeros = f"    memset(J, 0, {n * len(model.multipliers)}*sizeof *J);\n" if model.constraints else ""
+    return replace(written, body=zeros + written.body)
+
+
+def _computed(
+    name: str, arrays: str, program: Program | None, places: Mapping[str, str], function: Callable[..., Pieces]
+) -> Pieces:
+    """Return a function's body that computes some outputs of a program into their places."""
+    wanted = program and computing(program, places)
+    return function(name, arrays, wanted, [places[output] for output in wanted.outputs] if wanted else ())

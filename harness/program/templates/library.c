@@ -20,7 +20,7 @@ void @{name}_values(double *p)
 @{values}
 }
 
-@{tables}void @{name}_law(double t, const double *p, double *u)
+@{tables}@{pieces}void @{name}_law(double t, const double *p, double *u)
 {
 @{law}
 }

@@ -8,7 +8,7 @@
 
 @{helpers}
 
-/* One point: in and out hold its inputs and outputs. */
+@{pieces}/* One point: in and out hold its inputs and outputs. */
 void motion(const double *in, double *out)
 {
 @{one}
