@@ -1,5 +1,7 @@
 """Films of motions as files, and the choice of curves: formats, frames, and what is refused."""
 
+import shutil
+import subprocess
 from xml.etree import ElementTree
 
 import numpy as np
@@ -69,6 +71,15 @@ def test_motions_without_a_picture_are_refused(motion, tmp_path):
 def test_a_film_in_mp4_needs_ffmpeg(motion, tmp_path, monkeypatch):
     monkeypatch.setattr("shutil.which", lambda program: None)
     assert failure_of(lambda: motion.film().save(tmp_path / "film.mp4")) is ErrorKind.NO_FFMPEG
+
+
+@pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="ffmpeg is not installed")
+def test_an_mp4_has_a_frame_for_each_time(motion, tmp_path):
+    motion.film().save(tmp_path / "film.mp4")
+    decoding = ["ffmpeg", "-i", str(tmp_path / "film.mp4"), "-f", "framemd5", "-"]
+    decoded = subprocess.run(decoding, capture_output=True, text=True, check=True, stdin=subprocess.DEVNULL).stdout
+    frames = [line.rpartition(",")[2] for line in decoded.splitlines() if not line.startswith("#")]
+    assert len(frames) == len(set(frames)) == 11
 
 
 def labels(figure):

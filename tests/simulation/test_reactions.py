@@ -248,3 +248,20 @@ def test_outputs_are_unique_once_a_redundant_joint_is_released():
     assert motion.report.undetermined == ()
     assert rows(motion, "S", 6)[:, -1] == pytest.approx(np.zeros(6), abs=1e-12)
     assert rows(motion, "R", 3)[2, -1] == pytest.approx(200)
+
+
+def test_gear_turns_rotors_by_its_moments():
+    """The torque T turns J1 and, geared by r1/r2 = 2/3, J2: in one coordinate (J1 + 4/9 J2) a = T."""
+    scene = holonom.system("""
+first : rotor(J1, a)$
+second : rotor(J2, b)$
+teeth : gear(2, first, 3, second)$
+system : holonomic_system(parameters = [J1, J2, T], assembly(first, second, teeth, applied_torque(T, first)))$
+run : holonomic_scene(system, parameter_values = [J1 = 1, J2 = 9, T = 10], initial_state = [a = 0, dot(a) = 0],
+  initial_guess = [b = 0, dot(b) = 0], time_span = [0, 1],
+  observe = [trajectory, A = reaction(teeth), B = reaction(teeth, second)])$
+""")
+    motion = scene.simulate(samples=3)
+    assert motion["a"] == pytest.approx([0, 0.25, 1])
+    assert motion["A[1]"] == pytest.approx([-8] * 3)
+    assert motion["B[1]"] == pytest.approx([-12] * 3)
