@@ -89,6 +89,21 @@ def test_thread_breaks_at_its_largest_tension():
     assert not motion["tension"][motion["t"] > t].any()
 
 
+def test_contact_ends_where_it_no_longer_presses():
+    """A bead leaves a dome of radius 1 at the height h = (2 + v^2/g)/3, with the speed sqrt(g h) along the dome."""
+    motion = holonom.system("""
+bead : particle(m, [x, y])$
+dome : distance_joint(bead, [0, 0], 1)$
+system : holonomic_system(parameters = [m, g], assembly(bead, dome, gravity = uniform_gravity(g, bead)))$
+slide : holonomic_scene(system, parameter_values = [m = 1, g = 10], initial_state = [x = 0, dot(x) = 1],
+  initial_guess = [y = 1, dot(y) = 0], released = [dome = lambda1], until = [y], time_span = [0, 5])$
+""").simulate()
+    (release,), h = motion.report.switchings, 0.7
+    assert release.function == "lambda1"
+    assert motion.report.velocities["dot(x)"] == pytest.approx(np.sqrt(10 * h) * h, rel=1e-11)
+    assert motion.report.velocities["dot(y)"] == pytest.approx(-np.sqrt(10 * h * (1 - h**2) + 20 * h), rel=1e-11)
+
+
 def test_motion_ends_in_free_flight_where_until_says():
     ends = "released = [thread = y + 1/2], until = [y + 3]"
     motion = holonom.system(CUT.replace("{ends}", ends)).simulate(samples=5)
