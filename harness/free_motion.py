@@ -17,8 +17,8 @@ from .described import System, Values, each
 from .documents import ask
 from .formats import Document, read
 from .free_verdicts import FreeMotionTrial
+from .language import Message
 from .mathjson import to_sympy
-from .maxima_reasons import translatable_reason
 from .sandbox import Limits
 from .shown import Shown
 from .source import Source
@@ -52,7 +52,7 @@ class MotionVerdict:
     verdict: FreeMotionVerdict  # free only where that is proved
     # ``all states``, where every motion under the scene's law is free, or ``this state``
     states: str = key("for")
-    evidence: str  # evidence, or what is missing for a proof
+    evidence: Message  # evidence, or what is missing for a proof
     # where undecided, the order to which all coefficients of the multipliers vanish; None where there are none
     order: int | None
     first: FirstCoefficient | None  # what shows that the motion is not free
@@ -62,22 +62,37 @@ class MotionVerdict:
 class UniversalLaw:
     """A law under which every motion is free, or a family of such laws."""
 
-    controls: Law  # by control; in the time, the constants and the free controls
+    controls: Values  # by control; in the time, the constants and the free controls
     constants: tuple[str, ...]  # constants of integration: any numbers
     free: tuple[str, ...]  # controls that stay free functions of the time
-    positive: tuple[Expr, ...]  # what must be positive where the law holds; empty where it always holds
+    positive_trees: tuple[Tree, ...] = key("positive")
     # what SymPy found when it tried the law on the equations of motion; None before that
     check: CheckResult | None = None
+
+    @cached_property
+    def positive(self) -> tuple[Expr, ...]:
+        """Expressions that are positive where the law holds; empty if it always holds."""
+        return each(to_sympy, self.positive_trees)
 
 
 @dataclass(frozen=True)
 class ControlCondition:
     """Expressions that must vanish if every motion is to be free."""
 
-    expression: Expr  # in the time, the controls and their rates
-    place: Expr  # the function of the state that it is the coefficient of in (10)
+    expression_tree: Tree = key("expression")
+    place_tree: Tree = key("place")
     # the terms of the system that it comes from; ``inertia`` for kinetic energy and constraints
     effects: tuple[str, ...]
+
+    @cached_property
+    def expression(self) -> Expr:
+        """Expression in the time, the controls and their rates."""
+        return to_sympy(self.expression_tree)
+
+    @cached_property
+    def place(self) -> Expr:
+        """Function of the state that it is the coefficient of in (10)."""
+        return to_sympy(self.place_tree)
 
 
 @dataclass(frozen=True)
@@ -88,7 +103,34 @@ class UniversalControls:
     laws: tuple[UniversalLaw, ...]
     conditions: tuple[ControlCondition, ...]  # shortest first
     generic: bool  # parameters were left open, and the answer is that for generic values
-    reason: str
+    reason: Message
+
+
+@dataclass(frozen=True)
+class SeriesOfControls:
+    """Power series of controls."""
+
+    order: int
+    time_tree: Tree = key("time")
+    coefficients: Mapping[str, tuple[Tree, ...]]  # by control, from the power 0 on
+
+    def law(self) -> Law:
+        """Return the series as sums in the order of their powers.
+
+        SymPy's evaluation would turn 3/2 + (t - 1) into t + 1/2.
+
+        Returns
+        -------
+        mapping of str to SymPy expression
+            Truncated series, by control.
+        """
+        step = Symbol("t", real=True) - to_sympy(self.time_tree)
+
+        def added_up(coefficients: tuple[Expr, ...]) -> Expr:
+            terms = [Mul(c, step**k, evaluate=k != 1 or c == 1) for k, c in enumerate(coefficients) if c != 0]
+            return Add(*terms, evaluate=False) if len(terms) > 1 else Add(*terms)
+
+        return {name: added_up(each(to_sympy, trees)) for name, trees in self.coefficients.items()}
 
 
 @dataclass(frozen=True)
@@ -99,14 +141,23 @@ class TrajectoryControl:
     # scene's numbers, along its time span), ``series`` (with the scene's numbers, at the initial time), ``any
     # control``, ``none`` (there is none) or ``not determined``
     kind: str
-    # by control; where there is an order a truncated series, an unevaluated sum, lowest power first
-    law: Values
+    closed_law: Values = key("law")
     free: tuple[str, ...]  # controls that stay free functions of the time; a closed form may contain them
     motion: Values  # the free motion by coordinate, where its closed form is known
     # times of the scene's time span with the values of the controls, as far as there are such controls
     samples: tuple[tuple[float, ...], ...]
-    reason: str
-    order: int | None = None  # to which the law is a series; None where it is closed
+    reason: Message
+    series: SeriesOfControls | None  # where the law is not closed
+
+    @property
+    def order(self) -> int | None:
+        """Order to which the law is a series, or None if it is closed."""
+        return self.series and self.series.order
+
+    @cached_property
+    def law(self) -> Law:
+        """The law by control; a truncated series is an unevaluated sum, lowest power first."""
+        return self.series.law() if self.series else self.closed_law
 
 
 @dataclass(frozen=True)
@@ -238,16 +289,7 @@ def read_free_motion(text: str) -> FreeMotion:
         As `holonom.documents.read`.
     """
     document = read(Document.FREE_MOTION, text)
-    series = document["trajectory"]["series"]
-    for part, reason in (("motion", "evidence"), ("universal", "reason"), ("trajectory", "reason")):
-        document[part][reason] = translatable_reason(document[part][reason])
-    found = structured(
-        FreeMotion, document, universal=_universal(document["universal"]), premises=structured(Premises, document)
-    )
-    if series is None:
-        return found
-    law, order = _truncated_law(series), series["order"]
-    return replace(found, trajectory=replace(found.trajectory, law=law, order=order))
+    return structured(FreeMotion, document, premises=structured(Premises, document))
 
 
 def judged(found: FreeMotion) -> FreeMotion:
@@ -276,30 +318,3 @@ def judged(found: FreeMotion) -> FreeMotion:
     verdict, contradiction = trial.verdict_on_laws(universal.verdict, [law.check for law in laws])
     reason = contradiction or universal.reason
     return replace(found, motion=motion, universal=replace(universal, verdict=verdict, laws=laws, reason=reason))
-
-
-def _truncated_law(series: dict) -> Law:
-    """Return power series of controls as sums in the order of their powers.
-
-    SymPy's evaluation would turn 3/2 + (t - 1) into t + 1/2.
-    """
-    step = Symbol("t", real=True) - to_sympy(series["time"])
-
-    def added_up(coefficients: tuple[Expr, ...]) -> Expr:
-        terms = [Mul(c, step**k, evaluate=k != 1 or c == 1) for k, c in enumerate(coefficients) if c != 0]
-        return Add(*terms, evaluate=False) if len(terms) > 1 else Add(*terms)
-
-    return {name: added_up(each(to_sympy, trees)) for name, trees in series["coefficients"].items()}
-
-
-def _universal(universal: dict) -> UniversalControls:
-    families = zip(*(universal[part] for part in ("laws", "constants", "free", "positive")), strict=True)
-    laws = tuple(
-        UniversalLaw(Values(law), tuple(constants), tuple(free), each(to_sympy, positive))
-        for law, constants, free, positive in families
-    )
-    conditions = tuple(
-        ControlCondition(to_sympy(found["expression"]), to_sympy(found["place"]), tuple(found["effects"]))
-        for found in universal["conditions"]
-    )
-    return structured(UniversalControls, universal, laws=laws, conditions=conditions)

@@ -39,6 +39,21 @@ class Message(str):
         made.pattern, made.values = pattern, values
         return made
 
+    @staticmethod
+    def of_document(content: str | dict[str, Any]) -> str:
+        """Return a sentence of a document, which may give it as its pattern and the values.
+
+        Parameters
+        ----------
+        content : str or dict
+            Part of the document.
+
+        Returns
+        -------
+        str
+        """
+        return content if isinstance(content, str) else Message(content["pattern"], **content["values"])
+
     def __reduce__(self) -> tuple[Any, ...]:
         return _message, (self.pattern, self.values)
 

@@ -33,6 +33,7 @@ IN_MAXIMA = re.compile(
     rf"\b(?:title|source)\s*=\s*{STRING}"  # of a system or a scene
     rf'|\bequation\("[^"]*",\s*"\w+",\s*{STRING}'  # names of equations
     rf'|\bprinted\("[^"]*",\s*{STRING}'
+    rf"|\bworded\(\s*{STRING}"  # reasons of results
     rf'|\b(?:then|else) "(inverse[^"]*)"'
     rf'|"((?:Compared|Holds|Printed|What is)[^"]*\.)"'  # notes on the print
 )
@@ -150,7 +151,7 @@ def _place(file: Path) -> str:
 
 
 def _in_maxima(file: IO[bytes], keywords: Collection[str], tags: Collection[str], options: Mapping[str, Any]) -> Found:
-    """Titles, sources, names of equations and notes in a Maxima file."""
+    """Titles, sources, names of equations, notes and reasons in a Maxima file."""
     text = re.sub(r"/\*.*?\*/", "", file.read().decode(), flags=re.DOTALL)
     for found in IN_MAXIMA.finditer(text):
         message = " ".join(next(filter(None, found.groups()), "").split())

@@ -13,6 +13,7 @@ from sympy import Function, Symbol, cos, exp, symbols
 
 from holonom.display.free_motion import formula, power_series
 from holonom.free_motion import FirstCoefficient, FreeMotionVerdict, free_motion
+from holonom.language import speaking, translated
 from holonom.number_texts import number
 from holonom.program.forms import MotionProgram
 from holonom.program.numpy_function import NumpyFunction
@@ -180,6 +181,17 @@ def test_every_example_gets_a_verdict(example):
     if motion.verdict is FreeMotionVerdict.NOT_FREE:
         assert number(motion.first.value) != 0
     assert motion.evidence
+
+
+def test_reasons_are_said_in_another_language():
+    found = asked("pendulum")
+    with speaking("zh"):
+        said = [translated(each) for each in (found.motion.evidence, found.universal.reason, found.trajectory.reason)]
+    assert said == [
+        "lambda1 的幂级数从 0 阶开始，取 30 位数字",
+        "没有控制律使每个运动都是自由的：(10) 中 y^3 的系数（来自 gravity）是 981",
+        "沿自由运动由约束解出控制",
+    ]
 
 
 def test_first_coefficient_is_what_the_series_of_the_multiplier_begins_with():
