@@ -1,6 +1,6 @@
 """Errors: every kind with its message and hints, and the package's one exception."""
 
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from enum import Enum
 from pathlib import Path
 from string import Formatter
@@ -8,7 +8,11 @@ from typing import Any
 
 from .hidden import visible
 
-LIMITS = frozenset({"--time-limit", "--memory-limit", "--sandbox"})  # options that are one argument in Python
+ARGUMENTS = dict.fromkeys(("--time-limit", "--memory-limit", "--sandbox"), "limits") | {
+    "--dask": "scheduler",
+    "--sensitivity": "sensitivities",
+}
+"""Options with other names in Python."""
 
 
 INPUT, MACHINE = 2, 3  # exit statuses: bad input, and a machine that lacks something
@@ -319,6 +323,8 @@ class HolonomError(Exception):
         A file, with the line of the statement if it is known (``scene.mac:12``).
     detail : str
         Text for ``{detail}`` in the reason and the hints.
+    option : str
+        Option that the error is about, such as ``--until``, an argument in Python.
     refusal : str or None
         Id of an error of the library in Maxima, a row of ``maxima/refusals.mac``.
     last_lines : tuple of str
@@ -344,6 +350,7 @@ class HolonomError(Exception):
         place: str | Path = "",
         detail: str = "",
         *,
+        option: str = "",
         refusal: str | None = None,
         last_lines: tuple[str, ...] = (),
         command: str = "",
@@ -353,6 +360,7 @@ class HolonomError(Exception):
         self.kind = kind
         self.place = str(place)
         self.detail = detail
+        self.option = option
         self.refusal = refusal
         self.last_lines = last_lines
         self.command = command
@@ -360,7 +368,7 @@ class HolonomError(Exception):
 
     def __str__(self) -> str:
         """Return the message with options spelt as arguments in Python."""
-        return self._message(self._hints(_argument))
+        return self._message(_argument)
 
     def __getattr__(self, name: str) -> Any:
         if name in ALIASES:
@@ -380,14 +388,14 @@ class HolonomError(Exception):
         str
             One line, without a line break at its end.
         """
-        return self._message(self._hints(str, options))
+        return self._message(str, options)
 
     @property
     def reason(self) -> str:
         """Description of the error, without the place and the hints."""
         return self.kind.reason.format(detail=self.detail, **self.facts)
 
-    def _hints(self, spelt: Callable[[str], str], options: Collection[str] | None = None) -> Iterator[str]:
+    def _hints(self, spelt: Callable[[str], str], options: Collection[str] | None) -> Iterator[str]:
         """Yield the hints that name no other options, each option as it is spelt."""
         facts = {"detail": self.detail, **self.facts}
         for hint in self.kind.hints:
@@ -395,12 +403,12 @@ class HolonomError(Exception):
             if options is None or named <= set(options):
                 yield hint.format(**facts, **{name: spelt(name) for name in named})
 
-    def _message(self, hints: Iterable[str]) -> str:
-        located = f"{self.place}: {self.reason}" if self.place else self.reason
-        todo = ", or ".join(hints)
+    def _message(self, spelt: Callable[[str], str], options: Collection[str] | None = None) -> str:
+        located = ": ".join(filter(None, (self.place, self.option and spelt(self.option), self.reason)))
+        todo = ", or ".join(self._hints(spelt, options))
         return visible(" ".join(f"{part.rstrip('.')}." for part in (located, todo[:1].upper() + todo[1:]) if part))
 
 
 def _argument(option: str) -> str:
     """Return the argument in Python that is an option on the command line."""
-    return "limits" if option in LIMITS else option.removeprefix("--").replace("-", "_")
+    return ARGUMENTS.get(option) or option.removeprefix("--").replace("-", "_")

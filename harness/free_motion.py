@@ -71,7 +71,7 @@ class UniversalLaw:
 
     @cached_property
     def positive(self) -> tuple[Expr, ...]:
-        """Expressions that are positive where the law holds; empty if it always holds."""
+        """Expressions that are positive where the law holds, none if it always does."""
         return each(to_sympy, self.positive_trees)
 
 
@@ -156,7 +156,10 @@ class TrajectoryControl:
 
     @cached_property
     def law(self) -> Law:
-        """The law by control; a truncated series is an unevaluated sum, lowest power first."""
+        """The law by control.
+
+        A truncated series is an unevaluated sum, lowest power first.
+        """
         return self.series.law() if self.series else self.closed_law
 
 

@@ -41,7 +41,7 @@ class Message(str):
 
     @staticmethod
     def of_document(content: str | dict[str, Any]) -> str:
-        """Return a sentence of a document, which may give it as its pattern and the values.
+        """Return a sentence of a document, given whole or as a pattern with values.
 
         Parameters
         ----------

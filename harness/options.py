@@ -145,10 +145,11 @@ def read(each: Field, value: Any) -> Any:
         return () if kind is tuple else None
     if choices := choices_of(each):
         if str(value) not in choices:
-            raise HolonomError(ErrorKind.NOT_A_CHOICE, detail=f"'{value}': expected {', '.join(choices)}")
+            detail = f"'{value}': expected {', '.join(choices)}"
+            raise HolonomError(ErrorKind.NOT_A_CHOICE, detail=detail, option=spelt_of(each))
         return kind(str(value))
     if kind is Fraction:
-        return read_time(value)
+        return read_time(value, spelt_of(each))
     if kind is str:
         return value
     if kind is tuple:
@@ -162,16 +163,34 @@ def read(each: Field, value: Any) -> Any:
         bound = f"at most {stated.most:g}"
     else:
         return value
-    raise HolonomError(ErrorKind.NOT_IN_RANGE, detail=f"{each.name} is {bound}, not {value}")
+    raise HolonomError(ErrorKind.NOT_IN_RANGE, detail=f"expected {bound}, not {value}", option=spelt_of(each))
 
 
-def read_time(value: Any) -> Fraction:
+def spelt_of(each: Field) -> str:
+    """Return the option of the command line that a field is.
+
+    Parameters
+    ----------
+    each : Field
+        Field of an option.
+
+    Returns
+    -------
+    str
+        Such as ``--max-step``.
+    """
+    return next(iter(each.metadata["option"].spelt or ()), "--" + each.name.replace("_", "-"))
+
+
+def read_time(value: Any, option: str = "") -> Fraction:
     """Return a time exactly.
 
     Parameters
     ----------
     value : object
         An integer, a decimal or a quotient of integers, as a number or text.
+    option : str
+        Option that gives the time, for the error.
 
     Returns
     -------
@@ -186,7 +205,8 @@ def read_time(value: Any) -> Fraction:
     with suppress(ValueError, ZeroDivisionError):
         if within_reach(text):
             return Fraction(text)
-    raise HolonomError(ErrorKind.NOT_A_TIME, detail=text if len(text) <= SHOWN else f"{text[:SHOWN]}...")
+    shown = text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
+    raise HolonomError(ErrorKind.NOT_A_TIME, detail=shown, option=option)
 
 
 def within_reach(number: str) -> bool:

@@ -11,7 +11,12 @@ from click.testing import CliRunner
 
 from holonom.cli.options import takes
 from holonom.failures import ErrorKind, HolonomError
-from holonom.options import option, options_of, takes_options
+from holonom.options import option, options_of, spelt_of, takes_options
+from holonom.program.request import Request
+from holonom.series.request import SeriesRequest
+from holonom.simulation.request import SimulationRequest
+from holonom.stability.request import EquilibriaRequest
+from holonom.sweeps.request import SweepRequest
 
 
 class Color(StrEnum):
@@ -59,6 +64,13 @@ def test_field_of_request_is_option_of_command(arguments, made):
     assert CliRunner().invoke(toy, arguments).output.strip() == repr(made)
 
 
+@pytest.mark.parametrize("request_type", [SimulationRequest, SweepRequest, SeriesRequest, EquilibriaRequest, Request])
+def test_options_with_other_names_in_python_are_known(request_type):
+    for each in options_of(request_type):
+        error = HolonomError(ErrorKind.NOT_IN_RANGE, option=spelt_of(each))
+        assert str(error).startswith(f"{each.name}: ")
+
+
 def test_field_of_request_is_argument_in_python():
     assert Shop().toy() == (Toy(), {})
     assert Shop().toy("blue", 3, bought="0.75", m=2) == (Toy(Color.BLUE, 3, Fraction(3, 4)), {"m": 2})
@@ -83,4 +95,7 @@ def test_wrong_value_of_option_is_refused(given, failure):
     assert refused.value.kind is failure
     name, value = next(iter(given.items()))
     spelt = "--when" if name == "bought" else f"--{name}"
+    assert refused.value.option == spelt
+    assert str(refused.value).startswith(f"{spelt[2:]}: ")  # `ARGUMENTS` has the options with other names in Python
+    assert refused.value.message().startswith(f"{spelt}: ")
     assert CliRunner().invoke(toy, [spelt, str(value)]).exit_code == 2
