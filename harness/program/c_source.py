@@ -216,7 +216,7 @@ class Pieces:
 def in_pieces(
     program: Program, target: Target, inputs: Sequence[str], writes: Sequence[str], function: str, parameters: str
 ) -> Pieces:
-    """Return a program as statements of C, one longer than `LONGEST` as calls of its pieces.
+    """Return a program as statements of C, or as calls of pieces if it is long.
 
     Values that a later piece needs are kept in an array ``w``.
 
@@ -270,7 +270,7 @@ def _parts(items: Sequence) -> list[Sequence]:
 
 
 def _names_in_part(assignments: Sequence, outputs: Sequence) -> list[str]:
-    """Return the names that assignments and written outputs are made of, each once, in an order of their own."""
+    """Return the names that assignments and outputs use, each once, in order."""
     expressions = [*(expression for _, expression in assignments), *(value for (_, value), _ in outputs)]
     return list(dict.fromkeys(name for expression in expressions for name in sorted(names_in(expression))))
 
@@ -310,7 +310,7 @@ def body_of(lines: Iterable[str], parameters: Iterable[str]) -> str:
 
 
 def batch_support(many: Pieces) -> str:
-    """Return the vector type and the functions that statements for `MANY` need, their pieces among them.
+    """Return the vector type and the functions that statements for `MANY` need.
 
     Parameters
     ----------

@@ -253,7 +253,7 @@ def _sizes(problem: MotionProblem, roots: Matrix, states: Matrix, values: Matrix
 def _from_zero(
     problem: MotionProblem, roots: Matrix, states: Matrix, values: Matrix, span: float
 ) -> tuple[Vector, Vector]:
-    """Return how far k motions go from zero, in the mass metric, and the time that they take, shape (k,).
+    """Return distances from zero in the mass metric, and their times, shape (k,).
 
     The first iterate has the accelerations of the initial state, the second those along the first.
     """
@@ -286,7 +286,7 @@ def _from_zero(
 
 
 def _integral(rates: Matrix, lengths: Matrix) -> Matrix:
-    """Return the integral from the start of each window, shape (n, times, windows, k), by the trapezoidal rule."""
+    """Return integrals over windows by the trapezoidal rule, (n, times, windows, k)."""
     steps = (rates[:, 1:] + rates[:, :-1]) / 2 * lengths * TIMES[1]
     return np.concatenate([np.zeros_like(rates[:, :1]), np.cumsum(steps, axis=1)], axis=1)
 
@@ -302,7 +302,7 @@ def _roots(masses: Matrix) -> Matrix:
 
 
 class _Outputs:
-    """Outputs of a program of the motion at many states, zero if they are so by structure.
+    """Outputs of a motion program at many states, zero if so by structure.
 
     Signs are taken to be positive, because sizes depend on them little.
 
@@ -319,7 +319,7 @@ class _Outputs:
         self.of_time = bool(problem.tables) or "t" in names_used(signless)
 
     def __call__(self, times: Matrix, states: Matrix, values: Matrix) -> Matrix:
-        """Return the outputs, shape (outputs, ..., k), at states of shape (2n, ..., k) of k motions."""
+        """Return outputs of shape (outputs, ..., k) at states of shape (2n, ..., k)."""
         shape = np.broadcast_shapes(times.shape, states.shape[1:])
         states = np.broadcast_to(states, (len(states), *shape)).reshape(len(states), -1)
         values = np.broadcast_to(values.reshape(-1, *[1] * (len(shape) - 1), shape[-1]), (len(values), *shape))

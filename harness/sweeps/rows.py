@@ -322,7 +322,7 @@ class RowMaker:
 
     @cached_property
     def _common(self) -> MotionProblem:
-        """The problem with the nominal sizes of the sweep's middle row, to which tolerances of batches are relative."""
+        """The problem with the nominal sizes of the sweep's middle row."""
         middle = self.plan.axes.rows // 2
         values = self.plan.axes.numbers(middle, middle + 1)
         starts = self._starts(values)

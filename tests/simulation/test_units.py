@@ -275,7 +275,7 @@ push : holonomic_scene(system, parameter_values = [k = {k}], initial_state = [x 
     [
         ("1", "1", "0", "6283", 2, 1),  # 1 - cos(t)
         ("cos(50*t)", "0", "0", "200", 2 / 2500, 1 / 50),
-        ("1 - 1000*dot(x)", "0", "0", "10", 1e-6, 1e-3),  # at first; it goes on at its last velocity, 1/1000
+        ("1 - 1000*dot(x)", "0", "0", "10", 1e-6, 1e-3),  # at first; it continues with its last velocity, 1/1000
         ("if t < 1000 then 0 else 1", "1", "0", "6283", 2, 1),
         ("0", "1", "1/1000", "6283", 1e-3, 1),
         ("0", "0", "1/1000", "6283", 6.283, 6283),

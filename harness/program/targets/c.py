@@ -168,7 +168,7 @@ def _source(model: Model, written: Mapping[str, str]) -> str:
 
 
 def _function(name: str, arrays: str, program: Program | None, results: Sequence[str], inputs: Sequence[str]) -> Pieces:
-    """Body of a function that computes a program's outputs into places in arrays; empty without a program."""
+    """Return a function's body that computes a program's outputs, perhaps empty."""
     parameters = ", ".join([GIVEN, *(f"double *{array}" for array in arrays.split())])
     if program is None:
         return Pieces("", body_of((), names_of(parameters)))
@@ -272,6 +272,6 @@ def _jacobian(model: Model, function: Callable[..., Pieces]) -> Pieces:
 def _computed(
     name: str, arrays: str, program: Program | None, places: Mapping[str, str], function: Callable[..., Pieces]
 ) -> Pieces:
-    """Return a function's body that computes some outputs of a program into their places."""
+    """Return a function's body that computes outputs of a program in their places."""
     wanted = program and computing(program, places)
     return function(name, arrays, wanted, [places[output] for output in wanted.outputs] if wanted else ())
