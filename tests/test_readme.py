@@ -52,6 +52,10 @@ def place(tmp_path_factory) -> Path:
     return directory
 
 
+def test_the_readme_is_short():
+    assert len(README.splitlines()) <= 220
+
+
 def test_there_are_snippets_of_each_kind():
     assert {kind for kind, _ in BLOCKS} == {"sh", "text", "python", "maxima"}
 
