@@ -11,6 +11,7 @@ compiler with the same options, and compared at a random point before they are t
 import json
 import sys
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 from math import log
@@ -48,24 +49,23 @@ class Row:
 
 def measured(bodies: int) -> Row:
     """One row of the table."""
-    seconds, ours = our_program(bodies)
-    begun = time.process_time()
-    theirs = casadi_program(bodies, ours.inputs, list(ours.outputs))
-    theirs_seconds = time.process_time() - begun
+    seconds, ours = our_program(EXAMPLE, bodies)
+    theirs_seconds, theirs = casadi_program(joints_of_ring, bodies, ours)
     times = (None, None) if bodies > LARGEST_COMPILED else evaluations(ours, theirs)
     return Row(bodies, seconds, count_operations(ours), theirs_seconds, count_operations(theirs), *times)
 
 
-def our_program(bodies: int) -> tuple[float, Program]:
+def our_program(scene: Path, bodies: int) -> tuple[float, Program]:
     """Processor seconds of the whole command, and the program."""
-    text, seconds, _ = program_of_command(EXAMPLE, f"N={bodies}")
+    text, seconds, _ = program_of_command(scene, f"N={bodies}")
     return seconds, read_program(text)
 
 
-def casadi_program(bodies: int, inputs: tuple[str, ...], outputs: list[str]) -> Program:
-    """CasADi's program, with the inputs and outputs of ours."""
+def casadi_program(joints_of: Callable, bodies: int, ours: Program) -> tuple[float, Program]:
+    """Processor seconds of CasADi, and its program of bodies with joints, with the inputs and outputs of ours."""
+    begun = time.process_time()
     t, q, v = ca.SX.sym("t"), ca.SX.sym("q", 7 * bodies), ca.SX.sym("v", 7 * bodies)
-    kinetic, lengths, joints = description(bodies, q, v)
+    kinetic, lengths, joints = description(joints_of, bodies, q, v)
     momenta = ca.gradient(kinetic, v)
     mass = ca.jacobian(momenta, v)
     force = ca.gradient(kinetic, q) - ca.jtimes(momenta, q, v)
@@ -88,11 +88,11 @@ def casadi_program(bodies: int, inputs: tuple[str, ...], outputs: list[str]) -> 
         "method": "CasADi",
         "redundant": [],
         "operations": 0,
-        "inputs": list(inputs),
-        "assignments": instructions(function, inputs),
-        "outputs": {name: f"out{index}" for index, name in enumerate(outputs)},
+        "inputs": list(ours.inputs),
+        "assignments": instructions(function, ours.inputs),
+        "outputs": {name: f"out{index}" for index, name in enumerate(ours.outputs)},
     }
-    return read_program(json.dumps(document))
+    return time.process_time() - begun, read_program(json.dumps(document))
 
 
 def ldl_solver(matrix):
@@ -101,9 +101,9 @@ def ldl_solver(matrix):
     return lambda sides: ca.sparsify(ca.ldl_solve(sides, diagonal, factor, order))
 
 
-def description(bodies: int, q, v):
-    """T, |e|^2 - 1 of each body, and the joints, as `examples/ring.mac` has them."""
-    halves, kinetic, lengths, ends = half_sides(bodies), 0, [], []
+def description(joints_of: Callable, bodies: int, q, v):
+    """T, |e|^2 - 1 of each body, and the joints between places and axes of bodies."""
+    kinetic, lengths, placed = 0, [], []
     for k in range(bodies):
         place, e, velocity, rate = (
             q[7 * k : 7 * k + 3],
@@ -117,9 +117,14 @@ def description(bodies: int, q, v):
         kinetic += (ca.dot(velocity, velocity) + ca.dot(ca.DM(INERTIA) * spin, spin)) / 2
         lengths.append(ca.dot(e, e) - 1)
         axis = ca.vertcat(2 * (e1 * e2 - e0 * e3), e0**2 - e1**2 + e2**2 - e3**2, 2 * (e2 * e3 + e0 * e1))
-        ends.append((place - halves[k] * axis, place + halves[k] * axis))
-    joints = [ends[k][1] - ends[(k + 1) % bodies][0] for k in range(bodies)]
-    return kinetic, ca.vertcat(*lengths), ca.vertcat(*joints)
+        placed.append((place, axis))
+    return kinetic, ca.vertcat(*lengths), ca.vertcat(*joints_of(placed))
+
+
+def joints_of_ring(placed: list) -> list:
+    """The end of each body less the beginning of the next, as `examples/ring.mac` has them."""
+    ends = [(c - half * axis, c + half * axis) for half, (c, axis) in zip(half_sides(len(placed)), placed, strict=True)]
+    return [end - beginning for (_, end), (beginning, _) in zip(ends, [*ends[1:], ends[0]], strict=True)]
 
 
 def half_sides(bodies: int) -> list[float]:
@@ -172,7 +177,7 @@ def exponent(a: Row, b: Row) -> float:
 
 def main(directory: Path) -> None:
     """Measure, and write ``ring.txt`` into a directory."""
-    our_program(3)  # an image of Maxima is made where there is none yet
+    our_program(EXAMPLE, 3)  # an image of Maxima is made where there is none yet
     directory.mkdir(parents=True, exist_ok=True)
     text = report([measured(bodies) for bodies in BODIES])
     (directory / "ring.txt").write_text(text, encoding="utf-8")
