@@ -144,7 +144,7 @@ class TrajectoryControl:
     closed_law: Values = key("law")
     free: tuple[str, ...]  # controls that stay free functions of the time; a closed form may contain them
     motion: Values  # the free motion by coordinate, where its closed form is known
-    # times of the scene's time span with the values of the controls, as far as there are such controls
+    # times of the scene's time span with the values of the controls, if there are such controls
     samples: tuple[tuple[float, ...], ...]
     reason: Message
     series: SeriesOfControls | None  # where the law is not closed

@@ -77,7 +77,7 @@ class Variation:
     directions : sequence of str
         Parameters, names of the state, and ``t``.
     solved : sequence of str
-        The multipliers, and then the accelerations, as far as the program takes them: what moves beside the state.
+        The multipliers, then the accelerations that the program takes: inputs other than the state.
     """
 
     def __init__(

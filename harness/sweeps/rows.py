@@ -378,7 +378,7 @@ def _require_smooth(problem: MotionProblem, kept: Sequence[OutputQuantity]) -> N
             if _has_kinks(computing(problem.outputs, {name})):
                 raise HolonomError(
                     ErrorKind.NOT_KEPT,
-                    detail=f"{each.text} holds {name}, which is kept at times only: it has a kink",
+                    detail=f"{each.text} contains {name}, which has a corner and can be recorded at times only",
                 )
 
 

@@ -1,4 +1,4 @@
-;;; Terms of the expression graph in numbers, at a point; and ranks of sparse matrices of them
+;;; Values of terms of the expression graph at a point, and ranks of sparse matrices of them
 ;;;
 ;;; Values are rationals, rounded to 80 digits once they are longer. A sum is zero where its terms cancel to a share of
 ;;; 10^-20, a cosine where its argument would have to change by such a share. No number is compared with a fixed size,

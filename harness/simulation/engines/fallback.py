@@ -50,7 +50,7 @@ class FallbackEngine:
     choice : Choice or None
         Why the engine that began was taken, or None where there was nothing to weigh.
     segments : list of EngineSegment
-        In order, as far as the motion has come.
+        In order, up to the current time.
 
     Raises
     ------
