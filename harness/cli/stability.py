@@ -92,7 +92,8 @@ def equilibria(
 ) -> int:
     """Find states at rest and their stability.
 
-    The controls are constant. The search is random and may miss equilibria.
+    The controls are constant. The search is random and may miss equilibria. If the equations are polynomial and small,
+    their real solutions are counted.
     """
     from ..display.stability import show_branches, show_equilibria
     from ..formats import Publication, published

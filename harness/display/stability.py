@@ -105,7 +105,7 @@ def show_equilibria(console: "Console", equilibria: "Equilibria") -> None:
         kind = styled(each.stability) if each.isolated else styled(each.stability) + Text(", not isolated")
         table.add_row(each.name, *(f"{each.coordinates[name]:.8g}" for name in names), kind)
     console.print(table)
-    console.print(f"{len(equilibria)} found from {equilibria.starts} starts; there may be others.")
+    console.print(_number_of(equilibria))
     if equilibria.more:
         console.print(f"{equilibria.more} more belong to the families of those that are not isolated.")
     if equilibria.singular:
@@ -139,6 +139,16 @@ def show_branches(console: "Console", branches: "Branches") -> None:
         table.add_row(f"{found.controls[branches.control]:.8g}", *map(str, counts))
     console.print(table)
     console.print("Numbers of equilibria found; there may be others.")
+
+
+def _number_of(equilibria: "Equilibria") -> str:
+    """Return how many were found, and whether these are all."""
+    found = f"{len(equilibria)} found from {equilibria.starts} starts"
+    if equilibria.complete:
+        return f"{found}; these are all: the equations have exactly {counted(len(equilibria), 'real solution')}."
+    if equilibria.count is None:
+        return f"{found}; there may be others."
+    return f"{found}; the equations have exactly {counted(equilibria.count, 'real solution')}."
 
 
 def _title(found: "Linearization") -> str:

@@ -1,7 +1,8 @@
 """Equilibria for constant controls, and their stability.
 
 At rest the equations of motion are r(q, lambda) = 0, f(q) = 0. Newton's method solves them from many random starting
-points. More solutions may exist. Stability follows from two theorems:
+points. More solutions may exist, unless `holonom.stability.real_solutions` counts as many. Stability follows from two
+theorems:
 
 - If all forces have a potential, q is stable if the second variation of V - T0 on the constraint manifold is
   positive definite: the energy has a strict minimum there (Lagrange and Dirichlet; Merkin, Introduction to the Theory
@@ -83,7 +84,7 @@ class Equilibrium:
 
 @dataclass(frozen=True, repr=False)
 class Equilibria(Shown):
-    """Equilibria that were found, perhaps not all.
+    """Equilibria that were found: all of them if `complete` is True.
 
     Attributes
     ----------
@@ -100,6 +101,9 @@ class Equilibria(Shown):
         Solutions in or near singular configurations, which are not classified.
     turns : tuple of str
         Coordinates that may be changed by whole turns.
+    count : int or None
+        Number of real solutions, by a Groebner basis and Hermite's form; None if the equations are not polynomial, too
+        large, or have infinitely many complex solutions.
 
     Examples
     --------
@@ -107,6 +111,8 @@ class Equilibria(Shown):
     >>> found = holonom.load("examples/pendulum.mac").equilibria(u=2)
     >>> [(each.coordinates["y"], str(each.stability)) for each in found]
     [(-2.0, 'stable'), (2.0, 'unstable')]
+    >>> found.complete
+    True
     """
 
     scene: str
@@ -116,6 +122,12 @@ class Equilibria(Shown):
     more: int
     singular: int
     turns: tuple[str, ...]
+    count: int | None
+
+    @property
+    def complete(self) -> bool:
+        """True if these are all equilibria, up to whole turns."""
+        return len(self.found) == self.count and all(each.isolated for each in self.found)
 
     def __getitem__(self, name: str) -> Equilibrium:
         """Return the equilibrium of a name, or raise `HolonomError`."""
@@ -144,6 +156,8 @@ class Equilibria(Shown):
             "more": self.more,
             "singular": self.singular,
             "turns": list(self.turns),
+            "count": self.count,
+            "complete": self.complete,
             "found": [
                 {
                     "name": each.name,
@@ -192,6 +206,8 @@ def find_equilibria(
     HolonomError
         The equations contain the time, a control has no value, or the motion is not analytic.
     """
+    from .real_solutions import count_real_solutions
+
     require_analytic(problem)
     if equations.changes_with_time:
         raise HolonomError(ErrorKind.NEVER_AT_REST)
@@ -200,9 +216,9 @@ def find_equilibria(
     turns = search.turns(np.random.default_rng(seed))
     points = search.starts(starts, np.random.default_rng(seed), near)
     found, *left_out = search.equilibria(points, turns)
-    return Equilibria(
-        problem.scene, values, starts, found, *left_out, tuple(equations.coordinates[place] for place in turns)
-    )
+    names = tuple(equations.coordinates[place] for place in turns)
+    count = count_real_solutions(equations, problem.independent, list(values.values()))
+    return Equilibria(problem.scene, values, starts, found, *left_out, names, count)
 
 
 def _constant_controls(

@@ -1,15 +1,22 @@
 """Equilibria against closed forms, and their stability against the theorems' textbook cases."""
 
 import json
+import random
 
 import numpy as np
 import pytest
+import sympy as sp
+from sympy.polys.domains import QQ
+from sympy.polys.groebnertools import groebner
+from sympy.polys.orderings import grevlex
+from sympy.polys.rings import ring
 from test_linearization import DOUBLE_PENDULUM
 
 import holonom
 from holonom.failures import ErrorKind, HolonomError
 from holonom.formats import Publication, require
 from holonom.stability.equilibria import Stability
+from holonom.stability.real_solutions import _count_real_zeros
 
 START = "initial_state = [{start}], time_span = [0, 1])$\n"
 HOOP = """system : holonomic_system(coordinates = [phi], parameters = [Omega],
@@ -157,3 +164,57 @@ def test_the_command(holonom_here):
     require(Publication.EQUILIBRIA, found)
     assert (answer.returncode, found["format"], found["controls"]) == (0, "holonom-equilibria", {"u": 2.0})
     assert [each["stability"] for each in found["found"]] == ["stable", "unstable"]
+
+
+# ---- all equilibria --------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("omega", "count"), [(2, 2), (5, 4)])
+def test_equilibria_of_an_angle_are_all(omega, count):
+    """phi = 0 and pi, and beyond the fork two more; the unknowns are cos(phi) and sin(phi)."""
+    found = holonom.system(f"""system : holonomic_system(coordinates = [phi], kinetic_energy = dot(phi)^2/2,
+  potential_energy = [gravity = -10*cos(phi), turning = -{omega**2}*sin(phi)^2/2])$
+s : holonomic_scene(system, initial_state = [phi = 1/2, dot(phi) = 0], time_span = [0, 1])$""").equilibria(starts=40)
+    assert (found.count, len(found), found.complete) == (count, count, True)
+
+
+LINE = """system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, potential_energy = [V = {}])$
+s : holonomic_scene(system, initial_state = [x = 1/2, dot(x) = 0], time_span = [0, 1])$"""
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_count_of_random_potentials_is_that_of_sturm(seed):
+    x, draw = sp.Symbol("x"), random.Random(seed)
+    potential = sum(sp.Rational(draw.randint(-9, 9), draw.randint(1, 4)) * x**k for k in range(1, 7)) + x**8
+    found = holonom.system(LINE.format(str(potential).replace("**", "^"))).equilibria(starts=60)
+    assert found.count == sp.Poly(sp.diff(potential, x), x).count_roots()
+    assert found.complete is (len(found) == found.count)
+
+
+def test_one_start_does_not_find_all():
+    found = holonom.system(LINE.format("x^4/4 - x^2/2")).equilibria(starts=1)
+    assert (found.count, found.complete) == (3, False)
+
+
+@pytest.mark.parametrize("potential", ["exp(x) - x", "x^4/4 + sin(x)", "0*x"])
+def test_count_is_unknown_if_equations_are_not_polynomial_or_have_a_family(potential):
+    found = holonom.system(LINE.format(potential)).equilibria(starts=5)
+    assert (found.count, found.complete) == (None, False)
+
+
+X, Y = ring("x, y", QQ, grevlex)[1:]
+
+
+@pytest.mark.parametrize(
+    ("polynomials", "count"),
+    [
+        ([X**2 + Y**2 - 5, X * Y - 2], 4),
+        ([X**2 + Y**2 - 1, Y - 1], 1),  # a double zero counts once
+        ([X**2 + Y**2 - 1, Y - 2], 0),
+        ([X**3 - X, Y**2 - X], 3),
+        ([X**2 + 1, X**2 + 2], 0),
+        ([X * Y], None),
+    ],
+)
+def test_distinct_real_zeros_of_two_polynomials(polynomials, count):
+    assert _count_real_zeros(groebner(polynomials, X.ring)) == count

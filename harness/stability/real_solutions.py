@@ -1,0 +1,180 @@
+"""Exact number of equilibria, if their equations are polynomial and small.
+
+The equations r(q, lambda) = 0 and f(q) = 0 are polynomials in coordinates and multipliers. A coordinate that occurs in
+its sine and cosine alone is replaced by these two, with c^2 + s^2 = 1. Numbers are exact, a control is the rational
+number that its floating-point value is. From a Groebner basis over the rational numbers follow:
+
+- There are finitely many complex solutions if and only if a power of each unknown is a leading monomial (Cox, Little &
+  O'Shea, Ideals, Varieties, and Algorithms, section 5.3, theorem 6).
+- The number of distinct real solutions is then the signature of Hermite's form, H_ij = trace of the multiplication by
+  b_i b_j, with b the monomials that no leading monomial divides (Cox, Little & O'Shea, Using Algebraic Geometry,
+  section 2.5, theorem 5.2).
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from itertools import pairwise, product
+from math import prod
+from typing import Any
+
+from sympy.polys.domains import QQ
+from sympy.polys.groebnertools import groebner
+from sympy.polys.matrices import DomainMatrix
+from sympy.polys.orderings import grevlex
+from sympy.polys.rings import PolyElement, PolyRing, ring
+
+from ..program.arithmetic import Arithmetic, run_program
+from ..program.motion_problem import computing
+from ..program.motion_program import Call, Constant, Expression, Name, Operation, Program, calls_in
+from .linear_equations import LinearEquations
+
+UNKNOWNS = 10  # larger systems are not tried
+SOLUTIONS = 64  # larger products of the degrees, Bezout's bound of the number of complex solutions, are not tried
+UNDEFINED = object()  # the value of an expression that is not a polynomial
+ANGLE = {Operation.COS: "cos", Operation.SIN: "sin"}
+
+
+def count_real_solutions(equations: LinearEquations, kept: Sequence[int], controls: Sequence[float]) -> int | None:
+    """Count the states at rest for constant controls.
+
+    Parameters
+    ----------
+    equations : LinearEquations
+        Of the scene.
+    kept : sequence of int
+        Indices of independent constraints, counted from 0; the multipliers of the others are zero.
+    controls : sequence of float
+        Constant values, in the order of the equations.
+
+    Returns
+    -------
+    int or None
+        Number of distinct real solutions in coordinates and multipliers, up to whole turns of angles. None if the
+        equations are not polynomial, or too large, or have infinitely many complex solutions.
+    """
+    polynomials = _equations_at_rest(equations, kept, controls)
+    if not polynomials or prod(max(map(sum, each.itermonoms())) for each in polynomials) > SOLUTIONS:
+        return None
+    return _count_real_zeros(groebner(polynomials, polynomials[0].ring))
+
+
+def _equations_at_rest(
+    equations: LinearEquations, kept: Sequence[int], controls: Sequence[float]
+) -> list[PolyElement] | None:
+    """Return the polynomials that vanish at rest, or None if one is not a polynomial."""
+    rows = {f"equation[{k}]" for k in range(1, len(equations.coordinates) + 1)}
+    program = computing(equations.program, rows | {f"constraint[{beta + 1}]" for beta in kept})
+    angles = _angles(program, equations.coordinates)
+    plain = [*(name for name in equations.coordinates if name not in angles), *(equations.multipliers[k] for k in kept)]
+    unknowns = [*plain, *(f"{kind}({name})" for name in angles for kind in ANGLE.values())]
+    if not 0 < len(unknowns) <= UNKNOWNS:
+        return None
+    polynomials, *generators = ring(unknowns, QQ, grevlex)
+    inputs = dict.fromkeys(program.inputs, polynomials.zero) | dict(zip(unknowns, generators, strict=True))
+    inputs |= dict.fromkeys(angles, UNDEFINED)
+    values = (polynomials(QQ(*Fraction(value).as_integer_ratio())) for value in controls)
+    inputs |= dict(zip(equations.controls, values, strict=True))
+    found = list(run_program(_with_angles(program, angles), inputs, _arithmetic(polynomials)).values())
+    if any(each is UNDEFINED for each in found):
+        return None
+    found += [inputs[f"cos({name})"] ** 2 + inputs[f"sin({name})"] ** 2 - 1 for name in angles]
+    return [each for each in found if each]
+
+
+def _angles(program: Program, coordinates: Sequence[str]) -> list[str]:
+    """Return the coordinates with sines or cosines."""
+    calls = [call for _, expression in program.assignments for call in calls_in(expression)]
+    arguments = {call.arguments[0] for call in calls if call.operation in ANGLE}
+    return [name for name in coordinates if Name(name) in arguments]
+
+
+def _with_angles(program: Program, angles: Sequence[str]) -> Program:
+    """Return the program with a name ``cos(phi)`` in the place of such a call."""
+
+    def written(expression: Expression) -> Expression:
+        match expression:
+            case Call(operation, (Name(text),)) if operation in ANGLE and text in angles:
+                return Name(f"{ANGLE[operation]}({text})")
+            case Call(operation, arguments):
+                return Call(operation, tuple(map(written, arguments)))
+        return expression
+
+    return replace(program, assignments=tuple((name, written(each)) for name, each in program.assignments))
+
+
+def _arithmetic(polynomials: PolyRing) -> Arithmetic[Any]:
+    """Return the arithmetic of a ring.
+
+    A product with zero is zero. Other operations than those of the ring are undefined.
+    """
+
+    def number(value: Fraction) -> PolyElement:
+        return polynomials(QQ(value.numerator, value.denominator))
+
+    def total(*terms: Any) -> Any:
+        return UNDEFINED if any(term is UNDEFINED for term in terms) else sum(terms, polynomials.zero)
+
+    def multiplied(*factors: Any) -> Any:
+        if any(factor is not UNDEFINED and not factor for factor in factors):
+            return polynomials.zero
+        return UNDEFINED if any(factor is UNDEFINED for factor in factors) else prod(factors, start=polynomials.one)
+
+    def negated(value: Any) -> Any:
+        return multiplied(-polynomials.one, value)
+
+    def divided(numerator: Any, denominator: Any) -> Any:
+        constant = denominator is not UNDEFINED and denominator and denominator.is_ground
+        return multiplied(numerator, polynomials(1 / denominator.coeff(1)) if constant else UNDEFINED)
+
+    def power(base: Any, exponent: Fraction) -> Any:
+        if base is UNDEFINED or exponent.denominator != 1:
+            return UNDEFINED
+        return base ** int(exponent) if exponent >= 0 else divided(polynomials.one, base ** int(-exponent))
+
+    known = {
+        Operation.ADD: total,
+        Operation.MULTIPLY: multiplied,
+        Operation.SUBTRACT: lambda x, y: total(x, negated(y)),
+        Operation.DIVIDE: divided,
+        Operation.NEGATE: negated,
+    }
+    others = {operation: lambda *_: UNDEFINED for operation in Operation if operation not in known}
+    return Arithmetic(number, dict.fromkeys(Constant, UNDEFINED), power, known | others)
+
+
+def _count_real_zeros(basis: Sequence[PolyElement]) -> int | None:
+    """Count the distinct real zeros of a Groebner basis.
+
+    None if there are infinitely many complex ones, or more than `SOLUTIONS`.
+    """
+    polynomials, leading = basis[0].ring, [each.LM for each in basis]
+    powers = [[m[k] for m in leading if m[k] == sum(m)] for k in range(polynomials.ngens)]
+    if not all(powers):
+        return None
+
+    def divides(lead: tuple[int, ...], monomial: tuple[int, ...]) -> bool:
+        return all(a <= b for a, b in zip(lead, monomial, strict=True))
+
+    outside = product(*(range(min(each)) for each in powers))
+    standard = [m for m in outside if not any(divides(lead, m) for lead in leading)]
+    if len(standard) > SOLUTIONS:
+        return None
+    monomials = [polynomials({m: QQ.one}) for m in standard]
+    products = [[(a * b).rem(basis) for b in monomials] for a in monomials]
+    traces = {
+        m: sum((each.get(n, QQ.zero) for n, each in zip(standard, row, strict=True)), QQ.zero)
+        for m, row in zip(standard, products, strict=True)
+    }
+    form = [[sum((c * traces[m] for m, c in each.iterterms()), QQ.zero) for each in row] for row in products]
+    coefficients = DomainMatrix(form, (len(form), len(form)), QQ).charpoly()
+    mirrored = [-c if k % 2 else c for k, c in enumerate(coefficients)]
+    return _sign_changes(coefficients) - _sign_changes(mirrored)
+
+
+def _sign_changes(coefficients: Sequence[Any]) -> int:
+    """Count changes of sign.
+
+    If all roots are real, this is the number of positive roots (Descartes).
+    """
+    return sum((a > 0) != (b > 0) for a, b in pairwise([c for c in coefficients if c]))
