@@ -549,7 +549,8 @@ class Scene:
     def equilibria(self, options: dict[str, Any], **controls: float) -> "Equilibria":
         """Search for states at rest for constant controls.
 
-        The search is random. If the equations are polynomial and small, `Equilibria.complete` states whether it found all.
+        The search is random. `Equilibria.complete` states whether it found all, if the equations are polynomial and
+        small.
 
         Parameters
         ----------
