@@ -498,8 +498,9 @@ class Scene:
         Raises
         ------
         HolonomError
-            If a control has no law or a parameter no value, if the motion is not analytic or cannot be continued so
-            far, or if the constraints lose rank there.
+            If a control has no law or a parameter no value, if a sign changes or is held there, if the motion has
+            tables, releases or forces with multipliers, if it cannot be continued so far, or if the constraints lose
+            rank there.
 
         Examples
         --------

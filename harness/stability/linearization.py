@@ -16,7 +16,7 @@ Peterson, Gede & Hubbard, Multibody System Dynamics 33 (2015) 143).
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
@@ -25,7 +25,9 @@ import numpy as np
 import scipy.linalg
 
 from ..failures import ErrorKind, HolonomError
-from ..program.motion_problem import MotionProblem, require_analytic
+from ..program.motion_problem import MotionProblem, computing, require_analytic
+from ..program.motion_program import names_used
+from ..program.numpy_function import NumpyFunction
 from ..shown import Shown
 from ..simulation.constraints.directions import or_one
 from ..simulation.matrices import Matrix, Vector, start_of
@@ -38,6 +40,7 @@ from .tangent import Tangent
 
 RATES = ("u", "du", "ddu")  # a control, its rate and its acceleration
 AT_REST = 1e-9  # velocities and accelerations, in terms of their nominal sizes, that count as none
+ON_SURFACE = 1e-6  # switching functions, relative to their changes, that count as zero
 UNREACHED = 1e-9  # directions of the state, relative to the others, that count as unreachable
 
 
@@ -268,11 +271,32 @@ def linearize(problem: MotionProblem, equations: LinearEquations, at: Fraction |
     Raises
     ------
     HolonomError
-        The motion is not analytic, or cannot be continued so far, or the constraints are singular there.
+        A sign changes or is held there; the motion has tables, releases or forces with multipliers, or cannot be
+        continued so far; the constraints are singular there.
     """
-    require_analytic(problem)
+    require_analytic(replace(problem, signs=()))
     t, state = state_at(problem, at)
+    _require_between_switchings(problem, t, state)
     return linearized(problem, equations, motion_at(problem, equations, t, state), t)
+
+
+def _require_between_switchings(problem: MotionProblem, t: float, state: Vector) -> None:
+    """Reject a state at which a sign changes, is held, or depends on a reaction.
+
+    A switching function counts as zero beside its changes if time, coordinates and velocities move by nominal sizes.
+    """
+    if not problem.signs:
+        return
+    nominal, names = nominal_of(problem), ("t", *problem.state)
+    points = np.array([t, *state])[:, None] + np.diag([0.0, nominal.time, *nominal.state])[1:]
+    for place, sign in enumerate(problem.signs, start=1):
+        program = computing(problem.switching, {f"switch[{place}]"})
+        known = dict(zip(names, points, strict=True)) | {name: float(value) for name, value in problem.values.items()}
+        if not names_used(program) <= known.keys():
+            raise HolonomError(ErrorKind.NOT_ANALYTIC, problem.scene, sign.of)
+        here, *beside = NumpyFunction(program)([known.get(name, 0.0) for name in program.inputs])[0]
+        if not abs(here) > ON_SURFACE * np.max(np.abs(np.subtract(beside, here))):
+            raise HolonomError(ErrorKind.NOT_ANALYTIC, problem.scene, sign.of)
 
 
 def linearized(

@@ -233,11 +233,24 @@ def test_a_motion_that_ends_before_is_refused():
     assert refused.value.kind is ErrorKind.NOT_REACHED
 
 
-def test_a_motion_that_switches_is_refused():
-    text = "system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [-signum(dot(x))])$"
-    scene = "s : holonomic_scene(system, initial_state = [x = 0, dot(x) = 1], time_span = [0, 1])$"
+DRY = """system : holonomic_system(coordinates = [x], parameters = [c], kinetic_energy = dot(x)^2/2,
+  potential_energy = [spring = 2*x^2], forces = [dry = [-c*signum(dot(x))*(1 + x^2)]])$
+s : holonomic_scene(system, parameter_values = [c = 3], initial_state = [x = 1/2, dot(x) = {speed}],
+  time_span = [0, 1])$"""
+
+
+@pytest.mark.parametrize(("speed", "direction"), [(1, 1), (-1, -1)])
+def test_a_motion_with_friction_is_linearised_between_switchings(speed, direction):
+    found = holonom.system(DRY.format(speed=speed)).linearize()
+    stiffness = 4 + 3 * direction  # the slope of 4 x + 3 d (1 + x^2) at 1/2
+    assert found.A.ravel() == pytest.approx([0, 1, -stiffness, 0], abs=1e-12)
+
+
+@pytest.mark.parametrize(("speed", "at"), [(0, None), (1, 1)])
+def test_a_state_that_sticks_or_turns_is_refused(speed, at):
+    """The friction 15/4 holds the spring's pull 2, from the start or once the mass has stopped."""
     with pytest.raises(HolonomError) as refused:
-        holonom.system(text + scene).linearize()
+        holonom.system(DRY.format(speed=speed)).linearize(at=at)
     assert refused.value.kind is ErrorKind.NOT_ANALYTIC
 
 
