@@ -20,6 +20,7 @@ from .polynomials import half_of, peak_of, root_of, sizes_of, values_at
 
 SAMPLES = 17  # of a step
 LAST, RESOLVED = 2, 1e-6  # coefficients of a step, and what they are of the largest where the polynomial is near
+PLACED = 1e-10  # the same where the place of a zero ends the motion
 MARGIN = 1e-9  # of the sizes of the coefficients: rounding of the bound, generously
 ROUNDING = 1e-13  # of the largest value that may be: no sign
 HALVINGS = 60  # of a step; below that numbers are too coarse to tell its parts apart
@@ -45,15 +46,20 @@ class Steps(NamedTuple):
         """
         return self._replace(coefficients=-self.coefficients)
 
-    def resolved(self) -> NDArray[np.bool_]:
+    def resolved(self, share: float = RESOLVED) -> NDArray[np.bool_]:
         """Return True for elements whose polynomials have small last coefficients.
+
+        Parameters
+        ----------
+        share : float
+            What they are of the largest at most.
 
         Returns
         -------
         ndarray of bool, shape (elements,)
         """
         sizes = np.abs(self.coefficients)
-        return sizes[-LAST:].max(axis=(0, 1)) <= RESOLVED * sizes.max(axis=(0, 1))
+        return sizes[-LAST:].max(axis=(0, 1)) <= share * sizes.max(axis=(0, 1))
 
     def of(self, elements: Any) -> "Steps":
         """Return some of the elements.

@@ -31,7 +31,7 @@ from ..simulation.residuals import constraint_residuals
 from ..simulation.simulate import last_time
 from .axes import Axes
 from .batch_engine import BatchEngine, Look
-from .extremes import Steps, first_zero, largest, largest_size
+from .extremes import PLACED, RESOLVED, Steps, first_zero, largest, largest_size
 from .outputs import ALONG, Kind, OutputQuantity
 from .quantities import along_motion, constraint_forces, expressions_of, other_forces, require_known
 from .request import TOLERANCE
@@ -343,11 +343,11 @@ class RowMaker:
     @cached_property
     def _ending_engine(self) -> BatchEngine:
         events = [Name(f"event[{place}]") for place, _ in enumerate(self._problem.until, start=1)]
-        return self._looking_at(events, lambda steps: np.array([first_zero(along) for along in steps]))
+        return self._looking_at(events, lambda steps: np.array([first_zero(along) for along in steps]), PLACED)
 
-    def _looking_at(self, along: Sequence[Expression], look: Look) -> BatchEngine:
+    def _looking_at(self, along: Sequence[Expression], look: Look, resolved: float = RESOLVED) -> BatchEngine:
         projects = self.plan.stabilization is Stabilization.PROJECTION
-        return BatchEngine(self._common, self.plan.tol, projects, along, look, self.plan.elements)
+        return BatchEngine(self._common, self.plan.tol, projects, along, look, self.plan.elements, resolved)
 
     @cached_property
     def _evaluate(self) -> "NDArray":
