@@ -36,7 +36,12 @@ def linearize(
     return 0
 
 
-@holonom.command(examples=["linearize-along examples/pendulum.mac --until 2 --samples 21"])
+@holonom.command(
+    examples=[
+        "linearize-along examples/pendulum.mac --until 2 --samples 21",
+        "linearize-along examples/shaken_pendulum.mac --scene upright_scene --until 1/10",
+    ]
+)
 @asks_one_scene()
 @takes(*options_of(AlongRequest))
 @writes_json

@@ -24,6 +24,7 @@ autodoc_typehints_format = "short"
 python_use_unqualified_type_names = True
 numpydoc_show_class_members = False
 man_pages = [("reference/commands", "holonom", "derive, check and simulate mechanical systems", [], 1)]
+today_fmt = "%Y-%m-%d"  # in all languages
 
 html_theme = "furo"
 html_title = "Holonom"

@@ -142,7 +142,7 @@ def show_branches(console: "Console", branches: "Branches") -> None:
 
 
 def _number_of(equilibria: "Equilibria") -> str:
-    """Return how many were found, and whether these are all."""
+    """Return a sentence on the number of equilibria found, and on their completeness."""
     found = f"{len(equilibria)} found from {equilibria.starts} starts"
     if equilibria.complete:
         return f"{found}; these are all: the equations have exactly {counted(len(equilibria), 'real solution')}."

@@ -90,7 +90,7 @@ def _angles(program: Program, coordinates: Sequence[str]) -> list[str]:
 
 
 def _with_angles(program: Program, angles: Sequence[str]) -> Program:
-    """Return the program with a name ``cos(phi)`` in the place of such a call."""
+    """Return the program with a name ``cos(phi)`` for such a call."""
 
     def written(expression: Expression) -> Expression:
         match expression:

@@ -4,8 +4,9 @@ import json
 
 import pytest
 from programs import PENDULUM, chain, document, program
+from refusing import failing
 
-from holonom.failures import HolonomError
+from holonom.failures import ErrorKind, HolonomError
 from holonom.formats import VERSION
 from holonom.program.motion_program import (
     Call,
@@ -82,8 +83,7 @@ def test_count_grows_with_the_chain_link_by_link():
         ({"assignments": [["w", ["Rational", 1, 0]]]}, "not an expression"),
         ({"assignments": [["w", 1.5]]}, "not an expression"),
         ({"assignments": [["w", True]]}, "not a number"),
-        ({"assignments": [["w", "ImaginaryUnit"]]}, "no real number"),
-        ({"assignments": [["w", {"num": "1e9999"}]]}, "larger than a double"),
+        ({"assignments": [["w", "ImaginaryUnit"]]}, "not a real number"),
         ({"assignments": [["w", {"num": "1e99999999"}]]}, "not an expression"),
         ({"assignments": [["w", {"num": "nan"}]]}, "not an expression"),
     ],
@@ -94,6 +94,11 @@ def test_what_is_no_program_is_refused_in_one_sentence(change, sentence):
         read_program(text)
     assert sentence in str(refusal.value)
     assert "\n" not in str(refusal.value)
+
+
+def test_a_number_beyond_double_precision_is_refused():
+    with failing(ErrorKind.NUMBER_TOO_LARGE):
+        read_program(json.dumps(document(["a"], [["w", {"num": "1e9999"}]], {"out": "a"})))
 
 
 @pytest.mark.parametrize("depth", [200, 100_000])

@@ -1,6 +1,6 @@
 """Ten systems linearised: SymPy's Linearizer, and differences of motions that begin beside each other.
 
-``python tests/stability/test_truths.py`` prints the largest relative errors as a table.
+``python tests/stability/test_linearized_truths.py`` prints the largest relative errors as a table.
 """
 
 import re
@@ -251,7 +251,7 @@ def test_sleeping_top_is_upset_below_its_limit(spin):
     truth = np.concatenate([1j * roots, np.conj(1j * roots)])
     apart = np.abs(found.eigenvalues[:, None] - truth)
     assert max(apart.min(axis=0).max(), apart.min(axis=1).max()) < 1e-9
-    assert (found.eigenvalues.real.max() > 0.1) is bool(spin**2 < 8)
+    assert (found.eigenvalues.real.max() > 0.1) == (spin**2 < 8)
 
 
 if __name__ == "__main__":
