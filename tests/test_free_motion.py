@@ -183,6 +183,21 @@ def test_every_example_gets_a_verdict(example):
     assert motion.evidence
 
 
+def test_a_start_found_to_sixty_digits_determines_the_controls_of_its_trajectory(write_scene):
+    """It took two minutes to factor what rounding leaves of the constraint; then the controls were not determined."""
+    scene = write_scene(
+        """load("holonom.mac")$
+        system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+          potential_energy = 981/100*y, constraints = [x^2 + y^2 - u^2])$
+        paid_out : holonomic_scene(system, control_law = [u = 1 + t/10], initial_state = [x = 1/5, dot(x) = 0],
+          initial_guess = [y = -1, dot(y) = 0], time_span = [0, 1])$"""
+    )
+    found = free_motion(scene, None, {}, Limits()).trajectory
+    y, v = -math.sqrt(24) / 5, -1 / math.sqrt(24) / 2
+    truth = [math.hypot(1 / 5, y + v * t - 9.81 * t**2 / 2) for t, _ in found.samples]
+    assert [u for _, u in found.samples] == pytest.approx(truth, rel=1e-12)
+
+
 def test_reasons_are_said_in_another_language():
     found = asked("pendulum")
     with speaking("zh"):
