@@ -433,7 +433,7 @@ ENVIRONMENTS = [
                 ("'", "the C compiler cannot be run", MACHINE_AT_FAULT),
                 ("true", "made no library", MACHINE_AT_FAULT),
                 (" ", "the C compiler cannot be run", MACHINE_AT_FAULT),
-                ("false", "refused", 2),
+                ("false", "cannot compile", 2),
             )
         )
     ),
@@ -450,6 +450,7 @@ ENVIRONMENTS = [
         "simulate scene.mac --until 1 --plot out.svg",
         "not UTF-8",
         prepare=holding("matplotlibrc", b"\xff\xfe"),
+        shell='"$@"',  # Matplotlib reads them once a process
     ),
     Fault(
         "a Python without docstrings",

@@ -136,7 +136,7 @@ ENDS = {
     "waves": "sin(a*x) + b*y - c + d/10",
     "touches": "(x - c)^2*(y - d) + a*b*x",
     "from zero": "dot(x)^2 + dot(y)^2 - c*a, x - 1",
-    "poles": "a/(x - c) + b + d",
+    "poles": "1/(x - c) - a - d + b/8",
     "roots": "sqrt(4 + x*a) - d - 2, exp(-30*(x - c)^2) - b",
 }
 
