@@ -1,8 +1,7 @@
 """The catalogs of messages: collected from the sources, and brought up to date.
 
 `make catalog` runs this: it writes ``locale/holonom.pot`` anew and each language's catalog after it, and says what is
-wrong in those. A message that is new has no translation yet; the translation of one that is gone is kept at the end, as
-obsolete.
+wrong in those. A message that is new has no translation yet; the translation of one that is gone is dropped.
 """
 
 import io
@@ -66,7 +65,7 @@ def collected() -> Catalog:
 def template_text(catalog: Catalog) -> str:
     """A catalog as a file has it: a message a line, without the lines of the sources and without dates."""
     written = io.BytesIO()
-    write_po(written, catalog, width=0, omit_header=catalog.locale is None, include_lineno=False)
+    write_po(written, catalog, width=0, omit_header=catalog.locale is None, include_lineno=False, ignore_obsolete=True)
     return written.getvalue().decode()
 
 

@@ -37,7 +37,7 @@ SLIPS = [
     (r"\bu0?\b(?!\[)", "1"),
     (r"\bq(?=[1-3]\b)", "u"),
     *[(rf"(?<=[\[,]){index}(?=[\],])", other) for index, other in zip("sklm", "klms", strict=True)],
-    *[(rf"\[{index}\]", f"[{other}]") for index, other in [("rho", "alpha"), ("alpha", "rho")]],
+    *[(rf"\[{index}\]", f"[{other}]") for index, other in [("rho", "sigma"), ("sigma", "rho")]],
     *[(rf"\[{index}\]", f"[{other}]") for index, other in [("beta", "gamma"), ("gamma", "beta")]],
 ]
 
@@ -87,10 +87,11 @@ def test_finds_the_misprints_and_no_others(printed_equations):
 def test_each_misprint_is_the_slip_that_a_reader_of_the_print_sees(printed_equations):
     # printed -> right; a change in the transcription of a misprinted equation shows here
     undotted, unfactored, overdotted = ("dot", "ddot"), ("", "2 *"), ("ddot", "dot")
+    renamed = [("alpha", "sigma")] * 2  # alpha is the number of controls
     assert [slips_between(e.printed, e.corrected) for e in printed_equations if not e.agrees] == [
-        [undotted, undotted],  # (7): accelerations of q and u
-        [unfactored, undotted],  # (8): the mixed term of q and u; acceleration of u
-        [unfactored, undotted],  # (10): the same
+        [*renamed, undotted, undotted],  # (7): accelerations of q and u
+        [unfactored, *renamed, undotted],  # (8): the mixed term of q and u; acceleration of u
+        [unfactored, *renamed, undotted],  # (10): the same
         [("u", "2")],  # equation of motion of q2
         [overdotted],  # multiplier
         [overdotted],  # (16): each of the three
