@@ -260,7 +260,7 @@ def free_motion(
     Returns
     -------
     FreeMotion
-        With verdicts that `judged` has checked.
+        With verdicts that `with_verdicts` has checked.
 
     Raises
     ------
@@ -271,7 +271,9 @@ def free_motion(
     ----------
     Chen, Guo & Mei (2019), section 2, eq. (10).
     """
-    return judged(read_free_motion(ask(Document.FREE_MOTION, file, scene, order, settings=settings, limits=limits)))
+    return with_verdicts(
+        read_free_motion(ask(Document.FREE_MOTION, file, scene, order, settings=settings, limits=limits))
+    )
 
 
 def read_free_motion(text: str) -> FreeMotion:
@@ -295,7 +297,7 @@ def read_free_motion(text: str) -> FreeMotion:
     return structured(FreeMotion, document, premises=structured(Premises, document))
 
 
-def judged(found: FreeMotion) -> FreeMotion:
+def with_verdicts(found: FreeMotion) -> FreeMotion:
     """Check each verdict with the equations of motion.
 
     A contradicted verdict becomes undecided.

@@ -17,7 +17,7 @@ from .crosscheck.law_search import find_free_law
 from .crosscheck.report import CheckResult
 from .crosscheck.seed import fresh_seed
 from .crosscheck.system import MechanicalSystem
-from .crosscheck.universal_laws import ControlLaw, judge_law
+from .crosscheck.universal_laws import ControlLaw, verify_law
 from .crosscheck.verdict import Verdict
 
 T = TypeVar("T")
@@ -33,7 +33,7 @@ class FreeMotionTrial:
     span: tuple[Expr, Expr] | None  # first and last time
 
     def of_law(self, law: Law, positive: Sequence[Expr] = ()) -> CheckResult:
-        """Judge a law by random motions on the time span.
+        """Verify a law by random motions on the time span.
 
         Parameters
         ----------
@@ -46,7 +46,7 @@ class FreeMotionTrial:
         -------
         CheckResult
         """
-        return judge_law(self.system, self.values, ControlLaw(_symbols(law), tuple(positive)), self.span)
+        return verify_law(self.system, self.values, ControlLaw(_symbols(law), tuple(positive)), self.span)
 
     def contradiction_of_free_motion(self, law: Law) -> str:
         """Return the first contradiction of a random motion to free motion for all states.

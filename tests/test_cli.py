@@ -289,7 +289,7 @@ def test_the_scene_file_s_closed_form_size_had_no_effect(write_scene, holonom_he
 
 def test_a_law_that_sympy_contradicts_had_exit_status_0(particle_scene, monkeypatch):
     contradicted = CheckResult(Verdict.DISAGREES, 50, 8, "lambda1 is 1")
-    monkeypatch.setattr("holonom.free_verdicts.judge_law", lambda *_: contradicted)
+    monkeypatch.setattr("holonom.free_verdicts.verify_law", lambda *_: contradicted)
     found = CliRunner().invoke(cli, ["free", str(particle_scene)], standalone_mode=False)
     assert found.return_value == 1
     assert "disagrees to 50 digits in 8 random states: lambda1 is 1" in found.output

@@ -97,7 +97,7 @@ from mpmath import mp
 from holonom.crosscheck.evaluation import Steps
 from holonom.crosscheck.tape import Tape
 from holonom.crosscheck.taylor import Taylor
-from holonom.crosscheck.verdict import Comparison, Pair, judge
+from holonom.crosscheck.verdict import Comparison, Pair, verify
 from holonom.mathjson import from_sympy, to_sympy
 from holonom.notation import scene_text
 from holonom.typeset.latex import latex_tree
@@ -115,7 +115,7 @@ expected = mp.taylor(mp.sinc, 2, 4)
 assert all(abs(a - b) < 1e-12 for a, b in zip(values[place], expected))
 rate = tape.gradient(taylor, values, {place: (mp.one,)})["x"]
 assert all(abs(a - k * b) < 1e-12 for k, (a, b) in enumerate(zip(rate, expected[1:]), 1))
-assert judge(Comparison((Pair("sinc", to_sympy(tree), sympy.sin(x) / x),)), "seed").verdict.value == "agrees at points"
-assert judge(Comparison((Pair("sinc", to_sympy(tree), sympy.sin(x)),)), "seed").verdict.value == "disagrees"
+assert verify(Comparison((Pair("sinc", to_sympy(tree), sympy.sin(x) / x),)), "seed").verdict.value == "agrees at points"
+assert verify(Comparison((Pair("sinc", to_sympy(tree), sympy.sin(x)),)), "seed").verdict.value == "disagrees"
 """
     subprocess.run([sys.executable, "-c", SINC + code], check=True)

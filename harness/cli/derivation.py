@@ -104,7 +104,7 @@ def check(
 
     seed = seed or fresh_seed()
     sources = [Source(scene, limits) for scene in scenes]
-    with beside(_judge_motions, settings, seed) as child:
+    with beside(_verify_motions, settings, seed) as child:
         with run_in_background(scenes[0], limits, _import_what_checks):
             described = [source.description(settings) for source in sources]
             child.send(sources)
@@ -132,11 +132,11 @@ def check(
     return DISAGREEMENT if any(report.count(*unwanted) for _, report in reports) else 0
 
 
-def _judge_motions(sources: Sequence["Source"], settings: dict[str, str], seed: str) -> list[list["EquationVerdict"]]:
+def _verify_motions(sources: Sequence["Source"], settings: dict[str, str], seed: str) -> list[list["EquationVerdict"]]:
     """Ask Maxima for the motions of each source, and verify them."""
     from ..crosscheck.questions import ask_for_check
 
-    with run_in_background(sources[0].file, sources[0].limits, _import_what_judges_motions):
+    with run_in_background(sources[0].file, sources[0].limits, _import_verification):
         asked = [ask_for_check(source, settings) for source in sources]
 
     from ..crosscheck.motions import motion_verdicts, read_motions
@@ -155,7 +155,7 @@ def _import_what_checks() -> None:
     from ..display import derivation  # noqa: F401
 
 
-def _import_what_judges_motions() -> None:
+def _import_verification() -> None:
     """Import the modules that read and verify motions."""
     from ..crosscheck import motions  # noqa: F401
     from ..program import drawing  # noqa: F401

@@ -50,9 +50,9 @@ def free(
 
     from ..crosscheck.report import Verdict
     from ..display.free_motion import show_free_motion
-    from ..free_motion import judged, read_free_motion
+    from ..free_motion import read_free_motion, with_verdicts
 
-    found = judged(read_free_motion(text))
+    found = with_verdicts(read_free_motion(text))
     present(_free_motion_document(found), json_file, show_free_motion, found)
     contradicted = any(law.check.verdict is Verdict.DISAGREES for law in found.universal.laws)
     return DISAGREEMENT if contradicted else 0

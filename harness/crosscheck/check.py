@@ -17,7 +17,7 @@ from .derivation import CheckedDerivation
 from .independent import IndependentEquations
 from .initial_motion import CheckedScene
 from .premises import Difference, Premises, differences, premises_of
-from .redundancy import judge_redundancy
+from .redundancy import verify_redundancy
 from .relations import NotComparable
 from .report import CheckReport, CheckResult, EquationVerdict, Item, Place, Verdict, verdict_on
 from .seed import fresh_seed
@@ -32,7 +32,7 @@ from .skeleton import (
 )
 from .system import MechanicalSystem, described_system
 from .time_limit import TimeLimit
-from .verdict import Comparison, judge_all
+from .verdict import Comparison, verify_all
 
 Checked = TypeVar("Checked", CheckedDerivation, CheckedScene)
 Compare = Callable[[Checked, tuple[Relation, ...]], Comparison | tuple[Comparison, ...]]
@@ -121,7 +121,7 @@ class _Check:
         from . import lagranges_method  # loads SymPy's mechanics, which nothing else of this package needs
 
         if lagranges_method.can_take(checked.known.system):
-            yield self._judged(
+            yield self._verify(
                 place, lagranges_method.OPINION, lambda: lagranges_method.compare(checked.known), checked.system
             )
         yield from self._on_left_out(place, derived.left_out, () if closed else CLOSED_NUMBERS, checked.size)
@@ -142,7 +142,7 @@ class _Check:
             return
         regular = derived.mass_matrix == "regular"
         found = self._time.result(
-            lambda: judge_redundancy(checked.system, kept, regular, starts, self._seed), OUT_OF_TIME
+            lambda: verify_redundancy(checked.system, kept, regular, starts, self._seed), OUT_OF_TIME
         )
         if names or found.verdict is not Verdict.AGREES:
             yield verdict_on(place, item, found)
@@ -178,7 +178,7 @@ class _Check:
             if item in waiting:
                 waiting = waiting[waiting.index(item) + 1 :]
                 compare = comparisons[equation.id]
-                yield self._judged(place, item, lambda c=compare, e=equation: c(checked, e.relations), checked.system)
+                yield self._verify(place, item, lambda c=compare, e=equation: c(checked, e.relations), checked.system)
             else:
                 yield _refused(place, item, "no such equation belongs here; or it is there twice, or out of order")
         held = {(each.id, each.number, each.name) for each in part.equations}
@@ -186,7 +186,7 @@ class _Check:
             if item not in held:
                 yield _refused(place, item, "the record does not hold this equation", held=False)
 
-    def _judged(
+    def _verify(
         self,
         place: Place,
         item: Item,
@@ -200,7 +200,7 @@ class _Check:
                 return CheckResult(Verdict.DISAGREES, None, None, f"the record holds {reason}")
             compared = (compared,) if isinstance(compared, Comparison) else compared
             comparisons = [replace(each, domain=system.terms) for each in compared]
-            return judge_all(comparisons, f"{self._seed} {item.number} {item.name}")
+            return verify_all(comparisons, f"{self._seed} {item.number} {item.name}")
 
         return verdict_on(place, item, self._time.result(work, OUT_OF_TIME))
 

@@ -161,8 +161,8 @@ def split_kinetic_energy(checked: CheckedDerivation, relations: Relations) -> Co
         (
             *_sparse_pairs("A", A, {(s, k): a for s, p in enumerate(momenta, 1) for k, a in _slopes(p, v)}),
             *(
-                Pair(f"B[{s}]", claimed, momentum.xreplace(at_rest))
-                for s, (claimed, momentum) in enumerate(zip(list_of("B", n, rest[:n]), momenta, strict=True), 1)
+                Pair(f"B[{s}]", derived, momentum.xreplace(at_rest))
+                for s, (derived, momentum) in enumerate(zip(list_of("B", n, rest[:n]), momenta, strict=True), 1)
             ),
             Pair("T0", *read_exactly(["T0"], rest[n:]), T.xreplace(at_rest)),
         )
@@ -174,12 +174,12 @@ def _slopes(momentum: sp.Expr, velocities: Sequence[sp.Symbol]) -> list[tuple[in
     return [(k, momentum.diff(v)) for k, v in enumerate(velocities, 1) if v in present]
 
 
-def _sparse_pairs(name: str, claimed: Entries, expected: Entries) -> tuple[Pair, ...]:
+def _sparse_pairs(name: str, derived: Entries, expected: Entries) -> tuple[Pair, ...]:
     """Pair the entries of the record, and all nonzero entries."""
     zero = sp.Integer(0)
     return tuple(
-        Pair(f"{name}{list(key)}", claimed.get(key, zero), expected.get(key, zero))
-        for key in sorted(claimed.keys() | {key for key, value in expected.items() if value != 0})
+        Pair(f"{name}{list(key)}", derived.get(key, zero), expected.get(key, zero))
+        for key in sorted(derived.keys() | {key for key, value in expected.items() if value != 0})
     )
 
 
@@ -197,8 +197,8 @@ def driven_accelerations(checked: CheckedDerivation, relations: Relations) -> Co
     -------
     Comparison
     """
-    claimed = solved_for(checked.system.accelerations, relations)
-    return Comparison(_solved_pairs(claimed), solves=(checked.known.driven,), certificate=claimed)
+    derived = solved_for(checked.system.accelerations, relations)
+    return Comparison(_solved_pairs(derived), solves=(checked.known.driven,), certificate=derived)
 
 
 def inverse_mass_matrix(checked: CheckedDerivation, relations: Relations) -> Comparison:
@@ -252,8 +252,8 @@ def christoffel_symbols(checked: CheckedDerivation, relations: Relations) -> Com
     """
     v = checked.system.velocities
     n = len(v)
-    claimed = sparse_entries("christoffel", (n, n, n), (2, 0, 1), relations)
-    for k, m, s in claimed:
+    derived = sparse_entries("christoffel", (n, n, n), (2, 0, 1), relations)
+    for k, m, s in derived:
         if k > m:
             raise NotComparable(f"christoffel[{k}, {m}, {s}], which christoffel[{m}, {k}, {s}] stands for")
     at_rest = dict.fromkeys(checked.system.accelerations, sp.Integer(0))
@@ -263,7 +263,7 @@ def christoffel_symbols(checked: CheckedDerivation, relations: Relations) -> Com
         present = [k for k, velocity in enumerate(v, 1) if velocity in quadratic.free_symbols]
         for k, m in combinations_with_replacement(present, 2):
             expected[k, m, s] = quadratic.diff(v[k - 1], v[m - 1]) / 2
-    return Comparison(_sparse_pairs("christoffel", claimed, expected))
+    return Comparison(_sparse_pairs("christoffel", derived, expected))
 
 
 def constraint_accelerations(checked: CheckedDerivation, relations: Relations) -> Comparison:
@@ -347,11 +347,11 @@ def constraint_forces(checked: CheckedDerivation, relations: Relations) -> Compa
     -------
     Comparison
     """
-    claimed = list_of("Lambda", len(checked.system.coordinates), relations)
+    derived = list_of("Lambda", len(checked.system.coordinates), relations)
     return Comparison(
         tuple(
             Pair(f"Lambda[{s}]", value, force)
-            for s, (value, force) in enumerate(zip(claimed, checked.known.constraint_forces, strict=True), 1)
+            for s, (value, force) in enumerate(zip(derived, checked.known.constraint_forces, strict=True), 1)
         ),
         solves=(checked.known.bordered,),
         certificate=checked.motion(),

@@ -44,7 +44,7 @@ def with_independent_functions(comparison: Comparison) -> Comparison:
     return replace(
         comparison,
         pairs=tuple(
-            pair._replace(claimed=made.of(pair.claimed), independent=made.of(pair.independent))
+            pair._replace(derived=made.of(pair.derived), independent=made.of(pair.independent))
             for pair in comparison.pairs
         ),
         given={symbol: made.of(meaning) for symbol, meaning in comparison.given.items()},

@@ -173,12 +173,12 @@ def free_motion_condition(checked: CheckedScene, relations: Relations) -> tuple[
     tuple of Comparison
     """
     expected = checked.known.constraint_accelerations
-    claimed = list_of("residual", len(expected), relations)
+    derived = list_of("residual", len(expected), relations)
     return (
         Comparison(
             tuple(
                 Pair(f"condition of free motion {beta}", value, residual)
-                for beta, (value, residual) in enumerate(zip(claimed, expected, strict=True), start=1)
+                for beta, (value, residual) in enumerate(zip(derived, expected, strict=True), start=1)
             ),
             given=checked.control_law,
             solves=(checked.known.free,),
@@ -204,13 +204,13 @@ def initial_state(checked: CheckedScene, relations: Relations) -> tuple[Comparis
     tuple of Comparison
     """
     names = tuple(map(initial, checked.state))
-    claimed = solved_for(names, relations)
+    derived = solved_for(names, relations)
     if list(checked.scene.initial_state) != [symbol.name for symbol in checked.state]:
         raise NotComparable("an initial state that is not complete, or not in order")
     for name in names:
-        if claimed[name] != checked.initial_values[name]:
+        if derived[name] != checked.initial_values[name]:
             raise NotComparable(f"two values of {name}")
-    require_given(checked, claimed)
+    require_given(checked, derived)
     pairs = (
         *_vanishing("constraint", checked.system.constraints),
         *_vanishing("rate of constraint", checked.derivation.stated.constraint_rates),
@@ -218,14 +218,14 @@ def initial_state(checked: CheckedScene, relations: Relations) -> tuple[Comparis
     return at_start(checked, pairs)
 
 
-def require_given(checked: CheckedScene, claimed: Definitions) -> None:
+def require_given(checked: CheckedScene, derived: Definitions) -> None:
     """Raise unless initial values are the given ones, up to the stated correction.
 
     Parameters
     ----------
     checked : CheckedScene
         The scene.
-    claimed : Definitions
+    derived : Definitions
         Initial values in the record, by the symbols q1_0, dot(q1)_0.
 
     Raises
@@ -235,7 +235,7 @@ def require_given(checked: CheckedScene, claimed: Definitions) -> None:
     """
     changes = {}
     for name, value in checked.given_values.items():
-        change = (claimed[name] - value).xreplace(checked.parameters)
+        change = (derived[name] - value).xreplace(checked.parameters)
         if change != 0 and (not change.is_number or not change.equals(0)):
             changes[name] = change
     stated = checked.scene.correction
@@ -436,8 +436,8 @@ def initial_accelerations(checked: CheckedScene, relations: Relations) -> tuple[
     tuple of Comparison
     """
     system = checked.system
-    claimed = solved_for([initial(a) for a in system.accelerations], relations)
-    solution = {a: claimed[initial(a)] for a in system.accelerations}
+    derived = solved_for([initial(a) for a in system.accelerations], relations)
+    solution = {a: derived[initial(a)] for a in system.accelerations}
     return (
         Comparison(
             tuple(Pair(initial(a).name, value, a) for a, value in solution.items()),
@@ -465,10 +465,10 @@ def initial_series(checked: CheckedScene, relations: Relations) -> tuple[Compari
     tuple of Comparison
     """
     system = checked.system
-    claimed = solved_for(system.coordinates, relations)
+    derived = solved_for(system.coordinates, relations)
     rates: dict[sp.Symbol, sp.Expr] = {}
     pairs = []
-    for q, series in claimed.items():
+    for q, series in derived.items():
         for symbol in history(q):
             rates[symbol] = series.xreplace({system.time: checked.initial_time})
             pairs.append(Pair(initial(symbol).name, rates[symbol], symbol))

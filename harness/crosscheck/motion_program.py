@@ -117,7 +117,7 @@ def why_missing(error: HolonomError) -> CheckResult:
     raise error
 
 
-def judge_programs(description: Description, programs: Iterable[ScenePrograms], seed: str) -> list[ProgramVerdict]:
+def verify_programs(description: Description, programs: Iterable[ScenePrograms], seed: str) -> list[ProgramVerdict]:
     """Return verdicts on the programs of the scenes of a description.
 
     Parameters
@@ -138,22 +138,22 @@ def judge_programs(description: Description, programs: Iterable[ScenePrograms], 
     verdicts = []
     for each in programs:
         motion = DescribedMotion(description, scenes.get(each.scene))
-        for solve, judged in each.missing.items():
-            verdicts.append(ProgramVerdict(each.scene, f"motion program, {solve} solve", judged))
+        for solve, result in each.missing.items():
+            verdicts.append(ProgramVerdict(each.scene, f"motion program, {solve} solve", result))
         if each.problems:
-            verdicts += _judge_with_releases(motion, each, seed)
+            verdicts += _verify_with_releases(motion, each, seed)
         for solve, program in each.programs.items():
             maker = _open_states(motion, program, seed)
-            verdicts += _judged(each.scene, [f"motion program, {solve} solve"], maker)
+            verdicts += _verify(each.scene, [f"motion program, {solve} solve"], maker)
     return verdicts
 
 
-def _judge_with_releases(motion: DescribedMotion, programs: ScenePrograms, seed: str) -> list[ProgramVerdict]:
+def _verify_with_releases(motion: DescribedMotion, programs: ScenePrograms, seed: str) -> list[ProgramVerdict]:
     """Return verdicts on the initial motion, and on that after each release.
 
     The releases are tried in every order.
     """
-    verdicts = _judge_problems(motion, programs, seed)
+    verdicts = _verify_problems(motion, programs, seed)
     problems = programs.problems
     if any(len(each.released) != len(motion.scene.released) for each in problems.values()):
         return verdicts
@@ -161,12 +161,12 @@ def _judge_with_releases(motion: DescribedMotion, programs: ScenePrograms, seed:
         after = replace(programs, problems={solve: each.released[k].after for solve, each in problems.items()})
         verdicts += [
             replace(each, part=f"{each.part}; after {release.of} = 0")
-            for each in _judge_with_releases(motion.after(k), after, seed)
+            for each in _verify_with_releases(motion.after(k), after, seed)
         ]
     return verdicts
 
 
-def _judge_problems(motion: DescribedMotion, programs: ScenePrograms, seed: str) -> list[ProgramVerdict]:
+def _verify_problems(motion: DescribedMotion, programs: ScenePrograms, seed: str) -> list[ProgramVerdict]:
     problems = programs.problems
     if wrong := other_premises(motion, problems, seed):
         return [ProgramVerdict(programs.scene, PREMISES, CheckResult(Verdict.DISAGREES, DIGITS, 1, wrong))]
@@ -186,8 +186,8 @@ def _judge_problems(motion: DescribedMotion, programs: ScenePrograms, seed: str)
     else:
         maker = _plain_states(motion, problems, seed)
         parts = [MATRICES, *parts]
-    verdicts += _judged(programs.scene, [PREMISES], values_of_inputs(motion, problems, seed))
-    return [*verdicts, *_judged(programs.scene, parts, maker)]
+    verdicts += _verify(programs.scene, [PREMISES], values_of_inputs(motion, problems, seed))
+    return [*verdicts, *_verify(programs.scene, parts, maker)]
 
 
 def _values_of(program: Program, inputs: Values, solve: Solve) -> Values | None:
@@ -329,7 +329,7 @@ def _open_states(motion: DescribedMotion, program: Program, seed: str) -> Callab
     return compared
 
 
-def _judged(scene: str | None, parts: list[str], compared: Callable[[int], Parts]) -> list[ProgramVerdict]:
+def _verify(scene: str | None, parts: list[str], compared: Callable[[int], Parts]) -> list[ProgramVerdict]:
     """Compare at random states until there are enough or one part is wrong."""
     wrong: dict[str, str] = {}
     points = 0

@@ -80,7 +80,7 @@ def _series_of(description: Description, scene: str, answer: Answer | None) -> S
     return SceneSeries(scene, None, CheckResult(Verdict.NOTHING, None, None, reason))
 
 
-def judge_series(
+def verify_series(
     description: Description, found: Iterable[SceneSeries], programs: Iterable[ScenePrograms] = ()
 ) -> list[ProgramVerdict]:
     """Return verdicts on the power series of the scenes of a description.
@@ -106,18 +106,18 @@ def judge_series(
     verdicts = []
     for each in found:
         if scenes[each.scene].servo_trees:
-            continue  # the series does not hold the controls: `judge_servo` looks at it
+            continue  # the series does not hold the controls: `verify_servo` looks at it
         if each.series is None:
-            judged = each.missing
+            result = each.missing
         else:
             motion = DescribedMotion(description, scenes[each.scene])
             series, digits = each.series, _digits(each.series)
-            judged = _judged(partial(_compared, motion, series, corrections.get(each.scene)), digits)
-        verdicts.append(ProgramVerdict(each.scene, SERIES, judged))
+            result = _verify(partial(_compared, motion, series, corrections.get(each.scene)), digits)
+        verdicts.append(ProgramVerdict(each.scene, SERIES, result))
     return verdicts
 
 
-def judge_servo(
+def verify_servo(
     description: Description, programs: Iterable[ScenePrograms], found: Iterable[SceneSeries]
 ) -> list[ProgramVerdict]:
     """Return verdicts on controls of servo-constraints and on their power series.
@@ -144,8 +144,8 @@ def judge_servo(
             motion = DescribedMotion(description, scene)
             own = series.get(each.scene)
             compared = partial(_values_of_servo, motion, problem, own)
-            judged = _judged(compared, DIGITS if own is None else _digits(own))
-            verdicts.append(ProgramVerdict(each.scene, SERVO, judged))
+            result = _verify(compared, DIGITS if own is None else _digits(own))
+            verdicts.append(ProgramVerdict(each.scene, SERVO, result))
     return verdicts
 
 
@@ -153,7 +153,7 @@ def _digits(series: MotionSeries) -> int:
     return DIGITS if series.arithmetic == EXACT else min(DIGITS, int(series.arithmetic[9:-1]) - LOST)
 
 
-def _judged(compared: Callable[[], Iterator[ComparedValue]], digits: int) -> CheckResult:
+def _verify(compared: Callable[[], Iterator[ComparedValue]], digits: int) -> CheckResult:
     try:
         wrong = differing(compared, digits)
     except IrregularPoint:

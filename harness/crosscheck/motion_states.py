@@ -463,7 +463,7 @@ def values_by_substitution(
 ) -> Iterator[ComparedValue]:
     """Check that the equations of motion hold along a curve through a state.
 
-    Second derivatives of the constraints that hold are claimed as well.
+    Second derivatives of the constraints that hold are values, too.
 
     Parameters
     ----------

@@ -10,8 +10,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from ..description import Description
-from .motion_program import ProgramVerdict, ScenePrograms, judge_programs, read_programs
-from .motion_series import SceneSeries, judge_series, judge_servo, read_all_series
+from .motion_program import ProgramVerdict, ScenePrograms, read_programs, verify_programs
+from .motion_series import SceneSeries, read_all_series, verify_series, verify_servo
 from .questions import Answers
 from .report import CheckResult, EquationVerdict, Item, Place, Verdict, verdict_on
 from .time_limit import TimeLimit
@@ -70,14 +70,14 @@ def motion_verdicts(
     """
     time = TimeLimit(seconds)
 
-    def judged(work: Callable[[], list[ProgramVerdict]], scene: str | None) -> list[ProgramVerdict]:
+    def verify(work: Callable[[], list[ProgramVerdict]], scene: str | None) -> list[ProgramVerdict]:
         return time.result(work, [_out_of_time(scene)])
 
     for each in motions.programs:
         series = [found for found in motions.series if found.scene == each.scene]
-        found = judged(lambda each=each: judge_programs(description, [each], seed), each.scene)
-        found += judged(lambda each=each, series=series: judge_series(description, series, [each]), each.scene)
-        found += judged(lambda each=each, series=series: judge_servo(description, [each], series), each.scene)
+        found = verify(lambda each=each: verify_programs(description, [each], seed), each.scene)
+        found += verify(lambda each=each, series=series: verify_series(description, series, [each]), each.scene)
+        found += verify(lambda each=each, series=series: verify_servo(description, [each], series), each.scene)
         yield from map(_as_equation_verdict, found)
 
 

@@ -2,7 +2,7 @@
 
 By the implicit function theorem, constraints with independent gradients at a configuration are a manifold around it.
 The others follow from them there if they vanish on it. So a configuration near the initial state of a scene, or a
-random one, is moved by Newton's method onto the constraints that are claimed to be independent. If the others hold as
+random one, is moved by Newton's method onto the constraints that the record lists as independent. If the others hold as
 well, the rank of the gradients of all constraints is the number of independent ones.
 """
 
@@ -45,7 +45,7 @@ class Ranks(NamedTuple):
     kept: int
 
 
-def judge_redundancy(
+def verify_redundancy(
     described: MechanicalSystem,
     kept: Sequence[str],
     regular: bool,
@@ -59,9 +59,9 @@ def judge_redundancy(
     described : MechanicalSystem
         With all constraints.
     kept : sequence of str
-        Multipliers of the constraints that are claimed to be independent.
+        Multipliers of the constraints that the record lists as independent.
     regular : bool
-        True if the mass matrix is claimed to be regular.
+        True if the mass matrix is regular by the record.
     starts : sequence of mapping of Symbol to Expr
         Configurations that satisfy all constraints: numbers for known times, parameters, controls, coordinates.
     seed : str

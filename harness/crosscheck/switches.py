@@ -44,7 +44,7 @@ def law_times(motion: DescribedMotion, problem: MotionProblem, span: tuple[mp.mp
         Time, in the scene's unit.
     """
     first, last = span
-    breaks = [*_knots(motion, problem), *_zeros(_stated(motion), span), *_zeros(_claimed(problem), span)]
+    breaks = [*_knots(motion, problem), *_zeros(_stated(motion), span), *_zeros(_derived(problem), span)]
     inside = sorted({each for each in breaks if first < each < last})
     yield from ((a + b) / 2 for a, b in pairwise([first, *inside, last]))
     for each in inside:
@@ -101,7 +101,7 @@ def _compared(condition: Tree) -> Iterator[Tree]:
             yield ["Subtract", a, b]
 
 
-def _claimed(problem: MotionProblem) -> Functions:
+def _derived(problem: MotionProblem) -> Functions:
     of_time = [f"switch[{place}]" for place, sign in enumerate(problem.signs, 1) if sign.by is DependsOn.TIME]
     signs = {sign.name: (mp.one,) for sign in problem.signs}
 

@@ -1,4 +1,4 @@
-"""Verify laws that are claimed to make every motion free.
+"""Verify control laws that Maxima finds to make every motion free.
 
 Under such a law every multiplier is zero: at every state on the constraint manifold the bordered equations,
 Lagrange's with multipliers and d^2 f/dt^2 = 0, have the solution lambda = 0. States are drawn at random and moved
@@ -39,7 +39,7 @@ class ControlLaw:
     positive: tuple[sp.Expr, ...] = ()  # what must be positive where the law holds
 
 
-def judge_law(
+def verify_law(
     system: MechanicalSystem,
     values: Mapping[sp.Symbol, sp.Expr],
     law: ControlLaw,

@@ -62,7 +62,7 @@ class Pair(NamedTuple):
     """A quantity in the record, and its value by the independent evaluation."""
 
     quantity: str
-    claimed: sp.Expr
+    derived: sp.Expr
     independent: sp.Expr
 
 
@@ -75,7 +75,7 @@ class Comparison:
     given: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     # equations whose unknowns occur in the pairs; each may use the solutions before it
     solves: tuple[LinearEquations, ...] = ()
-    # claimed closed forms of all these unknowns; None where there are none
+    # derived closed forms of all these unknowns; None if there are none
     certificate: Mapping[sp.Symbol, sp.Expr] | None = None
     # symbols with numbers that may be rounded in the last of 50 digits, such as initial values found by Newton's method
     rounded: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
@@ -93,7 +93,7 @@ class Found(Enum):
     NOTHING = auto()  # the independent evaluation has no value
 
 
-def judge(comparison: Comparison, seed: str) -> CheckResult:
+def verify(comparison: Comparison, seed: str) -> CheckResult:
     """Return the verdict on a comparison.
 
     Parameters
@@ -109,11 +109,11 @@ def judge(comparison: Comparison, seed: str) -> CheckResult:
     if not comparison.pairs:
         return CheckResult(Verdict.NOTHING, None, None)
     if comparison.rounded and not _free_names(comparison):
-        return judge_rounded(comparison)
-    return _Judge(comparison, seed).result()
+        return verify_rounded(comparison)
+    return _Verification(comparison, seed).result()
 
 
-def judge_all(comparisons: Sequence[Comparison], seed: str) -> CheckResult:
+def verify_all(comparisons: Sequence[Comparison], seed: str) -> CheckResult:
     """Return the verdict on several comparisons.
 
     Parameters
@@ -128,7 +128,7 @@ def judge_all(comparisons: Sequence[Comparison], seed: str) -> CheckResult:
     CheckResult
         The weakest verdict of all.
     """
-    found = [judge(comparison, f"{seed} {i}") for i, comparison in enumerate(comparisons)]
+    found = [verify(comparison, f"{seed} {i}") for i, comparison in enumerate(comparisons)]
     order = (
         Verdict.DISAGREES,
         Verdict.UNDECIDED,
@@ -140,7 +140,7 @@ def judge_all(comparisons: Sequence[Comparison], seed: str) -> CheckResult:
     return min(found, key=lambda each: order.index(each.verdict))
 
 
-class _Judge:
+class _Verification:
     """One comparison, with the number of points at which each pair agreed."""
 
     def __init__(self, comparison: Comparison, seed: str) -> None:
@@ -188,7 +188,7 @@ class _Judge:
     def _is_in_domain(self, i: int, point: Point) -> bool:
         """Return False if a described term of a pair has no real value at a point."""
         pair = self.comparison.pairs[i]
-        known = pair.independent.free_symbols | pair.claimed.free_symbols
+        known = pair.independent.free_symbols | pair.derived.free_symbols
         terms = [term for term in self.comparison.domain if term.free_symbols <= known]
         return all(each is not None and _is_real(each, each) for each in self.evaluation.values_of(terms, point))
 
@@ -235,7 +235,7 @@ class Evaluation:
     def __init__(self, comparison: Comparison) -> None:
         self._given = [(symbol, Steps([meaning])) for symbol, meaning in comparison.given.items()]
         self._solves = comparison.solves
-        self._left = Steps([pair.claimed for pair in comparison.pairs])
+        self._left = Steps([pair.derived for pair in comparison.pairs])
         self._right = Steps([pair.independent for pair in comparison.pairs])
 
     def findings(self, point: Point, complex_too: bool = False) -> Iterator[tuple[Found, Number | None, Number | None]]:
@@ -307,7 +307,7 @@ def _finding(left: Sequence[Number | None], right: Sequence[Number | None], comp
         return Found.NOTHING
     if None in left:
         return Found.UNDERIVED if left[0] is left[1] else Found.UNSTABLE
-    coarse, fine = (claimed - known for claimed, known in zip(left, right, strict=True))
+    coarse, fine = (derived - known for derived, known in zip(left, right, strict=True))
     if not coarse or _vanishes(coarse, fine):  # zero in each of the fewer numbers of digits
         return Found.EQUAL
     if not _is_same(coarse, fine):
@@ -340,7 +340,7 @@ def _is_real(coarse: Number, fine: Number) -> bool:
     return _vanishes(mp.im(coarse), mp.im(fine)) or abs(mp.im(fine)) <= mp.mpf(10) ** -SHRUNK * abs(fine)
 
 
-def judge_rounded(comparison: Comparison) -> CheckResult:
+def verify_rounded(comparison: Comparison) -> CheckResult:
     """Return the verdict on pairs at one point whose numbers may be rounded.
 
     A difference d is explained if a change of the numbers in the 50th digit makes it: |d| <= 10^-50 times the sum of
@@ -358,9 +358,9 @@ def judge_rounded(comparison: Comparison) -> CheckResult:
     values = _rounded_values(comparison)
     exact = _resolved({x: meaning for x, meaning in comparison.given.items() if x not in comparison.rounded})
     for pair in comparison.pairs:
-        difference = (pair.claimed - pair.independent).xreplace(exact)
+        difference = (pair.derived - pair.independent).xreplace(exact)
         changing = [x for x in comparison.rounded if x in difference.free_symbols]
-        steps = Steps([difference, pair.claimed, pair.independent, *(x * difference.diff(x) for x in changing)])
+        steps = Steps([difference, pair.derived, pair.independent, *(x * difference.diff(x) for x in changing)])
         with mp.workdps(CONFIRMING_DIGITS):
             found, left, right, *changes = steps.at(values)
             if found is None or left is None or right is None or mp.im(found):
@@ -427,7 +427,7 @@ def _free_names(comparison: Comparison) -> list[str]:
 
 def _expressions(comparison: Comparison) -> Iterator[sp.Expr]:
     for pair in comparison.pairs:
-        yield from (pair.claimed, pair.independent)
+        yield from (pair.derived, pair.independent)
     yield from comparison.given.values()
     for equations in comparison.solves:
         yield from equations.residuals
@@ -442,7 +442,7 @@ def _is_proved(comparison: Comparison) -> bool:
     if comparison.solves and comparison.certificate is None:
         return False
     definitions = _resolved({**comparison.given, **(comparison.certificate or {})})
-    zeros = [pair.claimed - pair.independent for pair in comparison.pairs]
+    zeros = [pair.derived - pair.independent for pair in comparison.pairs]
     zeros += [residual for equations in comparison.solves for residual in equations.residuals]
     return is_identically_zero(zero.xreplace(definitions) for zero in zeros)
 

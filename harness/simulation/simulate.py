@@ -18,7 +18,7 @@ from ..program.sign_pattern import drawing_with_values, with_values_in
 from ..supervisor import doing
 from .accuracy_check import energy_missed, expected, may_hide, violations
 from .defect import DefectControl
-from .engines.engine import JUDGED_AFTER, Solutions, Step, require_reach
+from .engines.engine import ESTIMATED_AFTER, Solutions, Step, require_reach
 from .engines.registry import engine_class
 from .evaluation import Numbers, as_floats, one_blas_thread
 from .events import Ending, first_event
@@ -113,7 +113,7 @@ def _require_steps(problem: MotionProblem, request: SimulationRequest) -> None:
     if not 0 < step < inf:
         raise HolonomError(ErrorKind.NOT_A_STEP, detail=f"{step:g}")
     span = float(last_time(problem, request.until, read_precision("double"))) - float(problem.start["t"])
-    require_reach(JUDGED_AFTER, JUDGED_AFTER * step, span)
+    require_reach(ESTIMATED_AFTER, ESTIMATED_AFTER * step, span)
 
 
 def end_of(problem: MotionProblem, request: SimulationRequest) -> tuple[Any, Ending | None]:

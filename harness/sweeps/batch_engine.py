@@ -35,7 +35,7 @@ MOST_BLOCKS = 64
 ROOM = 64  # steps for which there is room at first
 STRAYED = 1e-8  # relative distance from the constraints after a block that projection alone does not remove
 SMALL = 2.0**-200  # in which what is looked at along the motion is integrated: a power of two loses no digit
-JUDGED = ("work", "squared_error")  # integrals behind the state
+ACCURACY_INTEGRALS = ("work", "squared_error")  # integrals behind the state
 COMPACT_FROM = 1600  # operations by elements; heyoka's other mode compiles in their square, and runs a third faster
 
 Floats = NDArray[np.float64]
@@ -116,7 +116,7 @@ class BatchEngine:
         known = {"t": heyoka.time, **{name: heyoka.expression(name) for name in problem.state}, **parameters}
         wanted = [Name("energy"), Name("power"), *along]
         energy, power, *rates = expressions_of(wanted, along_motion(problem, known))
-        work, squared_error = map(heyoka.expression, JUDGED)
+        work, squared_error = map(heyoka.expression, ACCURACY_INTEGRALS)
         error = energy - heyoka.par[len(parameters)] - work / SMALL
         equations += [(work, SMALL * power), (squared_error, SMALL * error * error)]
         equations += [(heyoka.expression(f"along[{k}]"), SMALL * rate) for k, rate in enumerate(rates)]
@@ -128,7 +128,7 @@ class BatchEngine:
         )
         self._state, self._time = self._integrator.state, self._integrator.time
         self._pars = np.zeros((len(problem.parameters) + 1, elements))  # the last one is the energy at the start
-        self._moving, self._behind = self._state[: self._size], self._size + len(JUDGED)
+        self._moving, self._behind = self._state[: self._size], self._size + len(ACCURACY_INTEGRALS)
         self._looking = _StepRecorder(self._integrator, self._behind) if along else None
         self._unused = len(problem.multipliers)
         self._energy = batch_evaluation(problem, computing(problem.energy, {"energy"}))
@@ -156,7 +156,7 @@ class BatchEngine:
         k, elements = states.shape[1], self._elements
         found, arrived, seen = np.empty((len(stops), self._behind, k)), np.empty(k, dtype=bool), []
         shortest, taken = np.empty(k), np.empty(k, dtype=int)
-        starts = np.concatenate([states, np.zeros((len(JUDGED) + self._along, k))])
+        starts = np.concatenate([states, np.zeros((len(ACCURACY_INTEGRALS) + self._along, k))])
         begun = self._energies(self._start, states, values)
         pars = np.concatenate([values, begun[None]])
         for first in range(0, k, elements):

@@ -14,7 +14,7 @@ from holonom.crosscheck.draws import Draws
 from holonom.crosscheck.points import random_point
 from holonom.crosscheck.report import EquationVerdict, Verdict
 from holonom.crosscheck.seed import fresh_seed
-from holonom.crosscheck.verdict import Comparison, Pair, judge
+from holonom.crosscheck.verdict import Comparison, Pair, verify
 from holonom.description import Description
 from holonom.record import Equation, Record, Relation
 
@@ -24,11 +24,11 @@ NUMERICAL = ("lagranges_method", "redundant_constraints")  # verdicts that are n
 def test_every_equation_of_an_example_is_proved(example_record: Record, example_description: Description) -> None:
     report = check_record(example_record, example_description)
     assert not report.disagreements, [found for found in report.verdicts if found.verdict is Verdict.DISAGREES]
-    judged = [found for found in report.verdicts if found.id not in NUMERICAL]
-    assert {found.verdict for found in judged if found.verdict is not Verdict.NOTHING} == {Verdict.PROVED}
+    with_verdicts = [found for found in report.verdicts if found.id not in NUMERICAL]
+    assert {found.verdict for found in with_verdicts if found.verdict is not Verdict.NOTHING} == {Verdict.PROVED}
     parts = (*example_record.derivations, *example_record.scenes)
     empty = {equation.name for each in parts for equation in each.equations if not equation.relations}
-    assert {found.name for found in judged if found.verdict is Verdict.NOTHING} == empty
+    assert {found.name for found in with_verdicts if found.verdict is Verdict.NOTHING} == empty
 
 
 def test_every_equation_has_one_verdict_and_the_third_opinion_is_asked(
@@ -91,6 +91,6 @@ def test_a_record_forged_to_vanish_at_all_points_of_a_seed_disagrees_under_anoth
     draws = Draws(["x"], (), "known")
     points = [draws.point(attempt)[x] for attempt in range(8)]
     forged = Comparison((Pair("x", x + sp.prod(x - point for point in points), x),))
-    assert judge(forged, "known").points == 8
-    assert judge(forged, "known").verdict is not Verdict.DISAGREES
-    assert judge(forged, fresh_seed()).verdict is Verdict.DISAGREES
+    assert verify(forged, "known").points == 8
+    assert verify(forged, "known").verdict is not Verdict.DISAGREES
+    assert verify(forged, fresh_seed()).verdict is Verdict.DISAGREES

@@ -9,7 +9,7 @@ from holonom.crosscheck.independent import IndependentEquations
 from holonom.crosscheck.relations import NotComparable
 from holonom.crosscheck.report import Verdict
 from holonom.crosscheck.system import described_system
-from holonom.crosscheck.verdict import judge
+from holonom.crosscheck.verdict import verify
 from holonom.record import Equation, Record, Relation
 
 ADDED = Relation(["Subscript", "Z", 1], 1)
@@ -32,7 +32,7 @@ def verdict(checked: CheckedDerivation, equation: Equation, relations: tuple[Rel
     except NotComparable:
         return Verdict.DISAGREES
     alone = dataclasses.replace(comparison, certificate=None)  # numbers alone: a proof is not what is tried here
-    return judge(alone, equation.id).verdict
+    return verify(alone, equation.id).verdict
 
 
 def test_the_equations_are_right_as_they_are(checked):

@@ -10,7 +10,7 @@ from holonom.crosscheck.initial_motion import COMPARISONS, CheckedScene
 from holonom.crosscheck.relations import NotComparable
 from holonom.crosscheck.report import Verdict
 from holonom.crosscheck.system import described_system
-from holonom.crosscheck.verdict import judge_all
+from holonom.crosscheck.verdict import verify_all
 from holonom.description import Description
 from holonom.record import Equation, Record, Relation
 
@@ -37,7 +37,7 @@ def verdict(checked: CheckedScene, equation: Equation, relations: tuple[Relation
     except NotComparable:
         return Verdict.DISAGREES
     alone = [dataclasses.replace(comparison, certificate=None) for comparison in comparisons]
-    return judge_all(alone, equation.id).verdict
+    return verify_all(alone, equation.id).verdict
 
 
 def equation(checked: CheckedScene, wanted: str) -> Equation:

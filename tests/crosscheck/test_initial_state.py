@@ -37,7 +37,7 @@ def description(record, tmp_path_factory) -> Description:
 
 
 def verdicts(record: Record, description: Description, scene: Scene) -> dict[str, Verdict]:
-    """Verdicts on (12) and (19) alone; the derivation is not judged."""
+    """Verdicts on (12) and (19) alone; the derivation is not verified."""
     alone = dataclasses.replace(scene, equations=tuple(e for e in scene.equations if e.number in ("12", "19")))
     nothing = dataclasses.replace(record.derivations[0], equations=())
     changed = dataclasses.replace(record, derivations=(nothing,), scenes=(alone,))

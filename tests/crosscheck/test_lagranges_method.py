@@ -10,7 +10,7 @@ from holonom.crosscheck.independent import IndependentEquations
 from holonom.crosscheck.lagranges_method import LARGEST_SYSTEM, can_take, compare
 from holonom.crosscheck.report import Verdict
 from holonom.crosscheck.system import MechanicalSystem
-from holonom.crosscheck.verdict import judge
+from holonom.crosscheck.verdict import verify
 
 
 @pytest.mark.parametrize(
@@ -19,26 +19,26 @@ from holonom.crosscheck.verdict import judge
 def test_lagranges_method_gives_the_same_accelerations_and_multipliers(
     system: MechanicalSystem,
 ) -> None:
-    found = judge(compare(IndependentEquations(system)), "third opinion")
+    found = verify(compare(IndependentEquations(system)), "third opinion")
     assert found.verdict is Verdict.AGREES, found.detail
 
 
 def test_a_potential_with_a_kink_had_no_regular_point() -> None:
     smooth = pendulum()
     kinked = dataclasses.replace(smooth, potential_energy=smooth.potential_energy + 20 * sp.Abs(smooth.coordinates[0]))
-    assert judge(compare(IndependentEquations(kinked)), "third opinion").verdict is Verdict.AGREES
+    assert verify(compare(IndependentEquations(kinked)), "third opinion").verdict is Verdict.AGREES
 
 
 def test_a_system_without_constraints_is_taken() -> None:
     free = dataclasses.replace(pendulum(), multipliers=(), constraints=())
-    assert judge(compare(IndependentEquations(free)), "free").verdict is Verdict.AGREES
+    assert verify(compare(IndependentEquations(free)), "free").verdict is Verdict.AGREES
 
 
 def test_a_multiplier_of_the_other_sign_is_found() -> None:
     comparison = compare(IndependentEquations(pendulum()))
     multiplier = comparison.pairs[-1]
-    turned = multiplier._replace(claimed=-multiplier.claimed)
-    found = judge(dataclasses.replace(comparison, pairs=(turned,)), "third opinion")
+    turned = multiplier._replace(derived=-multiplier.derived)
+    found = verify(dataclasses.replace(comparison, pairs=(turned,)), "third opinion")
     assert found.verdict is Verdict.DISAGREES
     assert "lambda1" in found.detail
 
@@ -52,7 +52,7 @@ def two_constraints() -> MechanicalSystem:
 
 def test_a_system_of_two_constraints_is_taken_and_one_too_large_is_not() -> None:
     assert can_take(two_constraints())
-    assert judge(compare(IndependentEquations(two_constraints())), "two").verdict is Verdict.AGREES
+    assert verify(compare(IndependentEquations(two_constraints())), "two").verdict is Verdict.AGREES
     many = tuple(sp.symbols(f"q1:{LARGEST_SYSTEM + 1}", real=True))
     assert not can_take(dataclasses.replace(pendulum(), coordinates=many))
 
@@ -64,4 +64,4 @@ def test_the_method_is_compared_with_our_equations_and_not_with_itself(wrong: st
     others = dataclasses.replace(system, **{wrong: tuple(2 * each + 1 for each in getattr(system, wrong))})
     known = IndependentEquations(system)
     known.__dict__["bordered"] = IndependentEquations(others).bordered
-    assert judge(compare(known), "third opinion").verdict is Verdict.DISAGREES
+    assert verify(compare(known), "third opinion").verdict is Verdict.DISAGREES

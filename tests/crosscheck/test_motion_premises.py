@@ -8,8 +8,8 @@ from mpmath import mp
 
 from holonom.crosscheck.described_motion import DescribedMotion
 from holonom.crosscheck.digits import WORKING_DIGITS
-from holonom.crosscheck.motion_program import judge_programs
-from holonom.crosscheck.motion_series import judge_series
+from holonom.crosscheck.motion_program import verify_programs
+from holonom.crosscheck.motion_series import verify_series
 from holonom.crosscheck.motion_start import nearer_start
 from holonom.crosscheck.motions import read_motions
 from holonom.crosscheck.questions import ask_for_check
@@ -38,10 +38,10 @@ def asked(tmp_path_factory):
     return source.description(), motions.programs[0], motions.series[0]
 
 
-def judged(description, programs, **changes):
+def with_verdicts(description, programs, **changes):
     direct = replace(programs.problems[Solve.DIRECT], **changes)
     changed = replace(programs, problems={**programs.problems, Solve.DIRECT: direct})
-    return {each.found.verdict for each in judge_programs(description, [changed], "premises")}
+    return {each.found.verdict for each in verify_programs(description, [changed], "premises")}
 
 
 def negated(program, name):
@@ -87,7 +87,7 @@ def moved(program):
 def test_each_other_premise_is_found_and_the_right_ones_agree(asked):
     description, programs, _ = asked
     found = {
-        what: judged(description, programs, **changes)
+        what: with_verdicts(description, programs, **changes)
         for what, changes in changes_of(programs.problems[Solve.DIRECT]).items()
     }
     assert found.pop("nothing") == {Verdict.AGREES}
@@ -96,14 +96,14 @@ def test_each_other_premise_is_found_and_the_right_ones_agree(asked):
 
 def test_a_series_from_another_start_or_with_other_constraint_forces_is_found(asked):
     description, programs, series = asked
-    (right,) = judge_series(description, [series], [programs])
+    (right,) = verify_series(description, [series], [programs])
     assert right.found.verdict is Verdict.AGREES
     for group in ("coordinates", "constraint_forces"):
         rows = getattr(series.series, group)
         for name, row in rows.items():
             wrong = {**rows, name: (f"{row[0]}1" if "." in row[0] else str(Fraction(row[0]) + 1), *row[1:])}
             changed = replace(series, series=replace(series.series, **{group: wrong}))
-            (verdict,) = judge_series(description, [changed], [programs])
+            (verdict,) = verify_series(description, [changed], [programs])
             assert verdict.found.verdict is Verdict.DISAGREES, (group, name)
 
 

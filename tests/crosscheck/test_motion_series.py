@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from holonom.crosscheck.motion_program import ScenePrograms
-from holonom.crosscheck.motion_series import SceneSeries, judge_series, judge_servo
+from holonom.crosscheck.motion_series import SceneSeries, verify_series, verify_servo
 from holonom.crosscheck.motions import read_motions
 from holonom.crosscheck.questions import ask_for_check
 from holonom.crosscheck.report import Verdict
@@ -27,13 +27,13 @@ EACH = 6  # wrong series of each file
 def test_right_series_agree_and_wrong_ones_are_found(name):
     source = Source(EXAMPLES / f"{name}.mac")
     found = read_motions(source.description(), ask_for_check(source, {})).series
-    verdicts = judge_series(source.description(), found)
+    verdicts = verify_series(source.description(), found)
     digits = [50 if each.series.arithmetic == EXACT else 22 for each in found]
     assert [(each.found.verdict, each.found.digits) for each in verdicts] == [(Verdict.AGREES, n) for n in digits]
     draw = random.Random(name)
     for _ in range(EACH):
         wrong = changed(draw.choice(found), draw)
-        (verdict,) = judge_series(source.description(), [wrong])
+        (verdict,) = verify_series(source.description(), [wrong])
         assert verdict.found.verdict is Verdict.DISAGREES
 
 
@@ -54,10 +54,10 @@ def test_wrong_controls_of_servo_constraints_are_found(name):
     motions = read_motions(source.description(), ask_for_check(source, {}))
     series, (*_, programs) = motions.series, motions.programs
     description = source.description()
-    assert [each.found.verdict for each in judge_servo(description, [programs], series)] == [Verdict.AGREES]
+    assert [each.found.verdict for each in verify_servo(description, [programs], series)] == [Verdict.AGREES]
     for control in set(description.system.controls) - set(description.scenes[-1].control_law):
         wrong = with_control_changed(programs, control)
-        assert [each.found.verdict for each in judge_servo(description, [wrong], series)] == [Verdict.DISAGREES]
+        assert [each.found.verdict for each in verify_servo(description, [wrong], series)] == [Verdict.DISAGREES]
 
 
 def with_control_changed(programs: ScenePrograms, control: str) -> ScenePrograms:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from holonom.crosscheck.motion_program import ScenePrograms, judge_programs
+from holonom.crosscheck.motion_program import ScenePrograms, verify_programs
 from holonom.crosscheck.motions import read_motions
 from holonom.crosscheck.questions import ask_for_check
 from holonom.crosscheck.report import Verdict
@@ -64,7 +64,7 @@ def programs() -> dict[str, tuple[Source, list[ScenePrograms]]]:
 @pytest.mark.parametrize("name", FILES)
 def test_right_programs_agree(programs, name):
     source, written = programs[name]
-    found = judge_programs(source.description(), written, name)
+    found = verify_programs(source.description(), written, name)
     assert {each.found.verdict for each in found} == {Verdict.AGREES}
     assert {each.scene for each in found} == {scene.name for scene in source.description().scenes}
     assert {(each.found.digits, each.found.points) for each in found} == {(50, 8)}
@@ -72,10 +72,10 @@ def test_right_programs_agree(programs, name):
 
 def test_a_program_whose_controls_are_open_agrees(write_scene):
     source, written = asked(write_scene(OPEN))
-    found = judge_programs(source.description(), written, "open")
+    found = verify_programs(source.description(), written, "open")
     assert [each.found.verdict for each in found] == [Verdict.AGREES] * len(Solve)
     drag = replace(source.description(), content=without_drag(source.description().content))
-    assert [each.found.verdict for each in judge_programs(drag, written, "open")] == [Verdict.DISAGREES] * len(Solve)
+    assert [each.found.verdict for each in verify_programs(drag, written, "open")] == [Verdict.DISAGREES] * len(Solve)
 
 
 def without_drag(content: dict) -> dict:
@@ -85,12 +85,14 @@ def without_drag(content: dict) -> dict:
 def test_reactions_beside_servo_constraints_agree(write_scene):
     """The multiplier of a servo-constraint, which is zero, is looked at too."""
     source, (written,) = asked(write_scene(KINDS))
-    assert {each.found.verdict for each in judge_programs(source.description(), [written], "kinds")} == {Verdict.AGREES}
+    assert {each.found.verdict for each in verify_programs(source.description(), [written], "kinds")} == {
+        Verdict.AGREES
+    }
     problem = written.problems[Solve.DIRECT]
     for name in ("ddot(u)", "ddot(w)", "lambda1", "lambda2", "lambda3"):
         outputs = problem.motion.outputs | {name: Name("x")}
         wrong = replace(problem, motion=replace(problem.motion, outputs=outputs))
-        found = judge_programs(source.description(), [replace(written, problems={Solve.DIRECT: wrong})], name)
+        found = verify_programs(source.description(), [replace(written, problems={Solve.DIRECT: wrong})], name)
         assert Verdict.DISAGREES in {each.found.verdict for each in found}, name
 
 
@@ -112,7 +114,7 @@ def test_every_wrong_program_is_found(programs, name):
             continue
         made += 1
         changed = replace(scene, problems=scene.problems | {solve: replace(scene.problems[solve], **{which: wrong})})
-        found = judge_programs(source.description(), [changed], f"{name} {made}")
+        found = verify_programs(source.description(), [changed], f"{name} {made}")
         if all(each.found.verdict is not Verdict.DISAGREES for each in found):
             missed.append((scene.scene, solve, which, [each.found for each in found]))
     assert missed == []
@@ -211,5 +213,5 @@ def test_a_wrong_table_is_found(programs):
     (table,) = problem.tables
     pieces = [(*piece[:4], str(Fraction(piece[4]) * Fraction(1001, 1000))) for piece in table.pieces]
     wrong = replace(problem, tables=(replace(table, pieces=tuple(pieces)),))
-    found = judge_programs(source.description(), [replace(scene, problems={Solve.DIRECT: wrong})], "table")
+    found = verify_programs(source.description(), [replace(scene, problems={Solve.DIRECT: wrong})], "table")
     assert Verdict.DISAGREES in {each.found.verdict for each in found}

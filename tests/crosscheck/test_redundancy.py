@@ -37,13 +37,13 @@ def test_a_constraint_that_follows_from_two_others_is_named_and_the_rest_is_prov
 
 
 def test_a_constraint_that_does_not_follow_from_the_others_is_found(record, scene):
-    claimed = dataclasses.replace(record.derivations[0], redundant=("lambda2", "lambda3"))
-    found = verdicts_of(dataclasses.replace(record, derivations=(claimed,)), scene)
+    derived = dataclasses.replace(record.derivations[0], redundant=("lambda2", "lambda3"))
+    found = verdicts_of(dataclasses.replace(record, derivations=(derived,)), scene)
     assert found["redundant_constraints"] is Verdict.DISAGREES
     assert found["constraint_forces"] is Verdict.DISAGREES
 
 
 def test_a_constraint_that_follows_and_is_not_listed_is_found(record, scene):
-    claimed = dataclasses.replace(record.derivations[0], redundant=())
-    found = verdicts_of(dataclasses.replace(record, derivations=(claimed,)), scene)
+    derived = dataclasses.replace(record.derivations[0], redundant=())
+    found = verdicts_of(dataclasses.replace(record, derivations=(derived,)), scene)
     assert found["redundant_constraints"] in (Verdict.DISAGREES, Verdict.UNDECIDED)

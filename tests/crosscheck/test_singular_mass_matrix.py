@@ -35,8 +35,8 @@ def record(source) -> Record:
 
 def test_every_equation_is_proved(record, source):
     report = check_record(record, source.description())
-    judged = {found.verdict for found in report.verdicts if found.id not in NUMERICAL}
-    assert judged - {Verdict.NOTHING} == {Verdict.PROVED}
+    with_verdicts = {found.verdict for found in report.verdicts if found.id not in NUMERICAL}
+    assert with_verdicts - {Verdict.NOTHING} == {Verdict.PROVED}
     assert not report.disagreements
     assert {found.number for found in report.verdicts} >= {"4", "5", "8", "9", "10", "11", "13", "18"}
 
@@ -47,8 +47,8 @@ def test_the_multiplier_is_the_spring_force(record):
 
 
 def test_a_singular_mass_matrix_that_is_stated_to_be_regular_is_found(record, source):
-    claimed = dataclasses.replace(record.derivations[0], mass_matrix="regular")
-    report = check_record(dataclasses.replace(record, derivations=(claimed,)), source.description())
+    derived = dataclasses.replace(record.derivations[0], mass_matrix="regular")
+    report = check_record(dataclasses.replace(record, derivations=(derived,)), source.description())
     disagreeing = {found.id for found in report.verdicts if found.verdict is Verdict.DISAGREES}
     assert {"inverse_mass_matrix", "redundant_constraints"} <= disagreeing
 

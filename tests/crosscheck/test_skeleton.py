@@ -17,11 +17,11 @@ AGREES = CheckResult(Verdict.AGREES, 50, 8)
 
 
 @pytest.fixture
-def unjudged(monkeypatch: pytest.MonkeyPatch) -> None:
+def all_agrees(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every comparison that can be made agrees; the third opinion is not asked, and no rank is found."""
     monkeypatch.setattr(lagranges_method, "can_take", lambda system: False)
-    monkeypatch.setattr(check, "judge_all", lambda comparisons, seed: AGREES)
-    monkeypatch.setattr(check, "judge_redundancy", lambda *arguments: AGREES)
+    monkeypatch.setattr(check, "verify_all", lambda comparisons, seed: AGREES)
+    monkeypatch.setattr(check, "verify_redundancy", lambda *arguments: AGREES)
 
 
 def disagreeing(record: Record, description: Description, limit: int | None = None) -> set[str]:
@@ -49,7 +49,7 @@ def held(record: Record, wanted: str) -> Equation:
     return found
 
 
-@pytest.mark.usefixtures("unjudged")
+@pytest.mark.usefixtures("all_agrees")
 class TestEquations:
     def test_the_true_record_has_what_belongs_there(self, every_term_record, every_term_description):
         assert not disagreeing(every_term_record, every_term_description)
@@ -151,7 +151,7 @@ def test_what_is_left_out_is_an_exact_group_of_a_known_size(coupled):
 
 
 def test_what_a_time_limit_interrupts_is_undecided_and_not_what_was_before_it(
-    every_term_record, every_term_description, unjudged, monkeypatch
+    every_term_record, every_term_description, all_agrees, monkeypatch
 ):
     works = []
 
@@ -190,7 +190,7 @@ def test_each_equation_is_looked_at_in_points_of_its_own_and_of_this_check(
         seeds.append(seed)
         return AGREES
 
-    monkeypatch.setattr(check, "judge_all", noted)
+    monkeypatch.setattr(check, "verify_all", noted)
     check_record(dataclasses.replace(every_term_record, scenes=()), every_term_description, seed="this one")
     derivations = len(every_term_record.derivations)
     assert len(set(seeds)) == len(seeds) // derivations

@@ -5,7 +5,7 @@ import sympy as sp
 
 from holonom.crosscheck.report import Verdict
 from holonom.crosscheck.system import MechanicalSystem, dotted
-from holonom.crosscheck.universal_laws import ControlLaw, judge_law
+from holonom.crosscheck.universal_laws import ControlLaw, verify_law
 
 
 def real(names: str) -> tuple[sp.Symbol, ...]:
@@ -55,7 +55,7 @@ SUM = system("x", (sp.Integer(-10),), [x - u - w], controls=(u, w))
     ],
 )
 def test_law_that_makes_every_motion_free_passes(moved, law, positive):
-    found = judge_law(moved, {}, ControlLaw(law, positive))
+    found = verify_law(moved, {}, ControlLaw(law, positive))
     assert (found.verdict, found.detail) == (Verdict.AGREES, "")
 
 
@@ -69,11 +69,11 @@ def test_law_that_makes_every_motion_free_passes(moved, law, positive):
     ],
 )
 def test_law_that_leaves_a_reaction_is_caught(moved, law):
-    assert judge_law(moved, {}, ControlLaw(law)).verdict is Verdict.DISAGREES
+    assert verify_law(moved, {}, ControlLaw(law)).verdict is Verdict.DISAGREES
 
 
 def test_a_law_under_which_no_state_is_regular_is_neither_right_nor_wrong():
-    found = judge_law(CIRCLE, {}, ControlLaw({u: sp.Integer(0)}))
+    found = verify_law(CIRCLE, {}, ControlLaw({u: sp.Integer(0)}))
     assert found.verdict is Verdict.UNDECIDED
     assert "only 0 regular states were found" in found.detail
 
@@ -84,6 +84,6 @@ def test_a_law_for_one_sign_of_a_parameter_is_tried_for_that_sign_alone():
     Of eight random states four are positive throughout; one in sixteen draws has k/m > 0 in the others too.
     """
     law = {u: u0 * sp.cos(sp.sqrt(sp.Abs(k / m)) * t)}
-    assert judge_law(SPRING, {}, ControlLaw(law, (k / m,))).verdict is Verdict.AGREES
-    drawn = (judge_law(SPRING, {}, ControlLaw(law)).verdict for _ in range(16))
+    assert verify_law(SPRING, {}, ControlLaw(law, (k / m,))).verdict is Verdict.AGREES
+    drawn = (verify_law(SPRING, {}, ControlLaw(law)).verdict for _ in range(16))
     assert Verdict.DISAGREES in drawn

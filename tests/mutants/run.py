@@ -132,11 +132,11 @@ class Copy:
         return ""
 
 
-def judged(mutants: list[Mutant], jobs: int) -> Iterator[tuple[Mutant, str]]:
+def with_verdicts(mutants: list[Mutant], jobs: int) -> Iterator[tuple[Mutant, str]]:
     """Yield each mutant with the test that kills it, as they come."""
     copies: queue.SimpleQueue[Copy] = queue.SimpleQueue()
 
-    def judge(mutant: Mutant) -> str:
+    def outcome(mutant: Mutant) -> str:
         copy = copies.get()
         try:
             return copy.killer(mutant)
@@ -146,7 +146,7 @@ def judged(mutants: list[Mutant], jobs: int) -> Iterator[tuple[Mutant, str]]:
     with tempfile.TemporaryDirectory(prefix="holonom-mutants-") as directory, ThreadPoolExecutor(jobs) as pool:
         for i in range(jobs):
             copies.put(Copy(Path(directory, str(i))))
-        running = {pool.submit(judge, mutant): mutant for mutant in mutants}
+        running = {pool.submit(outcome, mutant): mutant for mutant in mutants}
         try:
             yield from ((running[done], done.result()) for done in as_completed(running))
         finally:
@@ -188,7 +188,7 @@ def main() -> None:
             outcomes[mutant] = killer
     given.results.parent.mkdir(parents=True, exist_ok=True)
     left = [mutant for mutant in mutants if mutant not in outcomes]
-    for mutant, killer in judged(left, given.jobs):
+    for mutant, killer in with_verdicts(left, given.jobs):
         outcomes[mutant] = killer
         print(f"{len(outcomes)}/{len(mutants)} {f'killed by {killer}' if killer else 'SURVIVES'}: {mutant}", flush=True)
         own, with_tests = mutants[mutant]

@@ -15,7 +15,7 @@ from holonom.cli import holonom
 from holonom.crosscheck.check import check_record
 from holonom.crosscheck.evaluation import Steps
 from holonom.crosscheck.independent import IndependentEquations
-from holonom.crosscheck.motion_program import ScenePrograms, judge_programs
+from holonom.crosscheck.motion_program import ScenePrograms, verify_programs
 from holonom.crosscheck.points import random_point
 from holonom.crosscheck.premises import differences, premises_of
 from holonom.crosscheck.report import Verdict
@@ -244,7 +244,9 @@ def test_check_finds_a_program_with_other_switches(write_scene):
     file = write_scene(spherical_scene(["support_motion", "frame_rotation"]))
     problems = {solve: motion_problem(file, Request(solve=solve), Limits()) for solve in Solve}
     programs = [ScenePrograms("moving_scene", problems)]
-    verdicts = [{each.found.verdict for each in judge_programs(of, programs, "seed")} for of in (describe(file), other)]
+    verdicts = [
+        {each.found.verdict for each in verify_programs(of, programs, "seed")} for of in (describe(file), other)
+    ]
     assert verdicts[0] == {Verdict.AGREES}
     assert Verdict.DISAGREES in verdicts[1]
     assert any(each.what == "effects" for each in differences(derived_record(file), premises_of(other)))

@@ -80,7 +80,7 @@ def test_pole_of_the_motion_alone_is_estimated_and_marked():
 
 
 @pytest.mark.parametrize(("force", "proved"), [("1", True), ("(1 - t^2)/(1 - t)", True), ("x", False), ("t^60", False)])
-def test_polynomial_is_claimed_if_the_equations_are_satisfied_by_it(force, proved):
+def test_polynomial_is_found_if_the_equations_are_satisfied_by_it(force, proved):
     """x'' = x from rest at zero stays there, from x = 1 it is cosh(t); of t^60 the coefficients to order 40 vanish."""
     motion = holonom.system(ONE.format(force=force, x=int(force == "x"), v=0)).series(order=40)
     assert motion.polynomial == proved

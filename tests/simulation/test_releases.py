@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import holonom
-from holonom.crosscheck.motion_program import ScenePrograms, judge_programs
+from holonom.crosscheck.motion_program import ScenePrograms, verify_programs
 from holonom.crosscheck.report import Verdict
 from holonom.failures import HolonomError
 from holonom.program.motion_problem import problem_document, read_problem
@@ -164,7 +164,7 @@ def test_who_follows_one_analytic_motion_refuses_released_joints():
             ask()
 
 
-def test_check_judges_the_motion_after_each_release():
+def test_check_verifies_the_motion_after_each_release():
     report = holonom.system(CHAIN).check()
     after = [verdict for verdict in report.verdicts if "; after " in verdict.name]
     assert {verdict.verdict for verdict in after} == {Verdict.AGREES}
@@ -179,5 +179,5 @@ def test_check_finds_constraints_that_do_not_end(write_scene):
     for document in wrong.values():
         document["released"][0]["after"] = document | {"released": []}
     programs = [ScenePrograms("run", {solve: read_problem(json.dumps(each)) for solve, each in wrong.items()})]
-    found = judge_programs(description, programs, "seed")
+    found = verify_programs(description, programs, "seed")
     assert [each.found.verdict for each in found if "; after t-c = 0" in each.part] == [Verdict.DISAGREES]

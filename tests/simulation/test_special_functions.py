@@ -179,7 +179,7 @@ def test_no_derivatives_of_high_order_are_taken_of_the_polynomials(pushed_proble
     assert caught.value.kind is ErrorKind.SPECIAL_EXPANDED
 
 
-def test_no_exact_series_is_claimed(write_scene: WRITE):
+def test_no_exact_series_is_given(write_scene: WRITE):
     with refused("special_not_rational"):
         compute_series(write_scene(pushed()), SeriesRequest(order=10, digits="exact"), Limits())
 

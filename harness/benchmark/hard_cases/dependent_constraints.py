@@ -17,7 +17,7 @@ from .runs import baseline_motion, places_kept, problem, simulated
 from .solves import SolveAt, every_solve, solves_kept
 
 ANGLES = tuple(10.0**-k for k in range(1, 12))  # between the rods, of length 1: the hinges are as far apart
-JUDGED = 1e-7
+COMPARED_ANGLE = 1e-7
 
 SIDEWAYS, SLANTING = np.array([2, 1, -2]) / 3, np.array([2, -2, 1]) / 3  # span the plane of the circle
 WEIGHT = np.array([0, 0, -9.81])
@@ -39,8 +39,10 @@ def parallel_constraints(extent: Extent) -> Findings:
     """
     solves = every_solve("hard/swing.mac")
     digits = {name: tuple(_worst(solve, angle) for angle in ANGLES) for name, solve in solves.items()}
-    judged = {name: row[ANGLES.index(JUDGED)] for name, row in digits.items()}
-    yield from solves_kept(translatable("accelerations at the angle %(judged)g", judged=JUDGED), judged, needed=8.0)
+    there = {name: row[ANGLES.index(COMPARED_ANGLE)] for name, row in digits.items()}
+    yield from solves_kept(
+        translatable("accelerations at the angle %(angle)g", angle=COMPARED_ANGLE), there, needed=8.0
+    )
     yield Sweep(translatable("angle between the constraints"), ANGLES, digits)
 
 

@@ -20,7 +20,7 @@ from ...program.request import Solve
 from ...simulation.engines.runge_kutta import RungeKuttaEngine
 from ...simulation.engines.taylor import TaylorEngine
 from ...simulation.request import Stabilization
-from .measurement import Candidate, Group, Prepared, State, doubles, numbers_of
+from .measurement import BenchmarkCase, Group, Prepared, State, doubles, numbers_of
 from .operations import acceleration_program, expansion_operations
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ HARDWARE = ("double", "extended")  # numbers for which the way of compiling matt
 
 def taylor_ladder(
     problem: MotionProblem, until: Fraction, precision: str, tolerances: Sequence[float]
-) -> Iterator[Candidate]:
+) -> Iterator[BenchmarkCase]:
     """Yield the Taylor engine in one precision, tolerance by tolerance.
 
     Parameters
@@ -50,12 +50,12 @@ def taylor_ladder(
 
     Yields
     ------
-    Candidate
+    BenchmarkCase
         One for each tolerance.
     """
     for tol in tolerances:
         prepare = partial(prepare_taylor, problem, until, precision, tol, Stabilization.PROJECTION)
-        yield Candidate(Group.TAYLOR, taylor_name(precision), f"tol {tol:g}", until, prepare)
+        yield BenchmarkCase(Group.TAYLOR, taylor_name(precision), f"tol {tol:g}", until, prepare)
 
 
 def taylor_name(precision: str) -> str:
@@ -90,7 +90,7 @@ def solve_name(solve: Solve) -> str:
     return translatable("solve: %(solve)s", solve=solve)
 
 
-def stabilizations(problem: MotionProblem, until: Fraction, tol: float) -> Iterator[Candidate]:
+def stabilizations(problem: MotionProblem, until: Fraction, tol: float) -> Iterator[BenchmarkCase]:
     """Yield the stabilizations at one tolerance in double precision.
 
     Parameters
@@ -104,12 +104,12 @@ def stabilizations(problem: MotionProblem, until: Fraction, tol: float) -> Itera
 
     Yields
     ------
-    Candidate
+    BenchmarkCase
         One for each stabilization.
     """
     for stabilization in Stabilization:
         prepare = partial(prepare_taylor, problem, until, "double", tol, stabilization)
-        yield Candidate(
+        yield BenchmarkCase(
             Group.STABILIZATION,
             translatable("stabilization: %(method)s", method=stabilization),
             f"tol {tol:g}",
@@ -118,7 +118,7 @@ def stabilizations(problem: MotionProblem, until: Fraction, tol: float) -> Itera
         )
 
 
-def the_two_solves(problems: Sequence[MotionProblem], until: Fraction, tol: float) -> Iterator[Candidate]:
+def the_two_solves(problems: Sequence[MotionProblem], until: Fraction, tol: float) -> Iterator[BenchmarkCase]:
     """Yield a motion by each of its programs, at one tolerance in double precision.
 
     Parameters
@@ -132,12 +132,12 @@ def the_two_solves(problems: Sequence[MotionProblem], until: Fraction, tol: floa
 
     Yields
     ------
-    Candidate
+    BenchmarkCase
         One for each solve.
     """
     for problem in problems:
         prepare = partial(prepare_taylor, problem, until, "double", tol, Stabilization.PROJECTION)
-        yield Candidate(Group.SOLVE, solve_name(problem.motion.solve), f"tol {tol:g}", until, prepare)
+        yield BenchmarkCase(Group.SOLVE, solve_name(problem.motion.solve), f"tol {tol:g}", until, prepare)
 
 
 def prepare_taylor(
@@ -230,7 +230,7 @@ def _compact(problem: MotionProblem, precision: str) -> bool | None:
 RUNGE_KUTTA = translatable("Runge-Kutta engine")
 
 
-def runge_kutta_ladder(problem: MotionProblem, until: Fraction, tolerances: Sequence[float]) -> Iterator[Candidate]:
+def runge_kutta_ladder(problem: MotionProblem, until: Fraction, tolerances: Sequence[float]) -> Iterator[BenchmarkCase]:
     """Yield the Runge-Kutta engine, tolerance by tolerance.
 
     Parameters
@@ -244,12 +244,12 @@ def runge_kutta_ladder(problem: MotionProblem, until: Fraction, tolerances: Sequ
 
     Yields
     ------
-    Candidate
+    BenchmarkCase
         One for each tolerance.
     """
     for tol in tolerances:
         prepare = partial(_prepare_runge_kutta, problem, until, tol)
-        yield Candidate(Group.RUNGE_KUTTA, RUNGE_KUTTA, f"tol {tol:g}", until, prepare)
+        yield BenchmarkCase(Group.RUNGE_KUTTA, RUNGE_KUTTA, f"tol {tol:g}", until, prepare)
 
 
 def _prepare_runge_kutta(problem: MotionProblem, until: Fraction, tol: float) -> Prepared:

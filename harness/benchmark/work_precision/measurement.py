@@ -97,7 +97,7 @@ class Prepared:
 
 
 @dataclass(frozen=True)
-class Candidate:
+class BenchmarkCase:
     """A method at a setting."""
 
     group: Group
@@ -110,7 +110,7 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Measurement:
-    """The error, time and work of a candidate."""
+    """The error, time and work of a benchmark case."""
 
     group: Group
     method: str
@@ -124,7 +124,7 @@ class Measurement:
 
 @dataclass(frozen=True)
 class Omission:
-    """A candidate that was not measured, with the reason."""
+    """A benchmark case that was not measured, with the reason."""
 
     method: str
     setting: str

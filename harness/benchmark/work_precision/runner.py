@@ -1,4 +1,4 @@
-"""Measurement of candidates: a run for the error, then runs in turns for times.
+"""Measurement of benchmark cases: a run for the error, then runs in turns for times.
 
 A first run counts only if it is too long to be repeated, because it fills caches for the next one. heyoka's code is
 compiled without its caches.
@@ -16,7 +16,7 @@ from ...failures import HolonomError
 from ...language import translatable
 from ...program.heyoka_function import import_heyoka
 from ...program.timing import Batch, python_batch, shortest_times
-from .measurement import Candidate, Measurement, Omission, Prepared, relative_error
+from .measurement import BenchmarkCase, Measurement, Omission, Prepared, relative_error
 
 if TYPE_CHECKING:
     from .reference import Reference
@@ -54,35 +54,35 @@ Key = TypeVar("Key")
 Result = Measurement | Omission
 
 
-def measure(candidates: Iterable[Candidate], reference: Reference, advance: Callable[[], None]) -> list[Result]:
-    """Measure errors and times, in the order of the candidates.
+def measure(cases: Iterable[BenchmarkCase], reference: Reference, advance: Callable[[], None]) -> list[Result]:
+    """Measure errors and times, in the order of the cases.
 
     Parameters
     ----------
-    candidates : iterable of Candidate
+    cases : iterable of BenchmarkCase
         Settings of a method one after the other, the least demanding first.
     reference : Reference
-        True states at the times of the candidates.
+        True states at the times of the cases.
     advance : callable
-        Called without arguments after each candidate.
+        Called without arguments after each case.
 
     Returns
     -------
     list of Result
-        One for each candidate: its measurement, or the reason of its omission.
+        One for each case: its measurement, or the reason of its omission.
     """
     results: list[Result] = []
     repeated: dict[int, Prepared] = {}
     impatient: set[str] = set()
-    for candidate in candidates:
-        if candidate.method in impatient:
+    for case in cases:
+        if case.method in impatient:
             results.append(
-                _omission(candidate, translatable("the setting before it took more than %(time)g s", time=PATIENCE))
+                _omission(case, translatable("the setting before it took more than %(time)g s", time=PATIENCE))
             )
         else:
-            result, prepared = _first_run(candidate, reference)
+            result, prepared = _first_run(case, reference)
             if isinstance(result, Measurement) and result.seconds > PATIENCE:
-                impatient.add(candidate.method)
+                impatient.add(case.method)
             elif isinstance(result, Measurement) and result.seconds < REPEATED:
                 repeated[len(results)] = prepared
             results.append(result)
@@ -107,28 +107,28 @@ def times_in_turns(batches: Mapping[Key, Batch]) -> dict[Key, float]:
     return {key: min(times[key] for times in passes) for key in batches}
 
 
-def _first_run(candidate: Candidate, reference: Reference) -> tuple[Result, Prepared | None]:
+def _first_run(case: BenchmarkCase, reference: Reference) -> tuple[Result, Prepared | None]:
     begun = time.perf_counter()
     try:
-        prepared = candidate.prepare()
+        prepared = case.prepare()
         ready = time.perf_counter()
         outcome = prepared.run()
         seconds = time.perf_counter() - ready
         if seconds < PATIENCE:
             seconds = min(seconds, python_batch(_run(prepared), ())(1))
     except HolonomError as refusal:
-        return _omission(candidate, str(refusal)), None
-    error = relative_error(prepared.state(outcome), reference.states[candidate.time])
+        return _omission(case, str(refusal)), None
+    error = relative_error(prepared.state(outcome), reference.states[case.time])
     if not reference.can_tell(error):
         return _omission(
-            candidate, translatable("its error, %(error).1g, is smaller than that of the reference", error=error)
+            case, translatable("its error, %(error).1g, is smaller than that of the reference", error=error)
         ), None
     return (
         Measurement(
-            group=candidate.group,
-            method=candidate.method,
-            setting=candidate.setting,
-            time=candidate.time,
+            group=case.group,
+            method=case.method,
+            setting=case.setting,
+            time=case.time,
             error=error,
             seconds=seconds,
             preparation_seconds=ready - begun,
@@ -150,5 +150,5 @@ def _run(prepared: Prepared) -> Callable[[Any], Any]:
     return lambda _: prepared.run()
 
 
-def _omission(candidate: Candidate, reason: str) -> Omission:
-    return Omission(candidate.method, candidate.setting, reason)
+def _omission(case: BenchmarkCase, reason: str) -> Omission:
+    return Omission(case.method, case.setting, reason)

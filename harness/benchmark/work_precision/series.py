@@ -25,7 +25,7 @@ from ...program.request import Request
 from ...series.heyoka_series import expand, expanding_integrator
 from ...series.request import EXACT
 from ...source import Source
-from .measurement import WORKING_DIGITS, Candidate, Group, Measurement, Prepared, State, relative_error
+from .measurement import WORKING_DIGITS, BenchmarkCase, Group, Measurement, Prepared, State, relative_error
 from .operations import acceleration_program, expansion_operations
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ def expansion_of(problem: MotionProblem, until: Fraction) -> Expansion:
     return Expansion(alone, begin + min(Fraction(f"{step:.2g}"), until - begin))
 
 
-def double_series(expansion: Expansion, orders: Sequence[int]) -> Iterator[Candidate]:
+def double_series(expansion: Expansion, orders: Sequence[int]) -> Iterator[BenchmarkCase]:
     """Yield expansions in double precision.
 
     Parameters
@@ -83,12 +83,12 @@ def double_series(expansion: Expansion, orders: Sequence[int]) -> Iterator[Candi
 
     Yields
     ------
-    Candidate
+    BenchmarkCase
         One for each order.
     """
     for order in orders:
         prepare = partial(_prepare_double, expansion, order)
-        yield Candidate(
+        yield BenchmarkCase(
             Group.SERIES,
             translatable("series, double"),
             translatable("order %(order)s", order=order),

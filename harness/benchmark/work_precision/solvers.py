@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ...extras import missing_package
 from ...failures import ErrorKind, HolonomError
 from ...program.c_function import compile_c
-from .measurement import Candidate, Group, Prepared, doubles
+from .measurement import BenchmarkCase, Group, Prepared, doubles
 from .operations import acceleration_program
 
 if TYPE_CHECKING:
@@ -169,7 +169,7 @@ SOLVERS: Mapping[str, Solver] = {
 }
 
 
-def solver_ladder(problem: MotionProblem, until: Fraction, tolerances: Sequence[float]) -> Iterator[Candidate]:
+def solver_ladder(problem: MotionProblem, until: Fraction, tolerances: Sequence[float]) -> Iterator[BenchmarkCase]:
     """Yield each solver on the compiled motion program, tolerance by tolerance.
 
     Parameters
@@ -183,13 +183,13 @@ def solver_ladder(problem: MotionProblem, until: Fraction, tolerances: Sequence[
 
     Yields
     ------
-    Candidate
+    BenchmarkCase
         One for each solver and tolerance.
     """
     for name, solver in SOLVERS.items():
         for tol in tolerances:
             prepare = partial(_prepare, problem, until, solver, tol)
-            yield Candidate(Group.SOLVER, name, f"tol {tol:g}", until, prepare)
+            yield BenchmarkCase(Group.SOLVER, name, f"tol {tol:g}", until, prepare)
 
 
 def _prepare(problem: MotionProblem, until: Fraction, solver: Solver, tol: float) -> Prepared:

@@ -30,7 +30,7 @@ from .engines import (
     taylor_name,
     the_two_solves,
 )
-from .measurement import Candidate, Measurement, Omission
+from .measurement import BenchmarkCase, Measurement, Omission
 from .reference import MORE_DIGITS, Reference, find_reference
 from .runner import measure, without_caches
 from .series import EXACT, Expansion, double_series, expansion_of, maxima_series, series_name
@@ -65,7 +65,7 @@ class Plan:
 
     @property
     def steps(self) -> int:
-        """Largest number of candidates."""
+        """Largest number of cases."""
         ladders = sum(map(len, self.tolerances.values()))
         solvers = (len(SOLVERS) + 1) * len(self.solver_tolerances)  # the one is the Runge-Kutta engine
         return len(self.orders) + ladders + solvers + len(Stabilization) + len(Solve)
@@ -125,7 +125,7 @@ def study(
     reference = find_reference(problem, times, plan.most_digits)
     series, unexpandable = _series(source, request, expansion, plan, reference)
     with without_caches():
-        results = measure(_candidates(problems, until, expansion, plan), reference, advance)
+        results = measure(_cases(problems, until, expansion, plan), reference, advance)
     measurements = [*series, *(r for r in results if isinstance(r, Measurement))]
     omissions = [*unsolved, *unexpanded, *unexpandable, *beyond, *(r for r in results if isinstance(r, Omission))]
     return Study(
@@ -219,9 +219,9 @@ def _series(
     return measurements, omissions
 
 
-def _candidates(
+def _cases(
     problems: Sequence[MotionProblem], until: Fraction, expansion: Expansion | None, plan: Plan
-) -> Iterator[Candidate]:
+) -> Iterator[BenchmarkCase]:
     problem = problems[0]
     if expansion:
         yield from double_series(expansion, plan.orders)

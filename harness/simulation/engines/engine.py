@@ -20,7 +20,10 @@ from ..request import EngineName, SimulationRequest
 if TYPE_CHECKING:
     from ..mode import Mode
 
-JUDGED_AFTER, MOST_STEPS = 1_000, 1e11  # steps: after which what is left is judged, and which would take too long
+ESTIMATED_AFTER, MOST_STEPS = (
+    1_000,
+    1e11,
+)  # steps: after which the remaining ones are estimated, and the most that are taken
 
 
 def require_reach(steps: int, done: Any, left: Any) -> None:
@@ -40,7 +43,7 @@ def require_reach(steps: int, done: Any, left: Any) -> None:
     HolonomError
         It takes more than `MOST_STEPS`.
     """
-    if steps >= JUDGED_AFTER and steps * float(left) > MOST_STEPS * float(done):
+    if steps >= ESTIMATED_AFTER and steps * float(left) > MOST_STEPS * float(done):
         about = steps * float(left) / float(done) if done > 0 else inf
         raise HolonomError(ErrorKind.TOO_MANY_STEPS, detail=f"the motion takes about {about:.0e} steps to its end")
 

@@ -87,7 +87,7 @@ def test_the_reference_is_confirmed_by_another_order_and_precision(reference):
 @pytest.mark.usefixtures("c_compiler")
 def test_what_the_table_states_is_the_distance_from_the_closed_form(problems, reference):
     problem = problems[0]
-    candidates = [
+    cases = [
         *double_series(expansion_of(problem, UNTIL), SHORT.orders),
         *taylor_ladder(problem, UNTIL, "double", (1e-9,)),
         *taylor_ladder(problem, UNTIL, "30", (1e-20,)),
@@ -96,10 +96,10 @@ def test_what_the_table_states_is_the_distance_from_the_closed_form(problems, re
         *stabilizations(problem, UNTIL, 1e-10),
         *the_two_solves(problems, UNTIL, 1e-10),
     ]
-    results = measure(candidates, reference, lambda: None)
-    for candidate, result in zip(candidates, results, strict=True):
-        prepared = candidate.prepare()
-        error = relative_error(prepared.state(prepared.run()), closed_form(candidate.time))
+    results = measure(cases, reference, lambda: None)
+    for case, result in zip(cases, results, strict=True):
+        prepared = case.prepare()
+        error = relative_error(prepared.state(prepared.run()), closed_form(case.time))
         assert isinstance(result, Measurement), result
         assert result.error == pytest.approx(error, rel=1e-6)
         assert result.seconds > 0
